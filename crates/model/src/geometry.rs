@@ -1,0 +1,252 @@
+//! Plane geometry: vectors, poses and oriented boxes.
+//!
+//! x points forward along the first road, y to the left, headings are radians anticlockwise from +x. [m, rad]
+
+use crate::math;
+use serde::{Deserialize, Serialize};
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A vector in the plane. [m]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Vec2 {
+    /// Forward.
+    pub x: f64,
+    /// Left.
+    pub y: f64,
+}
+
+impl Vec2 {
+    /// From its parts.
+    #[inline]
+    pub const fn new(x: f64, y: f64) -> Self {
+        Self { x, y }
+    }
+
+    /// The unit vector of a heading.
+    #[inline]
+    pub fn from_heading(heading: f64) -> Self {
+        let (sin, cos) = math::sincos(heading);
+        Self::new(cos, sin)
+    }
+
+    /// Inner product.
+    #[inline]
+    pub fn dot(self, other: Self) -> f64 {
+        self.x * other.x + self.y * other.y
+    }
+
+    /// The z part of the cross product: positive where `other` is to the left of `self`.
+    #[inline]
+    pub fn cross(self, other: Self) -> f64 {
+        self.x * other.y - self.y * other.x
+    }
+
+    /// Turned by 90 degrees to the left.
+    #[inline]
+    pub fn left(self) -> Self {
+        Self::new(-self.y, self.x)
+    }
+
+    /// Length squared.
+    #[inline]
+    pub fn length_squared(self) -> f64 {
+        self.dot(self)
+    }
+
+    /// Length.
+    #[inline]
+    pub fn length(self) -> f64 {
+        self.length_squared().sqrt()
+    }
+
+    /// Distance to another point.
+    #[inline]
+    pub fn distance(self, other: Self) -> f64 {
+        (self - other).length()
+    }
+}
+
+impl Add for Vec2 {
+    type Output = Self;
+    #[inline]
+    fn add(self, o: Self) -> Self {
+        Self::new(self.x + o.x, self.y + o.y)
+    }
+}
+impl Sub for Vec2 {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.x - o.x, self.y - o.y)
+    }
+}
+impl Mul<f64> for Vec2 {
+    type Output = Self;
+    #[inline]
+    fn mul(self, k: f64) -> Self {
+        Self::new(self.x * k, self.y * k)
+    }
+}
+impl Neg for Vec2 {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y)
+    }
+}
+
+/// Position and heading.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Pose {
+    /// Position of the centre of the box. [m]
+    pub position: Vec2,
+    /// Anticlockwise from +x. [rad]
+    pub heading: f64,
+}
+
+/// A rectangle at any angle: the outline of a vehicle, a cone, a pedestrian.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrientedBox {
+    /// Centre. [m]
+    pub centre: Vec2,
+    /// Unit vector forward.
+    pub axis: Vec2,
+    /// Half of the length, along `axis`. [m]
+    pub half_length: f64,
+    /// Half of the width. [m]
+    pub half_width: f64,
+}
+
+impl OrientedBox {
+    /// The box of an actor of this size at this pose. Length and width in m.
+    #[inline]
+    pub fn new(pose: Pose, length: f64, width: f64) -> Self {
+        Self {
+            centre: pose.position,
+            axis: Vec2::from_heading(pose.heading),
+            half_length: 0.5 * length,
+            half_width: 0.5 * width,
+        }
+    }
+
+    /// The corners, anticlockwise from front left: front left, rear left, rear right, front right.
+    #[inline]
+    pub fn corners(&self) -> [Vec2; 4] {
+        let f = self.axis * self.half_length;
+        let l = self.axis.left() * self.half_width;
+        [self.centre + f + l, self.centre - f + l, self.centre - f - l, self.centre + f - l]
+    }
+
+    /// A point in the box's own frame: x forward, y left of the centre.
+    #[inline]
+    pub fn to_local(&self, point: Vec2) -> Vec2 {
+        let d = point - self.centre;
+        Vec2::new(d.dot(self.axis), d.dot(self.axis.left()))
+    }
+
+    /// A point given in the box's own frame, in the world.
+    #[inline]
+    pub fn to_world(&self, local: Vec2) -> Vec2 {
+        self.centre + self.axis * local.x + self.axis.left() * local.y
+    }
+
+    /// Radius of the circle around the box. [m]
+    #[inline]
+    pub fn radius(&self) -> f64 {
+        (math::sq(self.half_length) + math::sq(self.half_width)).sqrt()
+    }
+
+    /// Whether the boxes share a point (separating axis theorem; touching counts).
+    #[inline]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let d = other.centre - self.centre;
+        let reach = self.radius() + other.radius();
+        if d.length_squared() > reach * reach {
+            return false;
+        }
+        let c = self.axis.dot(other.axis).abs();
+        let s = self.axis.cross(other.axis).abs();
+        d.dot(self.axis).abs() <= self.half_length + other.half_length * c + other.half_width * s
+            && d.dot(self.axis.left()).abs() <= self.half_width + other.half_length * s + other.half_width * c
+            && d.dot(other.axis).abs() <= other.half_length + self.half_length * c + self.half_width * s
+            && d.dot(other.axis.left()).abs() <= other.half_width + self.half_length * s + self.half_width * c
+    }
+
+    /// The distance between the boxes, 0 when they touch or overlap. [m]
+    pub fn gap(&self, other: &Self) -> f64 {
+        if self.overlaps(other) {
+            return 0.0;
+        }
+        self.nearest_points(other).2
+    }
+
+    /// The nearest points of two boxes that do not overlap, on self and on other, and their distance. [m]
+    ///
+    /// Two separate rectangles are nearest at a corner of one of them, so eight point-to-box distances suffice.
+    pub fn nearest_points(&self, other: &Self) -> (Vec2, Vec2, f64) {
+        let mut best = (self.centre, other.centre, f64::INFINITY);
+        for corner in other.corners() {
+            let near = self.clamp(corner);
+            let distance = near.distance(corner);
+            if distance < best.2 {
+                best = (near, corner, distance);
+            }
+        }
+        for corner in self.corners() {
+            let near = other.clamp(corner);
+            let distance = near.distance(corner);
+            if distance < best.2 {
+                best = (corner, near, distance);
+            }
+        }
+        best
+    }
+
+    /// The point of the box nearest to `point`.
+    fn clamp(&self, point: Vec2) -> Vec2 {
+        let local = self.to_local(point);
+        self.to_world(Vec2::new(
+            local.x.clamp(-self.half_length, self.half_length),
+            local.y.clamp(-self.half_width, self.half_width),
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn boxed(x: f64, y: f64, heading: f64) -> OrientedBox {
+        OrientedBox::new(Pose { position: Vec2::new(x, y), heading }, 4.0, 2.0)
+    }
+
+    #[test]
+    fn gap_of_boxes_in_line_is_the_free_space_between_bumpers() {
+        assert_eq!(boxed(0.0, 0.0, 0.0).gap(&boxed(10.0, 0.0, 0.0)), 6.0);
+    }
+
+    #[test]
+    fn gap_of_boxes_side_by_side() {
+        assert_eq!(boxed(0.0, 0.0, 0.0).gap(&boxed(1.0, 5.0, 0.0)), 3.0);
+    }
+
+    #[test]
+    fn gap_of_a_crossing_box_counts_its_half_length() {
+        let gap = boxed(0.0, 0.0, 0.0).gap(&boxed(0.0, 6.0, math::FRAC_PI_2));
+        assert!((gap - 3.0).abs() < 1e-12, "{gap}");
+    }
+
+    #[test]
+    fn gap_corner_to_corner_is_a_hypotenuse() {
+        let gap = boxed(0.0, 0.0, 0.0).gap(&boxed(7.0, 6.0, 0.0));
+        assert!((gap - 5.0).abs() < 1e-12, "{gap}");
+    }
+
+    #[test]
+    fn a_cross_of_two_boxes_overlaps_although_no_corner_is_inside() {
+        let long = OrientedBox::new(Pose::default(), 10.0, 1.0);
+        let across = OrientedBox::new(Pose { position: Vec2::default(), heading: math::FRAC_PI_2 }, 10.0, 1.0);
+        assert!(long.overlaps(&across));
+        assert_eq!(long.gap(&across), 0.0);
+    }
+}

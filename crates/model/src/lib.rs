@@ -1,0 +1,26 @@
+//! The nouns of recrash, and nothing else: every stage takes some of these and gives some of these.
+//!
+//! The flow is one way: [`record::CrashRecord`] -> [`template::Template`] -> [`selection::Selection`] ->
+//! [`narrative::Narrative`] -> [`scenario::ScenarioDraft`] -> [`rollout::Rollout`] -> [`metrics::Metrics`] ->
+//! [`tuning::TuneLog`].
+//!
+//! What this crate does **not** do: it opens no file, reads no clock, and knows neither roads nor physics. Units are SI
+//! and stand in the field's name or at the end of its documentation.
+
+pub mod diagnostic;
+pub mod geometry;
+pub mod math;
+pub mod metrics;
+pub mod narrative;
+pub mod profile;
+pub mod record;
+pub mod rollout;
+pub mod scenario;
+pub mod seed;
+pub mod selection;
+pub mod template;
+pub mod tuning;
+pub mod vehicle;
+
+pub use diagnostic::{Diagnostic, Location, Outcome, Severity};
+pub use seed::Seed;

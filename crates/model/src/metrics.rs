@@ -1,0 +1,288 @@
+//! Metrics, findings and faithfulness: what a rollout says about the ego, and whether it is true to its record.
+
+use crate::record::ContactZone;
+use crate::rollout::TerminationKind;
+use crate::scenario::Approach;
+use crate::template::Template;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Kind of collision by geometry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CollisionKind {
+    /// The ego runs into the rear of the partner.
+    RearEndByEgo,
+    /// The partner runs into the rear of the ego.
+    RearEndOfEgo,
+    /// Front to front, on opposite headings.
+    HeadOn,
+    /// Crossing or turning paths: front to side.
+    Angle,
+    /// Side to side, on about the same heading.
+    Sideswipe,
+}
+
+impl CollisionKind {
+    /// For tables and sentences.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::RearEndByEgo => "rear-end by the ego",
+            Self::RearEndOfEgo => "rear-end of the ego",
+            Self::HeadOn => "head-on",
+            Self::Angle => "angle",
+            Self::Sideswipe => "sideswipe",
+        }
+    }
+}
+
+/// A value and when it was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Timed {
+    /// Value, in the unit of the field.
+    pub value: f64,
+    /// Time. [s]
+    pub time_s: f64,
+}
+
+/// Metrics of one rollout.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Metrics {
+    /// Per scripted partner and background vehicle, in the rollout's order.
+    pub partners: Vec<PartnerMetrics>,
+    /// Per obstacle, least box gap to the ego. [m]
+    pub obstacle_gaps: Vec<Timed>,
+    /// The ego's first contact with a road user.
+    pub contact: Option<Contact>,
+    /// Obstacles the ego touched.
+    pub obstacles_hit: Vec<usize>,
+    /// Least box gap between the ego and any scripted partner (background traffic where there is none). [m]
+    pub min_gap: Option<Timed>,
+    /// Least distance between the centres of the ego and any scripted partner. [m]
+    pub min_centre_distance: Option<Timed>,
+    /// About the ego alone.
+    pub ego: EgoMetrics,
+    /// How the rollout ended.
+    pub termination: TerminationKind,
+    /// How long it lasted. [s]
+    pub duration_s: f64,
+}
+
+/// Metrics of the ego and one other road user. Absent where the measure is not defined at any step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartnerMetrics {
+    /// Position in [`crate::rollout::Rollout::actors`].
+    pub actor: usize,
+    /// Name.
+    pub id: String,
+    /// Least box gap. [m]
+    pub min_gap: Timed,
+    /// Least distance of the centres. [m]
+    pub min_centre_distance: Timed,
+    /// Least time to collision. [s]
+    pub min_ttc: Option<Timed>,
+    /// Post-encroachment time of the first conflict area; negative never. [s]
+    pub pet: Option<Timed>,
+    /// Greatest deceleration rate to avoid a crash. [m/s^2]
+    pub max_drac: Option<Timed>,
+    /// Least time headway while following it. [s]
+    pub min_headway: Option<Timed>,
+}
+
+/// A contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// The other's position in [`crate::rollout::Rollout::actors`].
+    pub actor: usize,
+    /// The other's name.
+    pub id: String,
+    /// When. [s]
+    pub time_s: f64,
+    /// Zone on the ego.
+    pub ego_zone: ContactZone,
+    /// Zone on the other.
+    pub other_zone: ContactZone,
+    /// Kind by geometry.
+    pub kind: CollisionKind,
+    /// Magnitude of the relative velocity. [m/s]
+    pub relative_speed_mps: f64,
+    /// Speed of the ego. [m/s]
+    pub ego_speed_mps: f64,
+    /// Speed of the other. [m/s]
+    pub other_speed_mps: f64,
+}
+
+/// About the ego alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EgoMetrics {
+    /// Hardest braking. [m/s^2, positive]
+    pub max_deceleration: Timed,
+    /// Hardest braking with nothing in its way. [m/s^2, positive]
+    pub phantom_braking: Option<Timed>,
+    /// Most changes between braking and accelerating within the profile's window.
+    pub max_reversals: u32,
+    /// Farthest a corner went beyond its lane's edge. [m]
+    pub max_lane_departure: Timed,
+    /// Distance driven. [m]
+    pub distance_m: f64,
+    /// Mean speed. [m/s]
+    pub mean_speed_mps: f64,
+}
+
+/// What a rollout shows about the ego.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// What.
+    pub kind: FindingKind,
+    /// When. [s]
+    pub time_s: f64,
+    /// Measured value, in the unit of the sentence.
+    pub value: f64,
+    /// Threshold it crossed, in the same unit.
+    pub threshold: f64,
+    /// One sentence for the report.
+    pub sentence: String,
+}
+
+/// Kind of finding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FindingKind {
+    /// Contact with a road user.
+    Contact,
+    /// Contact with an obstacle.
+    ObstacleContact,
+    /// Box gap to a partner below the profile's threshold.
+    NearMiss,
+    /// The ego left the road.
+    OffRoad,
+    /// The ego stood still and never arrived.
+    Stuck,
+    /// Hard braking.
+    HardBraking,
+    /// Braking with nothing in the way.
+    PhantomBraking,
+    /// Braking and accelerating in turn.
+    Oscillation,
+    /// A corner left the lane.
+    LaneDeparture,
+}
+
+impl FindingKind {
+    /// Whether a finding of this kind makes the scenario a failed one; the others are odd behaviour worth a look.
+    pub fn is_failure(self) -> bool {
+        matches!(self, Self::Contact | Self::ObstacleContact | Self::NearMiss | Self::OffRoad | Self::Stuck)
+    }
+
+    /// For tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Contact => "contact",
+            Self::ObstacleContact => "obstacle contact",
+            Self::NearMiss => "near miss",
+            Self::OffRoad => "off road",
+            Self::Stuck => "stuck",
+            Self::HardBraking => "hard braking",
+            Self::PhantomBraking => "phantom braking",
+            Self::Oscillation => "oscillation",
+            Self::LaneDeparture => "lane departure",
+        }
+    }
+}
+
+/// What the rollout must show to be true to its record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Expectation {
+    /// Template of the record.
+    pub template: Template,
+    /// Approach of the partner the narrative states.
+    pub approach: Option<Approach>,
+    /// Contact zones of the record on the ego; empty where they do not bind (alternative narratives).
+    pub sv_zones: Vec<ContactZone>,
+    /// Contact zones of the record on the partner; empty where they do not bind.
+    pub cp_zones: Vec<ContactZone>,
+    /// Kinds of collision that must not happen.
+    pub excluded: Vec<CollisionKind>,
+}
+
+/// One check of faithfulness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Check {
+    /// What is compared.
+    pub kind: CheckKind,
+    /// What the record says.
+    pub expected: String,
+    /// What the rollout shows.
+    pub observed: String,
+    /// Result.
+    pub result: CheckResult,
+}
+
+/// What a check compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CheckKind {
+    /// Kind of road driven on.
+    Road,
+    /// Obstacles where, and only where, there is a work zone or the narrative names some.
+    WorkZone,
+    /// Movement of the ego, from its path.
+    SvMovement,
+    /// Movement of the partner, from its path.
+    CpMovement,
+    /// Side from which the partner came.
+    Approach,
+    /// The partner is part of the closest encounter.
+    Encounter,
+    /// Contact zones.
+    ContactZones,
+    /// Kinds of collision the profile excludes.
+    ExcludedCollision,
+}
+
+impl CheckKind {
+    /// For tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Road => "road",
+            Self::WorkZone => "work zone",
+            Self::SvMovement => "SV movement",
+            Self::CpMovement => "CP movement",
+            Self::Approach => "approach",
+            Self::Encounter => "encounter",
+            Self::ContactZones => "contact zones",
+            Self::ExcludedCollision => "excluded collisions",
+        }
+    }
+}
+
+/// Result of a check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CheckResult {
+    /// The rollout agrees with the record.
+    Pass,
+    /// It does not.
+    Fail,
+    /// The record says nothing about it, or the rollout cannot show it (no contact, say).
+    NotApplicable,
+}
+
+/// Whether a rollout is true to its record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Every check.
+    pub checks: Vec<Check>,
+}
+
+impl Verdict {
+    /// Whether no check failed.
+    pub fn faithful(&self) -> bool {
+        self.failures().next().is_none()
+    }
+
+    /// The checks that failed.
+    pub fn failures(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(|check| check.result == CheckResult::Fail)
+    }
+}

@@ -1,0 +1,74 @@
+//! Tuning: which numbers of a scenario may move and how far, and the log of a search over them.
+
+use crate::metrics::{FindingKind, Timed};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The tune logs' format tag.
+pub const TUNE_FORMAT: &str = "recrash.tune/1";
+
+/// One number of a scenario that may move. Together they are the logical scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Parameter {
+    /// JSON pointer into the scenario, such as `/partners/0/start/arrival_gap_s`.
+    pub pointer: String,
+    /// Unit, such as `m/s`.
+    pub unit: String,
+    /// Least value that keeps the narrative true.
+    pub min: f64,
+    /// Greatest value that keeps the narrative true.
+    pub max: f64,
+    /// Value in the scenario as designed.
+    pub start: f64,
+    /// Whether only whole numbers make sense (steps).
+    pub integer: bool,
+    /// Why these bounds.
+    pub reason: String,
+}
+
+/// What one point of a search scored.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// What the search makes small: the least box gap plus penalties, see `docs/models/tuning.md`. [m]
+    pub objective: f64,
+    /// Least box gap to a scripted partner. [m]
+    pub min_gap: Option<Timed>,
+    /// Kinds of findings.
+    pub findings: Vec<FindingKind>,
+    /// Whether the point counts as a failure of the ego.
+    pub failed: bool,
+    /// Why the point was refused, where it was: degenerate, unfaithful or not runnable.
+    pub refused: Vec<String>,
+}
+
+/// One point of a search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TunePoint {
+    /// Number, from 0: the scenario as designed.
+    pub number: usize,
+    /// Who proposed it, such as `start`, `sobol`, `local`.
+    pub proposed_by: String,
+    /// Values, in the order of the parameters.
+    pub values: Vec<f64>,
+    /// What it scored.
+    pub score: Score,
+}
+
+/// The log of a search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TuneLog {
+    /// Always [`TUNE_FORMAT`].
+    pub format: String,
+    /// Scenario.
+    pub scenario_id: String,
+    /// Search that was run.
+    pub searcher: String,
+    /// Seed.
+    pub seed: u64,
+    /// What may move.
+    pub parameters: Vec<Parameter>,
+    /// Every point, in order.
+    pub points: Vec<TunePoint>,
+    /// Number of the point that was kept.
+    pub best: usize,
+}

@@ -1,0 +1,16 @@
+//! Road geometry of the five maps (S, C, X, T, O), and the check that turns a draft into a runnable scenario.
+//!
+//! Lane-local coordinates are the one road interface: `s` along the centre line, `t` to the **right** of it. [m]
+//! Lane 0 is the leftmost of its road.
+
+pub mod check;
+pub mod lane;
+pub mod network;
+pub mod path;
+pub mod scenario;
+
+pub use check::{check, read_draft};
+pub use lane::{Centreline, Lane, LaneId};
+pub use network::{Road, RoadId, RoadNetwork, RoadPart};
+pub use path::{Conflict, LanePath, PathPoint};
+pub use scenario::{ObstaclePlacement, Placement, Scenario};

@@ -1,0 +1,75 @@
+//! Checked scenarios: everything resolved, so that the simulator cannot fail.
+
+use crate::lane::LaneId;
+use crate::network::RoadNetwork;
+use crate::path::{Conflict, LanePath};
+use recrash_model::geometry::Pose;
+use recrash_model::record::PartnerKind;
+use recrash_model::rollout::PlacedObstacle;
+use recrash_model::scenario::ScenarioDraft;
+use std::sync::Arc;
+
+/// A scenario that passed the check. Made by [`crate::check()`] alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scenario {
+    pub(crate) draft: ScenarioDraft,
+    pub(crate) network: Arc<RoadNetwork>,
+    pub(crate) ego: Placement,
+    pub(crate) partners: Vec<Placement>,
+    pub(crate) obstacles: Vec<ObstaclePlacement>,
+}
+
+/// A road user's start and way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placement {
+    /// Kind.
+    pub kind: PartnerKind,
+    /// The lanes it follows.
+    pub path: LanePath,
+    /// Start along its path. [m]
+    pub s_m: f64,
+    /// Start to the right of its path. [m]
+    pub t_m: f64,
+    /// Start in the world.
+    pub pose: Pose,
+    /// Speed at the start. [m/s]
+    pub speed_mps: f64,
+    /// Where its path meets the ego's (absent for the ego itself, and where they never meet).
+    pub conflict: Option<Conflict>,
+}
+
+/// A static obstacle in the world, and the lane it lies in (the nearest, where it lies beside all).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ObstaclePlacement {
+    /// Where.
+    pub placed: PlacedObstacle,
+    /// Lane.
+    pub lane: LaneId,
+}
+
+impl Scenario {
+    /// The draft it was checked from.
+    pub fn draft(&self) -> &ScenarioDraft {
+        &self.draft
+    }
+
+    /// Roads.
+    pub fn network(&self) -> &RoadNetwork {
+        &self.network
+    }
+
+    /// The ego.
+    pub fn ego(&self) -> &Placement {
+        &self.ego
+    }
+
+    /// The partners, in the draft's order.
+    pub fn partners(&self) -> &[Placement] {
+        &self.partners
+    }
+
+    /// The obstacles, in the draft's order.
+    pub fn obstacles(&self) -> &[ObstaclePlacement] {
+        &self.obstacles
+    }
+}
