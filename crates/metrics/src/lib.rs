@@ -1,1 +1,4 @@
 //! stub
+pub mod encroachment;
+mod polygon;
+pub mod swept;
