@@ -10,7 +10,7 @@ use recrash_model::scenario::*;
 use recrash_model::selection::Cluster;
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_report::{RoadDrawing, RunView, Series};
+use recrash_report::{RoadDrawing, RunView};
 
 /// Time after which every run ends. [s]
 const END_S: f64 = 14.0;
@@ -192,8 +192,21 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         let change = states.windows(2).map(|pair| (pair[1].speed - pair[0].speed) / STEP_S);
         change.chain([0.0]).collect()
     };
-    let acceleration_mps2 = vec![acceleration(&ego), acceleration(&partner)];
-    let hardest = least(acceleration_mps2[0].iter().copied());
+    let series = Series {
+        time_s: (0..ego.len()).map(|step| step as f64 * STEP_S).collect(),
+        ego_speed_mps: ego.iter().map(|state| state.speed).collect(),
+        ego_acceleration_mps2: acceleration(&ego),
+        partners: vec![PartnerSeries {
+            actor: 1,
+            id: "cp1".into(),
+            speed_mps: partner.iter().map(|state| state.speed).collect(),
+            acceleration_mps2: acceleration(&partner),
+            gap_m,
+            centre_distance_m: ego.iter().zip(&partner).map(|(e, p)| e.position().distance(p.position())).collect(),
+            ttc_s: vec![None; ego.len()],
+        }],
+    };
+    let hardest = least(series.ego_acceleration_mps2.iter().copied());
     let contact = touch.map(|step| Contact {
         actor: 1,
         id: "cp1".into(),
@@ -245,6 +258,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
             min_ttc: Some(Timed { value: 0.4 + min_gap.value / 3.0, time_s: (min_gap.time_s - 0.5).max(0.0) }),
             pet: touch.is_none().then_some(Timed { value: (arrival_gap_s - 0.6).max(0.1), time_s: min_gap.time_s }),
             max_drac: Some(Timed { value: 9.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
+            max_required_deceleration: Some(Timed { value: 6.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
             min_headway: None,
         }],
         obstacle_gaps: vec![],
@@ -256,6 +270,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
             max_deceleration: Timed { value: -hardest.value, time_s: hardest.time_s },
             phantom_braking: None,
             max_reversals: 1,
+            max_reversals_time_s: 4.0,
             max_lane_departure: Timed { value: 0.05, time_s: 5.0 },
             distance_m: plan.ego_speed * end,
             mean_speed_mps: plan.ego_speed,
@@ -304,7 +319,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         metrics,
         findings,
         verdict: verdict(cluster, touch.is_some()),
-        series: Series { gap_m, acceleration_mps2 },
+        series,
         rerun_command,
     }
 }
