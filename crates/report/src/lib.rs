@@ -5,7 +5,7 @@
 
 mod view;
 
-pub use view::{CaseView, LineKind, RoadDrawing, RoadLine, RunView, Series, SuiteView};
+pub use view::{CaseView, LineKind, RoadDrawing, RoadLine, RunView, SuiteView};
 
 /// The page.
 pub fn html(_suite: &SuiteView) -> String {

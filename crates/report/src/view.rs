@@ -5,7 +5,7 @@
 
 use recrash_model::Diagnostic;
 use recrash_model::geometry::Vec2;
-use recrash_model::metrics::{Finding, Metrics, Verdict};
+use recrash_model::metrics::{Finding, Metrics, Series, Verdict};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{CrashRecord, RecordSet};
@@ -88,16 +88,6 @@ pub struct RunView {
     pub series: Series,
     /// The command that runs this scenario again.
     pub rerun_command: String,
-}
-
-/// Values at each recorded step of a rollout (every [`recrash_model::rollout::STEP_S`] from time 0). Not-a-number where
-/// a value is not defined.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Series {
-    /// Box gap between the ego and the nearest scripted partner. [m]
-    pub gap_m: Vec<f64>,
-    /// Acceleration along the heading of each actor, in the rollout's order. [m/s^2]
-    pub acceleration_mps2: Vec<Vec<f64>>,
 }
 
 /// A road as lines and areas, in the rollout's coordinates. [m]
