@@ -44,9 +44,10 @@ const LANE_CHANGE_S: f64 = 4.0;
 /// Measures of the ego alone over the scene.
 pub fn measure_ego(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], criteria: &FailureCriteria) -> EgoMetrics {
     let (max_reversals, max_reversals_time_s) = most_reversals(scene, criteria.oscillation_window_s);
-    let distance_m = scene.outlines.first().map_or(0.0, |outlines| {
-        outlines.windows(2).map(|pair| pair[0].centre.distance(pair[1].centre)).sum::<f64>()
-    });
+    let distance_m = scene
+        .outlines
+        .first()
+        .map_or(0.0, |outlines| outlines.windows(2).map(|pair| pair[0].centre.distance(pair[1].centre)).sum::<f64>());
     let driven_s = time_of(scene.steps().saturating_sub(1));
     EgoMetrics {
         max_deceleration: hardest_braking(scene),

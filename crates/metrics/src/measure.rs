@@ -22,7 +22,7 @@ pub fn measure_on(way: &EgoWay<'_>, rollout: &Rollout, criteria: &FailureCriteri
     let partners: Vec<PartnerMetrics> =
         (1..rollout.actors.len()).filter_map(|actor| measure_partner(&scene, way, &along, actor)).collect();
     Metrics {
-        obstacle_gaps: (0..scene.obstacles.len()).map(|obstacle| obstacle_gap(&scene, obstacle)).collect(),
+        obstacle_gaps: (0..scene.obstacles.len()).filter_map(|obstacle| obstacle_gap(&scene, obstacle)).collect(),
         contact: first_contact(&scene),
         obstacles_hit: obstacle_contacts(&scene).map(|(obstacle, _)| obstacle).collect(),
         min_gap: least_of(&partners, rollout, |partner| partner.min_gap),
@@ -186,15 +186,18 @@ fn first_contact(scene: &Scene<'_>) -> Option<Contact> {
 
 /// Obstacles the ego touched in the measured window, in order of time, with the time.
 pub(crate) fn obstacle_contacts<'a>(scene: &'a Scene<'_>) -> impl Iterator<Item = (usize, f64)> + 'a {
-    scene.rollout.events.iter().filter(|event| event.time_s <= scene.end_s + 1e-9).filter_map(|event| match event.kind {
-        EventKind::ObstacleContact { actor: 0, obstacle, .. } => Some((obstacle, event.time_s)),
-        _ => None,
+    scene.rollout.events.iter().filter(|event| event.time_s <= scene.end_s + 1e-9).filter_map(|event| {
+        match event.kind {
+            EventKind::ObstacleContact { actor: 0, obstacle, .. } => Some((obstacle, event.time_s)),
+            _ => None,
+        }
     })
 }
 
-fn obstacle_gap(scene: &Scene<'_>, obstacle: usize) -> Timed {
+/// `None` only for a rollout without states of the ego.
+fn obstacle_gap(scene: &Scene<'_>, obstacle: usize) -> Option<Timed> {
     if let Some((_, time_s)) = obstacle_contacts(scene).find(|&(hit, _)| hit == obstacle) {
-        return Timed { value: 0.0, time_s };
+        return Some(Timed { value: 0.0, time_s });
     }
     let outline = &scene.obstacles[obstacle];
     let mut least = Timed { value: f64::INFINITY, time_s: 0.0 };
@@ -206,5 +209,5 @@ fn obstacle_gap(scene: &Scene<'_>, obstacle: usize) -> Timed {
             }
         }
     }
-    least
+    least.value.is_finite().then_some(least)
 }
