@@ -1,1 +1,5 @@
 //! stub
+pub mod contact;
+pub mod encroachment;
+mod polygon;
+pub mod swept;
