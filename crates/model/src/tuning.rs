@@ -1,6 +1,7 @@
 //! Tuning: which numbers of a scenario may move and how far, and the log of a search over them.
 
 use crate::metrics::{FindingKind, Timed};
+use crate::scenario::ScenarioDraft;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -71,4 +72,25 @@ pub struct TuneLog {
     pub points: Vec<TunePoint>,
     /// Number of the point that was kept.
     pub best: usize,
+}
+
+/// Sets the parameters of a scenario. Whole-number parameters are rounded.
+///
+/// # Errors
+/// A pointer that is not in the scenario, or a value its place cannot hold: the pointer and what serde said.
+pub fn apply(draft: &ScenarioDraft, parameters: &[Parameter], values: &[f64]) -> Result<ScenarioDraft, String> {
+    let mut document = serde_json::to_value(draft).map_err(|e| e.to_string())?;
+    for (parameter, &value) in parameters.iter().zip(values) {
+        let place = document
+            .pointer_mut(&parameter.pointer)
+            .ok_or_else(|| format!("{}: no such place in scenario {}", parameter.pointer, draft.id))?;
+        let number = if parameter.integer {
+            serde_json::Number::from(value.round() as i64)
+        } else {
+            serde_json::Number::from_f64(value)
+                .ok_or_else(|| format!("{}: {value} is not a finite number", parameter.pointer))?
+        };
+        *place = serde_json::Value::Number(number);
+    }
+    serde_json::from_value(document).map_err(|e| format!("scenario {}: {e}", draft.id))
 }
