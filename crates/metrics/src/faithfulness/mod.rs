@@ -104,11 +104,11 @@ impl Witness<'_> {
         let agrees = match expected {
             RoadType::Intersection => at_junction && !at_circle,
             RoadType::TrafficCircle => at_circle,
-            // Who turns off a highway or street needs somewhere to turn to: a junction at grade.
-            RoadType::Highway | RoadType::Street | RoadType::RuralRoad | RoadType::UnpavedRoad => {
+            // Who turns off a highway or street may need somewhere to turn to: a junction at grade.
+            RoadType::Highway | RoadType::Street | RoadType::RuralRoad => {
                 !at_circle && (!at_junction || turns(template.sv) || turns(template.cp))
             }
-            RoadType::ParkingLot | RoadType::ParkingGarage => false,
+            RoadType::ParkingLot => false,
         };
         let observed = match (at_circle, at_junction, distance) {
             (true, ..) => "at a roundabout".to_owned(),
