@@ -18,11 +18,11 @@ pub(crate) fn symmetric(mut a: Matrix) -> Eigen {
     let mut beside = vec![0.0; n.saturating_sub(1)];
     // Column k is mirrored so that only its first entry below the diagonal stays; the unit mirror normals are kept.
     let mut mirrors: Vec<Vec<f64>> = Vec::new();
-    for k in 0..n.saturating_sub(2) {
+    for (k, below) in beside.iter_mut().enumerate().take(n.saturating_sub(2)) {
         let mut normal: Vec<f64> = (k + 1..n).map(|i| a.row(i)[k]).collect();
         let length = dot(&normal, &normal).sqrt();
         let kept = if normal[0] > 0.0 { -length } else { length };
-        beside[k] = kept;
+        *below = kept;
         normal[0] -= kept;
         let normal_length = dot(&normal, &normal).sqrt();
         if normal_length > 0.0 {

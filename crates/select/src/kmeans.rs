@@ -172,8 +172,8 @@ fn hartigan(points: &Matrix, weights: &[f64], clustering: &mut Clustering) {
     }
     for _ in 0..MAX_ROUNDS {
         let mut moved = false;
-        for i in 0..points.rows {
-            let (from, weight) = (clustering.groups[i], weights[i]);
+        for (i, &weight) in weights.iter().enumerate() {
+            let from = clustering.groups[i];
             if sizes[from] < 2 {
                 continue;
             }

@@ -104,7 +104,7 @@ impl Witness<'_> {
         let agrees = match expected {
             RoadType::Intersection => at_junction && !at_circle,
             RoadType::TrafficCircle => at_circle,
-            // Who turns off a highway or street needs somewhere to turn to: a junction at grade.
+            // Who turns off a highway or street may need somewhere to turn to: a junction at grade.
             RoadType::Highway | RoadType::Street | RoadType::RuralRoad | RoadType::UnpavedRoad => {
                 !at_circle && (!at_junction || turns(template.sv) || turns(template.cp))
             }
