@@ -85,7 +85,10 @@ pub struct PartnerMetrics {
     pub pet: Option<Timed>,
     /// Greatest deceleration rate to avoid a crash. [m/s^2]
     pub max_drac: Option<Timed>,
-    /// Least time headway while following it. [s]
+    /// Greatest constant deceleration the ego needed to stay behind it, given how the other brakes. [m/s^2]
+    #[serde(default)]
+    pub max_required_deceleration: Option<Timed>,
+    /// Least time headway (bumper to bumper) while following it. [s]
     pub min_headway: Option<Timed>,
 }
 
@@ -121,12 +124,47 @@ pub struct EgoMetrics {
     pub phantom_braking: Option<Timed>,
     /// Most changes between braking and accelerating within the profile's window.
     pub max_reversals: u32,
+    /// When the window with the most of them ended; 0 where there are none. [s]
+    #[serde(default)]
+    pub max_reversals_time_s: f64,
     /// Farthest a corner went beyond its lane's edge. [m]
     pub max_lane_departure: Timed,
     /// Distance driven. [m]
     pub distance_m: f64,
     /// Mean speed. [m/s]
     pub mean_speed_mps: f64,
+}
+
+/// Time series of one rollout, for plots: one value per recorded step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Series {
+    /// Time. [s]
+    pub time_s: Vec<f64>,
+    /// Speed of the ego. [m/s]
+    pub ego_speed_mps: Vec<f64>,
+    /// Longitudinal acceleration of the ego over the step that begins here; the last one is repeated. [m/s^2]
+    pub ego_acceleration_mps2: Vec<f64>,
+    /// Per scripted partner, in the rollout's order.
+    pub partners: Vec<PartnerSeries>,
+}
+
+/// Time series of one scripted partner.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartnerSeries {
+    /// Position in [`crate::rollout::Rollout::actors`].
+    pub actor: usize,
+    /// Name.
+    pub id: String,
+    /// Speed. [m/s]
+    pub speed_mps: Vec<f64>,
+    /// Longitudinal acceleration, as the ego's. [m/s^2]
+    pub acceleration_mps2: Vec<f64>,
+    /// Box gap to the ego. [m]
+    pub gap_m: Vec<f64>,
+    /// Distance of the centres. [m]
+    pub centre_distance_m: Vec<f64>,
+    /// Time to collision with the ego; `None` where they would never touch. [s]
+    pub ttc_s: Vec<Option<f64>>,
 }
 
 /// What a rollout shows about the ego.
@@ -203,6 +241,9 @@ pub struct Expectation {
     pub cp_zones: Vec<ContactZone>,
     /// Kinds of collision that must not happen.
     pub excluded: Vec<CollisionKind>,
+    /// Whether the narrative names obstacles (cones, barriers) although the record has no work zone.
+    #[serde(default)]
+    pub obstacles_named: bool,
 }
 
 /// One check of faithfulness.

@@ -2,7 +2,7 @@
 
 use crate::metrics::CollisionKind;
 use crate::record::{ContactZone, PartnerKind, RecordRef};
-use crate::scenario::{Approach, Author, ObstacleKind};
+use crate::scenario::{Approach, Author, MissingArm, ObstacleKind};
 use crate::template::{Movement, Template};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -147,6 +147,11 @@ pub enum FactValue {
     Collision {
         /// Kind.
         kind: CollisionKind,
+    },
+    /// The intersection has three arms.
+    ThreeWay {
+        /// Which arm is missing, seen from the ego.
+        missing: MissingArm,
     },
     /// Static obstacles.
     Obstacles {

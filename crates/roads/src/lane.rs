@@ -2,6 +2,7 @@
 
 use crate::network::RoadId;
 use recrash_model::geometry::Vec2;
+use recrash_model::math;
 
 /// Position of a lane in [`crate::RoadNetwork::lanes`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -47,17 +48,88 @@ pub struct Lane {
 
 impl Lane {
     /// The point at (s, t). `s` may lie outside the lane: it is then continued.
-    pub fn position(&self, _s: f64, _t: f64) -> Vec2 {
-        unimplemented!()
+    pub fn position(&self, s: f64, t: f64) -> Vec2 {
+        match self.centreline {
+            Centreline::Straight { start, heading } => {
+                let forward = Vec2::from_heading(heading);
+                start + forward * s - forward.left() * t
+            }
+            Centreline::Arc { centre, radius, start_angle, turn } => {
+                centre + Vec2::from_heading(start_angle + turn * s / radius) * (radius + turn * t)
+            }
+        }
     }
 
-    /// Heading of the centre line at s. [rad]
-    pub fn heading(&self, _s: f64) -> f64 {
-        unimplemented!()
+    /// Heading of the centre line at s, in (-pi, pi]. [rad]
+    pub fn heading(&self, s: f64) -> f64 {
+        math::wrap_angle(match self.centreline {
+            Centreline::Straight { heading, .. } => heading,
+            Centreline::Arc { radius, start_angle, turn, .. } => start_angle + turn * (s / radius + math::FRAC_PI_2),
+        })
     }
 
     /// (s, t) of a point. On an arc, s is continuous around the lane's middle.
-    pub fn local(&self, _point: Vec2) -> (f64, f64) {
-        unimplemented!()
+    pub fn local(&self, point: Vec2) -> (f64, f64) {
+        match self.centreline {
+            Centreline::Straight { start, heading } => {
+                let forward = Vec2::from_heading(heading);
+                let d = point - start;
+                (d.dot(forward), -forward.cross(d))
+            }
+            Centreline::Arc { centre, radius, start_angle, turn } => {
+                let middle = Vec2::from_heading(start_angle + turn * 0.5 * self.length_m / radius);
+                let d = point - centre;
+                let angle = math::atan2(middle.cross(d), middle.dot(d));
+                (0.5 * self.length_m + turn * angle * radius, turn * (d.length() - radius))
+            }
+        }
+    }
+
+    /// Curvature of the centre line, positive to the left. [1/m]
+    pub fn curvature(&self) -> f64 {
+        match self.centreline {
+            Centreline::Straight { .. } => 0.0,
+            Centreline::Arc { radius, turn, .. } => turn / radius,
+        }
+    }
+
+    /// Whether a point lies on the lane, its edges included.
+    pub fn contains(&self, point: Vec2) -> bool {
+        let (s, t) = self.local(point);
+        (0.0..=self.length_m).contains(&s) && t.abs() <= 0.5 * self.width_m
+    }
+
+    /// The same stretch, `t` to the right. [m]
+    pub(crate) fn beside(&self, t: f64) -> Self {
+        match self.centreline {
+            Centreline::Straight { heading, .. } => {
+                Self { centreline: Centreline::Straight { start: self.position(0.0, t), heading }, ..*self }
+            }
+            Centreline::Arc { centre, radius, start_angle, turn } => {
+                let shifted = radius + turn * t;
+                Self {
+                    centreline: Centreline::Arc { centre, radius: shifted, start_angle, turn },
+                    length_m: self.length_m * shifted / radius,
+                    ..*self
+                }
+            }
+        }
+    }
+
+    /// The same stretch driven the other way.
+    pub(crate) fn reversed(&self) -> Self {
+        let centreline = match self.centreline {
+            Centreline::Straight { heading, .. } => Centreline::Straight {
+                start: self.position(self.length_m, 0.0),
+                heading: math::wrap_angle(heading + math::PI),
+            },
+            Centreline::Arc { centre, radius, start_angle, turn } => Centreline::Arc {
+                centre,
+                radius,
+                start_angle: math::wrap_angle(start_angle + turn * self.length_m / radius),
+                turn: -turn,
+            },
+        };
+        Self { centreline, ..*self }
     }
 }

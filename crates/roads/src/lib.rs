@@ -3,7 +3,9 @@
 //! Lane-local coordinates are the one road interface: `s` along the centre line, `t` to the **right** of it. [m]
 //! Lane 0 is the leftmost of its road.
 
+mod blocks;
 pub mod check;
+mod conflict;
 pub mod lane;
 pub mod network;
 pub mod path;

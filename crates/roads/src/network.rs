@@ -1,6 +1,8 @@
 //! The road network of a map: nodes, roads between them, lanes on them; node for node MetaDrive's.
 
 use crate::lane::{Lane, LaneId};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
 use recrash_model::scenario::{Approach, MapSpec, Turn};
 
 /// Position of a road in [`RoadNetwork::roads`].
@@ -14,7 +16,7 @@ pub enum RoadPart {
     Approach,
     /// The same road away from the block.
     Departure,
-    /// An arm of the block away from it.
+    /// An arm of the block away from it; on S the straight behind the approach, on C the straight tail.
     ArmOut,
     /// An arm towards the block.
     ArmIn,
@@ -50,8 +52,8 @@ pub struct RoadNetwork {
 
 impl RoadNetwork {
     /// Builds the network. The numbers of `map` must be in range (see [`crate::check()`]).
-    pub fn build(_map: &MapSpec) -> Self {
-        unimplemented!()
+    pub fn build(map: &MapSpec) -> Self {
+        crate::blocks::build(map)
     }
 
     /// A lane.
@@ -64,9 +66,47 @@ impl RoadNetwork {
         &self.roads[usize::from(id.0)]
     }
 
+    /// The road between two nodes.
+    pub fn road_between(&self, from: &str, to: &str) -> Option<RoadId> {
+        let position = self.roads.iter().position(|road| road.from == from && road.to == to)?;
+        u16::try_from(position).ok().map(RoadId)
+    }
+
     /// The roads a vehicle takes that comes from `approach` and turns `turn` (seen from itself), from the very
     /// beginning of its arm to the very end of its exit; `None` where the map has no such way.
-    pub fn route(&self, _approach: Approach, _turn: Turn) -> Option<Vec<RoadId>> {
-        unimplemented!()
+    ///
+    /// [`Approach::Ring`] begins right after the exit to the left arm, so that it holds half of the circle before the
+    /// ego's entry; it passes that entry and leaves by the exit right behind it ([`Turn::Right`]), the one after that
+    /// ([`Turn::Straight`]) or the third ([`Turn::Left`]).
+    pub fn route(&self, approach: Approach, turn: Turn) -> Option<Vec<RoadId>> {
+        let nodes = crate::blocks::route_nodes(&self.map, approach, turn)?;
+        nodes.windows(2).map(|pair| self.road_between(&pair[0], &pair[1])).collect()
+    }
+
+    /// The lane a point lies on: of those whose direction is within 90 degrees of `heading` the one that fits best (the
+    /// least of offset plus lane width times difference of heading), else of the others. `None` off the road.
+    pub fn lane_at(&self, point: Vec2, heading: f64) -> Option<LaneId> {
+        let mut best: Option<(bool, f64, usize)> = None;
+        for (position, lane) in self.lanes.iter().enumerate() {
+            let (s, t) = lane.local(point);
+            if !(0.0..=lane.length_m).contains(&s) || t.abs() > 0.5 * lane.width_m {
+                continue;
+            }
+            let turned = math::wrap_angle(lane.heading(s) - heading).abs();
+            let candidate = (turned > math::FRAC_PI_2, t.abs() + lane.width_m * turned, position);
+            let better = match best {
+                None => true,
+                Some(best) => (candidate.0, candidate.1) < (best.0, best.1),
+            };
+            if better {
+                best = Some(candidate);
+            }
+        }
+        best.and_then(|(_, _, position)| u16::try_from(position).ok().map(LaneId))
+    }
+
+    /// Whether a point lies on any lane.
+    pub fn on_road(&self, point: Vec2) -> bool {
+        self.lanes.iter().any(|lane| lane.contains(point))
     }
 }

@@ -1,8 +1,9 @@
 //! Paths: the lanes a vehicle follows one after the other, as one line with one `s`.
 
-use crate::lane::LaneId;
+use crate::lane::{Centreline, Lane, LaneId};
 use crate::network::{RoadId, RoadNetwork};
 use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::math;
 
 /// One lane of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,6 +12,39 @@ pub struct PathSegment {
     pub lane: LaneId,
     /// The path's s where the lane begins. [m]
     pub start_m: f64,
+    /// The lane's length. [m]
+    pub length_m: f64,
+    /// The lane's centre line, prepared for fast look-ups.
+    pub shape: SegmentShape,
+}
+
+/// A centre line with what would otherwise be computed again at every look-up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SegmentShape {
+    /// A straight line.
+    Straight {
+        /// Beginning. [m]
+        start: Vec2,
+        /// Unit vector of its direction.
+        forward: Vec2,
+        /// Heading. [rad]
+        heading: f64,
+    },
+    /// A circular arc.
+    Arc {
+        /// Centre of the circle. [m]
+        centre: Vec2,
+        /// Radius. [m]
+        radius: f64,
+        /// Unit vector from the centre to the arc's middle.
+        middle: Vec2,
+        /// Heading at the arc's middle. [rad]
+        middle_heading: f64,
+        /// Half of the arc's length. [m]
+        half_length: f64,
+        /// +1 anticlockwise (a left curve), -1 clockwise.
+        turn: f64,
+    },
 }
 
 /// Lanes with the same number on consecutive roads, as one line.
@@ -48,24 +82,143 @@ pub struct Conflict {
     pub merges: bool,
 }
 
-impl LanePath {
-    /// The path along `roads` in lane number `lane`.
-    pub fn new(_network: &RoadNetwork, _roads: Vec<RoadId>, _lane: u8) -> Self {
-        unimplemented!()
+impl SegmentShape {
+    fn of(lane: &Lane) -> Self {
+        match lane.centreline {
+            Centreline::Straight { start, heading } => {
+                Self::Straight { start, forward: Vec2::from_heading(heading), heading }
+            }
+            Centreline::Arc { centre, radius, start_angle, turn } => {
+                let half_length = 0.5 * lane.length_m;
+                Self::Arc {
+                    centre,
+                    radius,
+                    middle: Vec2::from_heading(start_angle + turn * half_length / radius),
+                    middle_heading: lane.heading(half_length),
+                    half_length,
+                    turn,
+                }
+            }
+        }
     }
 
-    /// Pose at (s, t), heading along the path.
-    pub fn pose(&self, _network: &RoadNetwork, _s: f64, _t: f64) -> Pose {
-        unimplemented!()
+    /// Position, direction and heading on the centre line, `s` from the segment's beginning.
+    #[inline]
+    pub(crate) fn frame(&self, s: f64) -> (Vec2, Vec2, f64) {
+        match *self {
+            Self::Straight { start, forward, heading } => (start + forward * s, forward, heading),
+            Self::Arc { centre, radius, middle, middle_heading, half_length, turn } => {
+                let angle = turn * (s - half_length) / radius;
+                let (sin, cos) = math::sincos(angle);
+                let outward = middle * cos + middle.left() * sin;
+                (centre + outward * radius, outward.left() * turn, middle_heading + angle)
+            }
+        }
+    }
+
+    /// (s, t) of a point, `s` from the segment's beginning; an arc is continued as a circle.
+    #[inline]
+    pub(crate) fn local(&self, point: Vec2) -> (f64, f64) {
+        match *self {
+            Self::Straight { start, forward, .. } => {
+                let d = point - start;
+                (d.dot(forward), -forward.cross(d))
+            }
+            Self::Arc { centre, radius, middle, half_length, turn, .. } => {
+                let d = point - centre;
+                let angle = math::atan2(middle.cross(d), middle.dot(d));
+                (half_length + turn * angle * radius, turn * (d.length() - radius))
+            }
+        }
+    }
+}
+
+impl LanePath {
+    /// The path along `roads` in lane number `lane` (the rightmost where a road has fewer).
+    ///
+    /// # Panics
+    /// Without roads.
+    pub fn new(network: &RoadNetwork, roads: Vec<RoadId>, lane: u8) -> Self {
+        assert!(!roads.is_empty(), "a path has at least one road");
+        let mut segments = Vec::with_capacity(roads.len());
+        let mut length_m = 0.0;
+        for &road in &roads {
+            let lanes = &network.road(road).lanes;
+            let id = lanes[usize::from(lane).min(lanes.len() - 1)];
+            let geometry = network.lane(id);
+            segments.push(PathSegment {
+                lane: id,
+                start_m: length_m,
+                length_m: geometry.length_m,
+                shape: SegmentShape::of(geometry),
+            });
+            length_m += geometry.length_m;
+        }
+        Self { roads, segments, length_m }
+    }
+
+    /// Pose at (s, t), heading along the path. Before its beginning and behind its end the path goes straight on.
+    #[inline]
+    pub fn pose(&self, _network: &RoadNetwork, s: f64, t: f64) -> Pose {
+        let segment = &self.segments[self.segment_at(s)];
+        // Only the first and the last segment can be left; there the excess is driven along the tangent.
+        let along = s - segment.start_m;
+        let on_segment = along.clamp(0.0, segment.length_m);
+        let (position, forward, heading) = segment.shape.frame(on_segment);
+        Pose {
+            position: position + forward * (along - on_segment) - forward.left() * t,
+            heading: math::wrap_angle(heading),
+        }
+    }
+
+    /// Position in [`Self::segments`] of the lane at `s`; the first before the path, the last behind it.
+    #[inline]
+    pub fn segment_at(&self, s: f64) -> usize {
+        let after = self.segments.iter().skip(1).take_while(|segment| segment.start_m <= s).count();
+        after.min(self.segments.len() - 1)
+    }
+
+    /// Curvature of the centre line at `s`, positive to the left. [1/m]
+    #[inline]
+    pub fn curvature(&self, s: f64) -> f64 {
+        if s < 0.0 || s > self.length_m {
+            return 0.0;
+        }
+        match self.segments[self.segment_at(s)].shape {
+            SegmentShape::Straight { .. } => 0.0,
+            SegmentShape::Arc { radius, turn, .. } => turn / radius,
+        }
     }
 
     /// Coordinates of a point, looked for from segment `hint` on (a vehicle never goes back).
-    pub fn project(&self, _network: &RoadNetwork, _point: Vec2, _hint: usize) -> PathPoint {
-        unimplemented!()
+    #[inline]
+    pub fn project(&self, _network: &RoadNetwork, point: Vec2, hint: usize) -> PathPoint {
+        let last = self.segments.len() - 1;
+        let mut position = hint.min(last);
+        loop {
+            let segment = &self.segments[position];
+            let (s, t) = segment.shape.local(point);
+            if s > segment.length_m && position < last {
+                position += 1;
+                continue;
+            }
+            if (0.0..=segment.length_m).contains(&s) {
+                return PathPoint { s: segment.start_m + s, t, segment: position };
+            }
+            // Beyond an end: along the tangent there.
+            let end = if s < 0.0 { 0.0 } else { segment.length_m };
+            let (origin, forward, _) = segment.shape.frame(end);
+            let d = point - origin;
+            return PathPoint { s: segment.start_m + end + d.dot(forward), t: -forward.cross(d), segment: position };
+        }
     }
 
     /// The first conflict with another path, for vehicles of these widths. [m]
-    pub fn conflict(&self, _other: &Self, _network: &RoadNetwork, _width: f64, _other_width: f64) -> Option<Conflict> {
-        unimplemented!()
+    ///
+    /// What both paths share from their very beginning is not a conflict: vehicles there follow each other. Behind it,
+    /// the first of: a crossing of the centre lines (exact, from lines and circles), and the place from which on this
+    /// path stays within `(width + other_width) / 2` of the other until both go on in one lane.
+    pub fn conflict(&self, other: &Self, network: &RoadNetwork, width: f64, other_width: f64) -> Option<Conflict> {
+        crate::conflict::first_conflict(self, other, network, 0.5 * (width + other_width))
     }
 }

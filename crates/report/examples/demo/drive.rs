@@ -1,0 +1,396 @@
+//! Driving for the made-up suite: two cars on paths at planned speeds, and the numbers that follow.
+
+use super::roads::{self, Arm, Path, Way};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::math;
+use recrash_model::metrics::*;
+use recrash_model::record::{ContactZone, PartnerKind};
+use recrash_model::rollout::*;
+use recrash_model::scenario::*;
+use recrash_model::selection::Cluster;
+use recrash_model::template::{Movement, RoadType};
+use recrash_model::vehicle::VehicleSpec;
+use recrash_report::{RoadDrawing, RunView};
+
+/// Time after which every run ends. [s]
+const END_S: f64 = 14.0;
+
+/// One case, planned.
+pub struct Plan {
+    road: RoadType,
+    work_zone: bool,
+    ego: Path,
+    partner: Path,
+    partner_kind: PartnerKind,
+    drift: bool,
+    /// Speed of the ego. [m/s]
+    pub ego_speed: f64,
+    /// Speed of the partner. [m/s]
+    pub partner_speed: f64,
+    /// The partner's delay as designed. [s]
+    pub designed_gap_s: f64,
+    meet: (f64, f64),
+}
+
+fn way(movement: Movement) -> Way {
+    match movement {
+        Movement::LeftTurn => Way::Left,
+        Movement::RightTurn => Way::Right,
+        _ => Way::Straight,
+    }
+}
+
+impl Plan {
+    /// The plan of a cluster's scenario.
+    pub fn of(cluster: &Cluster) -> Self {
+        let t = cluster.template;
+        let number = cluster.number as f64;
+        let arm = if cluster.number.is_multiple_of(2) { Arm::Left } else { Arm::Right };
+        let (ego, partner) = match t.road {
+            RoadType::Highway => (roads::straight(1), roads::straight(0)),
+            RoadType::TrafficCircle => {
+                (roads::roundabout(Arm::Same, way(t.sv)), roads::roundabout(Arm::Left, way(t.cp)))
+            }
+            _ => {
+                let lane = u8::from(t.sv != Movement::LeftTurn);
+                let (arm, cp) = match (t.sv, t.cp) {
+                    (Movement::Straight, Movement::LeftTurn) => (Arm::Ahead, Way::Left),
+                    (Movement::RightTurn, Movement::Straight) => (Arm::Left, Way::Straight),
+                    (Movement::RightTurn, Movement::RightTurn) => (Arm::Same, Way::Right),
+                    (_, cp) => (arm, way(cp)),
+                };
+                let cp_lane = if arm == Arm::Same { 0 } else { 1 };
+                (roads::crossing(Arm::Same, way(t.sv), lane), roads::crossing(arm, cp, cp_lane))
+            }
+        };
+        let drift = t.road == RoadType::Highway;
+        let meet = if drift { (85.0, 85.0) } else { nearest(&ego, &partner) };
+        let kinds = [
+            PartnerKind::PassengerCar,
+            PartnerKind::Suv,
+            PartnerKind::Bus,
+            PartnerKind::Motorcycle,
+            PartnerKind::Cyclist,
+        ];
+        Self {
+            road: t.road,
+            work_zone: t.work_zone,
+            ego,
+            partner,
+            partner_kind: kinds[cluster.number % kinds.len()],
+            drift,
+            ego_speed: 7.0 + 0.13 * number,
+            partner_speed: 8.6 - 0.11 * number,
+            designed_gap_s: if cluster.number % 5 == 1 { 0.2 } else { 1.6 + 0.06 * number },
+            meet,
+        }
+    }
+
+    /// The road.
+    pub fn drawing(&self) -> RoadDrawing {
+        match self.road {
+            RoadType::Highway => roads::straight_drawing(),
+            RoadType::TrafficCircle => roads::roundabout_drawing(),
+            _ => roads::crossing_drawing(),
+        }
+    }
+
+    fn states(&self, arrival_gap_s: f64) -> [Vec<ActorState>; 2] {
+        let arrive = 6.0;
+        let ego = sample(&self.ego, |time| {
+            let s = self.meet.0 + self.ego_speed * (time - arrive);
+            let brake = 1.2 * math::exp(-math::sq(time - 4.6));
+            (s - brake * 1.2, 0.0)
+        });
+        let partner = sample(&self.partner, |time| {
+            let s = self.meet.1 + self.partner_speed * (time - arrive - arrival_gap_s);
+            let lateral = if self.drift { 3.0 / (1.0 + math::exp(-1.6 * (time - 6.5))) } else { 0.0 };
+            (s, lateral)
+        });
+        [ego, partner]
+    }
+}
+
+fn nearest(ego: &Path, partner: &Path) -> (f64, f64) {
+    let mut best = (0.0, 0.0, f64::INFINITY);
+    for i in 0..160 {
+        for j in 0..160 {
+            let (s, u) = (ego.length() * f64::from(i) / 160.0, partner.length() * f64::from(j) / 160.0);
+            let distance = ego.at(s, 0.0).0.distance(partner.at(u, 0.0).0);
+            if distance < best.2 {
+                best = (s, u, distance);
+            }
+        }
+    }
+    (best.0, best.1)
+}
+
+fn sample(path: &Path, place: impl Fn(f64) -> (f64, f64)) -> Vec<ActorState> {
+    let steps = (END_S / STEP_S) as usize;
+    let at = |step: usize| {
+        let (s, t) = place(step as f64 * STEP_S);
+        (path.at(s, t), s)
+    };
+    let speed = |step: usize| (at(step + 1).1 - at(step).1) / STEP_S;
+    (0..=steps)
+        .map(|step| {
+            let ((position, heading), _) = at(step);
+            let throttle = (speed(step + 1) - speed(step)) / STEP_S / 3.0;
+            ActorState {
+                x: position.x,
+                y: position.y,
+                heading,
+                speed: speed(step),
+                steer: 0.0,
+                throttle: throttle.clamp(-1.0, 1.0),
+            }
+        })
+        .collect()
+}
+
+fn outline(state: &ActorState, kind: PartnerKind) -> OrientedBox {
+    let size = VehicleSpec::of(kind);
+    OrientedBox::new(state.pose(), size.length_m, size.width_m)
+}
+
+fn gaps(plan: &Plan, ego: &[ActorState], partner: &[ActorState]) -> Vec<f64> {
+    let boxes = ego.iter().zip(partner);
+    boxes.map(|(e, p)| outline(e, PartnerKind::PassengerCar).gap(&outline(p, plan.partner_kind))).collect()
+}
+
+fn least(values: impl Iterator<Item = f64>) -> Timed {
+    let mut best = Timed { value: f64::INFINITY, time_s: 0.0 };
+    for (step, value) in values.enumerate() {
+        if value < best.value {
+            best = Timed { value, time_s: step as f64 * STEP_S };
+        }
+    }
+    best
+}
+
+/// Least gap with this delay.
+pub fn least_gap(plan: &Plan, arrival_gap_s: f64) -> Timed {
+    let [ego, partner] = plan.states(arrival_gap_s);
+    least(gaps(plan, &ego, &partner).into_iter())
+}
+
+/// A run with this delay, up to a second after a contact.
+pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: String) -> RunView {
+    let [mut ego, mut partner] = plan.states(arrival_gap_s);
+    let touch = gaps(plan, &ego, &partner).iter().position(|gap| *gap == 0.0);
+    if let Some(step) = touch {
+        ego.truncate(step + 1);
+        partner.truncate(step + 1);
+    }
+    let gap_m = gaps(plan, &ego, &partner);
+    let min_gap = least(gap_m.iter().copied());
+    let centres = least(ego.iter().zip(&partner).map(|(e, p)| e.position().distance(p.position())));
+    let end = (ego.len() - 1) as f64 * STEP_S;
+    let car = VehicleSpec::of(PartnerKind::PassengerCar);
+    let other = VehicleSpec::of(plan.partner_kind);
+    let acceleration = |states: &[ActorState]| -> Vec<f64> {
+        let change = states.windows(2).map(|pair| (pair[1].speed - pair[0].speed) / STEP_S);
+        change.chain([0.0]).collect()
+    };
+    let series = Series {
+        time_s: (0..ego.len()).map(|step| step as f64 * STEP_S).collect(),
+        ego_speed_mps: ego.iter().map(|state| state.speed).collect(),
+        ego_acceleration_mps2: acceleration(&ego),
+        partners: vec![PartnerSeries {
+            actor: 1,
+            id: "cp1".into(),
+            speed_mps: partner.iter().map(|state| state.speed).collect(),
+            acceleration_mps2: acceleration(&partner),
+            gap_m,
+            centre_distance_m: ego.iter().zip(&partner).map(|(e, p)| e.position().distance(p.position())).collect(),
+            ttc_s: vec![None; ego.len()],
+        }],
+    };
+    let hardest = least(series.ego_acceleration_mps2.iter().copied());
+    let contact = touch.map(|step| Contact {
+        actor: 1,
+        id: "cp1".into(),
+        time_s: end,
+        ego_zone: if cluster.number.is_multiple_of(2) { ContactZone::Left } else { ContactZone::FrontRight },
+        other_zone: ContactZone::Front,
+        kind: if plan.drift { CollisionKind::Sideswipe } else { CollisionKind::Angle },
+        relative_speed_mps: (ego[step].speed + partner[step].speed) * 0.7,
+        ego_speed_mps: ego[step].speed,
+        other_speed_mps: partner[step].speed,
+    });
+    let mut findings = Vec::new();
+    if let Some(contact) = &contact {
+        findings.push(Finding {
+            kind: FindingKind::Contact,
+            time_s: end,
+            value: contact.relative_speed_mps,
+            threshold: 0.0,
+            sentence: format!("The ego touched cp1 at a relative speed of {:.1} m/s.", contact.relative_speed_mps),
+        });
+    } else if min_gap.value < 2.0 {
+        findings.push(Finding {
+            kind: FindingKind::NearMiss,
+            time_s: min_gap.time_s,
+            value: min_gap.value,
+            threshold: 2.0,
+            sentence: format!("The gap to cp1 fell to {:.2} m, below 2.00 m.", min_gap.value),
+        });
+    }
+    if cluster.number % 4 == 1 {
+        findings.push(Finding {
+            kind: FindingKind::HardBraking,
+            time_s: hardest.time_s,
+            value: -hardest.value,
+            threshold: 4.0,
+            sentence: format!("The ego braked at {:.1} m/s².", -hardest.value),
+        });
+    }
+    let termination = Termination {
+        kind: if touch.is_some() { TerminationKind::Contact } else { TerminationKind::Arrived },
+        time_s: end,
+    };
+    let metrics = Metrics {
+        partners: vec![PartnerMetrics {
+            actor: 1,
+            id: "cp1".into(),
+            min_gap,
+            min_centre_distance: centres,
+            min_ttc: Some(Timed { value: 0.4 + min_gap.value / 3.0, time_s: (min_gap.time_s - 0.5).max(0.0) }),
+            pet: touch.is_none().then_some(Timed { value: (arrival_gap_s - 0.6).max(0.1), time_s: min_gap.time_s }),
+            max_drac: Some(Timed { value: 9.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
+            max_required_deceleration: Some(Timed { value: 6.0 / (0.6 + min_gap.value), time_s: min_gap.time_s }),
+            min_headway: None,
+        }],
+        obstacle_gaps: vec![],
+        contact,
+        obstacles_hit: vec![],
+        min_gap: Some(min_gap),
+        min_centre_distance: Some(centres),
+        ego: EgoMetrics {
+            max_deceleration: Timed { value: -hardest.value, time_s: hardest.time_s },
+            phantom_braking: None,
+            max_reversals: 1,
+            max_reversals_time_s: 4.0,
+            max_lane_departure: Timed { value: 0.05, time_s: 5.0 },
+            distance_m: plan.ego_speed * end,
+            mean_speed_mps: plan.ego_speed,
+        },
+        termination: termination.kind,
+        duration_s: end,
+    };
+    let events = match touch {
+        Some(step) => vec![Event {
+            time_s: end,
+            kind: EventKind::Contact { a: 0, b: 1, a_state: ego[step], b_state: partner[step] },
+        }],
+        None => vec![],
+    };
+    let cones = |i: i32| PlacedObstacle {
+        kind: ObstacleKind::Cone,
+        pose: Pose { position: Vec2::new(45.0 + 6.0 * f64::from(i), -2.4), heading: 0.0 },
+        length_m: 0.4,
+        width_m: 0.4,
+    };
+    let track = |id: &str, role, kind, spec: VehicleSpec, states| ActorTrack {
+        id: id.into(),
+        role,
+        kind,
+        length_m: spec.length_m,
+        width_m: spec.width_m,
+        states,
+    };
+    let rollout = Rollout {
+        format: ROLLOUT_FORMAT.into(),
+        scenario_id: cluster.scenario_id.clone(),
+        simulator: "demonstration kinematics".into(),
+        ego: "metadrive-idm".into(),
+        actors: vec![
+            track(EGO_ID, Role::Ego, PartnerKind::PassengerCar, car, ego),
+            track("cp1", Role::Partner, plan.partner_kind, other, partner),
+        ],
+        obstacles: if plan.work_zone { (0..5).map(cones).collect() } else { vec![] },
+        events,
+        termination,
+        state_hash: format!("{:016x}", 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(cluster.number as u64)),
+    };
+    RunView {
+        scenario: scenario(cluster, plan, arrival_gap_s),
+        rollout,
+        metrics,
+        findings,
+        verdict: verdict(cluster, touch.is_some()),
+        series,
+        rerun_command,
+    }
+}
+
+fn verdict(cluster: &Cluster, touched: bool) -> Verdict {
+    let t = cluster.template;
+    let check = |kind, expected: &str, observed: &str, result| Check {
+        kind,
+        expected: expected.into(),
+        observed: observed.into(),
+        result,
+    };
+    let turned_back = cluster.number == 17;
+    Verdict {
+        checks: vec![
+            check(CheckKind::Road, t.road.label(), t.road.label(), CheckResult::Pass),
+            check(CheckKind::SvMovement, t.sv.label(), t.sv.label(), CheckResult::Pass),
+            check(
+                CheckKind::CpMovement,
+                t.cp.label(),
+                if turned_back { "Proceeding straight" } else { t.cp.label() },
+                if turned_back { CheckResult::Fail } else { CheckResult::Pass },
+            ),
+            check(CheckKind::Encounter, "the partner is nearest to the ego", "it is", CheckResult::Pass),
+            if touched {
+                check(CheckKind::ContactZones, "left; front", "left; front", CheckResult::Pass)
+            } else {
+                check(CheckKind::ContactZones, "left; front", "no contact", CheckResult::NotApplicable)
+            },
+        ],
+    }
+}
+
+fn scenario(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64) -> ScenarioDraft {
+    ScenarioDraft {
+        format: SCENARIO_FORMAT.into(),
+        id: cluster.scenario_id.clone(),
+        source: Source {
+            records: vec![cluster.pick.clone()],
+            template: Some(cluster.template),
+            narrative: String::new(),
+            author: Author::Rules,
+            seed: 7,
+        },
+        map: MapSpec::X(CrossMap {
+            lanes: 2,
+            lane_width_m: roads::LANE,
+            approach_m: roads::APPROACH,
+            arm_m: roads::APPROACH,
+        }),
+        ego: EgoSpec {
+            turn: Turn::Straight,
+            lane: 1,
+            s_m: 5.0,
+            speed_mps: plan.ego_speed,
+            target_speed_mps: plan.ego_speed,
+        },
+        partners: vec![Partner {
+            id: "cp1".into(),
+            kind: plan.partner_kind,
+            approach: Approach::Left,
+            turn: Turn::Straight,
+            lane_offset: 0,
+            start: Start::ArrivalGap { arrival_gap_s },
+            speed_mps: plan.partner_speed,
+            policy: Policy::IdmNominal { target_speed_mps: plan.partner_speed },
+            lateral: vec![],
+        }],
+        obstacles: vec![],
+        traffic: Traffic::default(),
+        environment: Environment::default(),
+        duration_s: 40.0,
+    }
+}

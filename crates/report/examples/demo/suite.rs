@@ -1,0 +1,434 @@
+//! A made-up suite, big enough to look like a real one: kinematics by hand, no simulator, no real record.
+//!
+//! The page's tests use it too.
+
+use super::drive::{self, Plan};
+use recrash_model::metrics::*;
+use recrash_model::narrative::*;
+use recrash_model::profile::*;
+use recrash_model::record::*;
+use recrash_model::scenario::*;
+use recrash_model::selection::*;
+use recrash_model::template::*;
+use recrash_model::tuning::*;
+use recrash_model::{Diagnostic, Location, Seed};
+use recrash_report::{CaseView, RunView, SuiteView};
+
+/// The paper's templates, as (road, SV, CP, work zone, records, picks).
+const TEMPLATES: [(RoadType, Movement, Movement, bool, usize, usize); 14] = {
+    use Movement::{LeftTurn as L, RightTurn as R, Straight as S};
+    use RoadType::{Highway as H, Intersection as I, TrafficCircle as C};
+    [
+        (I, S, S, false, 102, 4),
+        (I, S, L, false, 35, 2),
+        (I, L, S, false, 24, 2),
+        (I, R, S, false, 16, 2),
+        (H, S, S, false, 14, 1),
+        (I, R, R, false, 14, 1),
+        (I, L, L, false, 9, 1),
+        (I, S, R, false, 7, 1),
+        (I, S, S, true, 4, 1),
+        (I, L, R, false, 3, 1),
+        (H, S, R, false, 2, 1),
+        (H, L, S, true, 2, 1),
+        (H, S, L, true, 2, 1),
+        (C, R, L, true, 1, 1),
+    ]
+};
+
+fn template((road, sv, cp, work_zone, _, _): (RoadType, Movement, Movement, bool, usize, usize)) -> Template {
+    Template { road, sv, cp, work_zone }
+}
+
+fn pick<T: Copy>(rng: &mut recrash_model::seed::Rng, of: &[T]) -> T {
+    of[(rng.uniform() * of.len() as f64) as usize]
+}
+
+fn record(index: usize, template: Template, seed: Seed) -> CrashRecord {
+    let mut rng = seed.child(&format!("record {index}")).rng();
+    let places = ["Phoenix, AZ", "San Francisco, CA", "Tempe, AZ", "Austin, TX", "Los Angeles, CA", "Las Vegas, NV"];
+    let zones = [ContactZone::Front, ContactZone::FrontLeft, ContactZone::Left, ContactZone::Right, ContactZone::Rear];
+    let (sv_mph, cp_mph) = (rng.range(4.0, 38.0).round(), rng.range(5.0, 40.0).round());
+    let verb = |movement: Movement| match movement {
+        Movement::LeftTurn => "turning left",
+        Movement::RightTurn => "turning right",
+        _ => "going straight",
+    };
+    let kinds = [PartnerKind::PassengerCar, PartnerKind::Suv, PartnerKind::PickupTruck, PartnerKind::Motorcycle];
+    let side = pick(&mut rng, &["left", "right"]);
+    let narrative = format!(
+        "On a clear afternoon the test vehicle was {} at about {sv_mph} mph when another vehicle came from the {side}, \
+         {} against a red light. The operator had no time to react.\n\nThe other vehicle's front touched the {side} side \
+         of the test vehicle. Nobody was hurt; [XXX] was told. Made-up record number {index} of the demonstration.",
+        verb(template.sv),
+        verb(template.cp),
+    );
+    CrashRecord {
+        id: RecordRef {
+            report_id: format!("90000-{:04}", 1000 + index),
+            version: 1 + u32::from(index.is_multiple_of(3)),
+        },
+        incident_id: Some(format!("made-up-{}", index / 2)),
+        entity: pick(&mut rng, &["Example Mobility LLC", "Sample Robotics", "Placeholder AV, Inc."]).to_owned(),
+        vehicle: pick(&mut rng, &["Example Shuttle 2022", "Sample Hatchback 2023"]).to_owned(),
+        when: Some(YearMonth { year: 2022 + (index % 4) as u16, month: 1 + (index % 12) as u8 }),
+        time_of_day_min: (!index.is_multiple_of(5)).then_some((rng.uniform() * 1440.0) as u16),
+        place: pick(&mut rng, &places).to_owned(),
+        road: Coded::Known(template.road),
+        work_zone: template.work_zone,
+        surface: Some(Surface::Dry),
+        lighting: Some(pick(&mut rng, &[Lighting::Daylight, Lighting::DarkLighted, Lighting::DawnDusk])),
+        weather: vec![Weather::Clear],
+        posted_speed_mps: (!index.is_multiple_of(7)).then_some(35.0 * MPS_PER_MPH),
+        partner: if index.is_multiple_of(23) { Coded::Unknown } else { Coded::Known(pick(&mut rng, &kinds)) },
+        cp_movement: Coded::Known(template.cp),
+        sv_movement: Coded::Known(template.sv),
+        sv_speed_mps: (!index.is_multiple_of(6)).then_some(sv_mph * MPS_PER_MPH),
+        sv_zones: vec![pick(&mut rng, &zones), pick(&mut rng, &zones)],
+        cp_zones: vec![
+            ContactZone::Front,
+            if cp_mph > 20.0 { ContactZone::FrontLeft } else { ContactZone::FrontRight },
+        ],
+        severity: Coded::Known(pick(&mut rng, &[Severity::None, Severity::None, Severity::Minor])),
+        engagement: Coded::Known(Engagement::Ads),
+        narrative,
+        redaction: Redaction::Open,
+        provenance: Provenance { file: "made-up.csv".into(), edition: Edition::Second, row: 1 + index as u64 },
+    }
+}
+
+fn selection(seed: Seed) -> Selection {
+    let counts: Vec<TemplateCount> = TEMPLATES
+        .iter()
+        .map(|&line| TemplateCount { template: template(line), records: line.4, picks: line.5 })
+        .collect();
+    let (mut clusters, mut map, mut first) = (Vec::new(), Vec::new(), 0);
+    for (order, count) in counts.iter().enumerate() {
+        let members: Vec<usize> = (first..first + count.records).collect();
+        first += count.records;
+        for part in 0..count.picks {
+            let number = clusters.len() + 1;
+            let own: Vec<usize> = members.iter().copied().filter(|member| member % count.picks == part).collect();
+            let angle = order as f64 * 0.9;
+            let mut rng = seed.child(&format!("map {number}")).rng();
+            let (cx, cy) = (recrash_model::math::cos(angle) * 3.0, recrash_model::math::sin(angle) * 2.0);
+            for &member in &own {
+                let spread = |draw: f64| (draw - 0.5) * 1.6 + part as f64 * 0.7;
+                let (x, y) = (cx + spread(rng.uniform()), cy + spread(rng.uniform()));
+                map.push(MapPoint { record: member, cluster: number - 1, x, y });
+            }
+            clusters.push(Cluster {
+                number,
+                scenario_id: format!("{number:02}-{}", count.template.slug()),
+                template: count.template,
+                pick: RecordRef {
+                    report_id: format!("90000-{:04}", 1000 + own[0]),
+                    version: 1 + u32::from(own[0].is_multiple_of(3)),
+                },
+                pick_index: own[0],
+                members: own,
+                radius: 0.8 + 0.1 * part as f64,
+            });
+        }
+    }
+    map.sort_by_key(|point| point.record);
+    let total: usize = counts.iter().map(|count| count.records).sum();
+    let matrix = |cp: Movement| {
+        let cell = |sv: Movement| {
+            counts.iter().filter(|c| c.template.sv == sv && c.template.cp == cp).map(|c| c.records).sum()
+        };
+        (cp, Movement::PAPER.map(cell).to_vec())
+    };
+    let road = |road: RoadType| (road, counts.iter().filter(|c| c.template.road == road).map(|c| c.records).sum());
+    let observed: Vec<Template> = counts.iter().map(|count| count.template).collect();
+    let possible = profile().templates();
+    let pair =
+        ValuePair { road: Some(RoadType::TrafficCircle), sv: Some(Movement::Straight), cp: None, work_zone: None };
+    Selection {
+        strategy: Strategy::Stratified,
+        budget: 20,
+        seed: 7,
+        embedding: EmbeddingInfo {
+            name: "tf-idf + truncated SVD".into(),
+            source_dimensions: 412,
+            dimensions: 6,
+            explained_variance: 0.413,
+        },
+        template_weight: 1.0,
+        weighting: Weighting::Frequency,
+        inertia: 61.3,
+        tables: StageTables {
+            road_types: [RoadType::Intersection, RoadType::Highway, RoadType::TrafficCircle].map(road).to_vec(),
+            sv_movements: Movement::PAPER.to_vec(),
+            movements: Movement::PAPER.map(matrix).to_vec(),
+            work_zone: counts.iter().filter(|c| c.template.work_zone).map(|c| c.records).sum(),
+            largest_template: counts[0].records,
+        },
+        coverage: Coverage {
+            templates_possible: possible.len(),
+            templates_observed: counts.len(),
+            templates_covered: counts.len(),
+            records_covered: total,
+            records: total,
+            radius: 1.31,
+            mean_distance: 0.42,
+            embedding_radius: 1.05,
+            embedding_mean_distance: 0.37,
+            pairs: PairCoverage {
+                possible: 37,
+                observed: 31,
+                covered: 31,
+                holes_observed: vec![],
+                holes_possible: vec![pair],
+            },
+            holes_observed: vec![],
+            holes_possible: possible.into_iter().filter(|template| !observed.contains(template)).collect(),
+        },
+        templates: counts,
+        clusters,
+        map,
+    }
+}
+
+fn profile() -> SystemProfile {
+    SystemProfile {
+        format: PROFILE_FORMAT.into(),
+        name: "paper".into(),
+        description: "3 road types, 3 x 3 movements, work zone or not; MetaDrive's IDM as the system under test".into(),
+        ego: "metadrive-idm".into(),
+        records: RecordRules { dedupe: Dedupe::None },
+        expresses: Expressible {
+            road_types: vec![RoadType::Intersection, RoadType::Highway, RoadType::TrafficCircle],
+            sv_movements: Movement::PAPER.to_vec(),
+            cp_movements: Movement::PAPER.to_vec(),
+            work_zone: true,
+            partner_kinds: vec![PartnerKind::PassengerCar],
+            min_speed_mps: 1.0,
+            max_speed_mps: 22.2,
+            max_traffic_density: 0.3,
+        },
+        excludes: Excluded {
+            collisions: vec![CollisionKind::RearEndByEgo, CollisionKind::RearEndOfEgo, CollisionKind::HeadOn],
+        },
+        failure: FailureCriteria {
+            min_gap_m: 2.0,
+            hard_braking_mps2: 4.0,
+            phantom_braking_mps2: 3.0,
+            oscillation_reversals: 4,
+            oscillation_window_s: 5.0,
+            lane_departure_m: 0.3,
+        },
+    }
+}
+
+fn narrative(cluster: &Cluster, record: &CrashRecord, plan: &Plan) -> Narrative {
+    let words = |words: &str| FactSource::Words { record: record.id.clone(), words: words.into() };
+    let column = |column: &str, text: &str| FactSource::Column {
+        record: record.id.clone(),
+        column: column.into(),
+        text: text.into(),
+    };
+    let sv_speed = match record.sv_speed_mps {
+        Some(_) => column("SV Precrash Speed (MPH)", "as filed"),
+        None => FactSource::Assumed { why: "the column is empty; a town speed is taken".into() },
+    };
+    let left = record.narrative.contains("from the left");
+    let facts = vec![
+        Fact {
+            value: FactValue::SvMovement { movement: cluster.template.sv },
+            source: column("SV Pre-Crash Movement", cluster.template.sv.label()),
+        },
+        Fact {
+            value: FactValue::CpMovement { movement: cluster.template.cp },
+            source: column("CP Pre-Crash Movement", cluster.template.cp.label()),
+        },
+        Fact {
+            value: FactValue::Approach { approach: if left { Approach::Left } else { Approach::Right } },
+            source: words(if left { "from the left" } else { "from the right" }),
+        },
+        Fact { value: FactValue::CpSignal { signal: Signal::Red }, source: words("against a red light") },
+        Fact { value: FactValue::SvSpeed { speed_mps: plan.ego_speed }, source: sv_speed },
+        Fact {
+            value: FactValue::CpSpeed { speed_mps: plan.partner_speed },
+            source: FactSource::Assumed { why: "no record gives it; the posted speed is taken".into() },
+        },
+        Fact {
+            value: FactValue::Contact { sv: record.sv_zones.clone(), cp: record.cp_zones.clone() },
+            source: column("SV Contact Area, CP Contact Area", "as ticked"),
+        },
+    ];
+    Narrative {
+        format: NARRATIVE_FORMAT.into(),
+        scenario_id: cluster.scenario_id.clone(),
+        template: cluster.template,
+        records: vec![record.id.clone()],
+        text: format!(
+            "{}. The ego drives at {:.1} m/s. A car comes from the {} at {:.1} m/s and does not yield; its front meets the \
+             side of the ego.",
+            cluster.template,
+            plan.ego_speed,
+            if left { "left" } else { "right" },
+            plan.partner_speed
+        ),
+        facts,
+        origin: if cluster.number.is_multiple_of(6) {
+            Origin::Alternative {
+                reason: "the record describes a rear-end collision, which the profile excludes".into(),
+            }
+        } else {
+            Origin::Record
+        },
+        author: Author::Rules,
+    }
+}
+
+fn tune_log(cluster: &Cluster, plan: &Plan, designed: f64) -> (TuneLog, f64) {
+    let mut rng = Seed(7).child(&cluster.scenario_id).rng();
+    let mut best = (0, f64::INFINITY, designed);
+    let points: Vec<TunePoint> = (0..48)
+        .map(|number| {
+            let near = number > 20;
+            let value = match number {
+                0 => designed,
+                _ if near => (best.2 + rng.range(-0.4, 0.4)).clamp(-3.0, 3.0),
+                _ => rng.range(-3.0, 3.0),
+            };
+            let gap = drive::least_gap(plan, value);
+            let refused: Vec<String> =
+                if number % 9 == 4 { vec!["the least gap comes at the very end".into()] } else { vec![] };
+            let objective = gap.value + if refused.is_empty() { 0.0 } else { 5.0 };
+            if refused.is_empty() && objective < best.1 - 1e-9 {
+                best = (number, objective, value);
+            }
+            let failed = gap.value < 2.0;
+            let findings = if failed { vec![FindingKind::NearMiss] } else { vec![] };
+            TunePoint {
+                number,
+                proposed_by: if number == 0 {
+                    "start"
+                } else if near {
+                    "local"
+                } else {
+                    "halton"
+                }
+                .into(),
+                values: vec![value, plan.ego_speed],
+                score: Score { objective, min_gap: Some(gap), findings, failed, refused },
+            }
+        })
+        .collect();
+    let log = TuneLog {
+        format: TUNE_FORMAT.into(),
+        scenario_id: cluster.scenario_id.clone(),
+        searcher: "halton, then local".into(),
+        seed: 7,
+        parameters: vec![
+            Parameter {
+                pointer: "/partners/0/start/arrival_gap_s".into(),
+                unit: "s".into(),
+                min: -3.0,
+                max: 3.0,
+                start: designed,
+                integer: false,
+                reason: "who comes first stays open within three seconds".into(),
+            },
+            Parameter {
+                pointer: "/ego/target_speed_mps".into(),
+                unit: "m/s".into(),
+                min: plan.ego_speed - 1.5,
+                max: plan.ego_speed + 1.5,
+                start: plan.ego_speed,
+                integer: false,
+                reason: "the speed in the record, give or take what its rounding hides".into(),
+            },
+        ],
+        points,
+        best: best.0,
+    };
+    (log, best.2)
+}
+
+fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, folder: &str) -> RunView {
+    drive::run(
+        cluster,
+        plan,
+        arrival_gap_s,
+        format!("recrash simulate suite/{folder}/{}.json --ego metadrive-idm --seed 7", cluster.scenario_id),
+    )
+}
+
+/// The suite.
+pub fn demo() -> SuiteView {
+    let seed = Seed(7);
+    let selection = selection(seed);
+    let templates = TEMPLATES.iter().flat_map(|&line| std::iter::repeat_n(template(line), line.4));
+    let records: Vec<CrashRecord> =
+        templates.enumerate().map(|(index, template)| record(index, template, seed)).collect();
+    let rejects = (0..5).map(|row| Reject {
+        file: "made-up.csv".into(),
+        row: 236 + row,
+        record: None,
+        reason: RejectReason::RedactedNarrative,
+    });
+    let usable = records.len();
+    let cases = selection.clusters.iter().enumerate().map(|(position, cluster)| {
+        let plan = Plan::of(cluster);
+        let record = &records[cluster.pick_index];
+        let designed = plan.designed_gap_s;
+        let (log, tuned) = tune_log(cluster, &plan, designed);
+        let refused = cluster.number == 19;
+        let mut members = cluster.members.clone();
+        members.truncate(4);
+        CaseView {
+            scenario_id: cluster.scenario_id.clone(),
+            template: cluster.template,
+            cluster: Some(position),
+            records: members,
+            narrative: Some(narrative(cluster, record, &plan)),
+            drawing: plan.drawing(),
+            before: (!refused).then(|| run(cluster, &plan, designed, "4-scenarios")),
+            after: (!refused && log.best != 0).then(|| run(cluster, &plan, tuned, "6-tuned")),
+            tune_log: (!refused).then_some(log),
+            refused: refused.then(|| "partners[0].turn: no left turn on this map; allowed: straight".to_owned()),
+        }
+    });
+    SuiteView {
+        title: "demo suite".into(),
+        generated_by: "recrash 0.1.0".into(),
+        generated_at: None,
+        command: "recrash run --profile paper --budget 20 --seed 7 --out suite".into(),
+        profile: profile(),
+        ego: "metadrive-idm".into(),
+        simulator: "demonstration kinematics".into(),
+        agents: "rules".into(),
+        sample: true,
+        cases: cases.collect(),
+        records: RecordSet {
+            files: vec![SourceFile {
+                name: "made-up.csv".into(),
+                edition: Edition::Second,
+                rows: usable + 5,
+                sha256: "5f2b51ca2fdc5baa31ec02e002f69aec0e48a8ad7cbf1c0a2f1fb1b8a1a3cf11".into(),
+            }],
+            usable: (0..usable).collect(),
+            rejects: rejects.collect(),
+            funnel: vec![
+                FunnelStep { name: "rows read".into(), remaining: usable + 5, lost: vec![] },
+                FunnelStep {
+                    name: "narrative can be read".into(),
+                    remaining: usable,
+                    lost: vec![(RejectReason::RedactedNarrative, 5)],
+                },
+                FunnelStep { name: "the profile expresses it".into(), remaining: usable, lost: vec![] },
+            ],
+            records,
+        },
+        selection,
+        diagnostics: vec![Diagnostic::new(
+            recrash_model::Severity::Warning,
+            "records.unlisted-code",
+            Location::at_row("made-up.csv", 17),
+            "\"Tricycle\" is in no code table of the column \"Crash With\"",
+        )],
+    }
+}
