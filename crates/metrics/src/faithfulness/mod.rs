@@ -105,10 +105,10 @@ impl Witness<'_> {
             RoadType::Intersection => at_junction && !at_circle,
             RoadType::TrafficCircle => at_circle,
             // Who turns off a highway or street may need somewhere to turn to: a junction at grade.
-            RoadType::Highway | RoadType::Street | RoadType::RuralRoad => {
+            RoadType::Highway | RoadType::Street | RoadType::RuralRoad | RoadType::UnpavedRoad => {
                 !at_circle && (!at_junction || turns(template.sv) || turns(template.cp))
             }
-            RoadType::ParkingLot => false,
+            RoadType::ParkingLot | RoadType::ParkingGarage => false,
         };
         let observed = match (at_circle, at_junction, distance) {
             (true, ..) => "at a roundabout".to_owned(),

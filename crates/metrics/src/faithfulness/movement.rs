@@ -205,7 +205,12 @@ impl Driven {
             | Movement::EnteringTraffic
             | Movement::LaneDeparture
             | Movement::CrossingIntoOpposingLane
-            | Movement::WrongWay => return CheckResult::NotApplicable,
+            | Movement::WrongWay
+            | Movement::NmCrossing
+            | Movement::NmWaiting
+            | Movement::NmAlongside
+            | Movement::NmOnSidewalk
+            | Movement::NmInRoadway => return CheckResult::NotApplicable,
         };
         if shown { CheckResult::Pass } else { CheckResult::Fail }
     }
