@@ -10,9 +10,10 @@ use crate::words::{vocabulary, words};
 use recrash_model::{Seed, math};
 use std::collections::BTreeMap;
 
-/// Singular vectors kept. Deerwester et al. (1990) found 70 to 100 best on collections of about 1000 texts; crash
-/// narratives have a narrow vocabulary, so the lower end.
-pub const LEXICAL_DIMENSIONS: usize = 64;
+/// Singular vectors kept. Latent semantic analysis of mixed texts takes 100 or more (Deerwester et al. 1990); crash
+/// narratives have a narrow vocabulary, and on NHTSA's file 32 put more narratives beside ones of the same template than
+/// 20, 64 or 100 do (`docs/models/selection.md`).
+pub const LEXICAL_DIMENSIONS: usize = 32;
 
 /// Name of the lexical embedding in files and reports.
 pub const LEXICAL_NAME: &str = "lexical (TF-IDF, truncated SVD)";
