@@ -196,6 +196,7 @@ fn scale_to_unit_length(x: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::oracle::oracle;
 
     #[test]
     fn weights_follow_the_formula() {
@@ -207,6 +208,24 @@ mod tests {
         let row: Vec<_> = table.row(0).collect();
         assert!((row[0].1 - car / length).abs() < 1e-15 && (row[1].1 - left / length).abs() < 1e-15);
         assert!((table.row(1).next().unwrap().1 - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn truncated_decomposition_agrees_with_numpy() {
+        let fixture = oracle("lexical.json");
+        let texts = fixture.texts("texts");
+        let table = TermTable::of(&texts.iter().map(String::as_str).collect::<Vec<_>>(), &[]);
+        let directions = table.leading_directions(fixture.number("kept") as usize);
+        let rows: Vec<Vec<f64>> = (0..table.rows())
+            .map(|i| (0..directions.rows).map(|k| table.row(i).map(|(t, w)| w * directions.row(k)[t]).sum()).collect())
+            .collect();
+        // Inner products do not depend on the signs of the directions.
+        let expected = fixture.matrix("inner_products");
+        for i in 0..rows.len() {
+            for j in 0..rows.len() {
+                assert!((dot(&rows[i], &rows[j]) - expected.row(i)[j]).abs() < 1e-10, "{i}, {j}");
+            }
+        }
     }
 
     #[test]

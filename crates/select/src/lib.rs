@@ -17,6 +17,8 @@ mod greedy;
 mod kmeans;
 mod lexical;
 mod matrix;
+#[cfg(test)]
+mod oracle;
 mod pca;
 mod space;
 mod strategy;
