@@ -7,6 +7,7 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod casework;
+mod drawing;
 mod error;
 mod profiles;
 mod progress;
@@ -21,8 +22,8 @@ pub use casework::{CaseRun, DesignAttempt, DesignLog, FileRun, read_scenario, ru
 pub use error::PipelineError;
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
+pub use recrash_roads::scenario_schema as schema;
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Stage, Suite};
-pub use recrash_roads::scenario_schema as schema;
 pub use summary::{CaseSummary, RunSummary, Summary};

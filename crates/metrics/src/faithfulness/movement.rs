@@ -28,8 +28,8 @@ const TURN_CURVATURE: f64 = 1.0 / 60.0;
 /// Heading change from which on it is a U-turn. [deg]
 const U_TURN_DEG: f64 = 150.0;
 
-/// Shift across the road from which on it is a lane change. [lane widths]
-const LANE_CHANGE_WIDTHS: f64 = 0.6;
+/// Shift across the road from which on it is a lane change: the middle of the box has crossed the line. [lane widths]
+const LANE_CHANGE_WIDTHS: f64 = 0.5;
 
 /// What a road user did.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +42,8 @@ pub struct Driven {
     pub shifted_m: f64,
     /// Distance driven. [m]
     pub distance_m: f64,
+    /// Whether the map has no junction to turn at.
+    pub on_plain_road: bool,
 }
 
 /// Kind of movement.
@@ -69,13 +71,14 @@ pub enum DrivenKind {
 pub fn driven(layout: &Layout, network: &RoadNetwork, track: &[OrientedBox]) -> Driven {
     let distance_m: f64 = track.windows(2).map(|pair| pair[0].centre.distance(pair[1].centre)).sum();
     let turned_rad: f64 = track.windows(2).map(|pair| turn_between(&pair[0], &pair[1])).sum();
+    let on_plain_road = matches!(layout, Layout::Plain { .. });
     let (Some(first), Some(last)) = (track.first(), track.last()) else {
-        return Driven { kind: DrivenKind::Stood, turned_deg: 0.0, shifted_m: 0.0, distance_m: 0.0 };
+        return Driven { kind: DrivenKind::Stood, turned_deg: 0.0, shifted_m: 0.0, distance_m, on_plain_road };
     };
     let road_turned_rad =
         math::wrap_angle(layout.road_heading(network, last.centre) - layout.road_heading(network, first.centre));
     let turned_deg = degrees(turned_rad - road_turned_rad);
-    let mut driven = Driven { kind: DrivenKind::Stood, turned_deg, shifted_m: 0.0, distance_m };
+    let mut driven = Driven { kind: DrivenKind::Stood, turned_deg, shifted_m: 0.0, distance_m, on_plain_road };
     if distance_m < STOOD_M {
         return driven;
     }
@@ -183,13 +186,17 @@ fn around_circle(layout: &Layout, network: &RoadNetwork, track: &[OrientedBox]) 
 impl Driven {
     /// Whether this is `expected`.
     pub fn shows(&self, expected: Movement) -> CheckResult {
+        // On a highway nobody can turn: reports call a move into the next lane that (`docs/models/rules.md`).
+        let moved_over = self.kind == DrivenKind::LaneChange && self.on_plain_road;
         let shown = match expected {
             Movement::Straight => {
                 matches!(self.kind, DrivenKind::Straight | DrivenKind::LaneChange | DrivenKind::Circling(0 | 1))
             }
             // Who drives around a circle turns left until it leaves.
-            Movement::LeftTurn => matches!(self.kind, DrivenKind::Left | DrivenKind::Circling(_)),
-            Movement::RightTurn => self.kind == DrivenKind::Right,
+            Movement::LeftTurn => {
+                matches!(self.kind, DrivenKind::Left | DrivenKind::Circling(_)) || (moved_over && self.shifted_m > 0.0)
+            }
+            Movement::RightTurn => self.kind == DrivenKind::Right || (moved_over && self.shifted_m < 0.0),
             Movement::UTurn => self.kind == DrivenKind::UTurn,
             Movement::ChangingLanes | Movement::Passing | Movement::Merging => self.kind == DrivenKind::LaneChange,
             Movement::Stopped | Movement::Parked => self.kind == DrivenKind::Stood,
