@@ -85,7 +85,10 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
         Some((relation, source)) => match stage(*relation, brief, ways) {
             Some(staging) => (staging, source.clone()),
             None => {
-                return Err(format!("{id} tells of a partner {}, which cannot end in this template", phrase(*relation)));
+                return Err(format!(
+                    "{id} tells of a partner {}, which cannot end in this template",
+                    phrase(*relation)
+                ));
             }
         },
         None => match from_zones(reading, ways) {
