@@ -346,18 +346,26 @@ impl<'a> Stage<'a> {
         let delta_s = partner_place + ahead - partner_mps * (ego_place - draft.ego.s_m) / self.ego_mps - draft.ego.s_m;
         let cp_turns = self.narrative.template.cp != Movement::Straight;
         let clearance = LANE_WIDTH_M - HALF_WIDTH_M - 0.5 * VehicleSpec::of(self.kind).width_m;
-        // On a road without junction a move of half a lane counts as a turn to that side; a partner whose move must show
-        // starts on the far side of its lane, so that it has moved so far before the two can touch.
+        // On a road without junction a move of half a lane counts as a turn to that side. A partner whose move must show
+        // starts on the far side of its lane, so that it has moved so far before the two can touch, and comes over
+        // slowly, so that its corner does not lead by much.
+        let far_t = 0.5 * LANE_WIDTH_M - clearance + 0.1 * VehicleSpec::of(self.kind).length_m;
         let (from_t, to_t) = match (on_highway, cp_turns) {
             (true, false) => (0.0, 0.8 * LANE_WIDTH_M),
-            (true, true) => (-0.7, LANE_WIDTH_M),
+            (true, true) => (-far_t.clamp(0.3, 1.1), LANE_WIDTH_M),
             (false, _) if touched => (0.0, clearance + 0.6),
             (false, _) => (0.0, 0.6 * clearance),
         };
-        let move_s: f64 = if on_highway { 2.5 } else { 1.8 };
+        let move_s: f64 = match (on_highway, cp_turns) {
+            (true, true) => 4.0,
+            (true, false) => 2.5,
+            (false, _) => 1.8,
+        };
         let partner = &mut draft.partners[0];
         partner.speed_mps = partner_mps;
-        partner.policy = Policy::IdmNominal { target_speed_mps: partner_mps };
+        // It holds its speed, whoever and whatever is near: a driver who comes over has not seen.
+        partner.policy =
+            Policy::SuddenBrake { target_speed: partner_mps, brake_step: 0, brake_steps: 0, speed_kp: None };
         partner.start = Start::Offset { delta_s_m: round_to(delta_s, 0.1), delta_t_m: round_to(from_t * towards, 0.1) };
         partner.lateral = vec![LateralMove {
             start_s: round_to((meets_s - move_s).max(0.5), 0.1),
