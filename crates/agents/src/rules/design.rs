@@ -283,7 +283,7 @@ impl<'a> Stage<'a> {
                 approach_m,
                 arm_m,
                 exit_radius_m: 10.0,
-                inner_radius_m: 30.0,
+                inner_radius_m: 20.0,
             }),
             Ground::Junction => match missing.and_then(|arm| self.fitting_arm(arm)) {
                 Some(missing) => MapSpec::T(TeeMap { lanes, lane_width_m: LANE_WIDTH_M, approach_m, arm_m, missing }),

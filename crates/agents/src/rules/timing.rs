@@ -210,8 +210,9 @@ fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
     let clearance_m = lane_m - 0.5 * ego_spec.width_m - 0.5 * spec.width_m;
     let on_road = task.ground == Ground::Road;
     let turns = task.template.cp != Movement::Straight;
-    // Where they meet: late in the movement that must show.
+    // Where they meet: late in the movement that must show; in a circle past the second exit, still on the ring.
     let place = |way: &Way| match way.last_part {
+        Some((exit_m, _)) if task.ground == Ground::Circle => way.block_m + 0.75 * (exit_m - way.block_m),
         Some((from, to)) if turns => from + 0.85 * (to - from),
         Some((from, to)) => from + 0.5 * (to - from),
         None => task.ego_start_m + 5.5 * task.ego_mps,
