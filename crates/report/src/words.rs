@@ -92,6 +92,10 @@ pub fn coded<T: Copy>(value: &Coded<T>, label: impl Fn(T) -> String) -> Result<S
 
 /// What a fact states: its name and its value.
 pub fn fact(value: &FactValue) -> (String, String) {
+    if let FactValue::Contact { sv, cp } = value {
+        let told = |of: &[ContactZone]| if of.is_empty() { "none named".to_owned() } else { zones(of) };
+        return ("Contact".to_owned(), format!("SV {}; CP {}", told(sv), told(cp)));
+    }
     let Ok(Value::Object(fields)) = serde_json::to_value(value) else { return (String::new(), String::new()) };
     let tag = fields.get("fact").and_then(Value::as_str).unwrap_or_default();
     let parts: Vec<String> = fields
@@ -171,6 +175,6 @@ mod tests {
         assert_eq!(fact(&FactValue::Approach { approach: Approach::Left }), ("Approach".into(), "left".into()));
         assert_eq!(fact(&FactValue::CpSignal { signal: Signal::StopSign }), ("CP signal".into(), "stop sign".into()));
         let zones = FactValue::Contact { sv: vec![ContactZone::FrontLeft, ContactZone::Left], cp: vec![] };
-        assert_eq!(fact(&zones), ("Contact".into(), "SV front left + left, CP none named".into()));
+        assert_eq!(fact(&zones), ("Contact".into(), "SV front left, left; CP none named".into()));
     }
 }
