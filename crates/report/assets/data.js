@@ -51,7 +51,7 @@ function readRun(raw) {
   return {
     step: raw.step,
     steps,
-    end: Math.max(0, steps - 1) * raw.step,
+    end: Math.round(Math.max(0, steps - 1) * raw.step * 1e6) / 1e6,
     why: raw.why,
     actors,
     obstacles: raw.obstacles.map(([kind, x, y, heading, length, width]) => ({ kind, x, y, heading, length, width })),

@@ -101,7 +101,8 @@ class Plot {
       const x = this.x(value);
       parts.push(svg('line', { class: 'plot-grid', x1: x, x2: x, y1: MARGIN.top, y2: MARGIN.top + inner.h }));
       const last = value > 0.94 * this.end;
-      parts.push(svg('text', { class: 'plot-text', x, y: height - 4, 'text-anchor': last ? 'end' : 'middle' }, `${Number(value.toFixed(6))}${value === 0 || last ? ' s' : ''}`));
+      const anchor = value === 0 ? 'start' : last ? 'end' : 'middle';
+      parts.push(svg('text', { class: 'plot-text', x, y: height - 4, 'text-anchor': anchor }, `${Number(value.toFixed(6))}${value === 0 || last ? ' s' : ''}`));
     }
     const limit = { gap: [suite.minGap, 'failure below'], acceleration: [-suite.hardBraking, 'hard braking'] }[this.name];
     if (limit) {
@@ -129,7 +130,8 @@ class Plot {
     const told = [];
     this.lines.forEach((line, i) => {
       const value = valueAt(line.values, line.run, time);
-      const there = line.which === shown && Number.isFinite(value);
+      const inside = this.name !== 'gap' || value <= GAP_SHOWN_M;
+      const there = line.which === shown && Number.isFinite(value) && inside;
       if (this.dots) {
         this.dots[i].setAttribute('visibility', there ? 'visible' : 'hidden');
         if (there) {

@@ -156,9 +156,9 @@ class Replay {
 
   cameraFor(width, height) {
     let camera;
-    if (this.camera === 'map') camera = frame(this.bounds, width, height, 6, 0.3, 20);
+    if (this.camera === 'map') camera = frame(this.bounds, width, height, 2, [10, 10], 0.3, 20);
     else if (this.camera === 'follow') camera = { x: 0, y: 0, scale: clamp(height / 46, 4, 12), follow: true };
-    else camera = frame(boundsOf(this.runs.flatMap(([, run]) => interesting(run, Math.min(this.time, run.end)))), width, height, 9, 1.2, 13);
+    else camera = frame(boundsOf(this.runs.flatMap(([, run]) => interesting(run, Math.min(this.time, run.end)))), width, height, 4, [Math.min(80, width / 6), 44], 1, 13);
     camera.scale *= this.zoom;
     camera.x += this.pan[0];
     camera.y += this.pan[1];
@@ -207,7 +207,7 @@ function setUpThumbs() {
     const time = run ? run.minGap?.time ?? run.end : 0;
     const points = run ? run.actors.filter((actor) => actor.role !== 'traffic').map((actor) => stateAt(actor, run, time)).map(({ x, y }) => [x, y]) : kase.drawing.surfaces.flat();
     if (!points.length) return;
-    drawScene(canvas, kase, run, time, frame(boundsOf(points), 96, 60, run ? 9 : 2, 0.2, 4.2), { bare: true });
+    drawScene(canvas, kase, run, time, frame(boundsOf(points), 96, 60, run ? 6.5 : 2, [0, 0], 0.2, 4.6), { bare: true });
   };
   const thumbs = all('.thumb');
   const observer = new IntersectionObserver((entries) => {

@@ -13,10 +13,10 @@ const boundsOf = (points) => points.reduce(
   [Infinity, Infinity, -Infinity, -Infinity],
 );
 
-/** A camera that shows a box of the world with a margin. */
-function frame(box, width, height, margin, least, most) {
+/** A camera that shows a box of the world with a margin in metres, and one in pixels for labels. */
+function frame(box, width, height, margin, [aside, above], least, most) {
   const [w, h] = [box[2] - box[0] + 2 * margin, box[3] - box[1] + 2 * margin];
-  const scale = clamp(Math.min(width / w, height / h), least, most);
+  const scale = clamp(Math.min((width - 2 * aside) / w, (height - 2 * above) / h), least, most);
   return { x: (box[0] + box[2]) / 2, y: (box[1] + box[3]) / 2, scale };
 }
 
@@ -64,10 +64,15 @@ function drawScene(canvas, kase, run, time, camera, options = {}) {
 
 function drawRoad(pen, drawing, trace, k) {
   pen.fillStyle = colours.asphalt;
+  pen.strokeStyle = colours.asphalt;
+  pen.lineWidth = 1;
+  pen.setLineDash([]);
   for (const surface of drawing.surfaces) {
     trace(surface);
     pen.closePath();
     pen.fill();
+    // Hides the seams between neighbouring areas.
+    pen.stroke();
   }
   const looks = {
     edge: [colours.edge, 0.16, []],
@@ -195,7 +200,7 @@ function drawActor(pen, actor, state, toX, toY, k) {
 }
 
 function drawContact(pen, x, y, k, options) {
-  const r = options.bare ? 8 : clamp(1.5 * k, 9, 22);
+  const r = options.bare ? 6 : clamp(1.5 * k, 9, 22);
   pen.beginPath();
   for (let i = 0; i < 16; i++) {
     const radius = i % 2 ? r * 0.5 : r;
@@ -244,6 +249,9 @@ function nearestPoints(a, stateA, b, stateB) {
 function pill(pen, text, x, y, fill, ink) {
   pen.font = `600 11px ${colours.sans}`;
   const width = pen.measureText(text).width + 10;
+  const canvas = pen.canvas;
+  x = clamp(x, width / 2 + 3, canvas.clientWidth - width / 2 - 3);
+  y = clamp(y, 12, canvas.clientHeight - 12);
   pen.fillStyle = fill;
   pen.strokeStyle = colours['scene-ink'];
   pen.lineWidth = 1;

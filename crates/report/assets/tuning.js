@@ -39,7 +39,7 @@ function drawTuning(section) {
     else if (failed) parts.push(svg('path', { class: 'tune-failed', d: 'M0 -5L5 0L0 5L-5 0z', transform: at }));
     else parts.push(svg('circle', { class: 'tune-point', r: 3.6, transform: at }));
   }
-  const kept = points[log.best];
+  const kept = points[log.best ?? -1];
   if (kept && kept.objective !== null) parts.push(svg('circle', { class: 'tune-kept', r: 8, cx: x(kept.number), cy: y(kept.objective) }));
   const ring = svg('circle', { class: 'tune-ring', r: 6.5, cx: -50, cy: -50 });
   plot.setAttribute('viewBox', `0 0 ${width} ${height}`);

@@ -2,6 +2,7 @@
 
 use recrash_model::narrative::{FactSource, FactValue};
 use recrash_model::record::{Coded, ContactZone, MPS_PER_MPH};
+use recrash_model::template::Template;
 use serde::Serialize;
 use serde_json::Value;
 use std::borrow::Cow;
@@ -137,6 +138,11 @@ pub fn source(source: &FactSource) -> (&'static str, Cow<'_, str>) {
         FactSource::Words { words, .. } => ("words", Cow::Owned(format!("\u{201c}{}\u{201d}", clean(words, 400)))),
         FactSource::Assumed { why } => ("assumed", clean(why, 400)),
     }
+}
+
+/// A template in few words, such as "Intersection, SV straight, CP left turn".
+pub fn template(template: &Template) -> String {
+    template.to_string().replace("proceeding straight", "straight")
 }
 
 /// Time of day from minutes after midnight.
