@@ -1,1 +1,43 @@
-fn main() {}
+//! The project's one script language. `cargo xtask ci` is what CI runs, and a developer's one command.
+
+mod steps;
+mod tidy;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+usage: cargo xtask COMMAND
+  ci        everything below, in this order; stops at the first failure
+  format    cargo fmt --check
+  lint      clippy over all targets, warnings denied
+  tidy      what no compiler checks: the map in ARCHITECTURE.md, file lengths, stray paths and hosts
+  test      all Rust tests
+  docs      rustdoc, warnings denied
+  python    sets up .venv from requirements/dev.txt and runs the Python tests
+  browser   makes a suite and clicks through its report in headless Chromium
+With CI set in the environment a step that lacks something fails; without it, it is skipped by name.";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["ci"] => steps::ci(),
+        ["format"] => steps::format(),
+        ["lint"] => steps::lint(),
+        ["tidy"] => tidy::run(),
+        ["test"] => steps::test(),
+        ["docs"] => steps::docs(),
+        ["python"] => steps::python(),
+        ["browser"] => steps::browser(),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("xtask: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -23,5 +23,6 @@ pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &System
         sv_zones: if binds { record.sv_zones.clone() } else { Vec::new() },
         cp_zones: if binds { record.cp_zones.clone() } else { Vec::new() },
         excluded: profile.excludes.collisions.clone(),
+        obstacles_named: narrative.facts.iter().any(|fact| matches!(fact.value, FactValue::Obstacles { .. })),
     }
 }

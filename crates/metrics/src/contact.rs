@@ -148,8 +148,8 @@ fn is_rear(zone: ContactZone) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use recrash_model::geometry::Pose;
     use ContactZone as Z;
+    use recrash_model::geometry::Pose;
 
     /// 4 m x 2 m: corner zones take 1 m of the length and 0.5 m of the width.
     fn car(x: f64, y: f64, degrees: f64) -> OrientedBox {

@@ -32,7 +32,7 @@ pub fn post_encroachment_time(a: &[OrientedBox], b: &[OrientedBox], step_s: f64)
             }
         }
     }
-    best.lag.is_finite().then(|| Timed { value: best.lag * step_s, time_s: best.second * step_s })
+    best.lag.is_finite().then_some(Timed { value: best.lag * step_s, time_s: best.second * step_s })
 }
 
 /// Least lag found, and when the second of the two came. [steps]
@@ -180,7 +180,10 @@ mod tests {
 
     #[test]
     fn lanes_side_by_side_share_no_spot() {
-        assert_eq!(post_encroachment_time(&track(0.0, 0.0, 0.0, 9.0, 99), &track(-20.0, 3.5, 0.0, 14.0, 99), STEP), None);
+        assert_eq!(
+            post_encroachment_time(&track(0.0, 0.0, 0.0, 9.0, 99), &track(-20.0, 3.5, 0.0, 14.0, 99), STEP),
+            None
+        );
     }
 
     #[test]

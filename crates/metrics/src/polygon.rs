@@ -118,7 +118,8 @@ mod tests {
 
     #[test]
     fn overlap_with_a_square_turned_by_45_degrees_is_a_regular_octagon() {
-        let common = ConvexPolygon::overlap(&boxed(0.0, 0.0, 0.0, 2.0, 2.0), &boxed(0.0, 0.0, math::PI / 4.0, 2.0, 2.0));
+        let common =
+            ConvexPolygon::overlap(&boxed(0.0, 0.0, 0.0, 2.0, 2.0), &boxed(0.0, 0.0, math::PI / 4.0, 2.0, 2.0));
         assert_eq!(common.corners().len(), 8);
         assert!((common.area() - 8.0 * (2.0_f64.sqrt() - 1.0)).abs() < 1e-12, "{}", common.area());
     }

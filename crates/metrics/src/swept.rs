@@ -70,7 +70,10 @@ mod tests {
 
     #[test]
     fn behind_a_faster_car_there_is_none() {
-        assert_eq!(time_to_collision(&car(0.0, 0.0, 0.0), along(0.0, 10.0), &car(20.0, 0.0, 0.0), along(0.0, 12.0)), None);
+        assert_eq!(
+            time_to_collision(&car(0.0, 0.0, 0.0), along(0.0, 10.0), &car(20.0, 0.0, 0.0), along(0.0, 12.0)),
+            None
+        );
     }
 
     #[test]
@@ -78,7 +81,10 @@ mod tests {
         // The ego's front reaches the other's lane (x = 19) after 17 m; the other's front reaches the ego's lane (y = -1)
         // after 27 m. Both at 10 m/s: 2.7 s, while the ego is inside from 1.7 to 2.3 s only.
         let other = car(20.0, -30.0, math::FRAC_PI_2);
-        assert_eq!(time_to_collision(&car(0.0, 0.0, 0.0), along(0.0, 10.0), &other, along(math::FRAC_PI_2, 10.0)), None);
+        assert_eq!(
+            time_to_collision(&car(0.0, 0.0, 0.0), along(0.0, 10.0), &other, along(math::FRAC_PI_2, 10.0)),
+            None
+        );
         // 7 m nearer: it enters at 2.0 s.
         let other = car(20.0, -23.0, math::FRAC_PI_2);
         let ttc = time_to_collision(&car(0.0, 0.0, 0.0), along(0.0, 10.0), &other, along(math::FRAC_PI_2, 10.0));
@@ -96,7 +102,10 @@ mod tests {
 
     #[test]
     fn touching_boxes_have_none_left() {
-        assert_eq!(time_to_collision(&car(0.0, 0.0, 0.0), Vec2::default(), &car(4.0, 0.0, 0.0), Vec2::default()), Some(0.0));
+        assert_eq!(
+            time_to_collision(&car(0.0, 0.0, 0.0), Vec2::default(), &car(4.0, 0.0, 0.0), Vec2::default()),
+            Some(0.0)
+        );
     }
 
     #[test]

@@ -281,6 +281,8 @@ pub enum Engagement {
     Ads,
     /// Driver assistance (SAE level 2).
     Adas,
+    /// `Verified Not Engaged` (third edition).
+    NotEngaged,
 }
 
 /// Whether the narrative can be read.
@@ -340,7 +342,7 @@ pub struct CrashRecord {
     pub severity: Coded<Severity>,
     /// Which automation was engaged.
     pub engagement: Coded<Engagement>,
-    /// Narrative, as it stands in the file. Untrusted text.
+    /// Narrative, as it stands in the file (characters that were encoded twice are mended). Untrusted text.
     pub narrative: String,
     /// Whether the narrative can be read.
     pub redaction: Redaction,
@@ -437,7 +439,7 @@ pub struct RecordSet {
     pub funnel: Vec<FunnelStep>,
 }
 
-/// A file that was read.
+/// A file that was read. A file that holds several editions, one after the other, is listed once for each.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SourceFile {
     /// Name without folders.

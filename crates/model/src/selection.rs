@@ -87,7 +87,7 @@ pub struct TemplateCount {
 /// One cluster and its pick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cluster {
-    /// Number, from 1; clusters are in the order of template size, then of first member.
+    /// Number, from 1; clusters are in the order of template size, then of the profile's tables, then of first member.
     pub number: usize,
     /// Scenario id that follows from it, such as `03-intersection-straight-left`.
     pub scenario_id: String,

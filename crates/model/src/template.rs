@@ -19,12 +19,24 @@ pub enum RoadType {
     ParkingLot,
     /// `Rural Road`.
     RuralRoad,
+    /// `Parking Garage`.
+    ParkingGarage,
+    /// `Unpaved Road`.
+    UnpavedRoad,
 }
 
 impl RoadType {
     /// Every value, in the order of tables.
-    pub const ALL: [Self; 6] =
-        [Self::Intersection, Self::Highway, Self::TrafficCircle, Self::Street, Self::ParkingLot, Self::RuralRoad];
+    pub const ALL: [Self; 8] = [
+        Self::Intersection,
+        Self::Highway,
+        Self::TrafficCircle,
+        Self::Street,
+        Self::ParkingLot,
+        Self::RuralRoad,
+        Self::ParkingGarage,
+        Self::UnpavedRoad,
+    ];
 
     /// For tables.
     pub fn label(self) -> &'static str {
@@ -35,6 +47,8 @@ impl RoadType {
             Self::Street => "Street",
             Self::ParkingLot => "Parking lot",
             Self::RuralRoad => "Rural road",
+            Self::ParkingGarage => "Parking garage",
+            Self::UnpavedRoad => "Unpaved road",
         }
     }
 
@@ -47,6 +61,8 @@ impl RoadType {
             Self::Street => "street",
             Self::ParkingLot => "parking",
             Self::RuralRoad => "rural",
+            Self::ParkingGarage => "garage",
+            Self::UnpavedRoad => "unpaved",
         }
     }
 }
@@ -85,6 +101,16 @@ pub enum Movement {
     CrossingIntoOpposingLane,
     /// `Traveling Wrong Way`.
     WrongWay,
+    /// `NM Crossing Roadway`: a non-motorist moving across the roadway.
+    NmCrossing,
+    /// `NM Waiting to Cross Roadway`.
+    NmWaiting,
+    /// `NM Moving Alongside Roadway`: along the side of the roadway, not on a sidewalk.
+    NmAlongside,
+    /// `NM Moving on Sidewalk`.
+    NmOnSidewalk,
+    /// `NM in Roadway - Other`: a non-motorist moving in the roadway, with or against the flow.
+    NmInRoadway,
 }
 
 impl Movement {
@@ -109,6 +135,11 @@ impl Movement {
             Self::LaneDeparture => "Lane departure",
             Self::CrossingIntoOpposingLane => "Crossing into opposing lane",
             Self::WrongWay => "Wrong way",
+            Self::NmCrossing => "Crossing (non-motorist)",
+            Self::NmWaiting => "Waiting to cross (non-motorist)",
+            Self::NmAlongside => "Alongside the road (non-motorist)",
+            Self::NmOnSidewalk => "On the sidewalk (non-motorist)",
+            Self::NmInRoadway => "In the road (non-motorist)",
         }
     }
 
@@ -130,6 +161,11 @@ impl Movement {
             Self::LaneDeparture => "departure",
             Self::CrossingIntoOpposingLane => "opposing",
             Self::WrongWay => "wrongway",
+            Self::NmCrossing => "nmcrossing",
+            Self::NmWaiting => "nmwaiting",
+            Self::NmAlongside => "nmalongside",
+            Self::NmOnSidewalk => "nmsidewalk",
+            Self::NmInRoadway => "nminroad",
         }
     }
 }

@@ -1,1 +1,29 @@
-//! stub
+//! Wires the stages, and owns everything outside them: files, the clock, the environment, threads.
+//!
+//! [`Suite`] is a folder on disk with one stage after the other in it. [`Suite::run_stage`] runs one, reading what the
+//! stages before wrote; a unit of work whose inputs have not changed is skipped, and what is written is written whole.
+//! So a run killed at any moment goes on where it stopped, and ends with the same bytes.
+//!
+//! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
+
+mod casework;
+mod drawing;
+mod error;
+mod profiles;
+mod progress;
+mod scoring;
+mod stages;
+mod store;
+mod suite;
+mod summary;
+mod view;
+
+pub use casework::{CaseRun, DesignAttempt, DesignLog, FileRun, read_scenario, run_scenario, simulate_file};
+pub use error::PipelineError;
+pub use profiles::{PROFILE_NAMES, load_profile};
+pub use progress::{NoProgress, Progress, ProgressEvent};
+pub use recrash_roads::scenario_schema as schema;
+pub use stages::StageReport;
+pub use store::{Store, WriteFile};
+pub use suite::{Options, RecordSource, Stage, Suite};
+pub use summary::{CaseSummary, RunSummary, Summary};

@@ -1,1 +1,112 @@
-//! stub
+//! Reads crash reports filed with NHTSA under Standing General Order 2021-01 ("SGO"): CSV in, [`RecordSet`] out.
+//!
+//! Every edition is recognised by its header, never by its name: 122 columns (2021 to mid 2023), 137 (to June 2025), 116
+//! (since), reports on automated driving and on driver assistance alike. Every row in is usable or rejected with a
+//! reason, and the counts add up. Miles per hour exist in this crate only.
+//!
+//! What this crate does **not** do: it opens no file (bytes come in), it does not read narratives (the agents do), and it
+//! never guesses: a code it does not know stays as text and is listed.
+
+mod cells;
+mod codes;
+mod columns;
+mod error;
+mod file;
+mod funnel;
+mod identity;
+mod notes;
+mod row;
+mod text;
+
+pub use columns::published_header;
+pub use error::IngestError;
+
+use recrash_model::profile::{Dedupe, SystemProfile};
+use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason};
+use recrash_model::{Diagnostic, Location, Outcome, Severity};
+use row::Draft;
+
+/// Name of the built-in sample.
+pub const SAMPLE_NAME: &str = "built-in sample";
+
+/// The built-in sample: invented reports of invented companies in the columns of the second edition, with the paper's
+/// template counts. Written by `cargo run -p recrash-records --example make_sample`.
+pub const SAMPLE_CSV: &str = include_str!("../data/sample.csv");
+
+/// Largest file that is read. [byte]
+pub const MAX_FILE_BYTES: usize = 1 << 30;
+
+/// A file's content and the name it is called by.
+#[derive(Debug, Clone, Copy)]
+pub struct SourceText<'a> {
+    /// Name for messages and provenance, without folders.
+    pub name: &'a str,
+    /// The whole content.
+    pub bytes: &'a [u8],
+}
+
+/// Reads crash files and filters their records by what the profile can express, in the order of the paper: merge (where
+/// the profile asks for it), readable narratives, expressible movements and roads.
+///
+/// Bad rows are rejected by row number and the rest goes on; an error means that a whole file is unusable.
+pub fn ingest(files: &[SourceText<'_>], profile: &SystemProfile) -> Result<Outcome<RecordSet>, IngestError> {
+    if files.is_empty() {
+        return Err(IngestError::NoFiles);
+    }
+    let mut sources = Vec::new();
+    let mut drafts: Vec<Draft> = Vec::new();
+    let mut file_of_draft: Vec<usize> = Vec::new();
+    let mut rejects: Vec<(usize, Reject)> = Vec::new();
+    let mut diagnostics = Vec::new();
+    let mut hashes: Vec<String> = Vec::new();
+    for (number, source) in files.iter().enumerate() {
+        let hash = file::sha256(source.bytes);
+        if hashes.contains(&hash) {
+            diagnostics.push(same_file_twice(source.name));
+            continue;
+        }
+        let content = file::read_file(source, &hash)?;
+        hashes.push(hash);
+        sources.extend(content.sources);
+        drafts.extend(content.drafts);
+        file_of_draft.resize(drafts.len(), number);
+        rejects.extend(content.rejects.into_iter().map(|reject| (number, reject)));
+        diagnostics.extend(content.diagnostics);
+    }
+
+    let malformed = rejects.len();
+    let rows = drafts.len() + malformed;
+    let mut funnel = vec![FunnelStep { name: "rows".to_owned(), remaining: rows, lost: Vec::new() }];
+    if malformed > 0 {
+        let lost = vec![(RejectReason::Malformed, malformed)];
+        funnel.push(FunnelStep { name: "well formed".to_owned(), remaining: drafts.len(), lost });
+    }
+    let mut fates: Vec<Option<RejectReason>> = vec![None; drafts.len()];
+    if profile.records.dedupe == Dedupe::Incident {
+        let (merged, remarks) = identity::merge(&mut drafts);
+        diagnostics.extend(remarks);
+        for (fate, merged) in fates.iter_mut().zip(merged) {
+            *fate = merged.then_some(RejectReason::Merged);
+        }
+        funnel.push(funnel::tally("one report an incident", &fates, &funnel));
+    }
+    funnel::run(&drafts, profile, &mut fates, &mut funnel);
+
+    for ((draft, fate), number) in drafts.iter().zip(&fates).zip(file_of_draft) {
+        let Some(reason) = *fate else { continue };
+        let (file, row) = (draft.record.provenance.file.clone(), draft.record.provenance.row);
+        rejects.push((number, Reject { file, row, record: Some(draft.record.id.clone()), reason }));
+    }
+    rejects.sort_by_key(|(number, reject)| (*number, reject.row));
+    let rejects: Vec<Reject> = rejects.into_iter().map(|(_, reject)| reject).collect();
+    let usable: Vec<usize> = (0..drafts.len()).filter(|&i| fates[i].is_none()).collect();
+    assert_eq!(rows, usable.len() + rejects.len(), "every row in is usable or rejected");
+    let records = drafts.into_iter().map(|draft| draft.record).collect();
+    Ok(Outcome { value: RecordSet { files: sources, records, usable, rejects, funnel }, diagnostics })
+}
+
+fn same_file_twice(name: &str) -> Diagnostic {
+    let location = Location { file: Some(name.to_owned()), ..Location::default() };
+    Diagnostic::new(Severity::Warning, "records.same-file", location, "the same content was given before; left out")
+        .with_hint("give each file once")
+}

@@ -1,1 +1,168 @@
-//! stub
+//! Chooses the few records that stand for all of them, and says what the choice covers.
+//!
+//! Words: a *template* is one combination of the categorical columns; the *embedding* of a narrative is a row of numbers
+//! that lies near to those of similar narratives; the *clustering space* joins both; a *pick* is the record nearest to
+//! its cluster's centre. One scenario is made per pick.
+//!
+//! What this crate does **not** do: it reads no files and runs no language model. An embedder of its own kind plugs in
+//! as rows of numbers ([`Embedding::new`], [`select_with`]). Equations, sources and what is guaranteed:
+//! `docs/models/selection.md`.
+
+mod apportion;
+mod assemble;
+mod coverage;
+mod eigen;
+mod embedding;
+mod greedy;
+mod kmeans;
+mod lexical;
+mod matrix;
+mod pca;
+mod space;
+mod strategy;
+mod study;
+mod words;
+
+pub use embedding::{EMBEDDING_GRID, Embedding};
+pub use lexical::{LEXICAL_DIMENSIONS, LEXICAL_NAME, lexical_embedding};
+pub use study::{budget_table, stability};
+
+use recrash_model::profile::SystemProfile;
+use recrash_model::record::RecordSet;
+use recrash_model::selection::{Selection, Strategy, Weighting};
+use recrash_model::{Outcome, Seed};
+
+/// How to choose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SelectOptions {
+    /// How the picks are chosen.
+    pub strategy: Strategy,
+    /// Number of picks asked for.
+    pub budget: usize,
+    /// Seed of the k-means starts. Other strategies use none.
+    pub seed: Seed,
+    /// Principal components of the embedding that enter the clustering space. The paper's six.
+    pub dimensions: usize,
+    /// Length of a template's one-hot vector in the clustering space: two records of different templates lie
+    /// `sqrt(2)` times this apart, narratives aside. The paper's 1.
+    pub template_weight: f64,
+    /// How much one record counts.
+    pub weighting: Weighting,
+    /// Runs of k-means, of which the best is kept.
+    pub restarts: usize,
+}
+
+impl Default for SelectOptions {
+    fn default() -> Self {
+        Self {
+            strategy: Strategy::Stratified,
+            budget: 20,
+            seed: Seed(0),
+            dimensions: 6,
+            template_weight: 1.0,
+            weighting: Weighting::Frequency,
+            restarts: 10,
+        }
+    }
+}
+
+/// Why there is no selection.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SelectError {
+    /// Nothing to choose from.
+    #[error(
+        "no usable records to choose from; look at the funnel (`recrash records`) for where they were lost, \
+         or use a profile that expresses more road types and movements"
+    )]
+    NoUsableRecords,
+    /// An option that makes no sense.
+    #[error("{option} is {value}; {allowed}")]
+    BadOption {
+        /// Name of the option.
+        option: &'static str,
+        /// What was given.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// `usable` does not point into `records`.
+    #[error(
+        "the record set is damaged: `usable` entry {entry} points to record {position} of {records}, or repeats it"
+    )]
+    DamagedRecordSet {
+        /// Place in `usable`.
+        entry: usize,
+        /// What stands there.
+        position: usize,
+        /// Number of records.
+        records: usize,
+    },
+    /// Another number of rows than usable records.
+    #[error(
+        "the embedding has {found} rows for {expected} usable records; give one row per entry of `usable`, in order"
+    )]
+    EmbeddingRows {
+        /// Usable records.
+        expected: usize,
+        /// Rows given.
+        found: usize,
+    },
+    /// Rows of different lengths.
+    #[error("row {row} of the embedding has {found} values, the first has {expected}")]
+    EmbeddingRagged {
+        /// Row, from 0.
+        row: usize,
+        /// Length of the first row.
+        expected: usize,
+        /// Length of this row.
+        found: usize,
+    },
+    /// NaN or infinity.
+    #[error("row {row} of the embedding holds a value that is not a finite number")]
+    EmbeddingNotFinite {
+        /// Row, from 0.
+        row: usize,
+    },
+}
+
+/// Chooses records with the lexical embedding of their narratives.
+///
+/// # Errors
+/// Where nothing is usable, an option makes no sense, or the record set is damaged.
+pub fn select(
+    records: &RecordSet,
+    profile: &SystemProfile,
+    options: &SelectOptions,
+) -> Result<Outcome<Selection>, SelectError> {
+    select_with(records, profile, options, &embed_records(records))
+}
+
+/// The same with an embedding of the narratives from elsewhere: one row per usable record, in the order of
+/// [`usable_narratives`].
+///
+/// # Errors
+/// As [`select`], and where the embedding does not fit the records.
+pub fn select_with(
+    records: &RecordSet,
+    profile: &SystemProfile,
+    options: &SelectOptions,
+    embedding: &Embedding,
+) -> Result<Outcome<Selection>, SelectError> {
+    let space = space::ClusteringSpace::new(records, profile, options, embedding)?;
+    let groups = strategy::choose(&space, options);
+    Ok(assemble::selection(records, profile, options, &space, &groups))
+}
+
+/// The narratives of the usable records, in order: what an embedder has to embed.
+pub fn usable_narratives(records: &RecordSet) -> Vec<&str> {
+    let narrative = |&i: &usize| records.records.get(i).map_or("", |record| record.narrative.as_str());
+    records.usable.iter().map(narrative).collect()
+}
+
+/// The lexical embedding of the usable records. The words that name the reporting entity and the vehicle are left out:
+/// they tell who wrote the report, not what happened.
+pub fn embed_records(records: &RecordSet) -> Embedding {
+    let used = records.usable.iter().filter_map(|&i| records.records.get(i));
+    let authors: Vec<&str> = used.flat_map(|record| [record.entity.as_str(), record.vehicle.as_str()]).collect();
+    lexical_embedding(&usable_narratives(records), &authors)
+}

@@ -1,5 +1,15 @@
 //! Paraphrase and design by rules: no model, no network, the same answer every time.
 
+mod actors;
+mod design;
+pub(crate) mod limits;
+mod paraphrase;
+mod reading;
+mod retry;
+mod staging;
+mod text;
+mod writing;
+
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;
 use recrash_model::narrative::Narrative;
@@ -11,17 +21,12 @@ pub struct Rules;
 
 impl Paraphrase for Rules {
     fn paraphrase(&self, brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
-        Err(AgentError::NoRecord { scenario_id: brief.scenario_id.to_owned() })
+        paraphrase::paraphrase(brief)
     }
 }
 
 impl Design for Rules {
-    fn design(
-        &self,
-        brief: &Brief,
-        _narrative: &Narrative,
-        _feedback: &[Feedback],
-    ) -> Result<ScenarioDraft, AgentError> {
-        Err(AgentError::NoRecord { scenario_id: brief.scenario_id.to_owned() })
+    fn design(&self, brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Result<ScenarioDraft, AgentError> {
+        design::design(brief, narrative, feedback)
     }
 }

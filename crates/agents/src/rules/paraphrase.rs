@@ -1,0 +1,281 @@
+//! From records to a narrative: the pick where it can be retold, else another record of its cluster, else an alternative
+//! of the same template.
+
+use super::reading::{Reading, Relation, read, relation_from_zones};
+use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
+use super::writing;
+use crate::{AgentError, Brief};
+use recrash_model::metrics::CollisionKind;
+use recrash_model::narrative::{Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side};
+use recrash_model::record::PartnerKind;
+use recrash_model::scenario::{Approach, Author};
+use recrash_model::template::{Movement, RoadType};
+use recrash_model::{Diagnostic, Location, Outcome, Severity};
+
+/// Members of the cluster that are looked at when the pick cannot be retold.
+const MOST_DONORS: usize = 16;
+
+/// What a record gives once it is decided how to stage it.
+struct Told {
+    staging: Staging,
+    approach: Fact,
+    facts: Vec<Fact>,
+}
+
+/// Writes the narrative.
+pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
+    let ways = stagings(&brief.template);
+    if ways.is_empty() {
+        let scenario_id = brief.scenario_id.to_owned();
+        return Err(AgentError::TemplateUnknown { scenario_id, template: brief.template, known: KNOWN });
+    }
+    let Some(&pick) = brief.records.first() else {
+        return Err(AgentError::NoRecord { scenario_id: brief.scenario_id.to_owned() });
+    };
+    let pick = read(pick);
+    let mut diagnostics = Vec::new();
+    let (told, origin) = match retell(&pick, brief, ways) {
+        Ok(told) => (told, Origin::Record),
+        Err(reason) => {
+            let (told, source) = alternative(&pick, brief, ways);
+            let reason = format!("{reason}; {source}");
+            diagnostics.push(Diagnostic::new(
+                Severity::Note,
+                "narrative.alternative",
+                Location::default(),
+                format!("{}: {reason}", brief.scenario_id),
+            ));
+            (told, Origin::Alternative { reason })
+        }
+    };
+    let facts = complete(told, brief, &mut diagnostics);
+    let mut narrative = Narrative {
+        format: NARRATIVE_FORMAT.to_owned(),
+        scenario_id: brief.scenario_id.to_owned(),
+        template: brief.template,
+        records: brief.records.iter().map(|record| record.id.clone()).collect(),
+        text: String::new(),
+        facts,
+        origin,
+        author: Author::Rules,
+    };
+    narrative.text = writing::text(&narrative);
+    Ok(Outcome { value: narrative, diagnostics })
+}
+
+/// What a record tells, or why it cannot be retold.
+fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, String> {
+    let id = &reading.record.id;
+    if let Some((kind, _)) = &reading.collision
+        && brief.profile.excludes.collisions.contains(kind)
+    {
+        return Err(format!(
+            "{id} describes a {} collision, which the profile \"{}\" excludes",
+            kind.label(),
+            brief.profile.name
+        ));
+    }
+    if !reading.tells {
+        return Err(format!("{id} does not tell how the two met"));
+    }
+    if let Some(contradiction) = &reading.contradiction {
+        return Err(format!("{id} contradicts itself: {contradiction}"));
+    }
+    let (staging, source) = match &reading.relation {
+        Some((relation, source)) => match stage(*relation, brief, ways) {
+            Some(staging) => (staging, source.clone()),
+            None => {
+                return Err(format!("{id} tells of a partner {}, which cannot end in this template", phrase(*relation)));
+            }
+        },
+        None => match from_zones(reading, ways) {
+            Some(staging) => {
+                let why = "not told; the contact areas suggest this side".to_owned();
+                (staging, FactSource::Assumed { why })
+            }
+            None => {
+                (ways[0], FactSource::Assumed { why: "not told; the most typical approach of the template".into() })
+            }
+        },
+    };
+    let facts = reading.facts.clone();
+    Ok(Told { staging, approach: Fact { value: FactValue::Approach { approach: staging.approach }, source }, facts })
+}
+
+/// Another record of the cluster that can be retold, else a staging of the template chosen by the seed, with what of the
+/// pick does not depend on the conflict.
+fn alternative(pick: &Reading, brief: &Brief, ways: &[Staging]) -> (Told, String) {
+    for donor in brief.records.iter().skip(1).take(MOST_DONORS) {
+        if donor.template() != Some(brief.template) {
+            continue;
+        }
+        let reading = read(donor);
+        if reading.relation.is_none() {
+            continue;
+        }
+        if let Ok(told) = retell(&reading, brief, ways) {
+            return (told, format!("{}, of the same cluster, is retold in its place", donor.id));
+        }
+    }
+    let by_zones = if pick.collision.is_none() { from_zones(pick, ways) } else { None };
+    let (staging, why) = match by_zones {
+        Some(staging) => (staging, "the contact areas suggest this side"),
+        None => {
+            let mut rng = brief.seed.child(brief.scenario_id).child("alternative").rng();
+            (ways[rng.below(ways.len())], "chosen among the approaches of the template")
+        }
+    };
+    let facts = pick.facts.iter().filter(|fact| survives(&fact.value)).cloned().collect();
+    let source = FactSource::Assumed { why: why.to_owned() };
+    let approach = Fact { value: FactValue::Approach { approach: staging.approach }, source };
+    (Told { staging, approach, facts }, "a plausible course of the same template takes its place".to_owned())
+}
+
+/// What stays true of a record when another conflict takes its place.
+fn survives(value: &FactValue) -> bool {
+    matches!(
+        value,
+        FactValue::SvMovement { .. }
+            | FactValue::CpMovement { .. }
+            | FactValue::Partner { .. }
+            | FactValue::SvSpeed { .. }
+            | FactValue::Obstacles { .. }
+    )
+}
+
+/// The staging of a relation.
+fn stage(relation: Relation, brief: &Brief, ways: &[Staging]) -> Option<Staging> {
+    let road = brief.template.road;
+    let (approach, side) = match relation {
+        // On a road without arms and on a circle, whoever comes "from the left" comes from the lane there.
+        Relation::From(side) if road == RoadType::TrafficCircle => {
+            let ring = ways.iter().find(|way| way.approach == Approach::Ring && side == Side::Left);
+            return ring.or_else(|| ways.iter().find(|way| way.beside == Some(side))).copied();
+        }
+        Relation::From(Side::Left) => (Approach::Left, None),
+        Relation::From(Side::Right) => (Approach::Right, None),
+        Relation::Crossing => {
+            return ways.iter().find(|way| matches!(way.approach, Approach::Left | Approach::Right)).copied();
+        }
+        Relation::Oncoming => (Approach::Opposite, None),
+        Relation::Beside(side) => (Approach::Same, side),
+        Relation::Behind => return None,
+    };
+    ways.iter()
+        .find(|way| way.approach == approach && (side.is_none() || way.beside == side))
+        // "from the left" of a partner that can only have been beside the ego.
+        .or_else(|| match relation {
+            Relation::From(side) => ways.iter().find(|way| way.beside == Some(side)),
+            _ => None,
+        })
+        .copied()
+}
+
+/// The staging the contact areas suggest: on which side of the ego the partner was, and from where a partner of this
+/// template typically comes there.
+fn from_zones(reading: &Reading, ways: &[Staging]) -> Option<Staging> {
+    let side = relation_from_zones(reading.record)?;
+    let arm = match side {
+        Side::Left => Approach::Left,
+        Side::Right => Approach::Right,
+    };
+    let movements = (reading.record.sv_movement.known(), reading.record.cp_movement.known());
+    let oncoming = match movements {
+        // An ego that turns left shows its right side to oncoming traffic, one that goes straight meets the front or the
+        // right side of an oncoming left-turner with its left.
+        (Some(Movement::LeftTurn), Some(Movement::Straight)) => side == Side::Right,
+        (Some(Movement::Straight), Some(Movement::LeftTurn)) => side == Side::Left,
+        _ => false,
+    };
+    let first = |is: &dyn Fn(&Staging) -> bool| ways.iter().find(|way| is(way)).copied();
+    first(&|way| oncoming && way.approach == Approach::Opposite)
+        .or_else(|| first(&|way| way.approach == arm))
+        .or_else(|| first(&|way| way.beside == Some(side)))
+}
+
+fn phrase(relation: Relation) -> &'static str {
+    match relation {
+        Relation::From(Side::Left) => "from the left",
+        Relation::From(Side::Right) => "from the right",
+        Relation::Crossing => "from a cross street",
+        Relation::Oncoming => "from the opposite direction",
+        Relation::Beside(Some(Side::Left)) => "in the lane to the left",
+        Relation::Beside(Some(Side::Right)) => "in the lane to the right",
+        Relation::Beside(None) => "going the same way",
+        Relation::Behind => "behind or ahead in the same lane",
+    }
+}
+
+/// Puts the facts in order and adds what the staging needs and the record does not tell.
+fn complete(told: Told, brief: &Brief, diagnostics: &mut Vec<Diagnostic>) -> Vec<Fact> {
+    let Told { staging, approach, mut facts } = told;
+    let assumed = |value: FactValue, why: String| Fact { value, source: FactSource::Assumed { why } };
+    let approach_source = approach.source.clone();
+    facts.insert(0, approach);
+    replace_partner(&mut facts, brief, diagnostics);
+    facts.retain(|fact| match &fact.value {
+        FactValue::CpLaneOffset { lanes } => offset_side(*lanes) == staging.beside,
+        FactValue::CpLateral { towards, .. } => staging.beside.is_some_and(|side| side != *towards),
+        FactValue::ThreeWay { missing } => fits_three_way(&brief.template, &staging, *missing),
+        _ => true,
+    });
+    if let Some(side) = staging.beside {
+        if !facts.iter().any(|fact| matches!(fact.value, FactValue::CpLaneOffset { .. })) {
+            let lanes = if side == Side::Left { -1 } else { 1 };
+            facts.insert(1, Fact { value: FactValue::CpLaneOffset { lanes }, source: approach_source });
+        }
+        let moves = facts.iter().any(|fact| matches!(fact.value, FactValue::CpLateral { .. }));
+        if staging.conflict == ConflictKind::Sideways && !moves {
+            let towards = if side == Side::Left { Side::Right } else { Side::Left };
+            let kind = match (ground(&brief.template, &staging), brief.template.cp) {
+                (Ground::Road, _) => LateralKind::CutIn,
+                (_, Movement::Straight) => LateralKind::Drift,
+                _ => LateralKind::WideTurn,
+            };
+            let why = "parallel paths meet only when one leaves its lane".to_owned();
+            facts.push(assumed(FactValue::CpLateral { towards, kind }, why));
+        }
+    }
+    let collides = facts.iter().any(|fact| matches!(fact.value, FactValue::Collision { .. }));
+    if !collides {
+        let kind = match staging.conflict {
+            ConflictKind::Paths => CollisionKind::Angle,
+            ConflictKind::Sideways => CollisionKind::Sideswipe,
+        };
+        facts.push(assumed(FactValue::Collision { kind }, "follows from how the paths meet".to_owned()));
+    }
+    facts
+}
+
+/// The side of a lane offset.
+pub fn offset_side(lanes: i8) -> Option<Side> {
+    match lanes.signum() {
+        -1 => Some(Side::Left),
+        1 => Some(Side::Right),
+        _ => None,
+    }
+}
+
+/// A partner the profile cannot simulate as itself becomes a passenger car, and that is said.
+fn replace_partner(facts: &mut Vec<Fact>, brief: &Brief, diagnostics: &mut Vec<Diagnostic>) {
+    let known = facts.iter().find_map(|fact| match fact.value {
+        FactValue::Partner { kind } => Some(kind),
+        _ => None,
+    });
+    let why = match known {
+        Some(kind) if brief.profile.expresses.partner_kinds.contains(&kind) => return,
+        Some(kind) => {
+            format!("the profile \"{}\" cannot simulate a partner of the kind {kind:?}", brief.profile.name)
+        }
+        None => "the kind of partner is not told".to_owned(),
+    };
+    diagnostics.push(Diagnostic::new(
+        Severity::Note,
+        "narrative.partner-replaced",
+        Location::default(),
+        format!("{}: {why}; a passenger car takes its place", brief.scenario_id),
+    ));
+    facts.retain(|fact| !matches!(fact.value, FactValue::Partner { .. }));
+    let value = FactValue::Partner { kind: PartnerKind::PassengerCar };
+    facts.insert(1, Fact { value, source: FactSource::Assumed { why } });
+}

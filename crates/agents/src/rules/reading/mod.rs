@@ -1,0 +1,251 @@
+//! What one record states: its columns and its narrative, as facts with their sources.
+
+mod approach;
+mod details;
+
+pub use approach::{Relation, relation_from_zones};
+
+use super::actors::{Actor, Cast, Mentions};
+use super::text::telling_sentences;
+use recrash_model::metrics::CollisionKind;
+use recrash_model::narrative::{Fact, FactSource, FactValue, FirstMover};
+use recrash_model::record::{ContactZone, CrashRecord};
+use recrash_model::template::Movement;
+use regex::Regex;
+use std::sync::LazyLock;
+
+/// A sentence and whom it mentions.
+#[derive(Debug, Clone)]
+pub(super) struct Sentence<'a> {
+    pub(super) text: &'a str,
+    pub(super) mentions: Mentions,
+}
+
+/// What one record states.
+#[derive(Debug, Clone)]
+pub struct Reading<'a> {
+    /// The record.
+    pub record: &'a CrashRecord,
+    /// From where the partner came, and where that is said.
+    pub relation: Option<(Relation, FactSource)>,
+    /// The kind of collision, where it is told or follows from the contact areas.
+    pub collision: Option<(CollisionKind, FactSource)>,
+    /// A turn the narrative tells of that is another than the column's, in words for a reason.
+    pub contradiction: Option<String>,
+    /// Whether the narrative tells anything about how the two met.
+    pub tells: bool,
+    /// Everything else it states.
+    pub facts: Vec<Fact>,
+}
+
+pub(super) static MEETING: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(
+        r"(?i)\b(?:contact\w*|struck|strik\w+|hit|hitting|collid\w+|sideswip\w+|side-swip\w+|clipped|scrap\w+|impacted|impacting|rear[- ]?end\w*|ran into|crash\w+ into|bumped)\b",
+    )
+    .expect("constant pattern")
+});
+
+static TURN: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(
+        r"(?i)\b(?:making|made|makes|initiat\w+|execut\w+|complet\w+|perform\w+|began|beginning) (?:\w+ ){0,4}?(?P<a>left|right)(?:[- ]hand)?[- ]turn\b|\b(?:turned|turning|turns) (?:\w+ )?(?P<b>left|right)\b",
+    )
+    .expect("constant pattern")
+});
+
+static STRAIGHT: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection").expect("constant pattern")
+});
+
+/// Reads a record.
+pub fn read(record: &CrashRecord) -> Reading<'_> {
+    let texts = telling_sentences(&record.narrative);
+    let cast = Cast::new(record, &texts);
+    let sentences: Vec<Sentence> =
+        texts.into_iter().map(|text| Sentence { text, mentions: cast.mentions(text) }).collect();
+    let relation = approach::relation(record, &sentences);
+    let meets = sentences.iter().any(|s| MEETING.is_match(s.text) && s.mentions.includes(Actor::Cp));
+    let collision = collision(record, &sentences, relation.as_ref().map(|(relation, _)| *relation));
+    Reading {
+        record,
+        tells: meets || relation.is_some(),
+        contradiction: contradiction(record, &sentences),
+        facts: facts(record, &sentences, relation.as_ref().map(|(relation, _)| *relation)),
+        relation,
+        collision,
+    }
+}
+
+/// Words of a record's narrative.
+pub(super) fn words(record: &CrashRecord, words: &str) -> FactSource {
+    FactSource::Words { record: record.id.clone(), words: words.to_owned() }
+}
+
+/// A column of a record.
+pub(super) fn column(record: &CrashRecord, column: &str, text: impl Into<String>) -> FactSource {
+    FactSource::Column { record: record.id.clone(), column: column.to_owned(), text: text.into() }
+}
+
+/// Zone names for a sentence, such as `front left, left`.
+pub(super) fn zone_list(zones: &[ContactZone]) -> String {
+    zones.iter().map(|zone| zone.label()).collect::<Vec<_>>().join(", ")
+}
+
+fn facts(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation>) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    let mut add = |value, source| facts.push(Fact { value, source });
+    if let Some(movement) = record.sv_movement.known() {
+        add(FactValue::SvMovement { movement }, column(record, "SV Pre-Crash Movement", movement.label()));
+    }
+    if let Some(movement) = record.cp_movement.known() {
+        add(FactValue::CpMovement { movement }, column(record, "CP Pre-Crash Movement", movement.label()));
+    }
+    details::read(record, sentences, relation, &mut add);
+    let zones = (!record.sv_zones.is_empty(), !record.cp_zones.is_empty());
+    if zones != (false, false) {
+        let text = format!("SV: {}; CP: {}", zone_list(&record.sv_zones), zone_list(&record.cp_zones));
+        let contact = FactValue::Contact { sv: record.sv_zones.clone(), cp: record.cp_zones.clone() };
+        add(contact, column(record, "SV and CP Contact Area", text.clone()));
+        if let Some(first) = first_mover(&record.sv_zones, &record.cp_zones) {
+            add(FactValue::Order { first }, column(record, "SV and CP Contact Area", text));
+        }
+    }
+    facts
+}
+
+/// Who was at the place of the conflict first: the one that was hit on its side or rear, by the other's front.
+fn first_mover(sv: &[ContactZone], cp: &[ContactZone]) -> Option<FirstMover> {
+    let (sv_front, cp_front) = (only(sv, is_front), only(cp, is_front));
+    let (sv_flank, cp_flank) = (sv.iter().any(|z| is_flank(*z)), cp.iter().any(|z| is_flank(*z)));
+    match (sv_front, cp_front) {
+        (true, true) => Some(FirstMover::Both),
+        (true, false) if cp_flank => Some(FirstMover::Cp),
+        (false, true) if sv_flank => Some(FirstMover::Sv),
+        _ => None,
+    }
+}
+
+/// Front, front left or front right.
+pub fn is_front(zone: ContactZone) -> bool {
+    matches!(zone, ContactZone::Front | ContactZone::FrontLeft | ContactZone::FrontRight)
+}
+
+/// Rear, rear left or rear right.
+pub fn is_rear(zone: ContactZone) -> bool {
+    matches!(zone, ContactZone::Rear | ContactZone::RearLeft | ContactZone::RearRight)
+}
+
+fn is_flank(zone: ContactZone) -> bool {
+    matches!(zone, ContactZone::Left | ContactZone::Right) || is_rear(zone)
+}
+
+/// Whether there are zones and all of them are of this sort.
+pub fn only(zones: &[ContactZone], sort: fn(ContactZone) -> bool) -> bool {
+    !zones.is_empty() && zones.iter().all(|zone| sort(*zone))
+}
+
+static REAR_END: LazyLock<Regex> =
+    LazyLock::new(|| Regex::new(r"(?i)\brear[- ]?end(?:ed|ing|s)?\b").expect("constant pattern"));
+static REAR_ENDED_BY: LazyLock<Regex> =
+    LazyLock::new(|| Regex::new(r"(?i)^rear[- ]?ended(?: \w+)? by\b").expect("constant pattern"));
+static HEAD_ON: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"(?i)\bhead[- ]on\b").expect("constant pattern"));
+static HIT_REAR_OF: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(r"(?i)\b(?:contact\w*|struck|hit|collided|impacted|bumped)\b(?: with)?(?: into)? (?:the )?(?:rear|back)(?:[- ]end| bumper)?(?: bumper)?(?: of)?")
+        .expect("constant pattern")
+});
+
+/// The kind of collision, where it is one of those a profile may exclude.
+fn collision(
+    record: &CrashRecord,
+    sentences: &[Sentence],
+    relation: Option<Relation>,
+) -> Option<(CollisionKind, FactSource)> {
+    let crosses = matches!(relation, Some(Relation::From(_) | Relation::Crossing | Relation::Oncoming));
+    let beside = matches!(relation, Some(Relation::Beside(_)));
+    for sentence in sentences {
+        if let Some(found) = HEAD_ON.find(sentence.text) {
+            return Some((CollisionKind::HeadOn, words(record, found.as_str())));
+        }
+        if let Some(found) = REAR_END.find(sentence.text) {
+            let passive = REAR_ENDED_BY.is_match(&sentence.text[found.start()..]);
+            let kind = match sentence.mentions.subject_at(found.start()) {
+                Some(Actor::Sv) if !passive && sentence.mentions.object_after(found.end()) == Some(Actor::Cp) => {
+                    CollisionKind::RearEndByEgo
+                }
+                _ => CollisionKind::RearEndOfEgo,
+            };
+            return Some((kind, words(record, found.as_str())));
+        }
+        if let Some(found) = HIT_REAR_OF.find(sentence.text).filter(|_| !crosses && !beside) {
+            let object = sentence.mentions.object_after(found.end());
+            let kind = match (sentence.mentions.subject_at(found.start()), object) {
+                (Some(Actor::Cp), Some(Actor::Sv)) => Some(CollisionKind::RearEndOfEgo),
+                (Some(Actor::Sv), Some(Actor::Cp)) => Some(CollisionKind::RearEndByEgo),
+                _ => None,
+            };
+            if let Some(kind) = kind {
+                return Some((kind, words(record, found.as_str())));
+            }
+        }
+    }
+    let zones = || {
+        let text = format!("SV: {}; CP: {}", zone_list(&record.sv_zones), zone_list(&record.cp_zones));
+        column(record, "SV and CP Contact Area", text)
+    };
+    let (sv, cp) = (&record.sv_zones, &record.cp_zones);
+    let behind = relation == Some(Relation::Behind);
+    if behind && (sv.is_empty() || only(sv, is_rear)) {
+        return Some((CollisionKind::RearEndOfEgo, zones()));
+    }
+    if !crosses && !beside && only(sv, is_rear) && only(cp, is_front) {
+        return Some((CollisionKind::RearEndOfEgo, zones()));
+    }
+    if !crosses && !beside && only(sv, is_front) && only(cp, is_rear) && record.sv_movement == record.cp_movement {
+        return Some((CollisionKind::RearEndByEgo, zones()));
+    }
+    let both_straight = record.sv_movement.known() == Some(Movement::Straight)
+        && record.cp_movement.known() == Some(Movement::Straight);
+    match relation {
+        Some(Relation::Oncoming) if both_straight => Some((CollisionKind::HeadOn, zones())),
+        _ => None,
+    }
+}
+
+/// A turn the narrative tells of, where the column says otherwise and no words bear the column out.
+fn contradiction(record: &CrashRecord, sentences: &[Sentence]) -> Option<String> {
+    let told = |actor: Actor| {
+        let (mut left, mut right, mut straight) = (false, false, false);
+        for sentence in sentences {
+            for found in TURN.captures_iter(sentence.text) {
+                let at = found.get(0).expect("group 0").start();
+                if sentence.mentions.subject_at(at) == Some(actor) {
+                    let side = found.name("a").or_else(|| found.name("b")).map_or("", |m| m.as_str());
+                    left |= side.eq_ignore_ascii_case("left");
+                    right |= side.eq_ignore_ascii_case("right");
+                }
+            }
+            for found in STRAIGHT.find_iter(sentence.text) {
+                straight |= sentence.mentions.subject_at(found.start()) == Some(actor);
+            }
+        }
+        (left, right, straight)
+    };
+    let against = |actor: Actor, movement: Option<Movement>| {
+        let (left, right, straight) = told(actor);
+        match movement? {
+            Movement::Straight if !straight && left != right => Some(if left { "left" } else { "right" }),
+            Movement::LeftTurn if right && !left => Some("right"),
+            Movement::RightTurn if left && !right => Some("left"),
+            _ => None,
+        }
+    };
+    let sentence = |who: &str, side: &str, movement: Movement| {
+        format!("the narrative says that {who} turned {side}, the column says \"{}\"", movement.label())
+    };
+    if let (Some(side), Some(movement)) = (against(Actor::Sv, record.sv_movement.known()), record.sv_movement.known()) {
+        return Some(sentence("the ego", side, movement));
+    }
+    match (against(Actor::Cp, record.cp_movement.known()), record.cp_movement.known()) {
+        (Some(side), Some(movement)) => Some(sentence("the partner", side, movement)),
+        _ => None,
+    }
+}

@@ -1,0 +1,66 @@
+//! Progress: bars with counts and time left on a terminal, one plain line per stage elsewhere.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use recrash_pipeline::{Progress, ProgressEvent};
+use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Shows the pipeline's progress on standard error.
+pub struct Bars {
+    terminal: bool,
+    current: Mutex<Option<Current>>,
+}
+
+struct Current {
+    bar: ProgressBar,
+    begun: Instant,
+    units: usize,
+    skipped: usize,
+}
+
+impl Bars {
+    /// Bars where standard error is a terminal.
+    pub fn new() -> Self {
+        Self { terminal: std::io::stderr().is_terminal(), current: Mutex::new(None) }
+    }
+}
+
+impl Progress for Bars {
+    fn event(&self, event: ProgressEvent<'_>) {
+        let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
+        match event {
+            ProgressEvent::Started { stage, units } => {
+                let target = if self.terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+                let bar = ProgressBar::with_draw_target(Some(units as u64), target);
+                let template = "  {prefix:<9} {bar:28} {pos}/{len}  {msg:.dim}  {eta} left";
+                bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
+                bar.set_prefix(stage.to_owned());
+                bar.enable_steady_tick(Duration::from_millis(200));
+                *current = Some(Current { bar, begun: Instant::now(), units, skipped: 0 });
+            }
+            ProgressEvent::Advanced { unit, skipped, .. } => {
+                if let Some(current) = current.as_mut() {
+                    current.skipped += usize::from(skipped);
+                    current.bar.set_message(unit.to_owned());
+                    current.bar.inc(1);
+                }
+            }
+            ProgressEvent::Finished { stage } => {
+                if let Some(done) = current.take() {
+                    done.bar.finish_and_clear();
+                    let there =
+                        if done.skipped > 0 { format!(" ({} there already)", done.skipped) } else { String::new() };
+                    let seconds = done.begun.elapsed().as_secs_f64();
+                    // A closed standard error is no reason to stop.
+                    let _ = writeln!(
+                        anstream::stderr(),
+                        "  {stage:<9} {}/{}{there}  {seconds:.1} s",
+                        done.units,
+                        done.units
+                    );
+                }
+            }
+        }
+    }
+}

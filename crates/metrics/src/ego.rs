@@ -1,0 +1,228 @@
+//! Measures of the ego alone: braking, phantom braking, oscillation, lane departure, distance, speed.
+//!
+//! Models and thresholds: `docs/models/ego-behaviour.md`.
+
+use crate::following::Following;
+use crate::scene::{Along, EgoWay, Scene, time_of};
+use crate::swept::time_to_collision;
+use recrash_model::geometry::{OrientedBox, Vec2};
+use recrash_model::math;
+use recrash_model::metrics::{EgoMetrics, Timed};
+use recrash_model::profile::FailureCriteria;
+use recrash_model::scenario::MapSpec;
+use recrash_roads::RoadPart;
+
+/// Weaker braking is no braking: engine drag alone gives 0.36 m/s^2. [m/s^2] (assumed)
+const LEAST_BRAKING_MPS2: f64 = 0.5;
+
+/// Slower than this the ego stands, and its jitter is no oscillation. [m/s] (METADRIVE.md 3.4: up to 0.24 m/s)
+const STANDSTILL_MPS: f64 = 0.3;
+
+/// Whatever lies in the corridor within this time at present speed is a reason to brake. [s] (assumed; a driver who keeps
+/// more than 3 s is not following, SWOV)
+const LOOK_AHEAD_S: f64 = 3.0;
+
+/// And within this distance at any speed. [m] (assumed)
+const LOOK_AHEAD_M: f64 = 10.0;
+
+/// Whatever would come within the margin in this time, if all went straight on, is a reason to brake. [s] (assumed)
+const CROSSING_AHEAD_S: f64 = 4.0;
+
+/// Room a driver leaves beside the vehicle. [m] (assumed)
+const MARGIN_M: f64 = 0.5;
+
+/// A reason to brake counts for this long after it is gone: reaction and release of the brake. [s] (assumed)
+const RELEASE_S: f64 = 0.5;
+
+/// A curve that would ask for more sideways acceleration than this is a reason to brake. [m/s^2] (comfort limit, about
+/// 0.2 g)
+const COMFORT_LATERAL_MPS2: f64 = 2.0;
+
+/// A lane change that takes longer than this is a departure. [s] (twice a slow lane change)
+const LANE_CHANGE_S: f64 = 4.0;
+
+/// Measures of the ego alone over the scene.
+pub fn measure_ego(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], criteria: &FailureCriteria) -> EgoMetrics {
+    let (max_reversals, max_reversals_time_s) = most_reversals(scene, criteria.oscillation_window_s);
+    let distance_m = scene
+        .outlines
+        .first()
+        .map_or(0.0, |outlines| outlines.windows(2).map(|pair| pair[0].centre.distance(pair[1].centre)).sum::<f64>());
+    let driven_s = time_of(scene.steps().saturating_sub(1));
+    EgoMetrics {
+        max_deceleration: hardest_braking(scene),
+        phantom_braking: hardest_phantom_braking(scene, way, along),
+        max_reversals,
+        max_reversals_time_s,
+        max_lane_departure: farthest_departure(scene, way, along),
+        distance_m,
+        mean_speed_mps: if driven_s > 0.0 { distance_m / driven_s } else { 0.0 },
+    }
+}
+
+fn hardest_braking(scene: &Scene<'_>) -> Timed {
+    let mut hardest = Timed { value: 0.0, time_s: 0.0 };
+    for step in 0..scene.steps() {
+        let deceleration = -scene.acceleration(0, step);
+        if deceleration > hardest.value {
+            hardest = Timed { value: deceleration, time_s: time_of(step) };
+        }
+    }
+    hardest
+}
+
+fn hardest_phantom_braking(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> Option<Timed> {
+    let release_steps = (RELEASE_S / time_of(1)).round() as usize;
+    let mut hardest: Option<Timed> = None;
+    for step in 0..scene.steps() {
+        let deceleration = -scene.acceleration(0, step);
+        if deceleration < LEAST_BRAKING_MPS2 || hardest.is_some_and(|hardest| deceleration <= hardest.value) {
+            continue;
+        }
+        let had_reason = (step.saturating_sub(release_steps)..=step).any(|at| reason_to_brake(scene, way, along, at));
+        if !had_reason {
+            hardest = Some(Timed { value: deceleration, time_s: time_of(step) });
+        }
+    }
+    hardest
+}
+
+/// Whether anything asks the ego to brake: a road user or obstacle in its corridor, one about to cross it, a curve, its
+/// own target speed, or the end of its way.
+fn reason_to_brake(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], step: usize) -> bool {
+    let (ego, ego_along) = (&scene.outlines[0][step], &along[step]);
+    let speed = scene.state(0, step).speed;
+    let look_ahead_m = (LOOK_AHEAD_S * speed).max(LOOK_AHEAD_M);
+    if speed > way.target_speed_mps + 0.1
+        || way.path.length_m - ego_along.s < look_ahead_m
+        || curve_asks(way, ego_along.s, look_ahead_m, speed)
+    {
+        return true;
+    }
+    let asks = |other: &OrientedBox, velocity: Vec2| {
+        let wide = OrientedBox {
+            half_length: other.half_length + MARGIN_M,
+            half_width: other.half_width + MARGIN_M,
+            ..*other
+        };
+        if time_to_collision(ego, ego.axis * speed, &wide, velocity).is_some_and(|ttc| ttc <= CROSSING_AHEAD_S) {
+            return true;
+        }
+        let other_along = Along::of(way, other, ego_along.segment);
+        ego_along.free_space_to(&other_along, MARGIN_M).is_some_and(|free| free <= look_ahead_m)
+    };
+    let others = 1..scene.outlines.len();
+    others
+        .filter(|&actor| step < scene.outlines[actor].len())
+        .any(|actor| asks(&scene.outlines[actor][step], scene.velocity(actor, step)))
+        || scene.obstacles.iter().any(|obstacle| asks(obstacle, Vec2::default()))
+}
+
+fn curve_asks(way: &EgoWay<'_>, s: f64, look_ahead_m: f64, speed: f64) -> bool {
+    way.path.segments.iter().any(|segment| {
+        let (begin, end) = (segment.start_m, segment.start_m + segment.length_m);
+        let ahead = begin <= s + look_ahead_m && end >= s;
+        ahead && math::sq(speed) * way.path.curvature(0.5 * (begin + end)).abs() > COMFORT_LATERAL_MPS2
+    })
+}
+
+/// The most changes between braking and accelerating within a window, and when that window ended.
+fn most_reversals(scene: &Scene<'_>, window_s: f64) -> (u32, f64) {
+    let mut reversals: Vec<f64> = Vec::new();
+    let mut braked: Option<bool> = None;
+    for step in 0..scene.steps() {
+        let acceleration = scene.acceleration(0, step);
+        if acceleration.abs() < LEAST_BRAKING_MPS2 || scene.state(0, step).speed.abs() < STANDSTILL_MPS {
+            continue;
+        }
+        let brakes = acceleration < 0.0;
+        if braked.is_some_and(|before| before != brakes) {
+            reversals.push(time_of(step));
+        }
+        braked = Some(brakes);
+    }
+    let (mut most, mut when, mut first) = (0, 0.0, 0);
+    for (last, &time_s) in reversals.iter().enumerate() {
+        while time_s - reversals[first] > window_s + 1e-9 {
+            first += 1;
+        }
+        let count = (last + 1 - first) as u32;
+        if count > most {
+            (most, when) = (count, time_s);
+        }
+    }
+    (most, when)
+}
+
+/// The lane the ego is in at a step, and how far its box reaches over each edge of it. [m]
+#[derive(Clone, Copy)]
+struct InLane {
+    /// Lanes to the right of the one its way follows.
+    lane: i32,
+    over_left_m: f64,
+    over_right_m: f64,
+}
+
+/// Farthest a corner went over the edge of its lane, lane changes and unmarked junction areas left out.
+fn farthest_departure(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> Timed {
+    let track: Vec<Option<InLane>> = scene
+        .outlines
+        .first()
+        .map_or(&[][..], Vec::as_slice)
+        .iter()
+        .zip(along)
+        .map(|(outline, along)| in_lane(way, outline, along))
+        .collect();
+    let around = (LANE_CHANGE_S / time_of(1)).round() as usize;
+    let mut farthest = Timed { value: 0.0, time_s: 0.0 };
+    for (step, here) in track.iter().enumerate() {
+        let Some(here) = here else { continue };
+        for (over_m, neighbour) in [(here.over_left_m, here.lane - 1), (here.over_right_m, here.lane + 1)] {
+            if over_m <= farthest.value {
+                continue;
+            }
+            let window = step.saturating_sub(around)..=(step + around).min(track.len() - 1);
+            let changes = track[window].iter().flatten().any(|there| there.lane == neighbour);
+            if !changes {
+                farthest = Timed { value: over_m, time_s: time_of(step) };
+            }
+        }
+    }
+    farthest
+}
+
+fn in_lane(way: &EgoWay<'_>, outline: &OrientedBox, along: &Along) -> Option<InLane> {
+    if is_unmarked(way, along.segment) {
+        return None;
+    }
+    let lane = way.network.lane(way.path.segments[along.segment].lane);
+    let last = way.network.road(lane.road).lanes.len() as i32 - 1;
+    let index = i32::from(lane.index);
+    let offset = ((along.t / lane.width_m).round() as i32).clamp(-index, last - index);
+    let (mut over_left_m, mut over_right_m) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for corner in outline.corners() {
+        // From the segment before on: the rear may still be there.
+        let place = way.path.project(way.network, corner, along.segment.saturating_sub(1));
+        if is_unmarked(way, place.segment) {
+            continue;
+        }
+        let t = place.t - f64::from(offset) * lane.width_m;
+        over_right_m = over_right_m.max(t - 0.5 * lane.width_m);
+        over_left_m = over_left_m.max(-t - 0.5 * lane.width_m);
+    }
+    Some(InLane { lane: offset, over_left_m, over_right_m })
+}
+
+/// Whether a segment of the way crosses a junction, where no lanes are marked.
+fn is_unmarked(way: &EgoWay<'_>, segment: usize) -> bool {
+    matches!(way.network.map, MapSpec::X(_) | MapSpec::T(_))
+        && way.network.road(way.path.roads[segment]).part == RoadPart::Inner
+}
+
+/// Whether `other` leads the ego at a step.
+pub fn following(scene: &Scene<'_>, way: &EgoWay<'_>, ego: &Along, actor: usize, step: usize) -> Option<Following> {
+    let outline = &scene.outlines[actor][step];
+    let other = Along::of(way, outline, ego.segment);
+    let (speed, other_speed) = (scene.state(0, step).speed, scene.state(actor, step).speed);
+    Following::find(ego, speed, &other, other_speed, scene.acceleration(actor, step))
+}

@@ -1,0 +1,198 @@
+//! Findings: what a rollout shows about the ego, one sentence each.
+
+use crate::scene::time_of;
+use recrash_model::metrics::{Finding, FindingKind, Metrics, Timed};
+use recrash_model::profile::FailureCriteria;
+use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
+use recrash_model::scenario::ObstacleKind;
+use recrash_roads::Scenario;
+
+/// Slower than this the ego stands. [m/s]
+const STANDSTILL_MPS: f64 = 0.3;
+
+/// What a rollout shows about the ego: failures first, then odd behaviour, each in order of time.
+pub fn findings(
+    _scenario: &Scenario,
+    rollout: &Rollout,
+    metrics: &Metrics,
+    criteria: &FailureCriteria,
+) -> Vec<Finding> {
+    findings_of(rollout, metrics, criteria)
+}
+
+/// [`findings`] without the scenario, which they do not depend on.
+pub fn findings_of(rollout: &Rollout, metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> {
+    let mut all = Vec::new();
+    all.extend(contact(metrics));
+    all.extend(obstacle_contacts(rollout, metrics));
+    all.extend(near_misses(rollout, metrics, criteria));
+    all.extend(ending(rollout, metrics, criteria));
+    all.extend(odd_behaviour(metrics, criteria));
+    all.sort_by(|a, b| b.kind.is_failure().cmp(&a.kind.is_failure()).then(a.time_s.total_cmp(&b.time_s)));
+    all
+}
+
+fn contact(metrics: &Metrics) -> Option<Finding> {
+    let contact = metrics.contact.as_ref()?;
+    let (ego_zone, other_zone) = (contact.ego_zone.label(), contact.other_zone.label());
+    Some(Finding {
+        kind: FindingKind::Contact,
+        time_s: contact.time_s,
+        value: contact.relative_speed_mps,
+        threshold: 0.0,
+        sentence: format!(
+            "The ego and {} touched at {:.2} s, {ego_zone} against {other_zone} ({} collision), at {:.1} m/s relative speed; \
+             the ego drove {:.1} m/s, the other {:.1} m/s.",
+            contact.id,
+            contact.time_s,
+            contact.kind.label(),
+            contact.relative_speed_mps,
+            contact.ego_speed_mps,
+            contact.other_speed_mps,
+        ),
+    })
+}
+
+fn obstacle_contacts<'a>(rollout: &'a Rollout, metrics: &'a Metrics) -> impl Iterator<Item = Finding> + 'a {
+    metrics.obstacles_hit.iter().filter_map(move |&hit| {
+        let kind = match rollout.obstacles.get(hit)?.kind {
+            ObstacleKind::Cone => "cone",
+            ObstacleKind::Barrier => "barrier",
+            ObstacleKind::Warning => "warning sign",
+        };
+        let (time_s, speed) = rollout.events.iter().find_map(|event| match event.kind {
+            EventKind::ObstacleContact { actor: 0, obstacle, state } if obstacle == hit => {
+                Some((event.time_s, state.speed))
+            }
+            _ => None,
+        })?;
+        Some(Finding {
+            kind: FindingKind::ObstacleContact,
+            time_s,
+            value: speed,
+            threshold: 0.0,
+            sentence: format!("The ego hit a {kind} (obstacle {}) at {time_s:.2} s with {speed:.1} m/s.", hit + 1),
+        })
+    })
+}
+
+fn near_misses<'a>(
+    rollout: &'a Rollout,
+    metrics: &'a Metrics,
+    criteria: &'a FailureCriteria,
+) -> impl Iterator<Item = Finding> + 'a {
+    let touched = metrics.contact.as_ref().map(|contact| contact.actor);
+    metrics
+        .partners
+        .iter()
+        .filter(move |partner| Some(partner.actor) != touched)
+        .filter(|partner| rollout.actors.get(partner.actor).is_some_and(|track| track.role == Role::Partner))
+        .filter(|partner| partner.min_gap.value < criteria.min_gap_m)
+        .map(|partner| {
+            let Timed { value, time_s } = partner.min_gap;
+            Finding {
+                kind: FindingKind::NearMiss,
+                time_s,
+                value,
+                threshold: criteria.min_gap_m,
+                sentence: format!(
+                    "The ego came within {value:.2} m of {} at {time_s:.1} s; the profile asks for {:.1} m.",
+                    partner.id, criteria.min_gap_m
+                ),
+            }
+        })
+}
+
+fn ending(rollout: &Rollout, metrics: &Metrics, criteria: &FailureCriteria) -> Option<Finding> {
+    let time_s = rollout.termination.time_s;
+    match metrics.termination {
+        TerminationKind::OffRoad => {
+            let value = metrics.ego.max_lane_departure.value;
+            Some(Finding {
+                kind: FindingKind::OffRoad,
+                time_s,
+                value,
+                threshold: criteria.lane_departure_m,
+                sentence: format!("The ego left the road at {time_s:.1} s, {value:.2} m beyond the edge of its lane."),
+            })
+        }
+        TerminationKind::Stuck => {
+            let value = standing_s(rollout);
+            Some(Finding {
+                kind: FindingKind::Stuck,
+                time_s,
+                value,
+                threshold: 0.0,
+                sentence: format!(
+                    "The ego stood still for the last {value:.1} s and never arrived, after {:.0} m.",
+                    metrics.ego.distance_m
+                ),
+            })
+        }
+        _ => None,
+    }
+}
+
+/// How long the ego had been standing when the rollout ended. [s]
+fn standing_s(rollout: &Rollout) -> f64 {
+    let Some(ego) = rollout.actors.first() else { return 0.0 };
+    time_of(ego.states.iter().rev().take_while(|state| state.speed.abs() < STANDSTILL_MPS).count())
+}
+
+fn odd_behaviour(metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> {
+    let ego = &metrics.ego;
+    let mut all = Vec::new();
+    let mut add = |kind, Timed { value, time_s }: Timed, threshold: f64, sentence: String| {
+        if value > threshold {
+            all.push(Finding { kind, time_s, value, threshold, sentence });
+        }
+    };
+    let braking = ego.max_deceleration;
+    add(
+        FindingKind::HardBraking,
+        braking,
+        criteria.hard_braking_mps2,
+        format!(
+            "The ego braked with {:.1} m/s\u{b2} at {:.1} s; hard braking starts at {:.1} m/s\u{b2}.",
+            braking.value, braking.time_s, criteria.hard_braking_mps2
+        ),
+    );
+    if let Some(phantom) = ego.phantom_braking {
+        add(
+            FindingKind::PhantomBraking,
+            phantom,
+            criteria.phantom_braking_mps2,
+            format!(
+                "The ego braked with {:.1} m/s\u{b2} at {:.1} s with nothing in its way; the profile allows {:.1} m/s\u{b2}.",
+                phantom.value, phantom.time_s, criteria.phantom_braking_mps2
+            ),
+        );
+    }
+    let departure = ego.max_lane_departure;
+    add(
+        FindingKind::LaneDeparture,
+        departure,
+        criteria.lane_departure_m,
+        format!(
+            "The ego's box reached {:.2} m over the edge of its lane at {:.1} s without changing lanes; {:.2} m are allowed.",
+            departure.value, departure.time_s, criteria.lane_departure_m
+        ),
+    );
+    if ego.max_reversals >= criteria.oscillation_reversals.max(1) {
+        all.push(Finding {
+            kind: FindingKind::Oscillation,
+            time_s: ego.max_reversals_time_s,
+            value: f64::from(ego.max_reversals),
+            threshold: f64::from(criteria.oscillation_reversals),
+            sentence: format!(
+                "The ego changed {} times between braking and accelerating within {:.0} s, up to {:.1} s; {} make an \
+                 oscillation.",
+                ego.max_reversals,
+                criteria.oscillation_window_s,
+                ego.max_reversals_time_s,
+                criteria.oscillation_reversals
+            ),
+        });
+    }
+    all
+}

@@ -1,0 +1,201 @@
+//! A rollout made ready for measuring: boxes per step, the window that counts, and positions along the ego's way.
+
+use recrash_model::geometry::{OrientedBox, Vec2};
+use recrash_model::math;
+use recrash_model::rollout::{ActorState, Rollout, STEP_S};
+use recrash_roads::{LanePath, RoadNetwork, Scenario};
+
+/// The way the ego was to take, and how fast.
+#[derive(Debug, Clone, Copy)]
+pub struct EgoWay<'a> {
+    /// Roads.
+    pub network: &'a RoadNetwork,
+    /// Its lanes.
+    pub path: &'a LanePath,
+    /// Speed it wants. [m/s]
+    pub target_speed_mps: f64,
+}
+
+impl<'a> EgoWay<'a> {
+    /// The ego's way in a scenario.
+    pub fn of(scenario: &'a Scenario) -> Self {
+        Self {
+            network: scenario.network(),
+            path: &scenario.ego().path,
+            target_speed_mps: scenario.draft().ego.target_speed_mps,
+        }
+    }
+}
+
+/// The ego's first contact with a road user.
+#[derive(Debug, Clone, Copy)]
+pub struct FirstContact {
+    /// The other's position in [`Rollout::actors`].
+    pub actor: usize,
+    /// When. [s]
+    pub time_s: f64,
+    /// The ego.
+    pub ego: ActorState,
+    /// The other.
+    pub other: ActorState,
+}
+
+/// A rollout, its boxes, and the steps that count: those with finite states up to the ego's first contact. What a
+/// simulator makes of vehicles after they touched is not measured.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    /// The rollout.
+    pub rollout: &'a Rollout,
+    /// Per actor, its boxes at the steps that count.
+    pub outlines: Vec<Vec<OrientedBox>>,
+    /// Boxes of the obstacles.
+    pub obstacles: Vec<OrientedBox>,
+    /// First contact.
+    pub contact: Option<FirstContact>,
+    /// End of the measured window. [s]
+    pub end_s: f64,
+}
+
+impl<'a> Scene<'a> {
+    /// Makes a rollout ready. Never fails: a rollout without actors gives a scene without boxes.
+    pub fn new(rollout: &'a Rollout) -> Self {
+        let contact = rollout
+            .first_ego_contact()
+            .filter(|&(actor, ..)| actor > 0 && actor < rollout.actors.len())
+            .map(|(actor, time_s, ego, other)| FirstContact { actor, time_s, ego, other });
+        // A state recorded at the instant of the contact still counts; the tolerance is for the rounding of k * 0.1.
+        let last_s = contact.map_or(f64::INFINITY, |contact| contact.time_s + 1e-9);
+        let outlines: Vec<Vec<OrientedBox>> = rollout
+            .actors
+            .iter()
+            .map(|track| {
+                let counts = |&(step, state): &(usize, &ActorState)| time_of(step) <= last_s && is_finite(state);
+                track
+                    .states
+                    .iter()
+                    .enumerate()
+                    .take_while(counts)
+                    .map(|(_, state)| OrientedBox::new(state.pose(), track.length_m, track.width_m))
+                    .collect()
+            })
+            .collect();
+        let recorded = outlines.first().map_or(0, Vec::len);
+        let end_s = contact.map_or(time_of(recorded.saturating_sub(1)), |contact| contact.time_s);
+        let obstacles = rollout.obstacles.iter().map(|obstacle| obstacle.outline()).collect();
+        Self { rollout, outlines, obstacles, contact, end_s }
+    }
+
+    /// Number of steps that count, for the ego and an actor together.
+    pub fn steps_with(&self, actor: usize) -> usize {
+        self.steps().min(self.outlines.get(actor).map_or(0, Vec::len))
+    }
+
+    /// Number of steps that count for the ego.
+    pub fn steps(&self) -> usize {
+        self.outlines.first().map_or(0, Vec::len)
+    }
+
+    /// State of an actor at a step that counts.
+    pub fn state(&self, actor: usize, step: usize) -> &ActorState {
+        &self.rollout.actors[actor].states[step]
+    }
+
+    /// Velocity of an actor: its speed along its heading. [m/s]
+    pub fn velocity(&self, actor: usize, step: usize) -> Vec2 {
+        self.outlines[actor][step].axis * self.state(actor, step).speed
+    }
+
+    /// Longitudinal acceleration of an actor over the step that begins at `step`; over the last one, that of the one
+    /// before; nil with a single state. [m/s^2]
+    pub fn acceleration(&self, actor: usize, step: usize) -> f64 {
+        let count = self.outlines[actor].len();
+        if count < 2 {
+            return 0.0;
+        }
+        let from = step.min(count - 2);
+        (self.state(actor, from + 1).speed - self.state(actor, from).speed) / STEP_S
+    }
+
+    /// Boxes of an actor and its contact state, where the first contact is with it, at that instant.
+    pub fn contact_boxes(&self) -> Option<(FirstContact, OrientedBox, OrientedBox)> {
+        let contact = self.contact?;
+        let (ego, other) = (&self.rollout.actors[0], &self.rollout.actors[contact.actor]);
+        Some((
+            contact,
+            OrientedBox::new(contact.ego.pose(), ego.length_m, ego.width_m),
+            OrientedBox::new(contact.other.pose(), other.length_m, other.width_m),
+        ))
+    }
+}
+
+/// Time of a step. [s]
+#[inline]
+pub fn time_of(step: usize) -> f64 {
+    step as f64 * STEP_S
+}
+
+fn is_finite(state: &ActorState) -> bool {
+    state.x.is_finite() && state.y.is_finite() && state.heading.is_finite() && state.speed.is_finite()
+}
+
+/// A box in the coordinates of the ego's way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Along {
+    /// Centre along the way. [m]
+    pub s: f64,
+    /// Centre to the right of the way. [m]
+    pub t: f64,
+    /// Segment of the way.
+    pub segment: usize,
+    /// Cosine of the heading relative to the way.
+    pub cos: f64,
+    /// Half of the extent along the way. [m]
+    pub half_along: f64,
+    /// Half of the extent across it. [m]
+    pub half_across: f64,
+}
+
+impl Along {
+    /// A box on a way, looked for from segment `hint` on.
+    pub fn of(way: &EgoWay<'_>, outline: &OrientedBox, hint: usize) -> Self {
+        let place = way.path.project(way.network, outline.centre, hint);
+        let forward = Vec2::from_heading(way.path.pose(way.network, place.s, 0.0).heading);
+        let (cos, sin) = (outline.axis.dot(forward), outline.axis.cross(forward).abs());
+        Self {
+            s: place.s,
+            t: place.t,
+            segment: place.segment,
+            cos,
+            half_along: outline.half_length * cos.abs() + outline.half_width * sin,
+            half_across: outline.half_length * sin + outline.half_width * cos.abs(),
+        }
+    }
+
+    /// The ego along its way, step by step.
+    pub fn track(way: &EgoWay<'_>, outlines: &[OrientedBox]) -> Vec<Self> {
+        let mut segment = 0;
+        outlines
+            .iter()
+            .map(|outline| {
+                let along = Self::of(way, outline, segment);
+                segment = along.segment;
+                along
+            })
+            .collect()
+    }
+
+    /// Free space along the way from this box's front to the rear of `other`, where `other` is ahead and its extent
+    /// across comes within `margin_m` of this one's. [m]
+    pub fn free_space_to(&self, other: &Self, margin_m: f64) -> Option<f64> {
+        if (other.t - self.t).abs() >= self.half_across + other.half_across + margin_m {
+            return None;
+        }
+        let free = other.s - self.s - other.half_along - self.half_along;
+        (free > 0.0).then_some(free)
+    }
+
+    /// Whether the box drives within 45 degrees of the way.
+    pub fn goes_along(&self) -> bool {
+        self.cos > math::cos(math::PI / 4.0)
+    }
+}

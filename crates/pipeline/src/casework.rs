@@ -1,0 +1,201 @@
+//! Work on one case: the loop of design, check, rollout and verdict; and one run of one scenario.
+
+use crate::error::PipelineError;
+use crate::profiles::load_profile;
+use crate::store::{read_text, to_compact_json, write_file_whole};
+use recrash_agents::{Brief, Design, Feedback, Problem};
+use recrash_metrics::{faithfulness, findings, measure, series};
+use recrash_model::metrics::{Check, Expectation, Finding, Metrics, Series, Verdict};
+use recrash_model::narrative::Narrative;
+use recrash_model::profile::SystemProfile;
+use recrash_model::rollout::Rollout;
+use recrash_model::scenario::ScenarioDraft;
+use recrash_model::{Diagnostic, Outcome};
+use recrash_roads::Scenario;
+use recrash_sim::Ego;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Scenario files larger than this are refused. [bytes]
+const MAX_SCENARIO_FILE: u64 = 1 << 20;
+/// Designs that are tried before the best so far is taken.
+const MAX_DESIGNS: usize = 6;
+
+/// One run of one scenario, with all that was computed from it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseRun {
+    /// Always `recrash.run/1`.
+    pub format: String,
+    /// What was measured.
+    pub metrics: Metrics,
+    /// What that says about the ego.
+    pub findings: Vec<Finding>,
+    /// Whether the rollout is true to its record; absent for a scenario without one.
+    pub verdict: Option<Verdict>,
+    /// What happened.
+    pub rollout: Rollout,
+    /// Gaps, speeds and accelerations over time.
+    pub series: Series,
+}
+
+impl CaseRun {
+    /// Whether the ego failed, by the profile's criteria.
+    pub fn failed(&self) -> bool {
+        self.findings.iter().any(|finding| finding.kind.is_failure())
+    }
+
+    /// Whether every check of faithfulness passed; true where nothing was checked.
+    pub fn faithful(&self) -> bool {
+        self.verdict.as_ref().is_none_or(Verdict::faithful)
+    }
+}
+
+/// Runs a scenario and computes everything from its rollout.
+pub fn run_scenario(
+    scenario: &Scenario,
+    ego: Ego,
+    profile: &SystemProfile,
+    expectation: Option<&Expectation>,
+) -> CaseRun {
+    let rollout = recrash_sim::simulate(scenario, ego);
+    let metrics = measure(scenario, &rollout, &profile.failure);
+    CaseRun {
+        format: "recrash.run/1".into(),
+        findings: findings(scenario, &rollout, &metrics, &profile.failure),
+        verdict: expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)),
+        series: series(&rollout),
+        metrics,
+        rollout,
+    }
+}
+
+/// What became of the designs of one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DesignLog {
+    /// Every try, in order.
+    pub attempts: Vec<DesignAttempt>,
+    /// Number of the try that was taken, from 0.
+    pub taken: usize,
+}
+
+/// One try.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DesignAttempt {
+    /// The design.
+    pub draft: ScenarioDraft,
+    /// What the check said.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Checks of faithfulness that failed; absent where it did not run.
+    pub unfaithful: Option<Vec<Check>>,
+}
+
+impl DesignAttempt {
+    /// The fewer the better: not runnable counts as worse than any unfaithfulness.
+    fn faults(&self) -> usize {
+        self.unfaithful.as_ref().map_or(usize::MAX, Vec::len)
+    }
+}
+
+/// Designs a scenario: each try is checked, run and judged, and what was wrong goes into the next. The first faithful
+/// one is taken, or the one with the fewest faults.
+///
+/// # Errors
+/// The agent gave up, or none of its designs can be run.
+pub fn design_case(
+    agent: &dyn Design,
+    brief: &Brief,
+    narrative: &Narrative,
+    expectation: &Expectation,
+    ego: Ego,
+) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
+    let mut feedback = Vec::new();
+    let mut attempts: Vec<DesignAttempt> = Vec::new();
+    while attempts.len() < MAX_DESIGNS {
+        let draft = agent
+            .design(brief, narrative, &feedback)
+            .map_err(|e| PipelineError::bad_input(format!("design of {}: {e}", brief.scenario_id)))?;
+        let (attempt, problem) = match recrash_roads::check(draft.clone()) {
+            Err(diagnostics) => (
+                DesignAttempt { draft, diagnostics: diagnostics.clone(), unfaithful: None },
+                Some(Problem::NotRunnable { diagnostics }),
+            ),
+            Ok(Outcome { value: scenario, diagnostics }) => {
+                let run = run_scenario(&scenario, ego, brief.profile, Some(expectation));
+                let failures: Vec<Check> = run.verdict.iter().flat_map(|v| v.failures().cloned()).collect();
+                let problem = (!failures.is_empty())
+                    .then(|| Problem::NotFaithful { failures: failures.clone(), metrics: Box::new(run.metrics) });
+                (DesignAttempt { draft, diagnostics, unfaithful: Some(failures) }, problem)
+            }
+        };
+        let draft = attempt.draft.clone();
+        attempts.push(attempt);
+        match problem {
+            Some(problem) => feedback.push(Feedback { draft, problem }),
+            None => break,
+        }
+    }
+    let taken = (0..attempts.len()).min_by_key(|&i| attempts[i].faults()).unwrap_or(0);
+    if attempts[taken].unfaithful.is_none() {
+        return Err(PipelineError::BadInput {
+            what: format!("design of {}: none of {} designs can be run", brief.scenario_id, attempts.len()),
+            diagnostics: attempts.swap_remove(taken).diagnostics,
+        });
+    }
+    Ok((attempts[taken].draft.clone(), DesignLog { attempts, taken }))
+}
+
+/// One scenario file, run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileRun {
+    /// The run.
+    pub run: CaseRun,
+    /// Remarks on the file.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads, checks and runs one scenario file. The profile gives the failure criteria, and the ego where none is named.
+///
+/// # Errors
+/// The file cannot be read, is no scenario, or cannot be run: every problem with its place.
+pub fn simulate_file(
+    path: &Path,
+    ego: Option<&str>,
+    profile: &str,
+    rollout: Option<&Path>,
+) -> Result<FileRun, PipelineError> {
+    let profile = load_profile(profile)?;
+    let ego = parse_ego(ego.unwrap_or(&profile.ego))?;
+    let (scenario, diagnostics) = read_scenario(path)?;
+    let run = run_scenario(&scenario, ego, &profile, None);
+    if let Some(target) = rollout {
+        write_file_whole(target, &to_compact_json(&run.rollout)).map_err(|source| PipelineError::Io {
+            action: "write",
+            path: target.to_owned(),
+            source,
+        })?;
+    }
+    Ok(FileRun { run, diagnostics })
+}
+
+/// Reads and checks a scenario file.
+///
+/// # Errors
+/// As [`simulate_file`].
+pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
+    let text = read_text(path, MAX_SCENARIO_FILE)?;
+    let bad = |diagnostics| PipelineError::BadInput {
+        what: format!("{} is not a scenario that can be run", path.display()),
+        diagnostics,
+    };
+    let draft = recrash_roads::read_draft(&text).map_err(bad)?;
+    let checked = recrash_roads::check(draft.value).map_err(bad)?;
+    Ok((checked.value, draft.diagnostics.into_iter().chain(checked.diagnostics).collect()))
+}
+
+/// The ego of this name.
+///
+/// # Errors
+/// There is none: with the names there are.
+pub fn parse_ego(name: &str) -> Result<Ego, PipelineError> {
+    name.parse().map_err(|e| PipelineError::bad_input(format!("{e}")))
+}

@@ -1,0 +1,80 @@
+//! What can go wrong outside the stages, with what, where and how to mend it.
+
+use recrash_model::Diagnostic;
+use std::path::PathBuf;
+
+/// Why a command stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum PipelineError {
+    /// A file could not be read or written.
+    #[error("cannot {action} {}: {source}{}", path.display(), hint(source))]
+    Io {
+        /// `read`, `write`, `create`, `remove`.
+        action: &'static str,
+        /// Which file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// What the user gave cannot be used.
+    #[error("{what}")]
+    BadInput {
+        /// What is wrong, in one sentence with the file's name.
+        what: String,
+        /// Every single problem.
+        diagnostics: Vec<Diagnostic>,
+    },
+    /// A stage needs an earlier one.
+    #[error("{}: there is no finished stage \"{missing}\" in it; run `recrash {missing} --out {}` first", dir.display(), dir.display())]
+    MissingStage {
+        /// The suite.
+        dir: PathBuf,
+        /// The earlier stage.
+        missing: &'static str,
+    },
+    /// The output folder holds something else.
+    #[error("{} holds files but no suite.json, so it is not overwritten; choose another --out, or empty it", dir.display())]
+    NotASuite {
+        /// The folder.
+        dir: PathBuf,
+    },
+    /// A file of the suite is not what a stage writes.
+    #[error("{}: {problem}; remove the file and run the same command again", path.display())]
+    Damaged {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The threads could not be started.
+    #[error("cannot start the worker threads: {0}; try --threads 1")]
+    Threads(String),
+}
+
+impl PipelineError {
+    /// Bad input with one sentence and nothing more.
+    pub fn bad_input(what: impl Into<String>) -> Self {
+        Self::BadInput { what: what.into(), diagnostics: Vec::new() }
+    }
+
+    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
+            Self::Io { .. } | Self::Threads(_) => 1,
+            Self::MissingStage { .. } | Self::NotASuite { .. } => 2,
+            Self::BadInput { .. } | Self::Damaged { .. } => 3,
+        }
+    }
+}
+
+fn hint(source: &std::io::Error) -> &'static str {
+    match source.kind() {
+        std::io::ErrorKind::NotFound => "; check the path",
+        std::io::ErrorKind::PermissionDenied => "; check the permissions, or choose another --out",
+        std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
+            "; free some space and run the same command again: finished work is kept"
+        }
+        _ => "",
+    }
+}

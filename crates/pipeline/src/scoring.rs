@@ -1,0 +1,131 @@
+//! What a point of a search scores, and which points are refused. Described in `docs/models/tuning.md`.
+
+use crate::casework::{CaseRun, run_scenario};
+use recrash_model::metrics::Expectation;
+use recrash_model::profile::SystemProfile;
+use recrash_model::rollout::{Role, Rollout, STEP_S};
+use recrash_model::scenario::ScenarioDraft;
+use recrash_model::tuning::{Parameter, Score, apply};
+use recrash_sim::Ego;
+
+/// A least gap before this time says more about the start than about the ego. [s]
+const EARLIEST_MINIMUM_S: f64 = 1.0;
+/// A least gap this near the end of a rollout without contact says that it was cut off. [s]
+const LATEST_MINIMUM_S: f64 = 0.3;
+/// Hardest braking of a real car on a dry road, 0.9 g: partners that brake harder are implausible. [m/s^2]
+const PLAUSIBLE_BRAKING_MPS2: f64 = 0.9 * 9.81;
+/// Braking is taken over this many steps, so that a contact's last step does not count. [0.1 s]
+const BRAKING_STEPS: usize = 3;
+/// Price of the distance from the scenario as designed: among equal outcomes the nearest to the record wins. [m]
+const DISTANCE_PRICE_M: f64 = 0.05;
+/// Worth of each kind of odd behaviour. [m]
+const ODD_BEHAVIOUR_WORTH_M: f64 = 0.1;
+
+/// Everything a score depends on but the values.
+pub struct Scoring<'a> {
+    /// Scenario as designed.
+    pub draft: &'a ScenarioDraft,
+    /// What may move.
+    pub parameters: &'a [Parameter],
+    /// What the rollout must show.
+    pub expectation: &'a Expectation,
+    /// Failure criteria.
+    pub profile: &'a SystemProfile,
+    /// Ego.
+    pub ego: Ego,
+    /// Hardest braking of partners as designed, which the narrative asks for. [m/s^2]
+    pub designed_braking_mps2: f64,
+}
+
+impl<'a> Scoring<'a> {
+    /// Scoring around a designed scenario and its first run.
+    pub fn new(
+        draft: &'a ScenarioDraft,
+        parameters: &'a [Parameter],
+        expectation: &'a Expectation,
+        profile: &'a SystemProfile,
+        ego: Ego,
+        first: &CaseRun,
+    ) -> Self {
+        let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
+        Self { draft, parameters, expectation, profile, ego, designed_braking_mps2 }
+    }
+
+    /// Applies the values, checks, runs, measures and judges.
+    pub fn score(&self, values: &[f64]) -> Score {
+        let refused = |why: String| Score {
+            objective: f64::MAX,
+            min_gap: None,
+            findings: Vec::new(),
+            failed: false,
+            refused: vec![why],
+        };
+        let scenario = match apply(self.draft, self.parameters, values).map(recrash_roads::check) {
+            Err(why) => return refused(format!("not runnable: {why}")),
+            Ok(Err(diagnostics)) => {
+                let first = diagnostics.iter().find(|d| d.is_error()).map(ToString::to_string);
+                return refused(format!("not runnable: {}", first.unwrap_or_default()));
+            }
+            Ok(Ok(checked)) => checked.value,
+        };
+        let run = run_scenario(&scenario, self.ego, self.profile, Some(self.expectation));
+        let refused = self.refusals(&run);
+        let mut kinds: Vec<_> = run.findings.iter().map(|f| f.kind).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let odd = kinds.iter().filter(|kind| !kind.is_failure()).count();
+        let gap = run.metrics.min_gap.map_or(1e3, |gap| gap.value);
+        Score {
+            objective: gap + DISTANCE_PRICE_M * self.distance(values) - ODD_BEHAVIOUR_WORTH_M * odd as f64,
+            min_gap: run.metrics.min_gap,
+            failed: refused.is_empty() && run.failed(),
+            findings: kinds,
+            refused,
+        }
+    }
+
+    /// Why a run is refused: unfaithful, degenerate or implausible. Empty for an accepted one.
+    fn refusals(&self, run: &CaseRun) -> Vec<String> {
+        let mut why: Vec<String> = run
+            .verdict
+            .iter()
+            .flat_map(|v| v.failures())
+            .map(|c| format!("unfaithful: {} is {}, not {}", c.kind.label(), c.observed, c.expected))
+            .collect();
+        if let Some(gap) = run.metrics.min_gap {
+            let contact = run.metrics.contact.is_some();
+            if gap.time_s < EARLIEST_MINIMUM_S {
+                why.push(format!("degenerate: least gap at the start ({:.1} s)", gap.time_s));
+            } else if !contact && gap.time_s > run.metrics.duration_s - LATEST_MINIMUM_S {
+                why.push(format!("degenerate: least gap at the end ({:.1} s)", gap.time_s));
+            }
+        }
+        let braking = hardest_partner_braking(&run.rollout);
+        if braking > PLAUSIBLE_BRAKING_MPS2.max(self.designed_braking_mps2 + 0.1) {
+            why.push(format!("implausible: a partner brakes with {braking:.1} m/s^2"));
+        }
+        why
+    }
+
+    /// Root mean square of the parameters' moves, as shares of their ranges.
+    fn distance(&self, values: &[f64]) -> f64 {
+        let squares: f64 = self
+            .parameters
+            .iter()
+            .zip(values)
+            .map(|(p, v)| if p.max > p.min { (v - p.start) / (p.max - p.min) } else { 0.0 })
+            .map(|share| share * share)
+            .sum();
+        (squares / self.parameters.len().max(1) as f64).sqrt()
+    }
+}
+
+fn hardest_partner_braking(rollout: &Rollout) -> f64 {
+    rollout
+        .actors
+        .iter()
+        .filter(|actor| actor.role == Role::Partner)
+        .flat_map(|actor| actor.states.windows(BRAKING_STEPS + 1))
+        .map(|states| (states[0].speed - states[BRAKING_STEPS].speed) / (BRAKING_STEPS as f64 * STEP_S))
+        .fold(0.0, f64::max)
+}

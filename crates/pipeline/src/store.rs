@@ -1,0 +1,201 @@
+//! Files: read with a bound on their size, written whole or not at all.
+
+use crate::error::PipelineError;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+/// Greatest size of a file of a suite that is read back. [bytes]
+const MAX_SUITE_FILE: u64 = 1 << 30;
+
+/// First letters of the names of files that are being written.
+const TEMPORARY_PREFIX: &str = ".recrash-";
+
+/// Writes a whole file; a seam for tests of full disks.
+pub type WriteFile = fn(&Path, &[u8]) -> std::io::Result<()>;
+
+/// A folder whose files are written whole: under a temporary name first, then renamed.
+#[derive(Debug, Clone)]
+pub struct Store {
+    dir: PathBuf,
+    write_file: WriteFile,
+}
+
+impl Store {
+    /// The folder, which is made where it does not exist.
+    ///
+    /// # Errors
+    /// The folder cannot be made or written to.
+    pub fn create(dir: &Path, write_file: WriteFile) -> Result<Self, PipelineError> {
+        fs::create_dir_all(dir).map_err(|source| io("create", dir, source))?;
+        Ok(Self { dir: dir.to_owned(), write_file })
+    }
+
+    /// Removes what a killed run was writing when it was killed, one folder deep.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn remove_leftovers(&self) -> Result<(), PipelineError> {
+        let list = |dir: &Path| -> Result<Vec<fs::DirEntry>, PipelineError> {
+            let entries = fs::read_dir(dir).and_then(Iterator::collect);
+            entries.map_err(|source| io("read", dir, source))
+        };
+        let mut entries = list(&self.dir)?;
+        let folders: Vec<_> = entries.iter().map(fs::DirEntry::path).filter(|p| p.is_dir()).collect();
+        for folder in folders {
+            entries.extend(list(&folder)?);
+        }
+        for entry in entries {
+            if entry.file_name().to_string_lossy().starts_with(TEMPORARY_PREFIX) {
+                fs::remove_file(entry.path()).map_err(|source| io("remove", &entry.path(), source))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The folder.
+    pub fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    /// Path of a file of the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.dir.join(name)
+    }
+
+    /// Writes a file of the folder, and gives the hash of its content.
+    ///
+    /// # Errors
+    /// The file cannot be written; what stood there before still stands.
+    pub fn write(&self, name: &str, content: &[u8]) -> Result<String, PipelineError> {
+        let path = self.path(name);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).map_err(|source| io("create", parent, source))?;
+        }
+        (self.write_file)(&path, content).map_err(|source| io("write", &path, source))?;
+        Ok(sha256(content))
+    }
+
+    /// Writes a value as JSON.
+    ///
+    /// # Errors
+    /// As [`Store::write`].
+    pub fn write_json<T: Serialize>(&self, name: &str, value: &T) -> Result<String, PipelineError> {
+        self.write(name, &to_json(value))
+    }
+
+    /// Reads a value from JSON.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is not what a stage wrote.
+    pub fn read_json<T: DeserializeOwned>(&self, name: &str) -> Result<T, PipelineError> {
+        let path = self.path(name);
+        let text = read_text(&path, MAX_SUITE_FILE)?;
+        let mut deserializer = serde_json::Deserializer::from_str(&text);
+        serde_path_to_error::deserialize(&mut deserializer)
+            .map_err(|e| PipelineError::Damaged { problem: format!("{}: {}", e.path(), e.inner()), path })
+    }
+
+    /// Hash of a file's content; `None` where it is not there.
+    pub fn hash(&self, name: &str) -> Option<String> {
+        let mut file = fs::File::open(self.path(name)).ok()?;
+        let mut hasher = Sha256::new();
+        let mut buffer = vec![0; 1 << 16];
+        loop {
+            match file.read(&mut buffer).ok()? {
+                0 => return Some(hex(&hasher.finalize())),
+                n => hasher.update(&buffer[..n]),
+            }
+        }
+    }
+
+    /// Removes a file that an earlier run wrote and this one does not. A file that is gone already is no error.
+    ///
+    /// # Errors
+    /// The file cannot be removed.
+    pub fn remove(&self, name: &str) -> Result<(), PipelineError> {
+        let path = self.path(name);
+        match fs::remove_file(&path) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(io("remove", &path, source)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Writes to a temporary file beside the target, flushes it to the disk, then renames it.
+pub(crate) fn write_file_whole(path: &Path, content: &[u8]) -> std::io::Result<()> {
+    let dir = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(TEMPORARY_PREFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Temporary files are private by default; results are not, and the umask still applies.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(dir)?;
+    file.write_all(content)?;
+    file.as_file().sync_data()?;
+    file.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}
+
+/// Reads a file whole.
+///
+/// # Errors
+/// The file cannot be read, or is larger than `limit` bytes.
+pub(crate) fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, PipelineError> {
+    let read = || -> std::io::Result<Vec<u8>> {
+        let mut content = Vec::new();
+        fs::File::open(path)?.take(limit + 1).read_to_end(&mut content)?;
+        Ok(content)
+    };
+    let content = read().map_err(|source| io("read", path, source))?;
+    if content.len() as u64 > limit {
+        return Err(PipelineError::bad_input(format!("{} is larger than {limit} bytes", path.display())));
+    }
+    Ok(content)
+}
+
+/// Reads a text file whole.
+///
+/// # Errors
+/// As [`read_bytes`], or the file is not UTF-8.
+pub(crate) fn read_text(path: &Path, limit: u64) -> Result<String, PipelineError> {
+    String::from_utf8(read_bytes(path, limit)?)
+        .map_err(|_| PipelineError::bad_input(format!("{} is not a text file (not UTF-8)", path.display())))
+}
+
+/// JSON of large values, on one line.
+pub(crate) fn to_compact_json<T: Serialize>(value: &T) -> Vec<u8> {
+    let mut text = serde_json::to_vec(value).expect("nouns serialise");
+    text.push(b'\n');
+    text
+}
+
+/// JSON as files hold it: indented, with a line break at the end.
+pub(crate) fn to_json<T: Serialize>(value: &T) -> Vec<u8> {
+    let mut text = serde_json::to_vec_pretty(value).expect("nouns serialise");
+    text.push(b'\n');
+    text
+}
+
+/// SHA-256 in hexadecimal.
+pub(crate) fn sha256(content: &[u8]) -> String {
+    hex(&Sha256::digest(content))
+}
+
+fn hex(bytes: &[u8]) -> String {
+    use std::fmt::Write as _;
+    bytes.iter().fold(String::with_capacity(64), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+fn io(action: &'static str, path: &Path, source: std::io::Error) -> PipelineError {
+    PipelineError::Io { action, path: path.to_owned(), source }
+}

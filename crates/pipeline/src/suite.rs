@@ -1,0 +1,367 @@
+//! The suite on disk: options, stages, and which units of work are done.
+
+use crate::error::PipelineError;
+use crate::profiles::load_profile;
+use crate::progress::Progress;
+use crate::stages::{self, StageReport};
+use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
+use recrash_model::Seed;
+use recrash_model::profile::SystemProfile;
+use recrash_model::selection::Strategy;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The suite files' format tag.
+const SUITE_FORMAT: &str = "recrash.suite/1";
+/// The file that makes a folder a suite.
+const SUITE_FILE: &str = "suite.json";
+
+/// Where crash records come from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordSource {
+    /// The built-in sample.
+    Sample,
+    /// SGO files.
+    Files(Vec<PathBuf>),
+}
+
+/// What the user chose. Everything that can change a byte of the results, and nothing else.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Options {
+    /// Crash records.
+    pub records: RecordSource,
+    /// Profile: a built-in name or a path.
+    pub profile: String,
+    /// Scenarios to make.
+    pub budget: usize,
+    /// How the picks are chosen.
+    pub strategy: Strategy,
+    /// Ego to run; the profile's where not given.
+    pub ego: Option<String>,
+    /// Points the search of each scenario may score.
+    pub tune_budget: usize,
+    /// Optimiser of the search.
+    pub searcher: String,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            records: RecordSource::Sample,
+            profile: "paper".into(),
+            budget: 20,
+            strategy: Strategy::Stratified,
+            ego: None,
+            tune_budget: 160,
+            searcher: "cma".into(),
+            seed: 1,
+        }
+    }
+}
+
+impl Options {
+    /// The command that makes the suite, without the output folder.
+    pub fn command(&self) -> String {
+        let default = Self::default();
+        let mut words = vec!["recrash run".to_owned()];
+        if let RecordSource::Files(files) = &self.records {
+            words.extend(files.iter().map(|f| format!("--records {}", quoted(&f.to_string_lossy()))));
+        }
+        let mut option = |name: &str, value: String, default: String| {
+            if value != default {
+                words.push(format!("--{name} {}", quoted(&value)));
+            }
+        };
+        option("profile", self.profile.clone(), default.profile);
+        option("budget", self.budget.to_string(), default.budget.to_string());
+        option("strategy", strategy_name(self.strategy).into(), strategy_name(default.strategy).into());
+        option("ego", self.ego.clone().unwrap_or_default(), String::new());
+        option("tune-budget", self.tune_budget.to_string(), default.tune_budget.to_string());
+        option("searcher", self.searcher.clone(), default.searcher);
+        option("seed", self.seed.to_string(), default.seed.to_string());
+        words.join(" ")
+    }
+}
+
+fn strategy_name(strategy: Strategy) -> String {
+    serde_json::to_value(strategy).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
+}
+
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// The stages, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Crash files to records.
+    Records,
+    /// Records to picks.
+    Select,
+    /// Picks to narratives.
+    Narrate,
+    /// Narratives to scenarios.
+    Design,
+    /// Scenarios to rollouts, metrics and verdicts.
+    Simulate,
+    /// Scenarios to tuned scenarios.
+    Tune,
+    /// All of it to a page.
+    Report,
+}
+
+impl Stage {
+    /// Every stage, in order.
+    pub const ALL: [Self; 7] =
+        [Self::Records, Self::Select, Self::Narrate, Self::Design, Self::Simulate, Self::Tune, Self::Report];
+
+    /// Name of the stage and of its subcommand.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Records => "records",
+            Self::Select => "select",
+            Self::Narrate => "narrate",
+            Self::Design => "design",
+            Self::Simulate => "simulate",
+            Self::Tune => "tune",
+            Self::Report => "report",
+        }
+    }
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct State {
+    format: String,
+    version: String,
+    options: Options,
+    units: BTreeMap<String, Unit>,
+}
+
+/// A finished unit of work: the hash of what went in, and the files that came out with theirs.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Unit {
+    inputs: String,
+    outputs: BTreeMap<String, String>,
+}
+
+/// Files of a unit: name and content.
+pub(crate) type Files = Vec<(String, Vec<u8>)>;
+
+/// A suite on disk.
+pub struct Suite {
+    store: Store,
+    profile: SystemProfile,
+    state: Mutex<State>,
+    options: Options,
+    threads: rayon::ThreadPool,
+}
+
+impl Suite {
+    /// The options of the suite in a folder; `None` where there is no suite in it.
+    ///
+    /// # Errors
+    /// The suite file is damaged.
+    pub fn saved_options(dir: &Path) -> Result<Option<Options>, PipelineError> {
+        if !dir.join(SUITE_FILE).exists() {
+            return Ok(None);
+        }
+        Ok(Some(read_state(&Store::create(dir, write_file_whole)?)?.options))
+    }
+
+    /// Opens the suite in a folder, or makes one. `threads`: as many as there are cores where not given.
+    ///
+    /// # Errors
+    /// The folder cannot be used, holds something else, or the options name no profile.
+    pub fn open(dir: &Path, options: Options, threads: Option<usize>) -> Result<Self, PipelineError> {
+        Self::open_with(dir, options, threads, write_file_whole)
+    }
+
+    /// As [`Suite::open`], with another way of writing files.
+    ///
+    /// # Errors
+    /// As [`Suite::open`].
+    pub fn open_with(
+        dir: &Path,
+        options: Options,
+        threads: Option<usize>,
+        write_file: WriteFile,
+    ) -> Result<Self, PipelineError> {
+        let profile = load_profile(&options.profile)?;
+        let store = Store::create(dir, write_file)?;
+        let units = if dir.join(SUITE_FILE).exists() {
+            read_state(&store)?.units
+        } else if is_empty(&store)? {
+            BTreeMap::new()
+        } else {
+            return Err(PipelineError::NotASuite { dir: dir.to_owned() });
+        };
+        store.remove_leftovers()?;
+        let threads = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.unwrap_or(0))
+            .build()
+            .map_err(|e| PipelineError::Threads(e.to_string()))?;
+        let state = State {
+            format: SUITE_FORMAT.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            options: options.clone(),
+            units,
+        };
+        let suite = Self { store, profile, state: Mutex::new(state), options, threads };
+        suite.save(&suite.lock())?;
+        Ok(suite)
+    }
+
+    /// Runs one stage; the stages before must be finished.
+    ///
+    /// # Errors
+    /// A stage before is missing, the input is bad, or a file cannot be read or written. Finished units stay.
+    pub fn run_stage(&self, stage: Stage, progress: &dyn Progress) -> Result<StageReport, PipelineError> {
+        self.threads.install(|| stages::run(self, stage, progress))
+    }
+
+    /// The profile.
+    pub fn profile(&self) -> &SystemProfile {
+        &self.profile
+    }
+
+    /// What the user chose.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// Name of the ego to run.
+    pub fn ego(&self) -> &str {
+        self.options.ego.as_deref().unwrap_or(&self.profile.ego)
+    }
+
+    /// The suite's folder.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    pub(crate) fn seed(&self) -> Seed {
+        Seed(self.options.seed)
+    }
+
+    /// Does a unit of work, unless it is done: the same inputs gave files that are still there. Gives whether it was
+    /// skipped.
+    pub(crate) fn unit(
+        &self,
+        name: &str,
+        inputs: &[&[u8]],
+        work: impl FnOnce() -> Result<Files, PipelineError>,
+    ) -> Result<bool, PipelineError> {
+        let inputs = hash_all(inputs);
+        let before = self.lock().units.get(name).cloned();
+        if let Some(unit) = &before
+            && unit.inputs == inputs
+            && unit.outputs.iter().all(|(file, hash)| self.store.hash(file).as_ref() == Some(hash))
+        {
+            return Ok(true);
+        }
+        let mut outputs = BTreeMap::new();
+        for (file, content) in work()? {
+            let hash = self.store.write(&file, &content)?;
+            outputs.insert(file, hash);
+        }
+        for stale in before.iter().flat_map(|unit| unit.outputs.keys()).filter(|file| !outputs.contains_key(*file)) {
+            self.store.remove(stale)?;
+        }
+        let mut state = self.lock();
+        state.units.insert(name.to_owned(), Unit { inputs, outputs });
+        self.save(&state)?;
+        Ok(false)
+    }
+
+    /// Forgets the units of a stage that are not among `names`, and removes their files.
+    pub(crate) fn keep_only(&self, stage: Stage, names: &[String]) -> Result<(), PipelineError> {
+        let mut state = self.lock();
+        let prefix = format!("{}/", stage.name());
+        let stale: Vec<String> =
+            state.units.keys().filter(|unit| unit.starts_with(&prefix) && !names.contains(unit)).cloned().collect();
+        for name in &stale {
+            let unit = state.units.remove(name);
+            for file in unit.iter().flat_map(|unit| unit.outputs.keys()) {
+                self.store.remove(file)?;
+            }
+        }
+        if !stale.is_empty() {
+            self.save(&state)?;
+        }
+        Ok(())
+    }
+
+    /// Hash of a file that a finished unit wrote, as it is now: a person may have edited it.
+    pub(crate) fn output_hash(&self, stage: Stage, unit: &str, file: &str) -> Result<String, PipelineError> {
+        let finished = self.lock().units.get(unit).is_some_and(|u| u.outputs.contains_key(file));
+        let hash = finished.then(|| self.store.hash(file)).flatten();
+        hash.ok_or_else(|| PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() })
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn save(&self, state: &State) -> Result<(), PipelineError> {
+        self.store.write(SUITE_FILE, &to_json(state)).map(drop)
+    }
+}
+
+fn read_state(store: &Store) -> Result<State, PipelineError> {
+    let state: State = store.read_json(SUITE_FILE)?;
+    if state.format != SUITE_FORMAT {
+        return Err(PipelineError::Damaged {
+            path: store.path(SUITE_FILE),
+            problem: format!("format is \"{}\"; this version reads \"{SUITE_FORMAT}\"", state.format),
+        });
+    }
+    Ok(state)
+}
+
+fn is_empty(store: &Store) -> Result<bool, PipelineError> {
+    store.remove_leftovers()?;
+    let mut entries = std::fs::read_dir(store.dir()).map_err(|source| PipelineError::Io {
+        action: "read",
+        path: store.dir().to_owned(),
+        source,
+    })?;
+    Ok(entries.next().is_none())
+}
+
+/// One hash of several inputs and of the version of this program.
+fn hash_all(inputs: &[&[u8]]) -> String {
+    let mut all = env!("CARGO_PKG_VERSION").as_bytes().to_vec();
+    for input in inputs {
+        all.extend((input.len() as u64).to_le_bytes());
+        all.extend_from_slice(input);
+    }
+    sha256(&all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_names_what_differs_from_the_defaults_and_quotes_it() {
+        assert_eq!(Options::default().command(), "recrash run");
+        let options = Options {
+            records: RecordSource::Files(vec!["my file.csv".into()]),
+            budget: 5,
+            strategy: Strategy::Kmeans,
+            ..Options::default()
+        };
+        assert_eq!(options.command(), "recrash run --records 'my file.csv' --budget 5 --strategy kmeans");
+    }
+}

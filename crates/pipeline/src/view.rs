@@ -1,0 +1,62 @@
+//! The suite as the report sees it.
+
+use crate::casework::CaseRun;
+use crate::drawing::drawing;
+use crate::stages::{Case, names};
+use crate::suite::{RecordSource, Suite};
+use recrash_model::metrics::Verdict;
+use recrash_model::record::RecordSet;
+use recrash_model::selection::Selection;
+use recrash_report::{CaseView, RunView, SuiteView};
+use recrash_roads::Scenario;
+
+/// Puts together what the report shows.
+pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[Case]) -> SuiteView {
+    let options = suite.options();
+    SuiteView {
+        title: "Suite".into(),
+        generated_by: format!("recrash {}", env!("CARGO_PKG_VERSION")),
+        generated_at: None,
+        command: options.command(),
+        profile: suite.profile().clone(),
+        ego: suite.ego().to_owned(),
+        simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
+        agents: "rules".into(),
+        sample: options.records == RecordSource::Sample,
+        records: records.clone(),
+        selection: selection.clone(),
+        cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
+        diagnostics: Vec::new(),
+    }
+}
+
+fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseView {
+    let id = &case.cluster.scenario_id;
+    let positions =
+        case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
+    let moved = case.tune_log.best != 0;
+    CaseView {
+        scenario_id: id.clone(),
+        template: case.cluster.template,
+        cluster: Some(index),
+        records: positions.collect(),
+        narrative: Some(case.narrative.clone()),
+        drawing: drawing(case.scenario.network()),
+        before: Some(run_view(suite, &case.scenario, &case.first, &names::scenario(id))),
+        after: moved.then(|| run_view(suite, &case.tuned, &case.tuned_run, &names::tuned(id))),
+        tune_log: Some(case.tune_log.clone()),
+        refused: None,
+    }
+}
+
+fn run_view(suite: &Suite, scenario: &Scenario, run: &CaseRun, file: &str) -> RunView {
+    RunView {
+        scenario: scenario.draft().clone(),
+        rollout: run.rollout.clone(),
+        metrics: run.metrics.clone(),
+        findings: run.findings.clone(),
+        verdict: run.verdict.clone().unwrap_or(Verdict { checks: Vec::new() }),
+        series: run.series.clone(),
+        rerun_command: format!("recrash simulate {file} --ego {}", suite.ego()),
+    }
+}

@@ -1,0 +1,296 @@
+//! The columns of the three editions of the SGO file, and how a header is recognised.
+
+use crate::text::header_key;
+use recrash_model::record::{ContactZone, Edition, Weather};
+
+/// The 122 columns of the first edition (June 2021 to mid 2023).
+const FIRST_HEADER: &str = "\
+    Report ID,Report Version,Reporting Entity,Report Type,Report Month,Report Year,Report Submission Date,VIN,\
+    VIN - Unknown,Serial Number,Make,Model,Model - Unknown,Model Year,Model Year - Unknown,Same Vehicle ID,Mileage,\
+    Mileage - Unknown,Driver / Operator Type,ADAS/ADS Version,ADAS/ADS Version - Unknown,ADAS/ADS Version CBI,\
+    ADS Equipped?,Automation System Engaged?,Operating Entity,Operating Entity - Unknown,Source - Complaint/Claim,\
+    Source - Telematics,Source - Law Enforcement,Source - Field Report,Source - Testing,Source - Media,\
+    Source - Other,Source - Other Text,Incident Date,Incident Date - Unknown,Notice Received Date,\
+    Incident Time (24:00),Incident Time - Unknown,Same Incident ID,Latitude,Latitude  - Unknown,Longitude,\
+    Longitude - Unknown,Address,Address - Unknown,City,City - Unknown,State,Zip Code,Zip Code - Unknown,\
+    Roadway Type,Roadway Surface,Roadway Description,Posted Speed Limit (MPH),Posted Speed Limit - Unknown,Lighting,\
+    Weather - Clear,Weather - Snow,Weather - Cloudy,Weather - Fog/Smoke,Weather - Rain,Weather - Severe Wind,\
+    Weather - Unknown,Weather - Other,Weather - Other Text,Crash With,Highest Injury Severity,Property Damage?,\
+    CP Pre-Crash Movement,CP Any Air Bags Deployed?,CP Was Vehicle Towed?,CP Contact Area - Rear Left,\
+    CP Contact Area - Left,CP Contact Area - Front Left,CP Contact Area - Rear,CP Contact Area - Top,\
+    CP Contact Area - Front,CP Contact Area - Rear Right,CP Contact Area - Right,CP Contact Area - Front Right,\
+    CP Contact Area - Bottom,CP Contact Area - Unknown,SV Pre-Crash Movement,SV Any Air Bags Deployed?,\
+    SV Was Vehicle Towed?,SV Were All Passengers Belted?,SV Precrash Speed (MPH),SV Pre-crash Speed - Unknown,\
+    SV Contact Area - Rear Left,SV Contact Area - Left,SV Contact Area - Front Left,SV Contact Area - Rear,\
+    SV Contact Area - Top,SV Contact Area - Front,SV Contact Area - Rear Right,SV Contact Area - Right,\
+    SV Contact Area - Front Right,SV Contact Area - Bottom,SV Contact Area - Unknown,Data Availability - EDR,\
+    Data Availability - Police Rpt,Data Availability - Telematics,Data Availability - Complaints,\
+    Data Availability - Video,Data Availability - Other,Data Availability - No Data,Data Availability - Unknown,\
+    Law Enforcement Investigating?,Investigating Agency,Investigating Agency - Unknown,\
+    Rep Ent Or Mfr Investigating?,Investigating Officer Name,Inv. Officer Name - Unknown,\
+    Investigating Officer Phone,Inv. Officer Phone - Unknown,Investigating Officer Email,\
+    Inv. Officer Email - Unknown,Within ODD?,Within ODD? - CBI,Narrative,Narrative - CBI?";
+
+/// The 137 columns of the second edition (to June 2025).
+const SECOND_HEADER: &str = "\
+    Report ID,Report Version,Reporting Entity,Report Type,Report Month,Report Year,Report Submission Date,VIN,\
+    VIN - Unknown,Serial Number,Make,Model,Model - Unknown,Model Year,Model Year - Unknown,Same Vehicle ID,Mileage,\
+    Mileage - Unknown,Driver / Operator Type,ADAS/ADS System Version,ADAS/ADS System Version - Unk,\
+    ADAS/ADS System Version CBI,ADAS/ADS Hardware Version,ADAS/ADS Hardware Version - Unk,\
+    ADAS/ADS Hardware Version CBI,ADAS/ADS Software Version,ADAS/ADS Software Version - Unk,\
+    ADAS/ADS Software Version CBI,Other Reporting Entities?,Other Reporting Entities? - Unk,\
+    Other Reporting Entities? - NA,Federal Regulatory Exemption?,Other Federal Reg. Exemption,\
+    Federal Reg. Exemption - Unk,Federal Reg. Exemption - No,State or Local Permit?,State or Local Permit,\
+    ADS Equipped?,Automation System Engaged?,Operating Entity,Operating Entity - Unknown,Source - Complaint/Claim,\
+    Source - Telematics,Source - Law Enforcement,Source - Field Report,Source - Testing,Source - Media,\
+    Source - Other,Source - Other Text,Incident Date,Incident Date - Unknown,Notice Received Date,\
+    Incident Time (24:00),Incident Time - Unknown,Same Incident ID,Latitude,Latitude - Unknown,Longitude,\
+    Longitude - Unknown,Address,Address - Unknown,City,City - Unknown,State,Zip Code,Zip Code - Unknown,\
+    Roadway Type,Roadway Surface,Roadway Description,Posted Speed Limit (MPH),Posted Speed Limit - Unknown,Lighting,\
+    Weather - Clear,Weather - Snow,Weather - Cloudy,Weather - Fog/Smoke,Weather - Rain,Weather - Severe Wind,\
+    Weather - Unknown,Weather - Other,Weather - Other Text,Crash With,Highest Injury Severity Alleged,\
+    Property Damage?,CP Pre-Crash Movement,CP Any Air Bags Deployed?,CP Was Vehicle Towed?,\
+    CP Contact Area - Rear Left,CP Contact Area - Left,CP Contact Area - Front Left,CP Contact Area - Rear,\
+    CP Contact Area - Top,CP Contact Area - Front,CP Contact Area - Rear Right,CP Contact Area - Right,\
+    CP Contact Area - Front Right,CP Contact Area - Bottom,CP Contact Area - Unknown,SV Pre-Crash Movement,\
+    SV Any Air Bags Deployed?,SV Was Vehicle Towed?,SV Were All Passengers Belted?,SV Precrash Speed (MPH),\
+    SV Pre-crash Speed - Unknown,SV Contact Area - Rear Left,SV Contact Area - Left,SV Contact Area - Front Left,\
+    SV Contact Area - Rear,SV Contact Area - Top,SV Contact Area - Front,SV Contact Area - Rear Right,\
+    SV Contact Area - Right,SV Contact Area - Front Right,SV Contact Area - Bottom,SV Contact Area - Unknown,\
+    Data Availability - EDR,Data Availability - Police Rpt,Data Availability - Telematics,\
+    Data Availability - Complaints,Data Availability - Video,Data Availability - Other,Data Availability - No Data,\
+    Data Availability - Unknown,Law Enforcement Investigating?,Investigating Agency,Investigating Agency - Unknown,\
+    Rep Ent Or Mfr Investigating?,Investigating Officer Name,Inv. Officer Name - Unknown,\
+    Investigating Officer Phone,Inv. Officer Phone - Unknown,Investigating Officer Email,\
+    Inv. Officer Email - Unknown,Within ODD?,Within ODD? - CBI,Narrative,Narrative - CBI?";
+
+/// The 116 columns of the third edition (since the third amendment of June 2025).
+const THIRD_HEADER: &str = "\
+    Report ID,Report Version,Reporting Entity,Report Type,Report Month,Report Year,Report Submission Date,VIN,\
+    VIN Decoded,Serial Number,Make,Make - Unknown,Model,Model - Unknown,Model Year,Model Year - Unknown,\
+    Same Vehicle ID,Driver / Operator Type,Automation Feature Version,Automation Feature Version CBI,\
+    Automation System Engaged?,Engagement Status,Operating Entity,Operating Entity - Unknown,\
+    Source - Complaint/Claim,Source - Telematics,Source - Law Enforcement,Source - Field Report,Source - Testing,\
+    Source - Media,Source - Internal Process Review,Source - NHTSA VOQ,Source - Other - See Narrative,\
+    Source - Other Entity,Source - State or Other Agency,Incident Date,Incident Date - Unknown,\
+    Incident Time (24:00),Incident Time - Unknown,Same Incident ID,Latitude,Latitude - Unknown,Longitude,\
+    Longitude - Unknown,Address,Address - Unknown,City,City - Unknown,State,Zip Code,Zip Code - Unknown,\
+    Roadway Type,Roadway-Degraded Surface,Roadway-Missing/Degraded Marking,Roadway-No Unusual Conditions,\
+    Roadway-Other-See Narrative,Roadway-Traffic Incident,Roadway-Unknown,Roadway-Wet Surface Condition,\
+    Roadway-Work Zone,Weather - Clear,Weather - Snow,Weather - Cloudy,Weather - Partly Cloudy,\
+    Weather - Fog/Smoke/Haze,Weather - Rain,Weather - Severe Wind,Weather - Dust Storm,Weather - Severe Hurricane,\
+    Weather - Structure-Indoor,Weather - Unk - See Narrative,Crash With,Highest Injury Severity Alleged,\
+    CP Pre-Crash Movement,CP Contact Area - Rear Left,CP Contact Area - Left,CP Contact Area - Front Left,\
+    CP Contact Area - Rear,CP Contact Area - Top,CP Contact Area - Front,CP Contact Area - Rear Right,\
+    CP Contact Area - Right,CP Contact Area - Front Right,CP Contact Area - Bottom,CP Contact Area - Unknown,\
+    SV Pre-Crash Movement,Any Air Bags Deployed?,Was Any Vehicle Towed?,Were All Passengers Belted?,\
+    SV Precrash Speed (MPH),SV Pre-crash Speed - Unknown,SV Contact Area - Rear Left,SV Contact Area - Left,\
+    SV Contact Area - Front Left,SV Contact Area - Rear,SV Contact Area - Top,SV Contact Area - Front,\
+    SV Contact Area - Rear Right,SV Contact Area - Right,SV Contact Area - Front Right,SV Contact Area - Bottom,\
+    SV Contact Area - Unknown,Data Availability - EDR,Data Availability - Police Rpt,Data Availability - Telematics,\
+    Data Availability - Complaints,Data Availability - Video,Data Availability - Other,Data Availability - No Data,\
+    Data Availability - Unknown,Investigating Agency,Investigating Agency - Unknown,Within ODD?,Within ODD? - CBI,\
+    Narrative,Narrative - CBI?";
+
+/// Columns without which a row is no crash record.
+const REQUIRED: [&str; 6] =
+    ["Report ID", "Report Version", "Roadway Type", "CP Pre-Crash Movement", "SV Pre-Crash Movement", "Narrative"];
+
+/// How many known columns make a line a header.
+const LEAST_KNOWN_COLUMNS: usize = 4;
+
+/// Weather columns of all editions. `Weather - Unknown`, `- Other`, `- Other Text` and `- Unk - See Narrative` say
+/// nothing that a scenario could show.
+const WEATHER: [(&str, Weather); 11] = [
+    ("Weather - Clear", Weather::Clear),
+    ("Weather - Snow", Weather::Snow),
+    ("Weather - Cloudy", Weather::Cloudy),
+    ("Weather - Partly Cloudy", Weather::Cloudy),
+    ("Weather - Fog/Smoke", Weather::Fog),
+    ("Weather - Fog/Smoke/Haze", Weather::Fog),
+    ("Weather - Rain", Weather::Rain),
+    ("Weather - Severe Wind", Weather::SevereWind),
+    ("Weather - Dust Storm", Weather::SevereWind),
+    ("Weather - Severe Hurricane", Weather::SevereWind),
+    ("Weather - Structure-Indoor", Weather::Indoor),
+];
+
+/// Where a row says whether it lay in a work zone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WorkZoneColumn {
+    /// `Roadway Description` holds `Work Zone` (first and second edition).
+    Description(usize),
+    /// A flag column of its own (third edition).
+    Flag(usize),
+}
+
+/// Positions of the columns that are read. Columns that a file may lack are `None` then.
+#[derive(Debug, Clone)]
+pub struct Columns {
+    pub edition: Edition,
+    pub width: usize,
+    pub report_id: usize,
+    pub report_version: usize,
+    pub road: usize,
+    pub cp_movement: usize,
+    pub sv_movement: usize,
+    pub narrative: usize,
+    pub work_zone: WorkZoneColumn,
+    pub entity: Option<usize>,
+    pub report_type: Option<usize>,
+    pub make: Option<usize>,
+    pub model: Option<usize>,
+    pub model_year: Option<usize>,
+    pub engaged: Option<usize>,
+    pub engagement_status: Option<usize>,
+    pub operator: Option<usize>,
+    pub date: Option<usize>,
+    pub time: Option<usize>,
+    pub incident_id: Option<usize>,
+    pub city: Option<usize>,
+    pub state: Option<usize>,
+    pub surface: Option<usize>,
+    pub surface_wet: Option<usize>,
+    pub surface_usual: Option<usize>,
+    pub posted_speed: Option<usize>,
+    pub lighting: Option<usize>,
+    pub crash_with: Option<usize>,
+    pub severity: Option<usize>,
+    pub sv_speed: Option<usize>,
+    pub sv_speed_unknown: Option<usize>,
+    pub weather: Vec<(usize, Weather)>,
+    pub sv_zones: Vec<(usize, ContactZone)>,
+    pub cp_zones: Vec<(usize, ContactZone)>,
+}
+
+/// A header that was recognised, and what is odd about it.
+#[derive(Debug, Clone)]
+pub struct Recognised {
+    pub columns: Columns,
+    /// Columns of no edition, as they stand.
+    pub unknown: Vec<String>,
+    /// Columns that stand more than once; the first is read.
+    pub repeated: Vec<String>,
+    /// Columns of the edition that are read where they exist, and are not here.
+    pub absent: Vec<&'static str>,
+}
+
+/// Why a line is no header.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NotAHeader {
+    /// Next to no known column.
+    Unknown,
+    /// Known columns, but not all that are needed.
+    Missing { edition: Edition, names: Vec<&'static str> },
+}
+
+/// The columns of an edition, in its order.
+pub fn published_header(edition: Edition) -> impl Iterator<Item = &'static str> {
+    let header = match edition {
+        Edition::First => FIRST_HEADER,
+        Edition::Second => SECOND_HEADER,
+        Edition::Third => THIRD_HEADER,
+    };
+    header.split(',')
+}
+
+/// How an edition is called in messages.
+pub fn edition_name(edition: Edition) -> &'static str {
+    match edition {
+        Edition::First => "first edition (122 columns, 2021 to mid 2023)",
+        Edition::Second => "second edition (137 columns, to June 2025)",
+        Edition::Third => "third edition (116 columns, since June 2025)",
+    }
+}
+
+/// Recognises a header by its column names: the edition that shares most of them wins, the later one on a tie.
+/// Order, letter case, blanks and the kind of dash do not matter.
+pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
+    let keys: Vec<String> = names.iter().map(|name| header_key(name)).collect();
+    let known_in = |edition| published_header(edition).filter(|name| keys.contains(&header_key(name))).count();
+    let editions = [Edition::First, Edition::Second, Edition::Third];
+    let (known, edition) =
+        editions.into_iter().map(|edition| (known_in(edition), edition)).max().unwrap_or((0, Edition::Second));
+    if known < LEAST_KNOWN_COLUMNS {
+        return Err(NotAHeader::Unknown);
+    }
+
+    let find = |name: &str| keys.iter().position(|key| *key == header_key(name));
+    let description = find("Roadway Description").map(WorkZoneColumn::Description);
+    let work_zone = find("Roadway-Work Zone").map(WorkZoneColumn::Flag).or(description);
+    let mut missing: Vec<&'static str> = REQUIRED.into_iter().filter(|name| find(name).is_none()).collect();
+    if work_zone.is_none() {
+        missing.push(if edition == Edition::Third { "Roadway-Work Zone" } else { "Roadway Description" });
+    }
+    let (Some(work_zone), true) = (work_zone, missing.is_empty()) else {
+        return Err(NotAHeader::Missing { edition, names: missing });
+    };
+    let required = |name: &str| find(name).unwrap_or(0);
+
+    let mut absent = Vec::new();
+    let mut wanted = |name: &'static str| {
+        let position = find(name);
+        if position.is_none() && published_header(edition).any(|column| column == name) {
+            absent.push(name);
+        }
+        position
+    };
+    let zones = |side: &str| -> Vec<(usize, ContactZone)> {
+        ContactZone::ALL
+            .into_iter()
+            .filter_map(|zone| Some((find(&format!("{side} Contact Area - {}", zone.label()))?, zone)))
+            .collect()
+    };
+    let weather = WEATHER.iter().filter_map(|(name, weather)| Some((find(name)?, *weather))).collect();
+
+    let columns = Columns {
+        edition,
+        width: names.len(),
+        report_id: required("Report ID"),
+        report_version: required("Report Version"),
+        road: required("Roadway Type"),
+        cp_movement: required("CP Pre-Crash Movement"),
+        sv_movement: required("SV Pre-Crash Movement"),
+        narrative: required("Narrative"),
+        work_zone,
+        entity: wanted("Reporting Entity"),
+        report_type: wanted("Report Type"),
+        make: wanted("Make"),
+        model: wanted("Model"),
+        model_year: wanted("Model Year"),
+        engaged: wanted("Automation System Engaged?"),
+        engagement_status: wanted("Engagement Status"),
+        operator: wanted("Operating Entity"),
+        date: wanted("Incident Date"),
+        time: wanted("Incident Time (24:00)"),
+        incident_id: wanted("Same Incident ID"),
+        city: wanted("City"),
+        state: wanted("State"),
+        surface: wanted("Roadway Surface"),
+        surface_wet: wanted("Roadway-Wet Surface Condition"),
+        surface_usual: wanted("Roadway-No Unusual Conditions"),
+        posted_speed: wanted("Posted Speed Limit (MPH)"),
+        lighting: wanted("Lighting"),
+        crash_with: wanted("Crash With"),
+        severity: wanted("Highest Injury Severity Alleged").or_else(|| find("Highest Injury Severity")),
+        sv_speed: wanted("SV Precrash Speed (MPH)"),
+        sv_speed_unknown: wanted("SV Pre-crash Speed - Unknown"),
+        weather,
+        sv_zones: zones("SV"),
+        cp_zones: zones("CP"),
+    };
+
+    let known_anywhere = |key: &String| {
+        editions.into_iter().any(|edition| published_header(edition).any(|name| header_key(name) == *key))
+    };
+    let mut unknown = Vec::new();
+    let mut repeated = Vec::new();
+    for (position, key) in keys.iter().enumerate() {
+        if keys[..position].contains(key) {
+            repeated.push(names[position].trim().to_owned());
+        } else if !known_anywhere(key) {
+            unknown.push(names[position].trim().to_owned());
+        }
+    }
+    Ok(Recognised { columns, unknown, repeated, absent })
+}

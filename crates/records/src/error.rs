@@ -1,0 +1,107 @@
+//! What is wrong with a whole file: which file, what was expected, how to mend it.
+
+use thiserror::Error;
+
+/// A file that cannot be read at all. Single bad rows are no error: they are rejected by row number.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum IngestError {
+    /// No file was given.
+    #[error("no crash file was given; expected at least one SGO CSV file")]
+    NoFiles,
+    /// The file has no bytes, or blanks only.
+    #[error("{file}: the file is empty; expected an SGO CSV file with a header and data rows (was the download cut?)")]
+    Empty {
+        /// File name.
+        file: String,
+    },
+    /// The file is larger than [`crate::MAX_FILE_BYTES`].
+    #[error(
+        "{file}: {bytes} bytes, more than the {limit} that are read; split the file by rows, each part with the header"
+    )]
+    TooLarge {
+        /// File name.
+        file: String,
+        /// Its size. [byte]
+        bytes: usize,
+        /// The limit. [byte]
+        limit: usize,
+    },
+    /// The file is no text.
+    #[error("{file}: this is {looks_like}, not a CSV file; expected comma-separated text; {hint}")]
+    NotText {
+        /// File name.
+        file: String,
+        /// What it looks like.
+        looks_like: &'static str,
+        /// How to mend it.
+        hint: &'static str,
+    },
+    /// The first line names next to no column of any edition.
+    #[error(
+        "{file}: the first line is not the header of an SGO crash file (it starts \"{start}\"); \
+         expected columns such as \"Report ID\", \"Roadway Type\" and \"Narrative\"; \
+         use a file as NHTSA publishes it, header included"
+    )]
+    UnknownHeader {
+        /// File name.
+        file: String,
+        /// How the first line starts.
+        start: String,
+    },
+    /// The header lacks columns that are needed.
+    #[error(
+        "{file}: it looks like the {edition}, but lacks the column{} {}; \
+         use the file as published, without taking out or renaming columns",
+        if .missing.len() == 1 { "" } else { "s" }, quoted(.missing)
+    )]
+    MissingColumns {
+        /// File name.
+        file: String,
+        /// The edition it looks like.
+        edition: &'static str,
+        /// The columns that are missing.
+        missing: Vec<&'static str>,
+    },
+    /// There is a header, and nothing below it.
+    #[error(
+        "{file}: a header ({edition}) and no data row below it; expected one row per crash report (was the download cut?)"
+    )]
+    HeaderOnly {
+        /// File name.
+        file: String,
+        /// The edition it looks like.
+        edition: &'static str,
+    },
+}
+
+fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+}
+
+/// Content that is no text, by its first bytes: what it is, and what to do about it.
+const SIGNATURES: [(&[u8], &str, &str); 7] = [
+    (b"PK\x03\x04", "a ZIP archive or an Excel workbook", "unpack it, or save the sheet as CSV"),
+    (b"%PDF", "a PDF document", "give the CSV file, not the data dictionary"),
+    (b"\x1f\x8b", "a gzip file", "unpack it with gunzip"),
+    (b"PAR1", "a Parquet file", "give the CSV file it was made from"),
+    (b"\xd0\xcf\x11\xe0", "an old Excel workbook", "save the sheet as CSV"),
+    (b"SQLite format", "a SQLite database", "export the table as CSV"),
+    (b"\x89PNG", "a picture", "give the CSV file"),
+];
+
+/// How far to look for bytes that no text has. [byte]
+const BINARY_PROBE_BYTES: usize = 8192;
+
+/// What the file is, when it is no text: `(looks like, hint)`.
+pub fn not_text(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    if let Some((_, looks_like, hint)) = SIGNATURES.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
+        return Some((looks_like, hint));
+    }
+    let start = bytes.trim_ascii_start();
+    let opening = &start[..start.len().min(9)];
+    if opening.eq_ignore_ascii_case(b"<!doctype") || opening.to_ascii_lowercase().starts_with(b"<html") {
+        return Some(("a web page", "download the CSV file itself; the link led to a page"));
+    }
+    let probe = &bytes[..bytes.len().min(BINARY_PROBE_BYTES)];
+    probe.contains(&0).then_some(("a binary file", "give the CSV file as NHTSA publishes it"))
+}

@@ -1,0 +1,321 @@
+//! One file: bytes in, records and rejected rows out, in file order.
+
+use crate::columns::{Columns, NotAHeader, Recognised, edition_name, recognise};
+use crate::error::{IngestError, not_text};
+use crate::notes::Notes;
+use crate::row::{self, Draft};
+use crate::text::{decode, excerpt};
+use crate::{MAX_FILE_BYTES, SourceText};
+use csv::ByteRecord;
+use recrash_model::record::{Edition, Reject, RejectReason, SourceFile};
+use recrash_model::{Diagnostic, Location, Severity};
+use sha2::{Digest, Sha256};
+use std::borrow::Cow;
+use std::io::Cursor;
+
+/// Characters that part the fields: the published comma, and what spreadsheets write instead.
+const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
+
+/// Most malformed rows that get a diagnostic of their own in one file; the others are counted (each is rejected by its
+/// row number all the same).
+const MOST_MALFORMED_TOLD: usize = 100;
+
+/// A field longer than this has swallowed rows behind an unclosed quote. The longest published narrative has 3,500
+/// bytes. [byte]
+const LONGEST_FIELD_BYTES: usize = 100_000;
+
+/// What one file holds.
+#[derive(Debug)]
+pub struct FileContent {
+    /// The file, once for each edition in it.
+    pub sources: Vec<SourceFile>,
+    /// Rows that are records.
+    pub drafts: Vec<Draft>,
+    /// Rows that are none.
+    pub rejects: Vec<Reject>,
+    /// Remarks.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// SHA-256 in hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Reads one file.
+pub fn read_file(source: &SourceText<'_>, sha256: &str) -> Result<FileContent, IngestError> {
+    let file = || source.name.to_owned();
+    if source.bytes.len() > MAX_FILE_BYTES {
+        return Err(IngestError::TooLarge { file: file(), bytes: source.bytes.len(), limit: MAX_FILE_BYTES });
+    }
+    let bytes = without_byte_order_mark(source.bytes);
+    if bytes.trim_ascii().is_empty() {
+        return Err(IngestError::Empty { file: file() });
+    }
+    if let Some((looks_like, hint)) = not_text(&bytes) {
+        return Err(IngestError::NotText { file: file(), looks_like, hint });
+    }
+    let (delimiter, recognised) = match first_header(&bytes) {
+        Ok(found) => found,
+        Err((_, NotAHeader::Missing { edition, names })) => {
+            return Err(IngestError::MissingColumns { file: file(), edition: edition_name(edition), missing: names });
+        }
+        Err((start, NotAHeader::Unknown)) => return Err(IngestError::UnknownHeader { file: file(), start }),
+    };
+    let edition = recognised.columns.edition;
+    let content = FileReader::new(source.name, sha256, recognised).read(&bytes, delimiter);
+    if content.sources.iter().all(|part| part.rows == 0) {
+        return Err(IngestError::HeaderOnly { file: file(), edition: edition_name(edition) });
+    }
+    Ok(content)
+}
+
+/// The bytes without a UTF-8 mark; UTF-16 with a mark (a spreadsheet's "Unicode text") is converted.
+fn without_byte_order_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
+    match encoding_rs::Encoding::for_bom(bytes) {
+        Some((encoding, mark)) if encoding == encoding_rs::UTF_8 => Cow::Borrowed(&bytes[mark..]),
+        Some((encoding, _)) => Cow::Owned(encoding.decode(bytes).0.into_owned().into_bytes()),
+        None => Cow::Borrowed(bytes),
+    }
+}
+
+/// The header on the first line, by the delimiter that makes one of it.
+fn first_header(bytes: &[u8]) -> Result<(u8, Recognised), (String, NotAHeader)> {
+    let mut failure = None;
+    for delimiter in DELIMITERS {
+        let mut row = ByteRecord::new();
+        // An in-memory reader without UTF-8 checks and with flexible widths has no way to fail.
+        let _ = reader(bytes, delimiter).read_byte_record(&mut row);
+        match recognise(&names(&row)) {
+            Ok(recognised) => return Ok((delimiter, recognised)),
+            Err(NotAHeader::Unknown) if failure.is_some() => {}
+            Err(problem) => failure = Some((excerpt(&names(&row).join(",")), problem)),
+        }
+    }
+    Err(failure.unwrap_or((String::new(), NotAHeader::Unknown)))
+}
+
+fn reader(bytes: &[u8], delimiter: u8) -> csv::Reader<Cursor<&[u8]>> {
+    csv::ReaderBuilder::new().has_headers(false).flexible(true).delimiter(delimiter).from_reader(Cursor::new(bytes))
+}
+
+fn names(row: &ByteRecord) -> Vec<String> {
+    row.iter().map(|name| decode(name).0).collect()
+}
+
+struct FileReader<'a> {
+    name: &'a str,
+    sha256: &'a str,
+    columns: Columns,
+    notes: Notes,
+    rows: u64,
+    malformed: usize,
+    content: FileContent,
+}
+
+impl<'a> FileReader<'a> {
+    fn new(name: &'a str, sha256: &'a str, recognised: Recognised) -> Self {
+        let content =
+            FileContent { sources: Vec::new(), drafts: Vec::new(), rejects: Vec::new(), diagnostics: Vec::new() };
+        let columns = recognised.columns.clone();
+        let mut this = Self { name, sha256, columns, notes: Notes::default(), rows: 0, malformed: 0, content };
+        this.begin_part(recognised, 1);
+        this
+    }
+
+    fn read(mut self, bytes: &[u8], delimiter: u8) -> FileContent {
+        let mut reader = reader(bytes, delimiter);
+        let mut row = ByteRecord::new();
+        let mut header_pending = true;
+        while let Ok(true) = reader.read_byte_record(&mut row) {
+            if std::mem::take(&mut header_pending) {
+                continue;
+            }
+            let span = Span::of(&row, reader.position(), bytes);
+            if is_header(&row)
+                && let Ok(recognised) = recognise(&names(&row))
+            {
+                self.begin_part(recognised, span.line);
+                continue;
+            }
+            self.rows += 1;
+            if let Some(part) = self.content.sources.last_mut() {
+                part.rows += 1;
+            }
+            let read = self.check_shape(&row, &span).and_then(|()| {
+                row::read(&row, &self.columns, self.name, self.rows, &mut self.notes)
+                    .map_err(|problem| (problem, "give the row as published; nothing of it was used"))
+            });
+            match read {
+                Ok(draft) => self.content.drafts.push(draft),
+                Err((problem, hint)) => {
+                    self.reject(&row, &span, problem, hint);
+                    if let Some(position) = span.next_row_inside(delimiter) {
+                        // A reader over bytes in memory can be put anywhere inside them.
+                        let _ = reader.seek(position);
+                    }
+                }
+            }
+        }
+        if self.malformed > MOST_MALFORMED_TOLD {
+            let message = format!(
+                "{} more rows are malformed; each is rejected by its row number",
+                self.malformed - MOST_MALFORMED_TOLD
+            );
+            self.tell(Severity::Warning, "records.malformed-row", self.in_file(), message);
+        }
+        self.content.diagnostics.extend(self.notes.diagnostics(self.name));
+        self.content
+    }
+
+    /// Takes over a header: the first one, or one further down where files were put one after the other.
+    fn begin_part(&mut self, recognised: Recognised, line: u64) {
+        let edition = recognised.columns.edition;
+        let at = || Location { file: Some(self.name.to_owned()), line: Some(line), ..Location::default() };
+        let mut told = Vec::new();
+        if !self.content.sources.is_empty() {
+            let message = format!(
+                "a second header after {} data rows: several files stand in this one; read on as the {}",
+                self.rows,
+                edition_name(edition)
+            );
+            told.push(Diagnostic::new(Severity::Note, "records.second-header", at(), message));
+        }
+        let list = |names: &[String]| {
+            names.iter().take(20).map(|name| format!("\"{}\"", excerpt(name))).collect::<Vec<_>>().join(", ")
+        };
+        if !recognised.unknown.is_empty() {
+            let message =
+                format!("{} columns are in no edition: {}", recognised.unknown.len(), list(&recognised.unknown));
+            told.push(
+                Diagnostic::new(Severity::Note, "records.unknown-column", at(), message)
+                    .with_hint("they were not read"),
+            );
+        }
+        if !recognised.repeated.is_empty() {
+            let message = format!("columns stand more than once: {}", list(&recognised.repeated));
+            told.push(
+                Diagnostic::new(Severity::Warning, "records.repeated-column", at(), message)
+                    .with_hint("the first of each was read"),
+            );
+        }
+        if !recognised.absent.is_empty() {
+            let names: Vec<String> = recognised.absent.iter().map(|name| (*name).to_owned()).collect();
+            let message = format!("the {} has columns that are not here: {}", edition_name(edition), list(&names));
+            told.push(
+                Diagnostic::new(Severity::Warning, "records.missing-column", at(), message)
+                    .with_hint("what they hold is taken as not reported"),
+            );
+        }
+        self.content.diagnostics.extend(told);
+        let same_edition = self.content.sources.last().is_some_and(|part: &SourceFile| part.edition == edition);
+        if !same_edition {
+            self.content.sources.push(self.part(edition));
+        }
+        self.columns = recognised.columns;
+    }
+
+    fn part(&self, edition: Edition) -> SourceFile {
+        SourceFile { name: self.name.to_owned(), edition, rows: 0, sha256: self.sha256.to_owned() }
+    }
+
+    /// Whether the row has the shape the header promises.
+    fn check_shape(&self, row: &ByteRecord, span: &Span<'_>) -> Result<(), (String, &'static str)> {
+        if span.ends_inside_quotes() {
+            return Err(("the file ends inside a quoted field".to_owned(), "the file was cut; get it again"));
+        }
+        if row.len() != self.columns.width {
+            let kind = if row.len() < self.columns.width { "too few" } else { "too many" };
+            let message = format!("{kind} fields: {} instead of {}", row.len(), self.columns.width);
+            return Err((message, "look for a missing or an unescaped quote, or a line cut short"));
+        }
+        if let Some(field) = row.iter().position(|field| field.len() > LONGEST_FIELD_BYTES) {
+            let message = format!("field {} is longer than {LONGEST_FIELD_BYTES} bytes", field + 1);
+            return Err((message, "look for a quote that is never closed"));
+        }
+        Ok(())
+    }
+
+    fn reject(&mut self, row: &ByteRecord, span: &Span<'_>, problem: String, hint: &str) {
+        self.malformed += 1;
+        let record = row::record_ref(row, &self.columns);
+        self.content.rejects.push(Reject {
+            file: self.name.to_owned(),
+            row: self.rows,
+            record,
+            reason: RejectReason::Malformed,
+        });
+        if self.malformed <= MOST_MALFORMED_TOLD {
+            let location = Location { row: Some(self.rows), line: Some(span.line), ..self.in_file() };
+            let diagnostic = Diagnostic::new(Severity::Warning, "records.malformed-row", location, problem);
+            self.content.diagnostics.push(diagnostic.with_hint(hint));
+        }
+    }
+
+    fn in_file(&self) -> Location {
+        Location { file: Some(self.name.to_owned()), ..Location::default() }
+    }
+
+    fn tell(&mut self, severity: Severity, code: &str, location: Location, message: String) {
+        self.content.diagnostics.push(Diagnostic::new(severity, code, location, message));
+    }
+}
+
+/// Whether a row is a header: cheap to say no.
+fn is_header(row: &ByteRecord) -> bool {
+    row.get(0).is_some_and(|first| first.trim_ascii().eq_ignore_ascii_case(b"report id"))
+}
+
+/// The bytes of one row.
+struct Span<'a> {
+    raw: &'a [u8],
+    start: usize,
+    line: u64,
+    is_last: bool,
+}
+
+impl<'a> Span<'a> {
+    fn of(row: &ByteRecord, end: &csv::Position, bytes: &'a [u8]) -> Self {
+        let (start, line) = row.position().map_or((0, 0), |position| (position.byte() as usize, position.line()));
+        let end = (end.byte() as usize).min(bytes.len());
+        let whole = bytes.get(start..end).unwrap_or_default();
+        // The reader counts the line end and the blank lines before a row as part of it.
+        let blank = whole.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+        let lines = whole[..blank].iter().filter(|byte| **byte == b'\n').count() as u64;
+        Self { raw: &whole[blank..], start: start + blank, line: line + lines, is_last: end == bytes.len() }
+    }
+
+    /// Whether this is the file's last row, cut inside a quoted field.
+    fn ends_inside_quotes(&self) -> bool {
+        self.is_last && self.raw.iter().filter(|byte| **byte == b'"').count() % 2 == 1
+    }
+
+    /// Where reading can go on inside a malformed row: an unclosed quote swallows the rows below it, and these are told
+    /// by their report id and version at the start of a line.
+    fn next_row_inside(&self, delimiter: u8) -> Option<csv::Position> {
+        let mut line = self.line;
+        for (offset, _) in self.raw.iter().enumerate().filter(|(_, byte)| **byte == b'\n') {
+            line += 1;
+            let rest = &self.raw[offset + 1..];
+            if looks_like_row_start(rest, delimiter) {
+                let mut position = csv::Position::new();
+                position.set_byte((self.start + offset + 1) as u64).set_line(line);
+                return Some(position);
+            }
+        }
+        None
+    }
+}
+
+/// `30270-7733,2,` or `"30270-7733","2",`, or a header.
+fn looks_like_row_start(text: &[u8], delimiter: u8) -> bool {
+    let mut fields = text.splitn(3, |byte| *byte == delimiter).map(|field| {
+        let field = field.trim_ascii();
+        field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
+    });
+    let (Some(id), Some(version), Some(_)) = (fields.next(), fields.next(), fields.next()) else { return false };
+    let digits = |text: &[u8]| !text.is_empty() && text.len() <= 8 && text.iter().all(u8::is_ascii_digit);
+    let is_id =
+        id.iter().position(|byte| *byte == b'-').is_some_and(|dash| digits(&id[..dash]) && digits(&id[dash + 1..]));
+    (is_id && digits(version)) || id.eq_ignore_ascii_case(b"report id")
+}

@@ -1,0 +1,131 @@
+//! Which rows tell of the same thing: versions of one report, and reports of one incident.
+
+use crate::row::Draft;
+use recrash_model::record::{RecordRef, Redaction};
+use recrash_model::{Diagnostic, Location, Severity};
+use std::collections::BTreeMap;
+
+/// A narrative shorter than this that names another report, or says that there is nothing new, only refers to it.
+/// [byte, from the published narratives: the longest such has 145, the shortest that tells its own story 140 and
+/// names no report]
+const LONGEST_REFERENCE_BYTES: usize = 250;
+
+/// Turns of phrase of narratives that only refer to another report.
+const REFERENCES: [&str; 9] = [
+    "refer to",
+    "see report",
+    "for narrative details",
+    "no update to narrative",
+    "no additional information",
+    "no new information",
+    "no further information",
+    "no change to narrative",
+    "see original report",
+];
+
+/// Positions of the drafts that are merged into another, and remarks. Narratives of kept reports that only refer to an
+/// earlier version or to another report are replaced by what they refer to.
+pub fn merge(drafts: &mut [Draft]) -> (Vec<bool>, Vec<Diagnostic>) {
+    let mut merged = vec![false; drafts.len()];
+    let mut diagnostics = Vec::new();
+
+    for versions in groups(drafts, |draft| Some(draft.record.id.report_id.clone())) {
+        let newest = versions.iter().copied().max_by_key(|&i| (drafts[i].record.id.version, i));
+        let Some(newest) = newest else { continue };
+        let mut older: Vec<usize> = versions.into_iter().filter(|&i| i != newest).collect();
+        older.sort_by_key(|&i| std::cmp::Reverse((drafts[i].record.id.version, i)));
+        if !tells_its_story(&drafts[newest])
+            && let Some(&source) = older.iter().find(|&&i| tells_its_story(&drafts[i]))
+        {
+            diagnostics.push(take_narrative(drafts, newest, source, "an earlier version"));
+        }
+        older.into_iter().for_each(|i| merged[i] = true);
+    }
+
+    let reports: BTreeMap<String, usize> =
+        (0..drafts.len()).filter(|&i| !merged[i]).map(|i| (drafts[i].record.id.report_id.clone(), i)).collect();
+    for i in 0..drafts.len() {
+        if merged[i] || drafts[i].record.redaction != Redaction::Open || tells_its_story(&drafts[i]) {
+            continue;
+        }
+        let named = report_ids(&drafts[i].record.narrative).find_map(|id| reports.get(id).copied());
+        if let Some(source) = named.filter(|&source| source != i && tells_its_story(&drafts[source])) {
+            diagnostics.push(take_narrative(drafts, i, source, "the report it refers to"));
+        }
+    }
+
+    for reports in groups(drafts, |draft| draft.record.incident_id.clone()) {
+        let reports: Vec<usize> = reports.into_iter().filter(|&i| !merged[i]).collect();
+        let best = reports.iter().copied().max_by_key(|&i| {
+            let draft = &drafts[i];
+            (tells_its_story(draft), draft.operator_reports, draft.record.template().is_some(), std::cmp::Reverse(i))
+        });
+        reports.into_iter().filter(|&i| Some(i) != best).for_each(|i| merged[i] = true);
+    }
+    (merged, diagnostics)
+}
+
+/// Drafts with the same key, in the order of keys, each group in file order.
+fn groups(drafts: &[Draft], key: impl Fn(&Draft) -> Option<String>) -> Vec<Vec<usize>> {
+    let mut by_key: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (i, draft) in drafts.iter().enumerate() {
+        if let Some(key) = key(draft) {
+            by_key.entry(key).or_default().push(i);
+        }
+    }
+    by_key.into_values().collect()
+}
+
+/// Whether the narrative can be read and tells what happened, rather than where else to look.
+fn tells_its_story(draft: &Draft) -> bool {
+    let record = &draft.record;
+    record.redaction == Redaction::Open && !only_refers(&record.narrative)
+}
+
+/// Whether a narrative only refers to another one.
+pub fn only_refers(narrative: &str) -> bool {
+    let lower = narrative.to_lowercase();
+    narrative.len() <= LONGEST_REFERENCE_BYTES && REFERENCES.iter().any(|phrase| lower.contains(phrase))
+        || (narrative.len() <= 120 && lower.starts_with("see ") && lower.contains("report"))
+}
+
+/// Report ids in a text: `30490-11294`, also with a version behind it, as in `30490-11294-1`.
+fn report_ids(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_ascii_digit() || c == '-')).filter_map(|word| {
+        let mut parts = word.splitn(3, '-');
+        let (entity, number) = (parts.next()?, parts.next()?);
+        let is_id = (3..=6).contains(&entity.len()) && (1..=7).contains(&number.len());
+        is_id.then(|| &word[..entity.len() + 1 + number.len()])
+    })
+}
+
+fn take_narrative(drafts: &mut [Draft], to: usize, from: usize, what: &str) -> Diagnostic {
+    let narrative = drafts[from].record.narrative.clone();
+    let source: RecordRef = drafts[from].record.id.clone();
+    let target = &mut drafts[to].record;
+    target.narrative = narrative;
+    target.redaction = Redaction::Open;
+    let location = Location::at_row(target.provenance.file.clone(), target.provenance.row);
+    let message = format!("report {} gives no narrative of its own; {what}, {source}, lends it", target.id);
+    Diagnostic::new(Severity::Note, "records.narrative-lent", location, message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn references_are_told_from_stories() {
+        assert!(only_refers("No update to narrative. Please refer to the operator's first report."));
+        assert!(only_refers("See Northlight report 123 for narrative details."));
+        assert!(!only_refers("Our shuttle was hit from behind by a van while it waited at the light."));
+        let long = format!("Please refer to the map. {}", "The van went on. ".repeat(20));
+        assert!(!only_refers(&long));
+    }
+
+    #[test]
+    fn report_ids_are_found_with_and_without_version() {
+        let ids: Vec<&str> = report_ids("see 30490-11294-1 and (502-77), not 1-2, 2021-, or --").collect();
+        assert_eq!(ids, ["30490-11294", "502-77"]);
+    }
+}

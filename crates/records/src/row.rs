@@ -1,0 +1,198 @@
+//! One row: cells in, a record out.
+
+use crate::cells::{self, Cell};
+use crate::codes;
+use crate::columns::{Columns, WorkZoneColumn};
+use crate::notes::{Notes, Remark};
+use crate::text::{decode, mend_twice_encoded, same_code};
+use csv::ByteRecord;
+use recrash_model::record::{Coded, CrashRecord, Engagement, Provenance, RecordRef, Redaction, Surface};
+
+/// NHTSA's mark for a narrative, or a part of one, withheld as confidential business information.
+pub const REDACTED: &str = "[REDACTED, MAY CONTAIN CONFIDENTIAL BUSINESS INFORMATION]";
+
+/// A record, and what only this crate needs to know about it.
+#[derive(Debug)]
+pub struct Draft {
+    pub record: CrashRecord,
+    /// The row says that there is nothing to report.
+    pub not_a_crash: bool,
+    /// The reporting entity is the operator itself, and no manufacturer that passes its report on.
+    pub operator_reports: bool,
+}
+
+/// The row's report id and version, where they can be read.
+pub fn record_ref(row: &ByteRecord, columns: &Columns) -> Option<RecordRef> {
+    let report_id = decode(row.get(columns.report_id)?).0.trim().to_owned();
+    let version = decode(row.get(columns.report_version)?).0.trim().parse().ok()?;
+    let plausible = !report_id.is_empty() && report_id.len() <= 40;
+    plausible.then_some(RecordRef { report_id, version })
+}
+
+/// Reads a row of the right width; an error says what makes it no record.
+pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes: &mut Notes) -> Result<Draft, String> {
+    let id = record_ref(row, columns)
+        .ok_or("the report id is empty or too long, or the report version is no whole number")?;
+    let mut cells = Cells { row, number, notes };
+
+    let entity = cells.text(columns.entity);
+    let operator = cells.text(columns.operator);
+    let narrative = cells.narrative(columns.narrative);
+    let redaction = if narrative.contains(REDACTED) {
+        Redaction::Redacted
+    } else if narrative.is_empty() {
+        Redaction::Empty
+    } else {
+        Redaction::Open
+    };
+    let record = CrashRecord {
+        id,
+        incident_id: Some(cells.text(columns.incident_id)).filter(|text| !text.is_empty()),
+        vehicle: joined(" ", [cells.text(columns.model_year), cells.text(columns.make), cells.text(columns.model)]),
+        when: cells.read(columns.date, "Incident Date", cells::year_month),
+        time_of_day_min: cells.read(columns.time, "Incident Time (24:00)", cells::time_of_day_min),
+        place: joined(", ", [cells.text(columns.city), cells.text(columns.state), String::new()]),
+        road: cells.code(Some(columns.road), "Roadway Type", codes::ROAD_TYPES),
+        work_zone: cells.work_zone(columns.work_zone),
+        surface: cells.surface(columns),
+        lighting: cells.code(columns.lighting, "Lighting", codes::LIGHTINGS).known(),
+        weather: cells.ticks(&columns.weather, "Weather"),
+        // A posted limit of 0 is a slip of the pen.
+        posted_speed_mps: cells
+            .read(columns.posted_speed, "Posted Speed Limit (MPH)", cells::speed_mps)
+            .filter(|limit| *limit > 0.0),
+        partner: cells.code(columns.crash_with, "Crash With", codes::PARTNERS),
+        cp_movement: cells.code(Some(columns.cp_movement), "CP Pre-Crash Movement", codes::MOVEMENTS),
+        sv_movement: cells.code(Some(columns.sv_movement), "SV Pre-Crash Movement", codes::MOVEMENTS),
+        sv_speed_mps: cells
+            .read(columns.sv_speed, "SV Precrash Speed (MPH)", cells::speed_mps)
+            .filter(|_| !cells.is_ticked(columns.sv_speed_unknown, "SV Pre-crash Speed - Unknown")),
+        sv_zones: cells.ticks(&columns.sv_zones, "SV Contact Area"),
+        cp_zones: cells.ticks(&columns.cp_zones, "CP Contact Area"),
+        severity: cells.code(columns.severity, "Highest Injury Severity Alleged", codes::SEVERITIES),
+        engagement: cells.engagement(columns),
+        narrative,
+        redaction,
+        provenance: Provenance { file: file.to_owned(), edition: columns.edition, row: number },
+        entity,
+    };
+    let not_a_crash = same_code(&cells.text(columns.report_type), codes::NO_REPORT);
+    let operator_reports = same_entity(&record.entity, &operator);
+    Ok(Draft { record, not_a_crash, operator_reports })
+}
+
+/// Whether two names are the same company: `Zoox, Inc.` operates as `Zoox`.
+fn same_entity(entity: &str, operator: &str) -> bool {
+    let first_word =
+        |name: &str| -> String { name.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_lowercase() };
+    !operator.is_empty() && first_word(entity) == first_word(operator)
+}
+
+fn joined(separator: &str, parts: [String; 3]) -> String {
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(separator)
+}
+
+struct Cells<'a> {
+    row: &'a ByteRecord,
+    number: u64,
+    notes: &'a mut Notes,
+}
+
+impl<'a> Cells<'a> {
+    fn bytes(&self, position: Option<usize>) -> &'a [u8] {
+        position.and_then(|position| self.row.get(position)).unwrap_or_default().trim_ascii()
+    }
+
+    fn text(&mut self, position: Option<usize>) -> String {
+        let (text, windows_1252) = decode(self.bytes(position));
+        if windows_1252 {
+            self.notes.add_windows_1252();
+        }
+        text
+    }
+
+    fn narrative(&mut self, position: usize) -> String {
+        let text = self.text(Some(position));
+        match mend_twice_encoded(&text) {
+            Some(mended) => {
+                self.notes.add_mended();
+                mended
+            }
+            None => text,
+        }
+    }
+
+    fn code<T: Copy>(&mut self, position: Option<usize>, column: &'static str, table: &codes::Table<T>) -> Coded<T> {
+        let text = self.text(position);
+        let coded = codes::look_up(table, &text);
+        if let Coded::Unlisted(text) = &coded {
+            self.notes.add(Remark::UnlistedCode, column, text, self.number);
+        }
+        coded
+    }
+
+    fn read<T>(&mut self, position: Option<usize>, column: &'static str, reader: fn(&str) -> Cell<T>) -> Option<T> {
+        let text = self.text(position);
+        match reader(&text) {
+            Cell::Value(value) => Some(value),
+            Cell::Empty => None,
+            Cell::Unreadable => {
+                self.notes.add(Remark::Unreadable, column, &text, self.number);
+                None
+            }
+        }
+    }
+
+    fn is_ticked(&mut self, position: Option<usize>, column: &'static str) -> bool {
+        let bytes = self.bytes(position);
+        match cells::ticked(bytes) {
+            Cell::Value(()) => true,
+            Cell::Empty => false,
+            Cell::Unreadable => {
+                self.notes.add(Remark::Unreadable, column, &decode(bytes).0, self.number);
+                false
+            }
+        }
+    }
+
+    fn ticks<T: Copy + PartialEq>(&mut self, columns: &[(usize, T)], group: &'static str) -> Vec<T> {
+        let mut all = Vec::new();
+        for (position, value) in columns {
+            if self.is_ticked(Some(*position), group) && !all.contains(value) {
+                all.push(*value);
+            }
+        }
+        all
+    }
+
+    fn work_zone(&mut self, column: WorkZoneColumn) -> bool {
+        match column {
+            WorkZoneColumn::Flag(position) => self.is_ticked(Some(position), "Roadway-Work Zone"),
+            WorkZoneColumn::Description(position) => {
+                matches!(
+                    self.code(Some(position), "Roadway Description", codes::ROAD_DESCRIPTIONS),
+                    Coded::Known(codes::RoadDescription::WorkZone)
+                )
+            }
+        }
+    }
+
+    /// The third edition ticks a wet surface; where it ticks that nothing was unusual instead, the surface was dry.
+    fn surface(&mut self, columns: &Columns) -> Option<Surface> {
+        if columns.surface.is_some() {
+            return self.code(columns.surface, "Roadway Surface", codes::SURFACES).known();
+        }
+        if self.is_ticked(columns.surface_wet, "Roadway-Wet Surface Condition") {
+            return Some(Surface::Wet);
+        }
+        self.is_ticked(columns.surface_usual, "Roadway-No Unusual Conditions").then_some(Surface::Dry)
+    }
+
+    fn engagement(&mut self, columns: &Columns) -> Coded<Engagement> {
+        let system = self.code(columns.engaged, "Automation System Engaged?", codes::ENGAGEMENTS);
+        match self.code(columns.engagement_status, "Engagement Status", codes::ENGAGEMENT_STATUSES) {
+            Coded::Known(codes::EngagementStatus::NotEngaged) => Coded::Known(Engagement::NotEngaged),
+            _ => system,
+        }
+    }
+}

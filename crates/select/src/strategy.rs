@@ -1,0 +1,112 @@
+//! The strategies: from the clustering space to groups with a pick each.
+
+use crate::SelectOptions;
+use crate::apportion::equal_proportions;
+use crate::greedy::{facility_location, k_center};
+use crate::kmeans::kmeans;
+use crate::matrix::{Matrix, squared_distance};
+use crate::space::ClusteringSpace;
+use recrash_model::selection::Strategy;
+
+/// A cluster: rows of the space, the pick first, then the nearest to the centre first. Never empty.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Group {
+    pub members: Vec<usize>,
+}
+
+impl Group {
+    pub fn pick(&self) -> usize {
+        self.members[0]
+    }
+}
+
+/// Groups of all rows by the strategy asked for, at most `budget` of them, in no particular order.
+pub(crate) fn choose(space: &ClusteringSpace, options: &SelectOptions) -> Vec<Group> {
+    match options.strategy {
+        Strategy::Stratified => stratified(space, options),
+        Strategy::Kmeans => {
+            let rows: Vec<usize> = (0..space.points.rows).collect();
+            let seed = options.seed.child("kmeans");
+            groups_by_kmeans(&space.points, &space.weights, &rows, options.budget, options.restarts, seed)
+        }
+        Strategy::KCenter => groups_around(space, k_center(&space.points, options.budget)),
+        Strategy::FacilityLocation => {
+            groups_around(space, facility_location(&space.points, &space.weights, options.budget))
+        }
+    }
+}
+
+/// One pick per observed template first; the others shared out by equal proportions; k-means inside each template.
+fn stratified(space: &ClusteringSpace, options: &SelectOptions) -> Vec<Group> {
+    // Heaviest first, so that they win where the budget is short; equals stay in the order of tables.
+    let mut order: Vec<usize> = (0..space.observed.len()).collect();
+    order.sort_by(|&a, &b| space.observed[b].weight.total_cmp(&space.observed[a].weight));
+    let weights: Vec<f64> = order.iter().map(|&t| space.observed[t].weight).collect();
+    let of_template: Vec<Matrix> = order.iter().map(|&t| space.narrative.select(&space.observed[t].rows)).collect();
+    // Equal narratives of one template are one point: a second pick there would be the same scenario again.
+    let limits: Vec<usize> = of_template.iter().map(Matrix::distinct_rows).collect();
+    let shares = equal_proportions(&weights, &limits, options.budget);
+
+    let mut groups = Vec::new();
+    let mut without_pick = Vec::new();
+    for ((&t, points), &share) in order.iter().zip(&of_template).zip(&shares) {
+        let template = &space.observed[t];
+        if share == 0 {
+            without_pick.extend_from_slice(&template.rows);
+            continue;
+        }
+        let weights: Vec<f64> = template.rows.iter().map(|&row| space.weights[row]).collect();
+        let seed = options.seed.child(&template.template.slug());
+        groups.extend(groups_by_kmeans(points, &weights, &template.rows, share, options.restarts, seed));
+    }
+    join_nearest(space, &mut groups, &without_pick);
+    groups
+}
+
+/// k-means on `points`; point `i` is row `rows[i]` of the space. The pick is the point nearest to the centre, the first
+/// of equals.
+fn groups_by_kmeans(
+    points: &Matrix,
+    weights: &[f64],
+    rows: &[usize],
+    k: usize,
+    restarts: usize,
+    seed: recrash_model::Seed,
+) -> Vec<Group> {
+    let clustering = kmeans(points, weights, k, restarts, seed);
+    let mut groups: Vec<Vec<(f64, usize)>> = vec![Vec::new(); clustering.centres.rows];
+    for (i, &group) in clustering.groups.iter().enumerate() {
+        let distance = squared_distance(points.row(i), clustering.centres.row(group));
+        groups[group].push((distance, rows[i]));
+    }
+    groups.into_iter().filter(|group| !group.is_empty()).map(nearest_first).collect()
+}
+
+/// Each row joins the nearest of these picks, the first of equals.
+fn groups_around(space: &ClusteringSpace, picks: Vec<usize>) -> Vec<Group> {
+    let mut groups: Vec<Group> = picks.iter().map(|&pick| Group { members: vec![pick] }).collect();
+    let others: Vec<usize> = (0..space.points.rows).filter(|row| !picks.contains(row)).collect();
+    join_nearest(space, &mut groups, &others);
+    groups
+}
+
+/// Appends rows to the groups of their nearest picks, the nearest row first.
+fn join_nearest(space: &ClusteringSpace, groups: &mut [Group], rows: &[usize]) {
+    let mut joining: Vec<Vec<(f64, usize)>> = vec![Vec::new(); groups.len()];
+    for &row in rows {
+        let to = |group: &Group| squared_distance(space.points.row(row), space.points.row(group.pick()));
+        let nearest =
+            groups.iter().map(to).enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best });
+        if let Some((group, distance)) = nearest {
+            joining[group].push((distance, row));
+        }
+    }
+    for (group, joining) in groups.iter_mut().zip(joining) {
+        group.members.extend(nearest_first(joining).members);
+    }
+}
+
+fn nearest_first(mut members: Vec<(f64, usize)>) -> Group {
+    members.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    Group { members: members.into_iter().map(|(_, row)| row).collect() }
+}
