@@ -160,11 +160,7 @@ pub fn picks(selection: &Selection) {
     title("Picks");
     let mut rows = table(&["scenario", "record", "cluster of"]);
     for cluster in &selection.clusters {
-        rows.add_row(vec![
-            Cell::new(&cluster.scenario_id),
-            Cell::new(&cluster.pick),
-            number(cluster.members.len()),
-        ]);
+        rows.add_row(vec![Cell::new(&cluster.scenario_id), Cell::new(&cluster.pick), number(cluster.members.len())]);
     }
     println!("{rows}");
 }
@@ -217,7 +213,13 @@ pub fn summary(summary: &Summary, dir: &Path) {
 pub fn run(result: &FileRun) {
     let run = &result.run;
     result.diagnostics.iter().for_each(remark);
-    println!("{} under {}: {:?} after {:.1} s", run.rollout.scenario_id.bold(), run.rollout.ego, run.metrics.termination, run.metrics.duration_s);
+    println!(
+        "{} under {}: {:?} after {:.1} s",
+        run.rollout.scenario_id.bold(),
+        run.rollout.ego,
+        run.metrics.termination,
+        run.metrics.duration_s
+    );
     let mut rows = table(&["with", "min gap", "at", "centres", "TTC", "PET", "DRAC", "headway"]);
     let timed = |value: Option<f64>, unit: &str| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.2} {unit}"));
     for partner in &run.metrics.partners {

@@ -21,8 +21,8 @@ pub use casework::{CaseRun, DesignAttempt, DesignLog, FileRun, read_scenario, ru
 pub use error::PipelineError;
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
+pub use recrash_roads::scenario_schema as schema;
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Stage, Suite};
-pub use recrash_roads::scenario_schema as schema;
 pub use summary::{CaseSummary, RunSummary, Summary};

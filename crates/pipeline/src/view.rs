@@ -31,7 +31,8 @@ pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[
 
 fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseView {
     let id = &case.cluster.scenario_id;
-    let positions = case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
+    let positions =
+        case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
     let moved = case.tune_log.best != 0;
     CaseView {
         scenario_id: id.clone(),

@@ -1,6 +1,6 @@
 //! From a narrative to a scenario: map, lanes, speeds and timing that make the told conflict happen.
 
-use super::limits::{most_speed, most_speed_of};
+use super::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
 use super::retry::{Levers, Wanted, levers};
 use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_way, ground, stagings};
 use super::writing::Facts;
@@ -21,9 +21,6 @@ const LANE_WIDTH_M: f64 = 3.5;
 const LEAD_TIME_S: f64 = 5.5;
 /// The ego's start along the approach: MetaDrive's. [m]
 const EGO_START_M: f64 = 5.0;
-/// A recorded speed below this is that of a vehicle that had braked or stopped, not its speed on the approach; assumed.
-/// [m/s]
-const LEAST_TOLD_SPEED_MPS: f64 = 3.0;
 /// Speed where neither record nor road sign tells one: 30 km/h, MetaDrive's. [m/s]
 const DEFAULT_SPEED_MPS: f64 = 8.3;
 /// Drivers near a conflict go slower than the posted speed; assumed.
@@ -161,8 +158,12 @@ impl<'a> Stage<'a> {
         let map = self.map(approach_m.ceil(), arm_m.ceil());
         let network = RoadNetwork::build(&map);
         let way = Way::new(&network, Approach::Same, turn(self.ground, self.narrative.template.sv), self.lanes.ego);
-        let other =
-            Way::new(&network, self.staging.approach, turn(self.ground, self.narrative.template.cp), self.lanes.partner);
+        let other = Way::new(
+            &network,
+            self.staging.approach,
+            turn(self.ground, self.narrative.template.cp),
+            self.lanes.partner,
+        );
         let mut draft = self.frame(map);
         match self.staging.conflict {
             ConflictKind::Paths => self.stage_paths(&mut draft, &network, &way, &other),
@@ -336,7 +337,8 @@ impl<'a> Stage<'a> {
         let partner_mps = round_to(self.ego_mps * ratio, 0.01);
         let towards = if self.staging.beside == Some(Side::Left) { 1.0 } else { -1.0 };
         let touched = !self.wanted.sv.is_empty() && !self.wanted.cp.is_empty() && !self.levers.near_miss;
-        let ahead = if touched { shift_of_contact(self.wanted).clamp(-4.0, 4.0) } else { 5.5 } + self.levers.start_shift_m;
+        let ahead =
+            if touched { shift_of_contact(self.wanted).clamp(-4.0, 4.0) } else { 5.5 } + self.levers.start_shift_m;
         let delta_s = partner_place + ahead - partner_mps * meets_s - draft.ego.s_m;
         if delta_s < 0.0 {
             draft.ego.s_m = round_to(draft.ego.s_m - delta_s, 0.5);
@@ -356,8 +358,7 @@ impl<'a> Stage<'a> {
         let partner = &mut draft.partners[0];
         partner.speed_mps = partner_mps;
         partner.policy = Policy::IdmNominal { target_speed_mps: partner_mps };
-        partner.start =
-            Start::Offset { delta_s_m: round_to(delta_s, 0.1), delta_t_m: round_to(from_t * towards, 0.1) };
+        partner.start = Start::Offset { delta_s_m: round_to(delta_s, 0.1), delta_t_m: round_to(from_t * towards, 0.1) };
         partner.lateral = vec![LateralMove {
             start_s: round_to((meets_s - move_s).max(0.5), 0.1),
             duration_s: move_s,

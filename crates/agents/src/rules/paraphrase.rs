@@ -6,9 +6,7 @@ use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, groun
 use super::writing;
 use crate::{AgentError, Brief};
 use recrash_model::metrics::CollisionKind;
-use recrash_model::narrative::{
-    Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side,
-};
+use recrash_model::narrative::{Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side};
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Approach, Author};
 use recrash_model::template::{Movement, RoadType};
@@ -86,14 +84,18 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
     let (staging, source) = match &reading.relation {
         Some((relation, source)) => match stage(*relation, brief, ways) {
             Some(staging) => (staging, source.clone()),
-            None => return Err(format!("{id} tells of a partner {}, which cannot end in this template", phrase(*relation))),
+            None => {
+                return Err(format!("{id} tells of a partner {}, which cannot end in this template", phrase(*relation)));
+            }
         },
         None => match from_zones(reading, ways) {
             Some(staging) => {
                 let why = "not told; the contact areas suggest this side".to_owned();
                 (staging, FactSource::Assumed { why })
             }
-            None => (ways[0], FactSource::Assumed { why: "not told; the most typical approach of the template".into() }),
+            None => {
+                (ways[0], FactSource::Assumed { why: "not told; the most typical approach of the template".into() })
+            }
         },
     };
     let facts = reading.facts.clone();
@@ -169,13 +171,26 @@ fn stage(relation: Relation, brief: &Brief, ways: &[Staging]) -> Option<Staging>
         .copied()
 }
 
+/// The staging the contact areas suggest: on which side of the ego the partner was, and from where a partner of this
+/// template typically comes there.
 fn from_zones(reading: &Reading, ways: &[Staging]) -> Option<Staging> {
     let side = relation_from_zones(reading.record)?;
     let arm = match side {
         Side::Left => Approach::Left,
         Side::Right => Approach::Right,
     };
-    ways.iter().find(|way| way.approach == arm).or_else(|| ways.iter().find(|way| way.beside == Some(side))).copied()
+    let movements = (reading.record.sv_movement.known(), reading.record.cp_movement.known());
+    let oncoming = match movements {
+        // An ego that turns left shows its right side to oncoming traffic, one that goes straight meets the front or the
+        // right side of an oncoming left-turner with its left.
+        (Some(Movement::LeftTurn), Some(Movement::Straight)) => side == Side::Right,
+        (Some(Movement::Straight), Some(Movement::LeftTurn)) => side == Side::Left,
+        _ => false,
+    };
+    let first = |is: &dyn Fn(&Staging) -> bool| ways.iter().find(|way| is(way)).copied();
+    first(&|way| oncoming && way.approach == Approach::Opposite)
+        .or_else(|| first(&|way| way.approach == arm))
+        .or_else(|| first(&|way| way.beside == Some(side)))
 }
 
 fn phrase(relation: Relation) -> &'static str {
