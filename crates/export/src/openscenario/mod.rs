@@ -58,11 +58,14 @@ pub(crate) fn files(
         file(map_file.clone(), context.map.document(scenario.network(), id)),
         file(scenario_file.clone(), document(&context, &title, &map_file)),
     ];
-    if parameters.iter().any(|parameter| context.names.find(&parameter.pointer).is_some()) {
+    // A recording cannot be varied.
+    let varies = context.tracks.is_empty();
+    if varies && parameters.iter().any(|parameter| context.names.find(&parameter.pointer).is_some()) {
         let header = |what: &str| header(&context, &format!("{title}: {what}"));
         let ranges = sweep::ranges(&context, header("ranges of its parameters"), &scenario_file);
         files.push(file(format!("{id}.ranges.xosc"), ranges));
-        if let Some(points) = sweep::points(&context, header("points in the ranges of its parameters"), &scenario_file) {
+        if let Some(points) = sweep::points(&context, header("points in the ranges of its parameters"), &scenario_file)
+        {
             files.push(file(format!("{id}.points.xosc"), points));
         }
     }
@@ -79,8 +82,8 @@ fn document(context: &Context<'_>, title: &str, map_file: &str) -> Element {
         ("recrash.traffic", json(serde_json::to_string(&draft.traffic))),
         ("recrash.environment", json(serde_json::to_string(&draft.environment))),
     ];
-    let properties = Element::new("Properties")
-        .children(carried.iter().map(|(name, value)| entities::property(name, value)));
+    let properties =
+        Element::new("Properties").children(carried.iter().map(|(name, value)| entities::property(name, value)));
     Element::new("OpenSCENARIO").children([
         header(context, title).child(properties),
         storyboard::parameters(&context.names),

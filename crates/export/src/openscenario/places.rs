@@ -37,10 +37,7 @@ struct Along {
 /// The ego's start.
 pub(super) fn ego_start(context: &Context<'_>) -> Element {
     let draft = context.scenario.draft();
-    let along = Along {
-        expression: context.names.reference("/ego/s_m", draft.ego.s_m),
-        value: draft.ego.s_m,
-    };
+    let along = Along { expression: context.names.reference("/ego/s_m", draft.ego.s_m), value: draft.ego.s_m };
     start(context, context.scenario.ego(), along, "0".to_owned(), 0.0)
 }
 
@@ -163,12 +160,12 @@ pub(super) fn world_position(pose: Pose) -> Element {
     )
 }
 
-/// The way along a path as waypoints: the start, the middle of every road behind it that is not inside a junction, and
-/// the end.
+/// The way along a path as waypoints: the beginning of the road it starts on (so that a start may be moved along it),
+/// the middle of every road behind it that is not inside a junction, and the end.
 pub(super) fn route(context: &Context<'_>, placement: &Placement, name: &str) -> Element {
     let path = &placement.path;
-    let first = path.segment_at(placement.s_m);
-    let mut stations = vec![placement.s_m];
+    let first = path.segment_at((placement.s_m - reference_to_centre(placement.kind)).max(0.0));
+    let mut stations = vec![path.segments[first].start_m];
     for segment in path.segments.iter().skip(first + 1) {
         if context.map.lane(segment.lane).0.junction.is_none() {
             stations.push(segment.start_m + 0.5 * segment.length_m);

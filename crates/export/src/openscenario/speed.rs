@@ -12,9 +12,6 @@ const REACHED_MPS: f64 = 0.02;
 /// A straight piece of a speed profile stays this near to the curve it stands for. [m/s]
 const PROFILE_TOLERANCE_MPS: f64 = 0.02;
 
-/// What the brakes of MetaDrive's vehicles ask for, relative to what the tyres give: light braking acts the stronger.
-const BRAKE_DEMAND: f64 = 1.8;
-
 /// A part of a policy: from when on, and what then.
 pub(super) struct Phase {
     /// Name of its event.
@@ -71,8 +68,7 @@ pub(super) fn phases(context: &Context<'_>, position: usize) -> Vec<Phase> {
             let target = named("target_speed", target_speed);
             let (from, count) =
                 (named("brake_step", f64::from(brake_step)), named("brake_steps", f64::from(brake_steps)));
-            let (brake_s, again_s) =
-                (in_seconds(brake_step), in_seconds(brake_step.saturating_add(brake_steps)));
+            let (brake_s, again_s) = (in_seconds(brake_step), in_seconds(brake_step.saturating_add(brake_steps)));
             let mut list = Vec::new();
             if brake_step > 0 || brake_steps == 0 {
                 let until = if brake_steps == 0 { end_s } else { brake_s };
@@ -95,8 +91,7 @@ pub(super) fn phases(context: &Context<'_>, position: usize) -> Vec<Phase> {
         }
         Policy::AccelThenBrake { accel_mag, accel_steps, cruise_speed, brake_step, brake_steps, .. } => {
             let cruise = named("cruise_speed", cruise_speed);
-            let (accelerate, during) =
-                (named("accel_mag", accel_mag), named("accel_steps", f64::from(accel_steps)));
+            let (accelerate, during) = (named("accel_mag", accel_mag), named("accel_steps", f64::from(accel_steps)));
             let (from, count) =
                 (named("brake_step", f64::from(brake_step)), named("brake_steps", f64::from(brake_steps)));
             let (cruise_s, brake_s) = (in_seconds(accel_steps), in_seconds(brake_step));
@@ -138,7 +133,8 @@ pub(super) fn phases(context: &Context<'_>, position: usize) -> Vec<Phase> {
         Policy::Stopped { depart_step, target_speed_mps } => {
             let mut list = vec![Phase { name: "stand", start: zero(), action: brake(&spec) }];
             if let Some(step) = depart_step {
-                let (from, target) = (named("depart_step", f64::from(step)), named("target_speed_mps", target_speed_mps));
+                let (from, target) =
+                    (named("depart_step", f64::from(step)), named("target_speed_mps", target_speed_mps));
                 list.push(Phase {
                     name: "set off",
                     start: steps(&from),
@@ -170,13 +166,15 @@ pub(super) fn speed_at_once(speed: &str) -> Element {
 }
 
 fn speed_action(shape: &str, dimension: &str, value: &str, target: &str) -> Element {
-    longitudinal(Element::new("SpeedAction").children([
-        Element::new("SpeedActionDynamics")
-            .with("dynamicsShape", shape)
-            .with("value", value)
-            .with("dynamicsDimension", dimension),
-        Element::new("SpeedActionTarget").child(Element::new("AbsoluteTargetSpeed").with("value", target)),
-    ]))
+    longitudinal(
+        Element::new("SpeedAction").children([
+            Element::new("SpeedActionDynamics")
+                .with("dynamicsShape", shape)
+                .with("value", value)
+                .with("dynamicsDimension", dimension),
+            Element::new("SpeedActionTarget").child(Element::new("AbsoluteTargetSpeed").with("value", target)),
+        ]),
+    )
 }
 
 fn longitudinal(action: Element) -> Element {
@@ -187,7 +185,8 @@ fn longitudinal(action: Element) -> Element {
 /// speed at the start where that has one.
 fn approach(curve: &Curve, from_s: f64, to_s: f64, target: (&str, f64), start: Option<(&str, f64)>) -> Element {
     let (name, target_mps) = target;
-    if (curve.at(from_s) - target_mps).abs() < REACHED_MPS && start.is_none_or(|(_, v)| (v - target_mps).abs() < REACHED_MPS)
+    if (curve.at(from_s) - target_mps).abs() < REACHED_MPS
+        && start.is_none_or(|(_, v)| (v - target_mps).abs() < REACHED_MPS)
     {
         return speed_at_once(name);
     }
@@ -217,6 +216,12 @@ fn profile(curve: &Curve, from_s: f64, to_s: f64, write: impl Fn(f64) -> String)
     let mut corners = Vec::new();
     simplify(&speeds, 0, count, &mut corners);
     corners.push(count);
+    // Nothing is said by holding a speed to the end.
+    if let [.., before, end] = corners[..]
+        && (speeds[before] - speeds[end]).abs() < REACHED_MPS
+    {
+        corners.pop();
+    }
     let mut last = 0;
     let entries: Vec<Element> = corners
         .into_iter()
@@ -284,7 +289,8 @@ fn next_speed(policy: &Policy, speed: f64, step: u32, spec: &VehicleSpec) -> f64
     let hold = |target: f64, gain: Option<f64>| gain.unwrap_or(DEFAULT_SPEED_KP) * (target - speed);
     let braking = |from: u32, count: u32| (from..from.saturating_add(count)).contains(&step);
     let throttle = match *policy {
-        Policy::SuddenBrake { brake_step, brake_steps, .. } | Policy::AccelThenBrake { brake_step, brake_steps, .. }
+        Policy::SuddenBrake { brake_step, brake_steps, .. }
+        | Policy::AccelThenBrake { brake_step, brake_steps, .. }
             if braking(brake_step, brake_steps) =>
         {
             -1.0
@@ -302,7 +308,7 @@ fn next_speed(policy: &Policy, speed: f64, step: u32, spec: &VehicleSpec) -> f64
     }
     .clamp(-1.0, 1.0);
     let acceleration = if throttle < 0.0 {
-        (throttle * BRAKE_DEMAND * spec.max_deceleration_mps2).max(-spec.max_deceleration_mps2)
+        (throttle * spec.brake_demand_mps2).max(-spec.max_deceleration_mps2)
     } else if speed > spec.max_speed_mps {
         0.0
     } else {

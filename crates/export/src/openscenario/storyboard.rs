@@ -98,13 +98,15 @@ fn ego_story(context: &Context<'_>) -> Element {
     let draft = context.scenario.draft();
     let target = context.names.reference("/ego/target_speed_mps", draft.ego.target_speed_mps);
     let drive = private(
-        Element::new("LongitudinalAction").child(Element::new("SpeedAction").children([
-            Element::new("SpeedActionDynamics")
-                .with("dynamicsShape", "linear")
-                .with_number("value", EGO_ACCELERATION_MPS2)
-                .with("dynamicsDimension", "rate"),
-            Element::new("SpeedActionTarget").child(Element::new("AbsoluteTargetSpeed").with("value", target)),
-        ])),
+        Element::new("LongitudinalAction").child(
+            Element::new("SpeedAction").children([
+                Element::new("SpeedActionDynamics")
+                    .with("dynamicsShape", "linear")
+                    .with_number("value", EGO_ACCELERATION_MPS2)
+                    .with("dynamicsDimension", "rate"),
+                Element::new("SpeedActionTarget").child(Element::new("AbsoluteTargetSpeed").with("value", target)),
+            ]),
+        ),
     );
     let no_controller = by_value(
         "no system under test",
@@ -113,15 +115,17 @@ fn ego_story(context: &Context<'_>) -> Element {
             .with("rule", "equalTo")
             .with("value", "false"),
     );
-    let event = event("ego: drive", "ego: to the target speed", drive, Element::new("ConditionGroup").child(no_controller));
-    story("ego", vec![group("ego", Some(EGO_ID), "ego", vec![event])])
+    let event =
+        event("ego: drive", "ego: to the target speed", drive, Element::new("ConditionGroup").child(no_controller));
+    story("ego", vec![group("ego", Some(EGO_ID), vec![maneuver("ego: speed", vec![event])])])
 }
 
 fn partners_story(context: &Context<'_>) -> Element {
     let draft = context.scenario.draft();
     let groups = draft.partners.iter().enumerate().map(|(position, partner)| {
         let id = partner.id.as_str();
-        let mut events = Vec::new();
+        // Speed and lane are two maneuvers: an event stops whatever else runs in its own.
+        let (mut events, mut lane_events) = (Vec::new(), Vec::new());
         match context.tracks.get(position) {
             Some(track) => {
                 let name = format!("{id}: recorded");
@@ -137,16 +141,22 @@ fn partners_story(context: &Context<'_>) -> Element {
                 for (number_of, (start, action)) in lateral::moves(context, position).into_iter().enumerate() {
                     let name = format!("{id}: move {}", number_of + 1);
                     let trigger = at_time(&format!("{name}: time"), &start);
-                    events.push(event(&name, &format!("{name}: lane"), action, trigger));
+                    lane_events.push(event(&name, &format!("{name}: lane"), action, trigger));
                 }
                 // Whoever has touched another brakes to a stand, as in the simulator.
                 let name = format!("{id}: halt");
                 let halt = brake(&VehicleSpec::of(partner.kind));
                 let touched = collision(&format!("{id} touched the ego"), id, EGO_ID, 0.0);
-                events.push(event(&name, &format!("{name}: brake"), halt, Element::new("ConditionGroup").child(touched)));
+                events.push(event(
+                    &name,
+                    &format!("{name}: brake"),
+                    halt,
+                    Element::new("ConditionGroup").child(touched),
+                ));
             }
         }
-        group(id, Some(id), id, events)
+        let lanes = (!lane_events.is_empty()).then(|| maneuver(&format!("{id}: lanes"), lane_events));
+        group(id, Some(id), std::iter::once(maneuver(&format!("{id}: speed"), events)).chain(lanes).collect())
     });
     story("partners", groups.collect())
 }
@@ -156,7 +166,12 @@ fn watch_story(context: &Context<'_>) -> Element {
     let draft = context.scenario.draft();
     let gap = number(context.options.min_gap_m);
     let collided = draft.partners.iter().map(|partner| {
-        Element::new("ConditionGroup").child(collision(&format!("contact with {}", partner.id), EGO_ID, &partner.id, 0.0))
+        Element::new("ConditionGroup").child(collision(
+            &format!("contact with {}", partner.id),
+            EGO_ID,
+            &partner.id,
+            0.0,
+        ))
     });
     let near = draft.partners.iter().map(|partner| {
         Element::new("ConditionGroup").child(by_entity(
@@ -172,11 +187,10 @@ fn watch_story(context: &Context<'_>) -> Element {
                 .with("value", &gap),
         ))
     });
-    let events = vec![
-        event_on("watch: contact", "watch: set egoCollided", set_variable("egoCollided"), collided.collect()),
-        event_on("watch: gap", "watch: set closeCall", set_variable("closeCall"), near.collect()),
-    ];
-    story("watch", vec![group("watch", None, "watch", events)])
+    let contact = event_on("watch: contact", "watch: set egoCollided", set_variable("egoCollided"), collided.collect());
+    let close = event_on("watch: gap", "watch: set closeCall", set_variable("closeCall"), near.collect());
+    let maneuvers = vec![maneuver("watch: contacts", vec![contact]), maneuver("watch: gaps", vec![close])];
+    story("watch", vec![group("watch", None, maneuvers)])
 }
 
 fn stop_trigger(context: &Context<'_>) -> Element {
@@ -210,18 +224,13 @@ fn follow_trajectory(track: &ActorTrack, name: &str) -> Element {
             .child(world_position(reference_point(track.kind, state.pose())))
     });
     let shape = Element::new("Shape").child(Element::new("Polyline").children(vertices));
-    private(
-        Element::new("RoutingAction").child(Element::new("FollowTrajectoryAction").children([
-            Element::new("Trajectory").with("name", name).with("closed", "false").child(shape),
-            Element::new("TimeReference").child(
-                Element::new("Timing")
-                    .with("domainAbsoluteRelative", "absolute")
-                    .with("scale", "1")
-                    .with("offset", "0"),
-            ),
-            Element::new("TrajectoryFollowingMode").with("followingMode", "position"),
-        ])),
-    )
+    private(Element::new("RoutingAction").child(Element::new("FollowTrajectoryAction").children([
+        Element::new("Trajectory").with("name", name).with("closed", "false").child(shape),
+        Element::new("TimeReference").child(
+            Element::new("Timing").with("domainAbsoluteRelative", "absolute").with("scale", "1").with("offset", "0"),
+        ),
+        Element::new("TrajectoryFollowingMode").with("followingMode", "position"),
+    ])))
 }
 
 /// The variables the watch sets.
@@ -250,7 +259,9 @@ fn teleport(position: Element) -> Element {
 }
 
 fn assign_route(context: &Context<'_>, placement: &Placement, name: &str) -> Element {
-    private(Element::new("RoutingAction").child(Element::new("AssignRouteAction").child(route(context, placement, name))))
+    private(
+        Element::new("RoutingAction").child(Element::new("AssignRouteAction").child(route(context, placement, name))),
+    )
 }
 
 fn story(name: &str, groups: Vec<Element>) -> Element {
@@ -261,7 +272,11 @@ fn story(name: &str, groups: Vec<Element>) -> Element {
     Element::new("Story").with("name", format!("{name}: story")).child(act)
 }
 
-fn group(name: &str, actor: Option<&str>, maneuver: &str, events: Vec<Element>) -> Element {
+fn maneuver(name: &str, events: Vec<Element>) -> Element {
+    Element::new("Maneuver").with("name", name).children(events)
+}
+
+fn group(name: &str, actor: Option<&str>, maneuvers: Vec<Element>) -> Element {
     let actors = Element::new("Actors")
         .with("selectTriggeringEntities", "false")
         .children(actor.map(|id| Element::new("EntityRef").with("entityRef", id)));
@@ -269,7 +284,7 @@ fn group(name: &str, actor: Option<&str>, maneuver: &str, events: Vec<Element>) 
         .with("name", format!("{name}: group"))
         .with("maximumExecutionCount", "1")
         .child(actors)
-        .child(Element::new("Maneuver").with("name", format!("{maneuver}: maneuver")).children(events))
+        .children(maneuvers)
 }
 
 fn event(name: &str, action_name: &str, action: Element, trigger: Element) -> Element {
@@ -288,9 +303,7 @@ fn event_on(name: &str, action_name: &str, action: Element, groups: Vec<Element>
 
 fn set_variable(name: &str) -> Element {
     Element::new("GlobalAction").child(
-        Element::new("VariableAction")
-            .with("variableRef", name)
-            .child(Element::new("SetAction").with("value", "true")),
+        Element::new("VariableAction").with("variableRef", name).child(Element::new("SetAction").with("value", "true")),
     )
 }
 

@@ -15,9 +15,7 @@ pub(super) fn ranges(context: &Context<'_>, header: Element, file: &str) -> Elem
     let distributions = tunable(context).into_iter().map(|(name, parameter)| {
         Element::new("StochasticDistribution").with("parameterName", name).child(
             Element::new("UniformDistribution").child(
-                Element::new("Range")
-                    .with_number("lowerLimit", parameter.min)
-                    .with_number("upperLimit", parameter.max),
+                Element::new("Range").with_number("lowerLimit", parameter.min).with_number("upperLimit", parameter.max),
             ),
         )
     });
