@@ -339,7 +339,8 @@ impl<'a> Stage<'a> {
         };
         let sign = if side == Side::Left { -1.0 } else { 1.0 };
         let partner_there = self.staging.beside == Some(side);
-        let end_m = if self.ground == Ground::Road { course.ego.path.length_m - 40.0 } else { course.ego.block_m - 6.0 };
+        let end_m =
+            if self.ground == Ground::Road { course.ego.path.length_m - 40.0 } else { course.ego.block_m - 6.0 };
         let first_m = (draft.ego.s_m + 18.0).min(end_m - 10.0).max(1.0);
         let count = 8_u32;
         let step_m = ((end_m - first_m) / f64::from(count)).clamp(1.0, 12.0);

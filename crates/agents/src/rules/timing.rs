@@ -296,11 +296,7 @@ fn choose(
 /// Penalty of a start that is nearly one of the earlier tries.
 fn penalty(course: &Course, plan: &Plan, start: f64, near: f64) -> f64 {
     let same = |tried: &&Tried| tried.lanes == course.lanes && tried.ego_lane == course.ego_lane;
-    plan.tried
-        .iter()
-        .filter(same)
-        .map(|tried| 4.0 * (1.0 - (tried.start - start).abs() / near).max(0.0))
-        .sum()
+    plan.tried.iter().filter(same).map(|tried| 4.0 * (1.0 - (tried.start - start).abs() / near).max(0.0)).sum()
 }
 
 /// How far a meeting is from the wanted one.
@@ -360,9 +356,7 @@ fn unseen_movement(task: &Task, course: &Course, meeting: &Meeting) -> f64 {
     match task.ground {
         // Who is in the circle is seen to circle.
         Ground::Circle => 0.0,
-        Ground::Junction => {
-            turn(task.template.sv, meeting.ego_turned) + turn(task.template.cp, meeting.partner_turned)
-        }
+        Ground::Junction => turn(task.template.sv, meeting.ego_turned) + turn(task.template.cp, meeting.partner_turned),
         Ground::Road if task.template.cp == Movement::Straight => 0.0,
         Ground::Road => share(meeting.partner_shifted_m, SHIFT_SHOWS_LANES * lane_m),
     }

@@ -51,7 +51,7 @@ static BESIDE: LazyLock<Regex> = LazyLock::new(|| {
 });
 static ONCOMING: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b",
+        r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b",
     )
 });
 static BEHIND: LazyLock<Regex> = LazyLock::new(|| {
@@ -166,7 +166,7 @@ fn from_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, 
     sentences.iter().find_map(|sentence| {
         FROM.captures_iter(sentence.text).find_map(|found| {
             let whole = found.get(0).expect("group 0");
-            let named = found.name("side").expect("always there");
+            let named = found.name("side").or_else(|| found.name("place"))?;
             let lane = LANE_BEFORE.find_iter(sentence.text).any(|lane| lane.end() == named.end())
                 || LANE_AFTER.is_match(&sentence.text[named.end()..]);
             let from = sentence.text[..named.start()].rfind("from").unwrap_or(whole.start());
