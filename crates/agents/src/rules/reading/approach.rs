@@ -4,6 +4,7 @@ use super::super::actors::Actor;
 use super::{MEETING, Sentence, details, is_front, is_rear, only, words};
 use recrash_model::narrative::{FactSource, LanePosition, Side};
 use recrash_model::record::{ContactZone, CrashRecord};
+use recrash_model::template::Movement;
 use regex::Regex;
 use std::sync::LazyLock;
 
@@ -94,6 +95,7 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
         .or_else(|| by_phrase(record, sentences, &BEHIND, Relation::Behind))
         .or_else(|| by_phrase(record, sentences, &BESIDE, Relation::Beside(None)))
         .or_else(|| by_phrase(record, sentences, &CROSSING, Relation::Crossing))
+        .or_else(|| by_told_lanes(record, sentences))
         .or_else(|| by_unprotected_turn(record, sentences))
         .or(compass);
     told.map(|(relation, source)| match relation {
@@ -134,6 +136,14 @@ fn side_from_zones(record: &CrashRecord) -> Option<Side> {
         std::cmp::Ordering::Less => Some(Side::Right),
         std::cmp::Ordering::Equal => None,
     }
+}
+
+/// A partner that turns off, told in another lane than the ego: it drove beside it.
+fn by_told_lanes(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
+    let turns = record.cp_movement.known().is_some_and(|movement| movement != Movement::Straight);
+    let side = side_from_lanes(sentences).filter(|_| turns)?;
+    let (_, text) = details::told_lanes(sentences).1?;
+    Some((Relation::Beside(Some(side)), words(record, text)))
 }
 
 /// The side from the lanes told of both.
