@@ -1,7 +1,7 @@
 //! From a narrative to a scenario: map, lanes, speeds and timing that make the told conflict happen.
 
 use super::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
-use super::retry::{Plan, plan};
+use super::retry::{Aim, Plan, plan};
 use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_way, ground, stagings};
 use super::timing::{Course, Task, Timing, Wanted, best_timings};
 use super::writing::Facts;
@@ -9,7 +9,7 @@ use crate::{AgentError, Brief, Feedback};
 use recrash_model::narrative::{FactValue, FirstMover, LongitudinalAction, Narrative, Side};
 use recrash_model::record::{ContactZone, CrashRecord, PartnerKind};
 use recrash_model::scenario::{
-    Author, CrossMap, EgoSpec, Environment, MapSpec, MissingArm, Obstacle, ObstacleKind, Partner, Policy,
+    Author, CrossMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind, Partner, Policy,
     RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
 };
 use recrash_model::template::Movement;
@@ -47,7 +47,7 @@ pub fn design(brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Re
             _ => None,
         })
         .unwrap_or((&[], &[]));
-    let plan = plan(feedback, !told.0.is_empty());
+    let plan = plan(feedback, !told.0.is_empty(), staging.conflict == ConflictKind::Sideways);
     Ok(Stage::new(brief, narrative, staging, plan, told).draft())
 }
 
@@ -227,6 +227,11 @@ impl<'a> Stage<'a> {
                     speed_kp: None,
                 };
                 partner.lateral = timing.lateral.into_iter().collect();
+                if let (Aim::Pass(_), Some(over)) = (self.plan.aim, timing.lateral) {
+                    // It notices, and goes back.
+                    let start_s = round_to(over.start_s + over.duration_s + 1.0, 0.1);
+                    partner.lateral.push(LateralMove { start_s, duration_s: 2.0, to_t_m: 0.0 });
+                }
             }
         }
     }

@@ -232,9 +232,13 @@ fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
         (true, false) if touch => (0.0, 0.8 * lane_m, 2.5),
         (true, false) => (0.0, lane_m, 3.0),
         (true, true) => (-far_m, lane_m, 4.5),
-        (false, _) if touch => (0.0, clearance_m + 0.6, 2.0),
+        // Who goes straight through a junction comes over slowly: a heading that differs by more than a few degrees
+        // would be a turn begun.
+        (false, false) if touch => (0.0, clearance_m + 0.6, (clearance_m / (0.1 * task.ego_mps)).clamp(2.0, 6.0)),
+        (false, true) if touch => (0.0, clearance_m + 0.6, 2.0),
         (false, _) => (0.0, 0.4 * clearance_m, 2.0),
     };
+    let move_s = (move_s * 10.0).round() / 10.0;
     let ahead_of_meeting_s = if on_road { move_s } else { 0.7 * move_s };
     let tenths = |value: f64| (value * 10.0).round() / 10.0;
     let lateral = LateralMove {
@@ -250,14 +254,15 @@ fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
         ..plain(&course.partner.path, spec, partner_place + shift_m - partner_mps * meets_s, partner_mps)
     };
     let count = (2.0 * WIDEST_SHIFT_M / SHIFT_STEP_M).round() as usize;
-    let until_s = meets_s + 4.0;
+    let until_s = meets_s + 8.0;
     // As the start is written in the scenario: ahead of the ego at time 0.
     let ahead = |shift_m: f64| motion(shift_m).start_m - task.ego_start_m;
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
         .map(|n| {
             let shift_m = -WIDEST_SHIFT_M + SHIFT_STEP_M * n as f64;
-            let meeting = rehearse(&course.network, &ego, &motion(shift_m), lateral.start_s - 0.5, until_s);
-            (ahead(shift_m), meeting)
+            let meeting = rehearse(&course.network, &ego, &motion(shift_m), lateral.start_s - 1.0, until_s);
+            // Where the two come closest elsewhere, on the way out say, it is another conflict.
+            (ahead(shift_m), meeting.filter(|meeting| (meeting.time_s - meets_s).abs() < 3.0))
         })
         .collect();
     let (start, score) = choose(task, course, plan, &tries, ahead(0.0), 1.5)?;
