@@ -1,7 +1,7 @@
 //! Tables and lines for people. Colours only on a terminal.
 
 use anstream::{eprintln, println};
-use comfy_table::{Attribute, Cell, CellAlignment, Table, presets};
+use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, Table, presets};
 use owo_colors::OwoColorize;
 use recrash_model::diagnostic::{Diagnostic, Severity};
 use recrash_model::record::{FunnelStep, RecordSet};
@@ -73,7 +73,8 @@ pub fn stage_done(report: &StageReport, stage: Stage, dir: &Path) {
 
 fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
-    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
+    // A line under the header and none between rows: a table of 20 scenarios fits on a screen.
+    table.load_style(presets::NOTHING.header_separator(LineStyle::new(' ', '\u{2500}', '\u{2500}', ' ')));
     table.set_header(header.iter().map(|h| Cell::new(h).add_attribute(Attribute::Bold)));
     table
 }
@@ -168,6 +169,7 @@ pub fn picks(selection: &Selection) {
 fn gap(run: &RunSummary) -> String {
     match (&run.contact, run.min_gap_m) {
         (Some(kind), _) => format!("contact: {kind}"),
+        (None, Some(gap)) if gap < 0.01 => "< 0.01 m".into(),
         (None, Some(gap)) => format!("{gap:.2} m"),
         (None, None) => "-".into(),
     }

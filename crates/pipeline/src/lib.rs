@@ -7,6 +7,7 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod casework;
+mod drawing;
 mod error;
 mod profiles;
 mod progress;

@@ -1,7 +1,7 @@
 //! One file: bytes in, records and rejected rows out, in file order.
 
 use crate::columns::{Columns, NotAHeader, Recognised, edition_name, recognise};
-use crate::error::{IngestError, not_text};
+use crate::error::{IngestError, is_binary, other_format};
 use crate::notes::Notes;
 use crate::row::{self, Draft};
 use crate::text::{decode, excerpt};
@@ -52,13 +52,17 @@ pub fn read_file(source: &SourceText<'_>, sha256: &str) -> Result<FileContent, I
     if bytes.trim_ascii().is_empty() {
         return Err(IngestError::Empty { file: file() });
     }
-    if let Some((looks_like, hint)) = not_text(&bytes) {
+    if let Some((looks_like, hint)) = other_format(&bytes) {
         return Err(IngestError::NotText { file: file(), looks_like, hint });
     }
     let (delimiter, recognised) = match first_header(&bytes) {
         Ok(found) => found,
         Err((_, NotAHeader::Missing { edition, names })) => {
             return Err(IngestError::MissingColumns { file: file(), edition: edition_name(edition), missing: names });
+        }
+        Err((_, NotAHeader::Unknown)) if is_binary(&bytes) => {
+            let (looks_like, hint) = ("a binary file", "give the CSV file as NHTSA publishes it");
+            return Err(IngestError::NotText { file: file(), looks_like, hint });
         }
         Err((start, NotAHeader::Unknown)) => return Err(IngestError::UnknownHeader { file: file(), start }),
     };
@@ -100,7 +104,7 @@ fn reader(bytes: &[u8], delimiter: u8) -> csv::Reader<Cursor<&[u8]>> {
 }
 
 fn names(row: &ByteRecord) -> Vec<String> {
-    row.iter().map(|name| decode(name).0).collect()
+    row.iter().map(|name| decode(name).0.into_owned()).collect()
 }
 
 struct FileReader<'a> {

@@ -29,7 +29,7 @@ pub fn merge(drafts: &mut [Draft]) -> (Vec<bool>, Vec<Diagnostic>) {
     let mut merged = vec![false; drafts.len()];
     let mut diagnostics = Vec::new();
 
-    for versions in groups(drafts, |draft| Some(draft.record.id.report_id.clone())) {
+    for versions in groups(drafts, |draft| Some(&draft.record.id.report_id)) {
         let newest = versions.iter().copied().max_by_key(|&i| (drafts[i].record.id.version, i));
         let Some(newest) = newest else { continue };
         let mut older: Vec<usize> = versions.into_iter().filter(|&i| i != newest).collect();
@@ -42,19 +42,11 @@ pub fn merge(drafts: &mut [Draft]) -> (Vec<bool>, Vec<Diagnostic>) {
         older.into_iter().for_each(|i| merged[i] = true);
     }
 
-    let reports: BTreeMap<String, usize> =
-        (0..drafts.len()).filter(|&i| !merged[i]).map(|i| (drafts[i].record.id.report_id.clone(), i)).collect();
-    for i in 0..drafts.len() {
-        if merged[i] || drafts[i].record.redaction != Redaction::Open || tells_its_story(&drafts[i]) {
-            continue;
-        }
-        let named = report_ids(&drafts[i].record.narrative).find_map(|id| reports.get(id).copied());
-        if let Some(source) = named.filter(|&source| source != i && tells_its_story(&drafts[source])) {
-            diagnostics.push(take_narrative(drafts, i, source, "the report it refers to"));
-        }
+    for (to, from) in references(drafts, &merged) {
+        diagnostics.push(take_narrative(drafts, to, from, "the report it refers to"));
     }
 
-    for reports in groups(drafts, |draft| draft.record.incident_id.clone()) {
+    for reports in groups(drafts, |draft| draft.record.incident_id.as_deref()) {
         let reports: Vec<usize> = reports.into_iter().filter(|&i| !merged[i]).collect();
         let best = reports.iter().copied().max_by_key(|&i| {
             let draft = &drafts[i];
@@ -66,14 +58,24 @@ pub fn merge(drafts: &mut [Draft]) -> (Vec<bool>, Vec<Diagnostic>) {
 }
 
 /// Drafts with the same key, in the order of keys, each group in file order.
-fn groups(drafts: &[Draft], key: impl Fn(&Draft) -> Option<String>) -> Vec<Vec<usize>> {
-    let mut by_key: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+fn groups(drafts: &[Draft], key: impl Fn(&Draft) -> Option<&str>) -> Vec<Vec<usize>> {
+    let mut by_key: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (i, draft) in drafts.iter().enumerate() {
         if let Some(key) = key(draft) {
             by_key.entry(key).or_default().push(i);
         }
     }
     by_key.into_values().collect()
+}
+
+/// Reports that only refer to another one, and the one they name: `(to, from)`.
+fn references(drafts: &[Draft], merged: &[bool]) -> Vec<(usize, usize)> {
+    let kept = || (0..drafts.len()).filter(|&i| !merged[i]);
+    let reports: BTreeMap<&str, usize> = kept().map(|i| (drafts[i].record.id.report_id.as_str(), i)).collect();
+    let referring = kept().filter(|&i| drafts[i].record.redaction == Redaction::Open && !tells_its_story(&drafts[i]));
+    let named = |i: usize| report_ids(&drafts[i].record.narrative).find_map(|id| reports.get(id).copied());
+    let found = referring.filter_map(|i| Some((i, named(i)?)));
+    found.filter(|&(to, from)| to != from && tells_its_story(&drafts[from])).collect()
 }
 
 /// Whether the narrative can be read and tells what happened, rather than where else to look.
@@ -84,9 +86,11 @@ fn tells_its_story(draft: &Draft) -> bool {
 
 /// Whether a narrative only refers to another one.
 pub fn only_refers(narrative: &str) -> bool {
+    if narrative.len() > LONGEST_REFERENCE_BYTES {
+        return false;
+    }
     let lower = narrative.to_lowercase();
-    narrative.len() <= LONGEST_REFERENCE_BYTES && REFERENCES.iter().any(|phrase| lower.contains(phrase))
-        || (narrative.len() <= 120 && lower.starts_with("see ") && lower.contains("report"))
+    REFERENCES.iter().any(|phrase| lower.contains(phrase)) || (lower.starts_with("see ") && lower.contains("report"))
 }
 
 /// Report ids in a text: `30490-11294`, also with a version behind it, as in `30490-11294-1`.

@@ -62,7 +62,7 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
                 }
             }
             p.case-what {
-                b { (case.template) }
+                b { (words::template(&case.template)) }
                 @if let Some(cluster) = cluster { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
                 @if let Some(narrative) = &case.narrative { ". " span.told { (words::clean(&narrative.text, 600)) } }
             }
@@ -139,7 +139,7 @@ fn numbers(case: &CaseView) -> Markup {
             .tile {
                 dt { (name) }
                 dd.value {
-                    @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, if case.after.is_some() { "" } else { unit }, why)) }
+                    @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, unit, why)) }
                     @if let Some(after) = &case.after { @if case.before.is_some() { span.arrow { "\u{2192}" } } (parts::quantity(of(after), decimals, unit, why)) }
                 }
             }

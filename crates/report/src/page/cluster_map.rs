@@ -77,7 +77,7 @@ pub fn map(context: &Context) -> Markup {
                     @for (t, count) in selection.templates.iter().enumerate() {
                         li { button type="button" data-template=(t) aria-pressed="false" {
                             svg.icon viewBox="-6 -6 12 12" aria-hidden="true" { path.{ "c" (t % COLOURS) } d=(SHAPES[t % SHAPES.len()]) {} }
-                            span { (count.template) } span.muted { " " (count.records) }
+                            span { (words::template(&count.template)) } span.muted { " " (count.records) }
                         } }
                     }
                 }

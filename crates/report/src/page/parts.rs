@@ -15,7 +15,7 @@ pub fn missing(why: &str) -> Markup {
 /// A number with its unit, or a dash that says why there is none.
 pub fn quantity(value: Option<f64>, decimals: usize, unit: &str, why: &str) -> Markup {
     match value.map(|value| words::fixed(value, decimals)) {
-        Some(Some(text)) => html! { span.number { (text) "\u{a0}" (unit) } },
+        Some(Some(text)) => html! { span.number { (text) @if !unit.is_empty() { "\u{a0}" (unit) } } },
         Some(None) => missing("the value is not a finite number"),
         None => missing(why),
     }

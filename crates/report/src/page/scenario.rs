@@ -21,9 +21,9 @@ pub fn tuning(position: usize, case: &CaseView) -> Markup {
         .columns {
             figure.tune-figure {
                 figcaption { b { "Objective by point" } " " span.muted { "least box gap plus penalties, m; smaller is worse for the ego" } }
-                svg.tune-plot data-case=(position) role="img" tabindex="0" aria-label="Objective of each point; arrow keys go from point to point" {}
-                p.tune-detail.muted role="status" aria-live="polite" { "Point at a mark, or put the focus on the plot and use the arrow keys." }
                 p.plot-key { span.key.point { "passes" } span.key.failed { "fails" } span.key.refused { "refused" } span.key.best { "best so far" } span.key.kept { "kept" } }
+                svg.tune-plot data-case=(position) role="application" tabindex="0" aria-label="Objective of each point; arrow keys go from point to point" {}
+                p.tune-detail.muted role="status" aria-live="polite" { "Point at a mark, or put the focus on the plot and use the arrow keys." }
             }
             .table-wrap { table.plain {
                 caption.hidden-text { "Numbers that may move" }

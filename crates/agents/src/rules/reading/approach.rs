@@ -104,6 +104,13 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
             Some(side) => (Relation::From(side), source),
             None => (Relation::Crossing, source),
         },
+        // Who came from behind and touched the side had come up beside it.
+        Relation::Behind if !record.sv_zones.is_empty() && !record.sv_zones.iter().any(|zone| is_rear(*zone)) => {
+            match side_from_zones(record) {
+                Some(side) if !record.sv_zones.contains(&ContactZone::Front) => (Relation::Beside(Some(side)), source),
+                _ => (Relation::Behind, source),
+            }
+        }
         told => (told, source),
     })
 }
