@@ -7,6 +7,7 @@ use recrash_metadrive::{Drive, Metadrive, MetadriveError, Options, inspect};
 use recrash_model::rollout::{EventKind, Rollout, TerminationKind};
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::OnceLock;
 use std::time::Duration;
 
 fn options(test: &str) -> Option<Options> {
@@ -19,8 +20,11 @@ fn options(test: &str) -> Option<Options> {
     }
 }
 
-fn start(test: &str) -> Option<Metadrive> {
-    options(test).map(|options| Metadrive::start(options).unwrap_or_else(|error| panic!("{error}")))
+/// One pool for all tests: importing MetaDrive is what takes time.
+fn start(test: &str) -> Option<&'static Metadrive> {
+    static POOL: OnceLock<Metadrive> = OnceLock::new();
+    options(test)
+        .map(|options| POOL.get_or_init(|| Metadrive::start(options).unwrap_or_else(|error| panic!("{error}"))))
 }
 
 fn ego_contact(rollout: &Rollout) -> Option<f64> {
@@ -104,6 +108,7 @@ fn every_policy_map_and_kind_runs() {
             draft["duration_s"] = json!(12.0);
             let partner = &mut draft["partners"][0];
             partner["approach"] = json!(approach);
+            partner["turn"] = json!(if *letter == "T" { "left" } else { "straight" });
             partner["policy"] = policy.clone();
             partner["speed_mps"] = json!(if number == 4 { 0.0 } else { 2.0 });
             partner["start"]["arrival_gap_s"] = json!(-1.0);
