@@ -82,6 +82,8 @@ pub struct Meeting {
     pub ego_turned: f64,
     /// How far the partner had turned.
     pub partner_turned: f64,
+    /// Where the ego's nose was along its path. [m]
+    pub ego_nose_m: f64,
     /// How far the partner had moved sideways out of its lane. [m]
     pub partner_shifted_m: f64,
     /// Kind of collision, where it is one that profiles exclude.
@@ -121,6 +123,7 @@ pub fn rehearse(network: &RoadNetwork, ego: &Motion, partner: &Motion, from_s: f
         partner_zone,
         ego_turned: turned(&at_start.0, &a),
         partner_turned: turned(&at_start.1, &b),
+        ego_nose_m: ego.start_m + ego.driven(moment) + ego.half_length_m,
         partner_shifted_m: (partner.offset(moment).0 - partner.start_t_m).abs(),
         kind: kind_of(&a, ego_zone, &b, partner_zone),
     })
