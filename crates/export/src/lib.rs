@@ -9,6 +9,7 @@
 
 mod opendrive;
 mod openscenario;
+mod scenic;
 mod xml;
 
 use recrash_model::rollout::Rollout;
@@ -121,7 +122,8 @@ pub fn export(
 ) -> Result<Vec<ExportFile>, ExportError> {
     match options.format {
         Format::OpenScenario => openscenario::files(scenario, rollout, parameters, options),
-        Format::Scenic | Format::MetaDrive | Format::CommonRoad => {
+        Format::Scenic => Ok(scenic::files(scenario, parameters)),
+        Format::MetaDrive | Format::CommonRoad => {
             Err(ExportError::NeedsRollout { scenario: scenario.draft().id.clone() })
         }
     }

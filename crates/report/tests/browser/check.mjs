@@ -212,7 +212,8 @@ try {
     await link.focus();
     await page.keyboard.press('Enter');
     const section = page.locator(`[id="${running}"]`);
-    check(await section.isVisible(), 'Enter on a scenario does not open it');
+    const opened = await section.waitFor({ state: 'visible', timeout: 5000 }).then(() => true, () => false);
+    check(opened, 'Enter on a scenario does not open it');
     await checkReplay(page, section);
     await checkTabs(page, section);
     await checkKeys(page);
