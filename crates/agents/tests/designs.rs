@@ -85,12 +85,14 @@ fn staged(record: &CrashRecord, profile: &SystemProfile, seed: u64) -> Result<us
 /// The templates that records have had so far: 14 of 54.
 fn observed(template: &Template) -> bool {
     use Movement::{LeftTurn, Straight};
-    match (template.road, template.sv, template.cp, template.work_zone) {
-        (RoadType::Intersection, _, _, false) | (RoadType::Intersection, LeftTurn, Straight, true) => true,
-        (RoadType::Highway, Straight, Straight, _) | (RoadType::Highway, Straight, LeftTurn, false) => true,
-        (RoadType::TrafficCircle, LeftTurn, LeftTurn, false) => true,
-        _ => false,
-    }
+    matches!(
+        (template.road, template.sv, template.cp, template.work_zone),
+        (RoadType::Intersection, _, _, false)
+            | (RoadType::Intersection, LeftTurn, Straight, true)
+            | (RoadType::Highway, Straight, Straight, _)
+            | (RoadType::Highway, Straight, LeftTurn, false)
+            | (RoadType::TrafficCircle, LeftTurn, LeftTurn, false)
+    )
 }
 
 #[test]

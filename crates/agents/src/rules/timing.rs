@@ -380,3 +380,69 @@ fn unseen_movement(task: &Task, course: &Course, meeting: &Meeting) -> f64 {
         Ground::Road => share(meeting.partner_shifted_m, SHIFT_SHOWS_LANES * lane_m),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::limits::most_speed;
+    use super::super::staging::{ground, stagings};
+    use super::*;
+    use recrash_model::scenario::CrossMap;
+    use recrash_model::template::RoadType;
+
+    fn turn(movement: Movement) -> Turn {
+        match movement {
+            Movement::LeftTurn => Turn::Left,
+            Movement::RightTurn => Turn::Right,
+            _ => Turn::Straight,
+        }
+    }
+
+    /// The table of stagings against the road network: wherever paths are said to meet they do, in every lane plan, and
+    /// there is a contact that is neither rear-end nor head-on, and both movements show by then.
+    #[test]
+    fn every_lane_plan_of_the_table_has_a_meeting_worth_staging() {
+        let mut plans = 0;
+        for (sv, cp) in Movement::PAPER.into_iter().flat_map(|sv| Movement::PAPER.map(|cp| (sv, cp))) {
+            let template = Template { road: RoadType::Intersection, sv, cp, work_zone: false };
+            for staging in stagings(&template).iter().filter(|s| s.conflict == ConflictKind::Paths) {
+                for (number, lanes) in staging.lanes.iter().enumerate() {
+                    plans += 1;
+                    let map = CrossMap { lanes: lanes.lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 120.0 };
+                    let partner = (staging.approach, turn(cp), lanes.partner);
+                    let course = Course::new(&MapSpec::X(map), (turn(sv), lanes.ego), partner).expect("both ways");
+                    let ground = ground(&template, staging);
+                    let task = Task {
+                        template: &template,
+                        ground,
+                        conflict: staging.conflict,
+                        towards: 1.0,
+                        kind: PartnerKind::PassengerCar,
+                        ego_start_m: 5.0,
+                        ego_mps: most_speed(ground, turn(sv)).min(8.0),
+                        partner_mps: most_speed(ground, turn(cp)).min(8.0),
+                        sets_off: None,
+                        wanted: Wanted { sv: &[], cp: &[], excluded: &[], partner_first: true },
+                    };
+                    let excluded = [CollisionKind::RearEndByEgo, CollisionKind::RearEndOfEgo, CollisionKind::HeadOn];
+                    let wanted = Wanted { excluded: &excluded, ..task.wanted };
+                    let plan = super::super::retry::plan(&[], true, false);
+                    let timing = time_paths(&Task { wanted, ..task }, &course, &plan);
+                    let timing = timing.unwrap_or_else(|| panic!("{template} {staging:?} {lanes:?}: never meet"));
+                    // The best plan of each way shows both movements fully; the others may leave a little to the tuner.
+                    let most = if number == 0 { 1.0 } else { 0.5 * WRONG };
+                    assert!(timing.score < most, "{template} {staging:?} {lanes:?}: {}", timing.score);
+                }
+            }
+        }
+        assert!(plans > 40, "{plans}");
+    }
+
+    #[test]
+    fn zones_one_step_apart_are_nearly_right_and_others_wrong() {
+        use ContactZone::{Front, FrontLeft, Left, Rear};
+        assert_eq!(zone_steps(&[], Rear), 0.0);
+        assert_eq!(zone_steps(&[Front, Left], Left), 0.0);
+        assert_eq!(zone_steps(&[Front], FrontLeft), 1.0);
+        assert!(zone_steps(&[Front], Rear) > 4.0);
+    }
+}
