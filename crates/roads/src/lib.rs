@@ -6,6 +6,7 @@
 mod blocks;
 pub mod check;
 mod conflict;
+pub mod drawing;
 pub mod json_place;
 pub mod lane;
 pub mod network;
@@ -15,6 +16,7 @@ mod read;
 pub mod scenario;
 
 pub use check::check;
+pub use drawing::{LineKind, RoadDrawing, RoadLine};
 pub use json_place::{add_lines, locate};
 pub use lane::{Centreline, Lane, LaneId};
 pub use network::{Road, RoadId, RoadNetwork, RoadPart};
