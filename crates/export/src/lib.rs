@@ -7,6 +7,7 @@
 //!
 //! What this crate does **not** do: it writes no file, and simulates nothing.
 
+mod commonroad;
 mod metadrive;
 mod opendrive;
 mod openscenario;
@@ -126,7 +127,7 @@ pub fn export(
         Format::OpenScenario => openscenario::files(scenario, rollout, parameters, options),
         Format::Scenic => Ok(scenic::files(scenario, parameters)),
         Format::MetaDrive => Ok(metadrive::files(scenario)),
-        Format::CommonRoad => Err(ExportError::NeedsRollout { scenario: scenario.draft().id.clone() }),
+        Format::CommonRoad => commonroad::files(scenario, rollout, options),
     }
 }
 
