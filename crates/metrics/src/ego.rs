@@ -59,10 +59,32 @@ pub fn measure_ego(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], criteri
     }
 }
 
+/// How the ego's brake is told from other losses of speed: a steered wheel costs speed, too.
+struct Brake {
+    /// Whether the rollout says what the ego commanded; without, every deceleration counts as braking.
+    commands_known: bool,
+}
+
+impl Brake {
+    fn of(scene: &Scene<'_>) -> Self {
+        let ego = scene.rollout.actors.first();
+        Self { commands_known: ego.is_some_and(|track| track.states.iter().any(|state| state.throttle != 0.0)) }
+    }
+
+    /// Deceleration over the step that begins at `step`, where the ego brakes; else nil. [m/s^2, positive]
+    fn deceleration(&self, scene: &Scene<'_>, step: usize) -> f64 {
+        if self.commands_known && scene.state(0, step).throttle >= 0.0 {
+            return 0.0;
+        }
+        (-scene.acceleration(0, step)).max(0.0)
+    }
+}
+
 fn hardest_braking(scene: &Scene<'_>) -> Timed {
+    let brake = Brake::of(scene);
     let mut hardest = Timed { value: 0.0, time_s: 0.0 };
-    for step in 0..scene.steps() {
-        let deceleration = -scene.acceleration(0, step);
+    for step in 0..scene.steps().saturating_sub(1) {
+        let deceleration = brake.deceleration(scene, step);
         if deceleration > hardest.value {
             hardest = Timed { value: deceleration, time_s: time_of(step) };
         }
@@ -72,9 +94,10 @@ fn hardest_braking(scene: &Scene<'_>) -> Timed {
 
 fn hardest_phantom_braking(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> Option<Timed> {
     let release_steps = (RELEASE_S / time_of(1)).round() as usize;
+    let brake = Brake::of(scene);
     let mut hardest: Option<Timed> = None;
-    for step in 0..scene.steps() {
-        let deceleration = -scene.acceleration(0, step);
+    for step in 0..scene.steps().saturating_sub(1) {
+        let deceleration = brake.deceleration(scene, step);
         if deceleration < LEAST_BRAKING_MPS2 || hardest.is_some_and(|hardest| deceleration <= hardest.value) {
             continue;
         }
@@ -128,13 +151,14 @@ fn curve_asks(way: &EgoWay<'_>, s: f64, look_ahead_m: f64, speed: f64) -> bool {
 /// The most changes between braking and accelerating within a window, and when that window ended.
 fn most_reversals(scene: &Scene<'_>, window_s: f64) -> (u32, f64) {
     let mut reversals: Vec<f64> = Vec::new();
+    let brake = Brake::of(scene);
     let mut braked: Option<bool> = None;
-    for step in 0..scene.steps() {
-        let acceleration = scene.acceleration(0, step);
-        if acceleration.abs() < LEAST_BRAKING_MPS2 || scene.state(0, step).speed.abs() < STANDSTILL_MPS {
+    for step in 0..scene.steps().saturating_sub(1) {
+        let brakes = brake.deceleration(scene, step) >= LEAST_BRAKING_MPS2;
+        let accelerates = scene.acceleration(0, step) >= LEAST_BRAKING_MPS2;
+        if !(brakes || accelerates) || scene.state(0, step).speed.abs() < STANDSTILL_MPS {
             continue;
         }
-        let brakes = acceleration < 0.0;
         if braked.is_some_and(|before| before != brakes) {
             reversals.push(time_of(step));
         }
@@ -180,9 +204,15 @@ fn farthest_departure(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> T
             if over_m <= farthest.value {
                 continue;
             }
+            // Cut short by a contact while still over that edge: nobody knows what it was to become.
+            let unfinished = scene.contact.is_some()
+                && step + around >= track.len()
+                && track.last().copied().flatten().is_some_and(|last| {
+                    if neighbour < here.lane { last.over_left_m > 0.0 } else { last.over_right_m > 0.0 }
+                });
             let window = step.saturating_sub(around)..=(step + around).min(track.len() - 1);
             let changes = track[window].iter().flatten().any(|there| there.lane == neighbour);
-            if !changes {
+            if !changes && !(unfinished && has_lane(way, along[step].segment, neighbour)) {
                 farthest = Timed { value: over_m, time_s: time_of(step) };
             }
         }
@@ -210,6 +240,13 @@ fn in_lane(way: &EgoWay<'_>, outline: &OrientedBox, along: &Along) -> Option<InL
         over_left_m = over_left_m.max(-t - 0.5 * lane.width_m);
     }
     Some(InLane { lane: offset, over_left_m, over_right_m })
+}
+
+/// Whether a road of the way has a lane this many lanes to the right of the one followed.
+fn has_lane(way: &EgoWay<'_>, segment: usize, to_the_right: i32) -> bool {
+    let lane = way.network.lane(way.path.segments[segment].lane);
+    let index = i32::from(lane.index) + to_the_right;
+    (0..way.network.road(lane.road).lanes.len() as i32).contains(&index)
 }
 
 /// Whether a segment of the way crosses a junction, where no lanes are marked.
