@@ -212,7 +212,8 @@ fn farthest_departure(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> T
                 });
             let window = step.saturating_sub(around)..=(step + around).min(track.len() - 1);
             let changes = track[window].iter().flatten().any(|there| there.lane == neighbour);
-            if !changes && !(unfinished && has_lane(way, along[step].segment, neighbour)) {
+            let excused = changes || (unfinished && has_lane(way, along[step].segment, neighbour));
+            if !excused {
                 farthest = Timed { value: over_m, time_s: time_of(step) };
             }
         }

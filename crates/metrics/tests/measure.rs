@@ -165,7 +165,7 @@ fn speed_lost_without_the_brake_is_no_braking() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     // Down and up by 0.5 m/s every second step, as steered wheels do.
-    let wobble = |time: f64| if (time / 0.2).round() as u32 % 2 == 0 { 10.0 } else { 9.5 };
+    let wobble = |time: f64| if ((time / 0.2).round() as u32).is_multiple_of(2) { 10.0 } else { 9.5 };
     let mut states = drive(&network, &way, 5.0, 60, wobble);
     let unknown = measure(&network, &way, 12.0, &rollout(states.clone(), vec![])).ego;
     close(unknown.max_deceleration.value, 5.0, 1e-9);
