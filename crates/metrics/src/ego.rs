@@ -15,6 +15,9 @@ use recrash_roads::RoadPart;
 /// Weaker braking is no braking: engine drag alone gives 0.36 m/s^2. [m/s^2] (assumed)
 const LEAST_BRAKING_MPS2: f64 = 0.5;
 
+/// A weaker command to the brake is none: this one gives those 0.5 m/s^2. [share of full brake]
+const LEAST_BRAKE: f64 = 0.02;
+
 /// Slower than this the ego stands, and its jitter is no oscillation. [m/s] (full brakes make MetaDrive vehicles jitter by 0.24 m/s)
 const STANDSTILL_MPS: f64 = 0.3;
 
@@ -26,6 +29,13 @@ const LOOK_AHEAD_M: f64 = 10.0;
 
 /// Whatever would come within the margin in this time, if all went straight on, is a reason to brake. [s] (assumed)
 const CROSSING_AHEAD_S: f64 = 4.0;
+
+/// Whoever comes into the corridor within this time, no farther ahead than this time at present speed, is a reason to
+/// brake. [s] (assumed; gap acceptance at junctions is 4 to 7 s)
+const GIVE_WAY_S: f64 = 5.0;
+
+/// And within this distance at any speed. [m] (assumed)
+const GIVE_WAY_M: f64 = 15.0;
 
 /// Room a driver leaves beside the vehicle. [m] (assumed)
 const MARGIN_M: f64 = 0.5;
@@ -73,7 +83,7 @@ impl Brake {
 
     /// Deceleration over the step that begins at `step`, where the ego brakes; else nil. [m/s^2, positive]
     fn deceleration(&self, scene: &Scene<'_>, step: usize) -> f64 {
-        if self.commands_known && scene.state(0, step).throttle >= 0.0 {
+        if self.commands_known && scene.state(0, step).throttle > -LEAST_BRAKE {
             return 0.0;
         }
         (-scene.acceleration(0, step)).max(0.0)
@@ -133,11 +143,25 @@ fn reason_to_brake(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], step: u
         let other_along = Along::of(way, other, ego_along.segment);
         ego_along.free_space_to(&other_along, MARGIN_M).is_some_and(|free| free <= look_ahead_m)
     };
-    let others = 1..scene.outlines.len();
-    others
-        .filter(|&actor| step < scene.outlines[actor].len())
-        .any(|actor| asks(&scene.outlines[actor][step], scene.velocity(actor, step)))
-        || scene.obstacles.iter().any(|obstacle| asks(obstacle, Vec2::default()))
+    let mut others = (1..scene.outlines.len()).filter(|&actor| step < scene.outlines[actor].len());
+    others.any(|actor| {
+        asks(&scene.outlines[actor][step], scene.velocity(actor, step))
+            || comes_into_the_way(way, ego_along, speed, &scene.outlines[actor][step..])
+    }) || scene.obstacles.iter().any(|obstacle| asks(obstacle, Vec2::default()))
+}
+
+/// Whether a road user that is not in the ego's corridor now comes into it soon, as it really drove.
+fn comes_into_the_way(way: &EgoWay<'_>, ego: &Along, speed: f64, future: &[OrientedBox]) -> bool {
+    const EVERY: usize = 5;
+    let near_m = (GIVE_WAY_S * speed).max(GIVE_WAY_M);
+    let in_the_way = |outline: &OrientedBox| {
+        let free = ego.free_space_to(&Along::of(way, outline, ego.segment), MARGIN_M);
+        free.is_some_and(|free| free <= near_m)
+    };
+    let last = (GIVE_WAY_S / time_of(1)).round() as usize;
+    let now_in_lane =
+        future.first().is_some_and(|now| ego.free_space_to(&Along::of(way, now, ego.segment), 0.0).is_some());
+    !now_in_lane && future.iter().take(last + 1).step_by(EVERY).any(in_the_way)
 }
 
 fn curve_asks(way: &EgoWay<'_>, s: f64, look_ahead_m: f64, speed: f64) -> bool {

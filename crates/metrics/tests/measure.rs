@@ -152,6 +152,11 @@ fn braking_on_an_empty_road_is_phantom_braking() {
     assert_eq!(measure(&network, &way, 15.0, &coned).ego.phantom_braking, None);
     let crossing = rollout(ego.clone(), vec![glide(70.0, 25.0, -FRAC_PI_2, 5.0, 60)]);
     assert_eq!(measure(&network, &way, 15.0, &crossing).ego.phantom_braking, None);
+    // One that is still 30 m off the ego's lane, and crosses it 4 s later, well behind the place where the ego would be.
+    let gives_way = rollout(ego.clone(), vec![glide(70.0, 34.0, -FRAC_PI_2, 6.0, 60)]);
+    assert_eq!(measure(&network, &way, 15.0, &gives_way).ego.phantom_braking, None);
+    let stays_off = rollout(ego.clone(), vec![glide(70.0, 64.0, -FRAC_PI_2, 6.0, 60)]);
+    assert!(measure(&network, &way, 15.0, &stays_off).ego.phantom_braking.is_some());
     // Too fast is a reason, too.
     assert_eq!(measure(&network, &way, 7.0, &rollout_free).ego.phantom_braking, None);
     // A cone beside the lane is none.
