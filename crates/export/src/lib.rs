@@ -7,11 +7,14 @@
 //!
 //! What this crate does **not** do: it writes no file, and simulates nothing.
 
+mod commonroad;
+mod metadrive;
 mod opendrive;
 mod openscenario;
 mod scenic;
 mod xml;
 
+use recrash_model::record::Surface;
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Parameter;
@@ -123,9 +126,17 @@ pub fn export(
     match options.format {
         Format::OpenScenario => openscenario::files(scenario, rollout, parameters, options),
         Format::Scenic => Ok(scenic::files(scenario, parameters)),
-        Format::MetaDrive | Format::CommonRoad => {
-            Err(ExportError::NeedsRollout { scenario: scenario.draft().id.clone() })
-        }
+        Format::MetaDrive => Ok(metadrive::files(scenario)),
+        Format::CommonRoad => commonroad::files(scenario, rollout, options),
+    }
+}
+
+/// Friction relative to a dry road, as the simulator's (`docs/models/vehicle.md`).
+pub(crate) fn relative_friction(surface: Surface) -> f64 {
+    match surface {
+        Surface::Dry => 1.0,
+        Surface::Wet => 0.7,
+        Surface::SnowIce => 0.3,
     }
 }
 

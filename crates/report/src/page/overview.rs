@@ -29,8 +29,7 @@ pub fn section(context: &Context) -> Markup {
             }
             (tiles(context))
             h2 { "Scenarios" }
-            (controls())
-            (table(context))
+            @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls()) (table(context)) }
             .two {
                 div { h3 { "Make this suite again" } (parts::command(&suite.command)) }
                 div {

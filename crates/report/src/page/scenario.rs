@@ -68,10 +68,13 @@ fn refusals(log: &TuneLog) -> Markup {
             None => reasons.push((reason, 1)),
         }
     }
+    reasons.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
     html! {
         @if !reasons.is_empty() {
-            h4 { "Why points were refused" }
-            ul.flow { @for (reason, n) in reasons.iter().take(40) { li { (words::clean(reason, 300)) span.muted { " \u{d7}" (n) } } } }
+            details open[reasons.len() <= 6] {
+                summary { "Why points were refused (" (words::count(reasons.len(), "reason")) ")" }
+                ul.flow { @for (reason, n) in reasons.iter().take(40) { li { span.number { (n) "\u{d7} " } (words::clean(reason, 300)) } } }
+            }
         }
     }
 }
