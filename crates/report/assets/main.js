@@ -7,6 +7,8 @@ let currentPage = null;
 
 const replayOf = (section) => {
   if (!one('.stage', section)) return null;
+  const { before, after } = readCase(Number(section.dataset.case));
+  if (!before && !after) return null;
   if (!replays.has(section)) replays.set(section, new Replay(section));
   return replays.get(section);
 };
@@ -111,7 +113,7 @@ function onKey(event) {
     '/': () => {
       location.hash = 'overview';
       go();
-      one('#case-search').focus();
+      one('#case-search')?.focus();
     },
   };
   if (acts[event.key]) {

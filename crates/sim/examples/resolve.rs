@@ -81,8 +81,11 @@ fn place(scenario: &Scenario, placement: &Placement) -> Value {
     let lane = network.lane(segment.lane);
     let road = network.road(lane.road);
     let last = network.road(*placement.path.roads.last().expect("a path has roads"));
+    let at = placement.path.segment_at(placement.s_m);
+    let mut route = vec![road.from.as_str()];
+    route.extend(placement.path.roads[at..].iter().map(|&road| network.road(road).to.as_str()));
     json!({ "lane": [road.from, road.to, lane.index], "s_m": placement.s_m - segment.start_m, "t_m": placement.t_m,
-            "speed_mps": placement.speed_mps, "destination": last.to })
+            "route": route, "speed_mps": placement.speed_mps, "destination": last.to })
 }
 
 fn outcome(rollout: &Rollout) -> Value {

@@ -22,6 +22,7 @@ from metadrive.component.pgblock.roundabout import Roundabout
 from metadrive.component.pgblock.std_intersection import StdInterSection
 from metadrive.component.pgblock.std_t_intersection import StdTInterSection
 from metadrive.component.pgblock.straight import Straight
+from metadrive.component.road_network.node_road_network import NodeRoadNetwork
 from metadrive.component.static_object.traffic_object import TrafficBarrier, TrafficCone, TrafficWarning
 from metadrive.component.vehicle.vehicle_type import StaticDefaultVehicle
 from metadrive.engine.base_engine import BaseEngine
@@ -29,11 +30,16 @@ from metadrive.envs.metadrive_env import MetaDriveEnv
 from metadrive.manager.pg_map_manager import PGMapManager
 from metadrive.obs.observation_base import DummyObservation
 from metadrive.policy.idm_policy import IDMPolicy
+from panda3d.core import LVector3
 from shapely.geometry import Polygon
 
 BaseEngine.try_pull_asset = staticmethod(lambda *a, **k: None)
 
+# MetaDrive routes by the shortest way, which is not always the scenario's (a partner that goes round the ring).
+NodeRoadNetwork.shortest_path = lambda self, start, goal: list(World.route)
+
 OBSTACLES = dict(cone=TrafficCone, barrier=TrafficBarrier, warning=TrafficWarning)
+SPAWNED = []
 MISSING_ARM = dict(right=0, ahead=1, left=2)
 
 
@@ -94,6 +100,8 @@ class FixedMapManager(PGMapManager):
 
 
 class World(MetaDriveEnv):
+    route = []
+
     def setup_engine(self):
         super().setup_engine()
         self.engine.update_manager("map_manager", FixedMapManager())
@@ -113,11 +121,7 @@ class Ego(IDMPolicy):
         super().__init__(vehicle, seed)
         self.NORMAL_SPEED = self.target_speed = Ego.target
         self.overtake_timer = 25
-        self._np_random = Middle()
-
-    @property
-    def np_random(self):
-        return Middle()
+        self.np_random = Middle()
 
 
 class Partner(IDMPolicy):
@@ -145,6 +149,9 @@ class Partner(IDMPolicy):
     def act(self, *args, **kwargs):
         vehicle, policy = self.control_object, self.spec["policy"]
         lanes = vehicle.navigation.current_ref_lanes
+        if policy["type"] == "stopped" and self.step < (policy.get("depart_step") or math.inf):
+            self.step += 1
+            return [0.0, -1.0 if vehicle.speed > 0.5 else -0.1]
         lane = lanes[min(self.spec["lane"][2], len(lanes) - 1)]
         s, t = lane.local_coordinates(vehicle.position)
         target, rate = self.lateral_target()
@@ -167,9 +174,6 @@ class Partner(IDMPolicy):
             wanted = policy["target_speed"] if kind == "sudden_brake" else policy["cruise_speed"]
             return gain * (wanted - speed)
         if kind == "stopped":
-            depart = policy.get("depart_step")
-            if depart is None or self.step < depart:
-                return -1.0
             return 0.3 * (policy["target_speed_mps"] - speed)
         # idm_nominal: MetaDrive's gap law on the lane it is on.
         from metadrive.policy.idm_policy import FrontBackObjects
@@ -208,6 +212,7 @@ def make_world():
 
 
 def placed(spec):
+    World.route = spec["route"]
     return dict(
         spawn_lane_index=tuple(spec["lane"]),
         spawn_longitude=spec["s_m"],
@@ -241,25 +246,26 @@ def run(env, spec):
             random_seed=0,
             auto_fill_random_seed=False,
         )
+        SPAWNED.append(vehicle.id)
         actors.append((vehicle, Partner(vehicle, 0, partner)))
         vehicle.after_step()
+    things = []
     for obstacle in spec["obstacles"]:
         lane = network.get_lane(tuple(obstacle["lane"]))
-        engine.spawn_object(
+        thing = engine.spawn_object(
             OBSTACLES[obstacle["kind"]],
             lane=lane,
             position=[obstacle["x"], obstacle["y"]],
             heading_theta=obstacle["heading"],
             static=True,
         )
+        SPAWNED.append(thing.id)
+        things.append(thing)
     for (vehicle, _), wanted in zip(actors, [spec["ego"]] + spec["partners"]):
         assert vehicle.navigation.checkpoints[-1] == wanted["destination"], vehicle.navigation.checkpoints
         assert tuple(vehicle.lane_index) == tuple(wanted["lane"]), (vehicle.lane_index, wanted["lane"])
     tracks = [[] for _ in actors]
-    end, gap, hit = None, (math.inf, 0.0), set()
-    halted = False
-    step = 0
-    standing = 0
+    end, gap, halted, step = None, (math.inf, 0.0), set(), 0
     while True:
         boxes = [outline(vehicle) for vehicle, _ in actors]
         for box in boxes[1:]:
@@ -267,7 +273,6 @@ def run(env, spec):
             if distance < gap[0]:
                 gap = (distance, 0.1 * step)
         actions = []
-        standing = standing + 1 if ego.speed < 0.3 else 0
         if step and ego.crash_vehicle:
             end = "contact"
         elif env._is_arrive_destination(ego):
@@ -276,8 +281,12 @@ def run(env, spec):
             end = "off_road"
         elif step >= spec["max_steps"]:
             end = "timeout"
-        for vehicle, policy in actors:
+        for number, (vehicle, policy) in enumerate(actors):
+            if number and vehicle.crash_vehicle:
+                halted.add(number)
             action = [0.0, 0.0] if end else policy.act()
+            if number in halted:
+                action = [action[0], -1.0 if vehicle.speed > 0.5 else -0.1]
             actions.append([max(-1.0, min(1.0, a)) for a in action])
         for track, (vehicle, _), action in zip(tracks, actors, actions):
             x, y = vehicle.position
@@ -288,11 +297,12 @@ def run(env, spec):
             vehicle.before_step(action)
         for _ in range(5):
             engine.step_physics_world()
+        for thing in things:
+            # A fixed obstacle that was hit keeps its place but gets a velocity, which the IDM would believe.
+            thing.body.setLinearVelocity(LVector3(0, 0, 0))
         for vehicle, _ in actors:
             vehicle.after_step()
         step += 1
-    for vehicle, _ in actors[1:]:
-        engine.clear_objects([vehicle.id], force_destroy=True)
     return dict(
         id=spec["id"], end=end, time_s=round(0.1 * step, 1), min_gap_m=round(gap[0], 4), min_gap_time_s=round(gap[1], 1),
         object_contact=bool(ego.crash_object), tracks=tracks,
@@ -307,6 +317,8 @@ def main():
             result = run(env, spec)
         except Exception as error:  # one bad scenario must not end the comparison
             result = dict(id=spec["id"], end="error", error=f"{type(error).__name__}: {error}")
+        env.engine.clear_objects(SPAWNED, force_destroy=True)
+        SPAWNED.clear()
         print(json.dumps(result), flush=True)
     env.close()
 

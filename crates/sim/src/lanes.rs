@@ -20,6 +20,9 @@ const JOINT_M: f64 = 0.1;
 /// Spacing of the points MetaDrive builds lane bodies from (`POLYGON_SAMPLE_RATE`). [m]
 const BODY_SAMPLE_M: f64 = 1.0;
 
+/// Collision margin of Bullet's convex hulls, by which a ray finds a lane a little beside it. [m]
+const BODY_MARGIN_M: f64 = 0.04;
+
 /// A lane with what would otherwise be computed again at every look-up.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PreparedLane {
@@ -160,13 +163,17 @@ impl PreparedLane {
     fn body_holds(&self, point: Vec2) -> bool {
         let (s, t) = self.local(point);
         match self.shape {
-            Shape::Straight { .. } => s >= 0.0 && s <= self.body_end_m && t.abs() <= self.half_width_m,
+            Shape::Straight { .. } => {
+                s >= -BODY_MARGIN_M
+                    && s <= self.body_end_m + BODY_MARGIN_M
+                    && t.abs() <= self.half_width_m + BODY_MARGIN_M
+            }
             Shape::Arc { turn, start_forward, end_forward, chord, chord_forward, .. } => {
                 let beyond_end = self.body_end_m - self.length_m + BODY_SAMPLE_M;
-                turn * t <= self.half_width_m
-                    && (point - self.start).dot(start_forward) >= -BODY_SAMPLE_M
-                    && (point - self.end).dot(end_forward) <= beyond_end
-                    && turn * chord_forward.cross(point - chord) <= 0.0
+                turn * t <= self.half_width_m + BODY_MARGIN_M
+                    && (point - self.start).dot(start_forward) >= -BODY_SAMPLE_M - BODY_MARGIN_M
+                    && (point - self.end).dot(end_forward) <= beyond_end + BODY_MARGIN_M
+                    && turn * chord_forward.cross(point - chord) <= BODY_MARGIN_M
             }
         }
     }

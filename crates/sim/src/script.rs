@@ -101,7 +101,13 @@ impl Script {
             (-rate_mps / seen.speed.max(SLOW_MPS)).clamp(-GREATEST_DRIFT, GREATEST_DRIFT)
         };
         let lane = scene.path_lane(me);
-        let throttle = if halted { -1.0 } else { self.throttle(scene, me, crossings) };
+        if let Plan::Wait { until, .. } = self.plan
+            && scene.step < until
+        {
+            // Whoever waits holds the wheels straight; the controllers begin when it sets off.
+            return Controls { steer: 0.0, throttle: stand(seen.speed) };
+        }
+        let throttle = if halted { stand(seen.speed) } else { self.throttle(scene, me, crossings) };
         Controls { steer: self.keeper.steer(scene.lanes.lane(lane), seen.pose, t_m, drift), throttle }.clipped()
     }
 
@@ -122,23 +128,23 @@ impl Script {
                 let lead = metadrive_idm::lead_on(scene, me, seen.place.lane);
                 metadrive_idm::throttle(seen.speed, speed_mps, seen.forward, seen.velocity, lead)
             }
-            Plan::Wait { until, speed_mps } => {
-                if scene.step < until {
-                    -1.0
-                } else {
-                    hold(speed_mps, DEFAULT_SPEED_KP)
-                }
-            }
+            Plan::Wait { speed_mps, .. } => hold(speed_mps, DEFAULT_SPEED_KP),
             Plan::GiveWay { speed_mps, manners } => {
                 let speed_mps = match self.give_way.stop_line(scene, me, crossings, speed_mps, manners) {
                     // Slows along the parabola that ends at the line.
                     Some(distance_m) => speed_mps.min((2.0 * GIVE_WAY_MPS2 * (distance_m - 0.5).max(0.0)).sqrt()),
                     None => speed_mps,
                 };
-                if speed_mps < 0.3 { -1.0 } else { hold(speed_mps, DEFAULT_SPEED_KP) }
+                if speed_mps < 0.3 { stand(seen.speed) } else { hold(speed_mps, DEFAULT_SPEED_KP) }
             }
         }
     }
+}
+
+/// Brakes to a stand and holds it: fully while it moves, lightly then (MetaDrive's vehicles creep backwards under a full
+/// brake).
+pub(crate) fn stand(speed_mps: f64) -> f64 {
+    if speed_mps > 0.5 { -1.0 } else { -0.1 }
 }
 
 /// Deceleration with which a partner stops to give way; assumed, a firm stop. [m/s^2]

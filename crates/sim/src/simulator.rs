@@ -3,7 +3,7 @@
 //! What is fixed during a run ([`Setting`]), what is true at a time ([`State`]) and what is scratch ([`Workspace`]) are
 //! three types. All of them are kept from run to run, so that a step allocates nothing.
 
-use crate::chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand};
+use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
 use crate::ego::Ego;
 use crate::give_way::{Crossing, HalfSize};
 use crate::idm::Idm;
@@ -11,7 +11,7 @@ use crate::lanes::{LaneIndex, LaneTable, Navigator};
 use crate::metadrive_idm::MetadriveIdm;
 use crate::recorder::{CastMember, Recorder};
 use crate::scene::{Scene, Seen, SeenObstacle};
-use crate::script::Script;
+use crate::script::{Script, stand};
 use crate::traffic;
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
@@ -29,6 +29,11 @@ const STANDING_MPS: f64 = 0.3;
 
 /// The ego is stuck when it has stood this long and nobody else moves or is about to; assumed. [steps]
 const STUCK_STEPS: u32 = 200;
+
+/// Steps and physics steps in a second. A time is a count divided by these, which gives the nearest number to the
+/// decimal that people read.
+const STEPS_PER_S: f64 = 10.0;
+const PHYSICS_STEPS_PER_S: f64 = 50.0;
 
 /// Runs scenarios one after the other.
 #[derive(Debug, Default)]
@@ -285,7 +290,9 @@ impl Simulator {
                 Controls::default()
             } else {
                 match driver {
-                    Driver::MetadriveIdm(driver) if halted => Controls { throttle: -1.0, ..driver.decide(&scene, me) },
+                    Driver::MetadriveIdm(driver) if halted => {
+                        Controls { throttle: stand(scene.actors[me].speed), ..driver.decide(&scene, me) }
+                    }
                     Driver::MetadriveIdm(driver) => driver.decide(&scene, me),
                     Driver::Idm(driver) => driver.decide(&scene, me, &setting.crossings),
                     Driver::Script(script) => script.decide(&scene, me, &setting.moves, &setting.crossings, halted),
@@ -318,7 +325,7 @@ impl Simulator {
             if workspace.near.is_empty() {
                 continue;
             }
-            let time_s = f64::from(state.step) * STEP_S + substep as f64 * PHYSICS_STEP_S;
+            let time_s = (f64::from(state.step) * SUBSTEPS as f64 + substep as f64) / PHYSICS_STEPS_PER_S;
             collide(setting, state, workspace, time_s, recorder);
         }
     }
@@ -326,7 +333,7 @@ impl Simulator {
     /// Whether the run is over.
     fn verdict(&self) -> Option<Termination> {
         let (setting, state) = (&self.setting, &self.state);
-        let time_s = f64::from(state.step) * STEP_S;
+        let time_s = f64::from(state.step) / STEPS_PER_S;
         let kind = if state.diverged {
             TerminationKind::Diverged
         } else if state.ego_contact {

@@ -34,6 +34,11 @@ pub fn cross(lanes: u8) -> MapSpec {
     MapSpec::X(CrossMap { lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 60.0 })
 }
 
+/// X with arms long enough for any start.
+pub fn wide_cross(lanes: u8) -> MapSpec {
+    MapSpec::X(CrossMap { lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 150.0 })
+}
+
 /// T with arms of 60 m.
 pub fn tee(lanes: u8, missing: MissingArm) -> MapSpec {
     MapSpec::T(TeeMap { lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 60.0, missing })
