@@ -114,12 +114,18 @@ fn designs_of_observed_templates_become_faithful_however_the_partner_comes() {
 }
 
 #[test]
-fn designs_of_every_template_the_profile_expresses_pass_the_check() {
+fn designs_of_every_template_the_profile_expresses_pass_the_check_with_cones_in_work_zones_only() {
     let profile = support::paper();
-    for record in records() {
+    // Seven ways a template: every template is met, each way with other templates.
+    for record in records().into_iter().step_by(3) {
+        let template = record.template().expect("one");
         let draft = design(&record, &narrative(&record, &profile, 7), &profile, &[]);
+        assert_eq!(!draft.obstacles.is_empty(), template.work_zone, "{template}");
+        // Beside the ego's lane, so that it is narrowed and not blocked.
+        let half_lane_m = 0.5 * draft.map.carriageway().lane_width_m;
+        assert!(draft.obstacles.iter().all(|cone| cone.t_m.abs() > half_lane_m), "{template}");
         if let Err(problems) = recrash_roads::check(draft) {
-            panic!("{}: {}: {problems:?}", record.template().expect("one"), record.narrative);
+            panic!("{template}: {}: {problems:?}", record.narrative);
         }
     }
 }
@@ -230,7 +236,7 @@ fn with(draft: &ScenarioDraft, pointer: &str, value: f64, integer: bool) -> Scen
 fn parameters_point_into_the_draft_and_their_bounds_can_be_read_back() {
     let profile = support::paper();
     let mut seen = std::collections::BTreeSet::new();
-    for record in records().into_iter().step_by(4) {
+    for record in records().into_iter().step_by(9) {
         let narrative = narrative(&record, &profile, 7);
         let draft = design(&record, &narrative, &profile, &[]);
         let found = parameters(&draft, &narrative, &profile);
@@ -254,18 +260,5 @@ fn parameters_point_into_the_draft_and_their_bounds_can_be_read_back() {
     }
     for name in ["target_speed_mps", "arrival_gap_s", "delta_s_m", "delta_t_m", "target_speed", "to_t_m", "t_m"] {
         assert!(seen.contains(name), "{name} is no parameter of any draft: {seen:?}");
-    }
-}
-
-#[test]
-fn cones_stand_in_work_zones_and_nowhere_else() {
-    let profile = support::paper();
-    for record in records() {
-        let narrative = narrative(&record, &profile, 7);
-        let draft = design(&record, &narrative, &profile, &[]);
-        let Some(Template { work_zone, .. }) = record.template() else { panic!("a template") };
-        assert_eq!(!draft.obstacles.is_empty(), work_zone);
-        // Beside the ego's lane, so that it is narrowed and not blocked.
-        assert!(draft.obstacles.iter().all(|cone| cone.t_m.abs() > 0.5 * draft.map.carriageway().lane_width_m));
     }
 }

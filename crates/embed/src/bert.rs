@@ -30,7 +30,7 @@ struct Layer {
     output_norm: Norm,
 }
 
-/// `x W^T + b`.
+/// `x W + b`. Files hold W transposed; this way round its rows are packed faster.
 #[derive(Debug)]
 struct Linear {
     weight: Array2<f32>,
@@ -138,6 +138,7 @@ impl Layer {
 impl Linear {
     fn read(tensors: &Tensors<'_>, name: &str, outputs: usize, inputs: usize) -> Result<Self, EmbedError> {
         let weight = tensors.matrix(&format!("{name}.weight"), outputs, inputs)?;
+        let weight = weight.t().as_standard_layout().into_owned();
         Ok(Self { weight, bias: tensors.vector(&format!("{name}.bias"), outputs)? })
     }
 
@@ -145,14 +146,14 @@ impl Linear {
         let weights: Vec<_> = parts.iter().map(|part| part.weight.view()).collect();
         let biases: Vec<_> = parts.iter().map(|part| part.bias.view()).collect();
         let shape = |e: ndarray::ShapeError| EmbedError::Weights(e.to_string());
-        let weight = concatenate(Axis(0), &weights).map_err(shape)?;
+        let weight = concatenate(Axis(1), &weights).map_err(shape)?;
         Ok(Self { weight, bias: concatenate(Axis(0), &biases).map_err(shape)? })
     }
 
     fn apply(&self, x: &Array2<f32>) -> Array2<f32> {
         let mut y = Array2::zeros((x.nrows(), self.bias.len()));
         y.rows_mut().into_iter().for_each(|mut row| row.assign(&self.bias));
-        general_mat_mul(1.0, x, &self.weight.t(), 1.0, &mut y);
+        general_mat_mul(1.0, x, &self.weight, 1.0, &mut y);
         y
     }
 }

@@ -1,5 +1,7 @@
 //! Records for tests.
 
+#![allow(dead_code, reason = "not every test file needs all of it")]
+
 use recrash_agents::{Brief, Paraphrase, Rules};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
@@ -56,13 +58,11 @@ pub fn brief<'a>(id: &'a str, records: &'a [&'a CrashRecord], profile: &'a Syste
 }
 
 /// The narrative of one record.
-#[allow(dead_code, reason = "not every test file needs it")]
 pub fn narrate(record: &CrashRecord, profile: &SystemProfile) -> Outcome<Narrative> {
     Rules.paraphrase(&brief("01-test", &[record], profile, 7)).expect("a narrative")
 }
 
 /// Zones by their names in the model's JSON.
-#[allow(dead_code, reason = "not every test file needs it")]
 pub fn zones(names: &[String]) -> Vec<ContactZone> {
     names
         .iter()

@@ -37,7 +37,7 @@ pub fn section(context: &Context) -> Markup {
                     p.muted {
                         "Profile " b { (words::clean(&suite.profile.name, 60)) } ", ego " b { (words::clean(&suite.ego, 60)) }
                         ", simulator " b { (words::clean(&suite.simulator, 60)) } ", agents " b { (words::clean(&suite.agents, 60)) }
-                        ", seed " b { (suite.selection.seed) } ". " a href="#about" { "Files, hashes and settings" }
+                        ", seed " b { (suite.seed) } ". " a href="#about" { "Files, hashes and settings" }
                     }
                 }
             }

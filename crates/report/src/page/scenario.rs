@@ -88,7 +88,7 @@ pub fn files(case: &CaseView) -> Markup {
             @for (order, (name, run)) in runs.iter().enumerate() {
                 @let json = serde_json::to_string_pretty(&run.scenario).unwrap_or_default();
                 div {
-                    h3 { (words::capital(name)) }
+                    h2 { (words::capital(name)) }
                     p.muted { "Run it again:" }
                     (parts::command(&run.rerun_command))
                     p.muted.small { "Simulated by " (words::clean(&run.rollout.simulator, 60)) " with " (words::clean(&run.rollout.ego, 60)) "; states " code { (words::clean(&run.rollout.state_hash, 64)) } }
