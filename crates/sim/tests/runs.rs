@@ -121,6 +121,16 @@ fn another_traffic_seed_is_another_traffic() {
     assert_ne!(with_seed(1), with_seed(2));
 }
 
+#[test]
+fn a_driver_who_looks_touches_far_fewer_than_one_who_does_not() {
+    let contacts = |ego| {
+        let drafts = (0..2000).filter_map(|number| random_draft(21, number)).take(100);
+        drafts.filter(|draft| simulate(&checked(draft.clone()), ego).first_ego_contact().is_some()).count()
+    };
+    let (blind, looking) = (contacts(Ego::MetadriveIdm), contacts(Ego::Idm));
+    assert!(blind >= 10 && 2 * looking <= blind, "{blind} {looking}");
+}
+
 /// State hashes of 60 scenarios with both egos: equal on every machine, in debug and release builds, for any history of
 /// the simulator. To renew them after a change of the model run with `RECRASH_RENEW_GOLDENS=1`; that run fails.
 #[test]
