@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use recrash_model::selection::Strategy;
-use recrash_pipeline::{Options, RecordSource};
+use recrash_pipeline::{Format, Options, RecordSource, Resources, SimulatorKind};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -10,6 +10,7 @@ Examples:
   recrash run                                            the built-in sample, everything else by default, into suite/
   recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
   recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
+  recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used";
@@ -48,6 +49,8 @@ pub enum Command {
     Tune(SuiteArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
     Report(SuiteArgs),
+    /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
+    Export(ExportArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -73,9 +76,15 @@ pub struct SuiteArgs {
     /// Who paraphrases and designs: the built-in rules. [default: rules]
     #[arg(long, value_name = "NAME", value_parser = ["rules"])]
     pub agent: Option<String>,
-    /// Simulator. [default: native]
-    #[arg(long, value_name = "NAME", value_parser = ["native"])]
-    pub sim: Option<String>,
+    /// Folder with the files of all-MiniLM-L6-v2, to embed narratives with. [default: a lexical embedding]
+    #[arg(long, value_name = "DIR")]
+    pub model_dir: Option<PathBuf>,
+    /// Simulator: native, or metadrive (needs Python with metadrive-simulator 0.4.3). [default: native]
+    #[arg(long, value_name = "NAME")]
+    pub sim: Option<SimulatorKind>,
+    /// Python interpreter for MetaDrive.
+    #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
+    pub python: PathBuf,
     /// System under test: metadrive-idm, idm. [default: the profile's]
     #[arg(long, value_name = "NAME")]
     pub ego: Option<String>,
@@ -104,6 +113,26 @@ pub struct RecordsArgs {
     pub suite: SuiteArgs,
 }
 
+/// Options of `export`.
+#[derive(Debug, Clone, Args)]
+pub struct ExportArgs {
+    /// Folder of a suite, or a scenario file (JSON).
+    #[arg(value_name = "SUITE|SCENARIO")]
+    pub source: PathBuf,
+    /// Formats, separated by commas: openscenario (with OpenDRIVE), scenic, metadrive, commonroad.
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
+    pub to: Vec<Format>,
+    /// How partners move: by their policies as actions, or on the trajectory that was recorded.
+    #[arg(long = "as", value_name = "HOW", value_parser = ["actions", "trajectory"], default_value = "actions")]
+    pub partners_as: String,
+    /// Target folder; each format gets a folder in it. [default: exports, in the suite or beside the file]
+    #[arg(long, value_name = "DIR")]
+    pub to_dir: Option<PathBuf>,
+    /// Overwrite files that are there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
 /// Options of `simulate`.
 #[derive(Debug, Clone, Args)]
 pub struct SimulateArgs {
@@ -126,11 +155,20 @@ impl SuiteArgs {
             profile: self.profile.clone().unwrap_or(base.profile),
             budget: self.budget.map_or(base.budget, usize::from),
             strategy: self.strategy.unwrap_or(base.strategy),
+            model_dir: self.model_dir.clone().or(base.model_dir),
+            simulator: self.sim.unwrap_or(base.simulator),
             ego: self.ego.clone().or(base.ego),
             tune_budget: self.tune_budget.map_or(base.tune_budget, |n| n as usize),
             searcher: self.searcher.clone().unwrap_or(base.searcher),
             seed: self.seed.unwrap_or(base.seed),
         }
+    }
+}
+
+impl SuiteArgs {
+    /// What may be used of the machine.
+    pub fn resources(&self) -> Resources {
+        Resources { threads: self.threads.map(usize::from), python: self.python.clone() }
     }
 }
 

@@ -1,12 +1,13 @@
 //! What each subcommand does.
 
-use crate::args::{Cli, Command, RecordsArgs, SimulateArgs, SuiteArgs};
+use crate::args::{Cli, Command, ExportArgs, RecordsArgs, SimulateArgs, SuiteArgs};
 use crate::bars::Bars;
 use crate::show;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
 use recrash_pipeline::{
-    NoProgress, Options, PipelineError, Progress, Stage, StageReport, Suite, Summary, schema, simulate_file,
+    ExportRequest, FileRequest, NoProgress, Options, PartnersAs, PipelineError, Progress, Stage, StageReport, Suite,
+    Summary, schema, simulate_file,
 };
 
 /// Runs a subcommand.
@@ -21,6 +22,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Simulate(args) => simulate(args, output),
         Command::Tune(args) => one_stage(args, Stage::Tune, output),
         Command::Report(args) => report(args, output),
+        Command::Export(args) => export(args, output),
         Command::Schema => {
             show::json(&schema());
             Ok(())
@@ -47,7 +49,7 @@ impl Output {
 
 /// The suite a stage works on, with what was typed over what is saved there.
 fn open(args: &SuiteArgs, base: Options) -> Result<Suite, PipelineError> {
-    Suite::open(&args.out, args.options(base), args.threads.map(usize::from))
+    Suite::open(&args.out, args.options(base), args.resources())
 }
 
 fn open_saved(args: &SuiteArgs) -> Result<Suite, PipelineError> {
@@ -142,11 +144,41 @@ fn simulate(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
     };
     let defaults = Options::default();
     let profile = args.suite.profile.as_deref().unwrap_or(&defaults.profile);
-    let result = simulate_file(scenario, args.suite.ego.as_deref(), profile, args.rollout.as_deref())?;
+    let result = simulate_file(&FileRequest {
+        scenario,
+        profile,
+        ego: args.suite.ego.as_deref(),
+        simulator: args.suite.sim.unwrap_or_default(),
+        python: &args.suite.python,
+        rollout: args.rollout.as_deref(),
+    })?;
     if output.json {
         show::json(&result.run);
     } else if !output.quiet {
         show::run(&result);
     }
     Ok(())
+}
+
+fn export(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
+    let partners_as = if args.partners_as == "trajectory" { PartnersAs::Trajectory } else { PartnersAs::Actions };
+    let report = recrash_pipeline::export(&ExportRequest {
+        source: args.source.clone(),
+        formats: args.to.clone(),
+        partners_as,
+        target: args.to_dir.clone(),
+        force: args.force,
+    })?;
+    if output.json {
+        show::json(&report);
+    } else if !output.quiet {
+        show::exported(&report);
+    }
+    match report.failures.is_empty() {
+        true => Ok(()),
+        false => Err(PipelineError::BadInput {
+            what: format!("{} scenarios were not exported; the others were", report.failures.len()),
+            diagnostics: report.failures,
+        }),
+    }
 }

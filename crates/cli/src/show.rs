@@ -6,7 +6,7 @@ use owo_colors::OwoColorize;
 use recrash_model::diagnostic::{Diagnostic, Severity};
 use recrash_model::record::{FunnelStep, RecordSet};
 use recrash_model::selection::{Coverage, Selection, StageTables, TemplateCount};
-use recrash_pipeline::{FileRun, PipelineError, RunSummary, Stage, StageReport, Suite, Summary};
+use recrash_pipeline::{ExportReport, FileRun, PipelineError, RunSummary, Stage, StageReport, Suite, Summary};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -253,4 +253,18 @@ pub fn run(result: &FileRun) {
         println!("  {mark} {}", finding.sentence);
     }
     println!("state hash {}", run.rollout.state_hash);
+}
+
+/// Prints what was exported.
+pub fn exported(report: &ExportReport) {
+    let mut folders: Vec<(&Path, usize)> = Vec::new();
+    for folder in report.files.iter().filter_map(|file| file.parent()) {
+        match folders.last_mut() {
+            Some((last, count)) if *last == folder => *count += 1,
+            _ => folders.push((folder, 1)),
+        }
+    }
+    for (folder, count) in folders {
+        println!("{count} files in {}", folder.display());
+    }
 }

@@ -21,9 +21,9 @@ pub enum IngestError {
     TooLarge {
         /// File name.
         file: String,
-        /// Its size. [byte]
+        /// Its size, in bytes.
         bytes: usize,
-        /// The limit. [byte]
+        /// The limit, in bytes.
         limit: usize,
     },
     /// The file is no text.
@@ -89,7 +89,7 @@ const SIGNATURES: [(&[u8], &str, &str); 7] = [
     (b"\x89PNG", "a picture", "give the CSV file"),
 ];
 
-/// How far to look for bytes that no text has. [byte]
+/// How far to look for bytes that no text has, in bytes.
 const BINARY_PROBE_BYTES: usize = 8192;
 
 /// What the file is, when its first bytes are those of another format: `(looks like, hint)`.

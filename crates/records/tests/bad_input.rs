@@ -113,6 +113,16 @@ fn an_unclosed_quote_takes_one_row_and_not_those_below() {
 }
 
 #[test]
+fn a_file_in_which_every_line_swallows_the_rest_ends_in_bounded_time() {
+    // Read from outside a quoted field or from inside one, this line ends inside one.
+    let text = second(&vec!["1-1,1,a\",\"".to_owned(); 20_000]);
+    let outcome = ingest_bytes(text.as_bytes());
+    assert!(malformed(&outcome.value).len() < 100, "{} rows", malformed(&outcome.value).len());
+    assert_eq!(diagnostic(&outcome, "records.quotes-broken").severity, Severity::Error);
+    assert_adds_up(&outcome.value);
+}
+
+#[test]
 fn rows_without_an_id_or_a_version_are_no_records() {
     let no_id = row(Edition::Second, " ", &[]);
     let no_version = row(Edition::Second, "1-2", &[("Report Version", "two")]);
@@ -152,6 +162,14 @@ fn the_same_edition_twice_in_one_file_stays_one_part() {
     assert_eq!(outcome.value.files.len(), 1);
     assert_eq!(ids(&outcome.value), ["1-1/1", "1-2/1"]);
     assert_eq!(codes(&outcome.diagnostics), ["records.second-header"]);
+}
+
+#[test]
+fn headers_are_bounded_in_width_and_number() {
+    let wide = header(Edition::Second) + &",x".repeat(2000) + "\n";
+    assert!(matches!(error(wide.as_bytes()), IngestError::UnknownHeader { .. }));
+    let outcome = ingest_bytes(second(&[plain("1-1")]).repeat(150).as_bytes());
+    assert_eq!((malformed(&outcome.value).len(), outcome.value.records.len()), (50, 150));
 }
 
 #[test]

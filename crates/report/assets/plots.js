@@ -32,19 +32,21 @@ function pathOf(values, x, y) {
 /** The lines of one plot: which run, whose, and the values. */
 function linesOf(name, kase) {
   const lines = [];
+  const single = !(kase.before && kase.after);
   for (const which of ['before', 'after']) {
     const run = kase[which];
     if (!run) continue;
+    const look = which === 'before' && !single ? 'before' : '';
     const who = (actor) => (actor === 0 ? 'ego' : 'partner');
-    if (name === 'gap') lines.push({ which, run, who: 'gap', id: 'gap', values: run.nearest });
+    if (name === 'gap') lines.push({ which, look, run, who: 'gap', id: 'gap', values: run.nearest });
     if (name === 'speed') {
       run.actors.forEach((actor, i) => {
-        if (actor.role !== 'traffic') lines.push({ which, run, who: who(i), id: actor.id, values: actor.speed });
+        if (actor.role !== 'traffic') lines.push({ which, look, run, who: who(i), id: actor.id, values: actor.speed });
       });
     }
     if (name === 'acceleration') {
       for (const { actor, values } of run.accelerations) {
-        lines.push({ which, run, who: who(actor), id: run.actors[actor]?.id ?? '', values });
+        lines.push({ which, look, run, who: who(actor), id: run.actors[actor]?.id ?? '', values });
       }
     }
   }
@@ -108,15 +110,15 @@ class Plot {
     if (limit) {
       const y = this.y(limit[0]);
       parts.push(svg('line', { class: 'plot-limit', x1: MARGIN.left, x2: width - MARGIN.right, y1: y, y2: y }));
-      parts.push(svg('text', { class: 'plot-limit-text', x: MARGIN.left + 5, y: y - 3 }, limit[1]));
     }
     for (const line of this.lines) {
       const inFrame = this.name === 'gap' ? line.values.map((value) => (value > high ? NaN : value)) : line.values;
-      parts.push(svg('path', { class: `plot-line ${line.who} ${line.which}`, d: pathOf(inFrame, (i) => this.x(i * line.run.step), this.y) }));
+      parts.push(svg('path', { class: `plot-line ${line.who} ${line.look}`, d: pathOf(inFrame, (i) => this.x(i * line.run.step), this.y) }));
       if (this.name === 'gap' && line.run.minGap) {
         parts.push(svg('circle', { class: 'plot-least', cx: this.x(line.run.minGap.time), cy: this.y(line.run.minGap.value), r: 4 }));
       }
     }
+    if (limit) parts.push(svg('text', { class: 'plot-limit-text', x: MARGIN.left + 5, y: this.y(limit[0]) - 3 }, limit[1]));
     this.cursor = svg('line', { class: 'plot-cursor', y1: MARGIN.top, y2: MARGIN.top + inner.h });
     this.dots = this.lines.map((line) => svg('circle', { class: `plot-dot ${line.who}`, r: 3.6 }));
     this.svg.replaceChildren(...parts, this.cursor, ...this.dots);

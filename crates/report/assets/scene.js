@@ -50,7 +50,7 @@ function drawScene(canvas, kase, run, time, camera, options = {}) {
     pen.beginPath();
     points.forEach(([x, y], i) => (i ? pen.lineTo(toX(x), toY(y)) : pen.moveTo(toX(x), toY(y))));
   };
-  drawRoad(pen, kase.drawing, trace, k);
+  drawRoad(pen, kase.drawing, trace, k, options.bare);
   if (!run) return;
   run.obstacles.forEach((obstacle) => drawObstacle(pen, obstacle, toX(obstacle.x), toY(obstacle.y), k));
   const order = [...run.actors.keys()].reverse();
@@ -62,11 +62,20 @@ function drawScene(canvas, kase, run, time, camera, options = {}) {
   drawScale(pen, k, height);
 }
 
-function drawRoad(pen, drawing, trace, k) {
+function drawRoad(pen, drawing, trace, k, bare) {
+  pen.setLineDash([]);
+  pen.lineJoin = 'round';
+  // A rim about every area, then the areas over it: what stays is the kerb around all of them.
+  pen.strokeStyle = colours.edge;
+  pen.lineWidth = clamp(0.3 * k, 1.6, 5) + 1;
+  for (const surface of drawing.surfaces) {
+    trace(surface);
+    pen.closePath();
+    pen.stroke();
+  }
   pen.fillStyle = colours.asphalt;
   pen.strokeStyle = colours.asphalt;
   pen.lineWidth = 1;
-  pen.setLineDash([]);
   for (const surface of drawing.surfaces) {
     trace(surface);
     pen.closePath();
@@ -78,18 +87,21 @@ function drawRoad(pen, drawing, trace, k) {
     edge: [colours.edge, 0.16, []],
     lane: [colours.paint, 0.14, [3 * k, 4.5 * k]],
     centre: [colours.centre, 0.16, []],
-    guide: [colours.guide, 0.08, [0.8 * k, 1.6 * k]],
+    guide: [colours.guide, 0.05, []],
   };
   pen.lineCap = 'butt';
   pen.lineJoin = 'round';
   for (const line of drawing.lines) {
+    if (bare && line.kind === 'guide') continue;
     const [colour, breadth, dashes] = looks[line.kind];
     pen.strokeStyle = colour;
     pen.lineWidth = clamp(breadth * k, 0.7, 3);
     pen.setLineDash(dashes);
+    pen.globalAlpha = line.kind === 'guide' ? 0.3 : 1;
     trace(line.points);
     pen.stroke();
   }
+  pen.globalAlpha = 1;
   pen.setLineDash([]);
 }
 
@@ -209,7 +221,7 @@ function drawContact(pen, x, y, k, options) {
   }
   pen.closePath();
   pen.fillStyle = colours.contact;
-  pen.globalAlpha = 0.9;
+  pen.globalAlpha = 0.8;
   pen.fill();
   pen.globalAlpha = 1;
   pen.strokeStyle = '#b00020';
@@ -273,7 +285,8 @@ function drawLabels(pen, run, time, toX, toY, k) {
     .map(({ actor, values }) => ({ actor, gap: valueAt(values, run, time) }))
     .filter(({ gap }) => Number.isFinite(gap));
   const near = gaps.reduce((best, item) => (best && best.gap <= item.gap ? best : item), null);
-  if (near && near.gap > 0.02 && near.gap < 30) {
+  const touched = run.contacts.some((contact) => contact.time <= time + 0.051);
+  if (near && !touched && near.gap > 0.005 && near.gap < 30) {
     const other = run.actors[near.actor];
     const [p, q] = nearestPoints(ego, egoState, other, stateAt(other, run, time));
     pen.strokeStyle = '#ffffff';
@@ -304,6 +317,12 @@ function drawLabels(pen, run, time, toX, toY, k) {
 function drawScale(pen, k, height) {
   const length = [1, 2, 5, 10, 20, 50, 100, 200].find((metres) => metres * k >= 50) ?? 500;
   const [x, y] = [14, height - 14];
+  pen.fillStyle = colours.panel;
+  pen.globalAlpha = 0.8;
+  pen.beginPath();
+  pen.roundRect(x - 6, y - 18, length * k + 12, 24, 4);
+  pen.fill();
+  pen.globalAlpha = 1;
   pen.strokeStyle = colours.ink;
   pen.lineWidth = 1.5;
   pen.beginPath();

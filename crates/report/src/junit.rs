@@ -37,7 +37,7 @@ pub fn render(suite: &SuiteView) -> String {
             ("ego", suite.ego.clone()),
             ("simulator", suite.simulator.clone()),
             ("agents", suite.agents.clone()),
-            ("seed", suite.selection.seed.to_string()),
+            ("seed", suite.seed.to_string()),
             ("command", suite.command.clone()),
             ("generator", suite.generated_by.clone()),
         ];
@@ -91,7 +91,9 @@ fn told(case: &CaseView, run: &RunView) -> String {
         .min_gap_m()
         .and_then(|gap| fixed(gap, 2))
         .map_or("no gap was measured".to_owned(), |gap| format!("{gap} m"));
-    let faithful = if run.verdict.faithful() {
+    let faithful = if run.faithful().is_none() {
+        "not checked".to_owned()
+    } else if run.verdict.faithful() {
         "yes".to_owned()
     } else {
         let failures = run.verdict.failures();

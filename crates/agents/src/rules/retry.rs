@@ -59,9 +59,15 @@ impl Tried {
 ///
 /// With a contact told, three tries aim at it in ever other ways, then two let the two pass: close, then wide, so that
 /// both finish their movements. Without, the first try already passes, and what failed decides whether closer or wider.
-pub fn plan(feedback: &[Feedback], told: bool) -> Plan {
+///
+/// Two that drive side by side are close anyway, so that a wide pass is left for the last tries.
+pub fn plan(feedback: &[Feedback], told: bool, side_by_side: bool) -> Plan {
     let mut plan = Plan {
-        aim: if told { Aim::Touch } else { Aim::Pass(WIDE_PASS_M) },
+        aim: match (told, side_by_side) {
+            (true, _) => Aim::Touch,
+            (false, true) => Aim::Pass(CLOSE_PASS_M),
+            (false, false) => Aim::Pass(WIDE_PASS_M),
+        },
         swap_order: false,
         speed_factor: 1.0,
         length_factor: 1.0,

@@ -32,7 +32,7 @@ pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
                 }
                 @for (name, label, content) in &tabs {
                     div.tab-panel role="tabpanel" id={ (anchor) "--" (name) } aria-labelledby={ (anchor) "--" (name) "-tab" } tabindex="0" {
-                        h3.only-plain { (label) }
+                        h2.only-plain { (label) }
                         (content)
                     }
                 }
@@ -118,7 +118,10 @@ fn stage(case: &CaseView) -> Markup {
                 }
             }
             .plots aria-label="Values over time" role="group" {
-                .plot-key { span.key.solid { "tuned" } span.key.dashed { "as designed" } span.key.ego { "ego" } span.key.partner { "partner" } }
+                .plot-key {
+                    @if case.after.is_some() { span.key.solid { "tuned" } @if case.before.is_some() { span.key.dashed { "as designed" } } }
+                    @else { span.key.solid { "as designed" } }
+                    span.key.ego { "ego" } span.key.partner { "partner" } }
                 @for (name, title, unit) in [("gap", "Gap to the nearest partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
                     figure.plot data-plot=(name) { figcaption { b { (title) } " " span.muted { (unit) } span.readout {} } svg role="img" aria-label={ (title) " over time" } {} }
                 }

@@ -29,8 +29,7 @@ pub fn section(context: &Context) -> Markup {
             }
             (tiles(context))
             h2 { "Scenarios" }
-            (controls())
-            (table(context))
+            @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls()) (table(context)) }
             .two {
                 div { h3 { "Make this suite again" } (parts::command(&suite.command)) }
                 div {
@@ -38,7 +37,7 @@ pub fn section(context: &Context) -> Markup {
                     p.muted {
                         "Profile " b { (words::clean(&suite.profile.name, 60)) } ", ego " b { (words::clean(&suite.ego, 60)) }
                         ", simulator " b { (words::clean(&suite.simulator, 60)) } ", agents " b { (words::clean(&suite.agents, 60)) }
-                        ", seed " b { (suite.selection.seed) } ". " a href="#about" { "Files, hashes and settings" }
+                        ", seed " b { (suite.seed) } ". " a href="#about" { "Files, hashes and settings" }
                     }
                 }
             }
@@ -168,7 +167,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
     let suite = context.suite;
     let last = case.last_run();
     let result = Result::of(last);
-    let faithful = last.is_some_and(|run| run.verdict.faithful());
+    let faithful = last.and_then(RunView::faithful);
     let alternative = matches!(case.narrative.as_ref().map(|n| &n.origin), Some(Origin::Alternative { .. }));
     let mut tags = vec![match result {
         Result::Failed => "failed",
@@ -176,7 +175,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
         Result::Missing => "missing",
     }];
     for (tag, holds) in
-        [("unfaithful", last.is_some() && !faithful), ("alternative", alternative), ("refused", case.refused.is_some())]
+        [("unfaithful", faithful == Some(false)), ("alternative", alternative), ("refused", case.refused.is_some())]
     {
         if holds {
             tags.push(tag);
@@ -218,7 +217,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
                 @for kind in &kinds { (parts::finding_chip(*kind)) " " }
                 @if kinds.is_empty() { (missing(if last.is_some() { "no finding" } else { not_run })) }
             }
-            td data-sort=(if faithful { "1" } else { "0" }) { (parts::faithful_chip(last)) }
+            td data-sort=(match faithful { Some(true) => "2", Some(false) => "1", None => "" }) { (parts::faithful_chip(last)) }
         }
     }
 }

@@ -9,6 +9,7 @@ use recrash_model::metrics::{CheckResult, FindingKind, Timed};
 
 /// A dash that says why there is no value.
 pub fn missing(why: &str) -> Markup {
+    let why = words::clean(why, 300);
     html! { span.missing title=(why) { "\u{2013}" span.hidden-text { " (" (why) ")" } } }
 }
 
@@ -50,8 +51,10 @@ pub fn result_chip(result: Result) -> Markup {
 /// Whether a run is faithful, with the checks that failed.
 pub fn faithful_chip(run: Option<&RunView>) -> Markup {
     let Some(run) = run else { return missing("it was not run") };
-    if run.verdict.faithful() {
-        return html! { span.chip.good { (icon::tick()) "faithful" } };
+    match run.faithful() {
+        None => return html! { span.chip.none { (icon::dash()) "not checked" } },
+        Some(true) => return html! { span.chip.good { (icon::tick()) "faithful" } },
+        Some(false) => {}
     }
     let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
     html! { span.chip.bad { (icon::cross()) "not faithful" } span.why { (why.join(", ")) } }

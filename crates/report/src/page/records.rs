@@ -44,10 +44,11 @@ fn funnel(context: &Context) -> Markup {
         }
     }
     reasons.sort();
+    let told: usize = steps.iter().flat_map(|step| &step.lost).map(|(_, n)| n).sum();
     html! {
         table.plain {
             caption.hidden-text { "How many rows remain after each step" }
-            thead { tr { th scope="col" { "Step" } th.right scope="col" { "Remain" } th scope="col" {} th scope="col" { "Taken away" } } }
+            thead { tr { th scope="col" { "Step" } th.right scope="col" { "Remain" } td {} th scope="col" { "Taken away" } } }
             tbody {
                 @for step in steps {
                     tr {
@@ -62,7 +63,7 @@ fn funnel(context: &Context) -> Markup {
                 }
             }
         }
-        @if !reasons.is_empty() {
+        @if told < rejects.len() {
             p.muted { "Rows that went no further: " @for (i, (reason, n)) in reasons.iter().enumerate() { @if i > 0 { ", " } (thousands(*n)) " " (reason.label()) } "." }
         }
     }
@@ -117,7 +118,7 @@ fn templates(context: &Context) -> Markup {
                 caption.hidden-text { "Observed templates, most frequent first" }
                 thead { tr {
                     @for name in ["#", "Road", "SV (ego)", "CP (partner)", "Work zone"] { th scope="col" { (name) } }
-                    th.right scope="col" { "Records" } th scope="col" {} th.right scope="col" { "Picks" } th scope="col" { "Scenarios" }
+                    th.right scope="col" { "Records" } td {} th.right scope="col" { "Picks" } th scope="col" { "Scenarios" }
                 } }
                 tbody { @for (order, count) in selection.templates.iter().enumerate() {
                     @let t = count.template;

@@ -25,9 +25,9 @@ pub fn tuning(position: usize, case: &CaseView) -> Markup {
                 svg.tune-plot data-case=(position) role="application" tabindex="0" aria-label="Objective of each point; arrow keys go from point to point" {}
                 p.tune-detail.muted role="status" aria-live="polite" { "Point at a mark, or put the focus on the plot and use the arrow keys." }
             }
-            .table-wrap { table.plain {
+            .table-wrap { table.plain.tuning {
                 caption.hidden-text { "Numbers that may move" }
-                thead { tr { th scope="col" { "Number" } th.right scope="col" { "From" } th.right scope="col" { "To" } th.right scope="col" { "As designed" } th.right scope="col" { "Kept" } th scope="col" { "Place in its bounds" } } }
+                thead { tr { th scope="col" { "Number" } th.right scope="col" { "From" } th.right scope="col" { "To" } th.right scope="col" { "As designed" } th.right scope="col" { "Kept" } th scope="col" { "In its bounds" } } }
                 tbody { @for (i, parameter) in log.parameters.iter().enumerate() { (parameter_row(parameter, kept.and_then(|point| point.values.get(i)).copied())) } }
             } }
         }
@@ -68,10 +68,13 @@ fn refusals(log: &TuneLog) -> Markup {
             None => reasons.push((reason, 1)),
         }
     }
+    reasons.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
     html! {
         @if !reasons.is_empty() {
-            h4 { "Why points were refused" }
-            ul.flow { @for (reason, n) in reasons.iter().take(40) { li { (words::clean(reason, 300)) span.muted { " \u{d7}" (n) } } } }
+            details open[reasons.len() <= 6] {
+                summary { "Why points were refused (" (words::count(reasons.len(), "reason")) ")" }
+                ul.flow { @for (reason, n) in reasons.iter().take(40) { li { span.number { (n) "\u{d7} " } (words::clean(reason, 300)) } } }
+            }
         }
     }
 }
@@ -85,7 +88,7 @@ pub fn files(case: &CaseView) -> Markup {
             @for (order, (name, run)) in runs.iter().enumerate() {
                 @let json = serde_json::to_string_pretty(&run.scenario).unwrap_or_default();
                 div {
-                    h3 { (words::capital(name)) }
+                    h2 { (words::capital(name)) }
                     p.muted { "Run it again:" }
                     (parts::command(&run.rerun_command))
                     p.muted.small { "Simulated by " (words::clean(&run.rollout.simulator, 60)) " with " (words::clean(&run.rollout.ego, 60)) "; states " code { (words::clean(&run.rollout.state_hash, 64)) } }
