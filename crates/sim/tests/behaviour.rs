@@ -1,4 +1,4 @@
-//! What drivers do, against what was measured in MetaDrive (METADRIVE, section 2) and what the models promise.
+//! What drivers do, against what was measured in MetaDrive and what the models promise.
 
 use recrash_model::record::Surface;
 use recrash_model::rollout::{EventKind, Rollout, TerminationKind};
