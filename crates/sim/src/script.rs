@@ -114,7 +114,10 @@ impl Script {
 
     fn throttle(&mut self, scene: &Scene<'_>, me: usize, crossings: &[Crossing]) -> f64 {
         let seen = &scene.actors[me];
-        let hold = |speed_mps: f64, gain: f64| gain * (speed_mps - seen.speed);
+        // MetaDrive knows speeds in single precision. Whether somebody who starts at the speed he wants coasts at first
+        // (throttle 0) or rolls freely (a throttle of 1e-8) hangs on that last bit.
+        let speed = f64::from(seen.speed as f32);
+        let hold = |speed_mps: f64, gain: f64| gain * (speed_mps - speed);
         match self.plan {
             Plan::Timed { throttle, throttle_until, speed_mps, brake_from, brake_until, gain } => {
                 if (brake_from..brake_until).contains(&scene.step) {
