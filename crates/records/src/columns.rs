@@ -187,14 +187,15 @@ pub enum NotAHeader {
     Missing { edition: Edition, names: Vec<&'static str> },
 }
 
-/// The columns of an edition, in its order.
+/// The columns of an edition, in its order; none for a mapped file.
 pub fn published_header(edition: Edition) -> impl Iterator<Item = &'static str> {
     let header = match edition {
         Edition::First => FIRST_HEADER,
         Edition::Second => SECOND_HEADER,
         Edition::Third => THIRD_HEADER,
+        Edition::Mapped => "",
     };
-    header.split(',')
+    header.split(',').filter(|name| !name.is_empty())
 }
 
 /// How an edition is called in messages.
@@ -203,6 +204,7 @@ pub fn edition_name(edition: Edition) -> &'static str {
         Edition::First => "first edition (122 columns, 2021 to mid 2023)",
         Edition::Second => "second edition (137 columns, to June 2025)",
         Edition::Third => "third edition (116 columns, since June 2025)",
+        Edition::Mapped => "mapped file",
     }
 }
 
