@@ -3,10 +3,12 @@
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
+use crate::recording;
+use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
 use recrash_model::Seed;
-use recrash_model::profile::SystemProfile;
+use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::selection::Strategy;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -24,7 +26,8 @@ const SUITE_FILE: &str = "suite.json";
 pub enum RecordSource {
     /// The built-in sample.
     Sample,
-    /// SGO files.
+    /// SGO files, or those of another database where there is a mapping. A name that is no file here is looked up among
+    /// the downloaded ones.
     Files(Vec<PathBuf>),
 }
 
@@ -34,12 +37,27 @@ pub enum RecordSource {
 pub struct Options {
     /// Crash records.
     pub records: RecordSource,
+    /// Which reports of one incident are merged; as the profile has it where not given.
+    #[serde(default)]
+    pub dedupe: Option<Dedupe>,
+    /// Keeps the records of which this filter is true.
+    #[serde(default)]
+    pub filter: Option<String>,
+    /// Mapping file: the records are those of another database.
+    #[serde(default)]
+    pub mapping: Option<PathBuf>,
     /// Profile: a built-in name or a path.
     pub profile: String,
     /// Scenarios to make.
     pub budget: usize,
     /// How the picks are chosen.
     pub strategy: Strategy,
+    /// Folder with the files of the embedding model; the lexical embedding where not given.
+    #[serde(default)]
+    pub model_dir: Option<PathBuf>,
+    /// Simulator.
+    #[serde(default)]
+    pub simulator: SimulatorKind,
     /// Ego to run; the profile's where not given.
     pub ego: Option<String>,
     /// Points the search of each scenario may score.
@@ -54,9 +72,14 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             records: RecordSource::Sample,
+            dedupe: None,
+            filter: None,
+            mapping: None,
             profile: "paper".into(),
             budget: 20,
             strategy: Strategy::Stratified,
+            model_dir: None,
+            simulator: SimulatorKind::Native,
             ego: None,
             tune_budget: 160,
             searcher: "cma".into(),
@@ -78,15 +101,26 @@ impl Options {
                 words.push(format!("--{name} {}", quoted(&value)));
             }
         };
+        let mapping = self.mapping.as_ref().map(|file| file.to_string_lossy().into_owned());
+        option("mapping", mapping.unwrap_or_default(), String::new());
+        option("dedupe", self.dedupe.map(dedupe_name).unwrap_or_default(), String::new());
+        option("where", self.filter.clone().unwrap_or_default(), String::new());
         option("profile", self.profile.clone(), default.profile);
         option("budget", self.budget.to_string(), default.budget.to_string());
         option("strategy", strategy_name(self.strategy).into(), strategy_name(default.strategy).into());
+        let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
+        option("model-dir", model_dir.unwrap_or_default(), String::new());
+        option("sim", self.simulator.name().into(), default.simulator.name().into());
         option("ego", self.ego.clone().unwrap_or_default(), String::new());
         option("tune-budget", self.tune_budget.to_string(), default.tune_budget.to_string());
         option("searcher", self.searcher.clone(), default.searcher);
         option("seed", self.seed.to_string(), default.seed.to_string());
         words.join(" ")
     }
+}
+
+fn dedupe_name(dedupe: Dedupe) -> String {
+    serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 fn strategy_name(strategy: Strategy) -> String {
@@ -165,6 +199,22 @@ pub struct Suite {
     state: Mutex<State>,
     options: Options,
     threads: rayon::ThreadPool,
+    python: PathBuf,
+}
+
+/// What a run may use of the machine. No byte of the results depends on it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Resources {
+    /// Worker threads; as many as there are cores where not given.
+    pub threads: Option<usize>,
+    /// Python interpreter for MetaDrive.
+    pub python: PathBuf,
+}
+
+impl Default for Resources {
+    fn default() -> Self {
+        Self { threads: None, python: "python3".into() }
+    }
 }
 
 impl Suite {
@@ -179,12 +229,12 @@ impl Suite {
         Ok(Some(read_state(&Store::create(dir, write_file_whole)?)?.options))
     }
 
-    /// Opens the suite in a folder, or makes one. `threads`: as many as there are cores where not given.
+    /// Opens the suite in a folder, or makes one.
     ///
     /// # Errors
     /// The folder cannot be used, holds something else, or the options name no profile.
-    pub fn open(dir: &Path, options: Options, threads: Option<usize>) -> Result<Self, PipelineError> {
-        Self::open_with(dir, options, threads, write_file_whole)
+    pub fn open(dir: &Path, options: Options, resources: Resources) -> Result<Self, PipelineError> {
+        Self::open_with(dir, options, resources, write_file_whole)
     }
 
     /// As [`Suite::open`], with another way of writing files.
@@ -194,10 +244,12 @@ impl Suite {
     pub fn open_with(
         dir: &Path,
         options: Options,
-        threads: Option<usize>,
+        resources: Resources,
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
-        let profile = load_profile(&options.profile)?;
+        let mut profile = load_profile(&options.profile)?;
+        profile.records.dedupe = options.dedupe.unwrap_or(profile.records.dedupe);
+        recording::read_filter(&options)?;
         let store = Store::create(dir, write_file)?;
         let units = if dir.join(SUITE_FILE).exists() {
             read_state(&store)?.units
@@ -208,7 +260,7 @@ impl Suite {
         };
         store.remove_leftovers()?;
         let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.unwrap_or(0))
+            .num_threads(resources.threads.unwrap_or(0))
             .build()
             .map_err(|e| PipelineError::Threads(e.to_string()))?;
         let state = State {
@@ -217,7 +269,8 @@ impl Suite {
             options: options.clone(),
             units,
         };
-        let suite = Self { store, profile, state: Mutex::new(state), options, threads };
+        let python = resources.python;
+        let suite = Self { store, profile, state: Mutex::new(state), options, threads, python };
         suite.save(&suite.lock())?;
         Ok(suite)
     }
@@ -248,6 +301,12 @@ impl Suite {
     /// The suite's folder.
     pub fn store(&self) -> &Store {
         &self.store
+    }
+
+    /// The simulator with the ego in it.
+    pub(crate) fn simulator(&self) -> Result<Simulator, PipelineError> {
+        let workers = self.threads.current_num_threads();
+        Simulator::start(self.options.simulator, self.ego(), &self.python, workers)
     }
 
     pub(crate) fn seed(&self) -> Seed {
@@ -358,10 +417,15 @@ mod tests {
         assert_eq!(Options::default().command(), "recrash run");
         let options = Options {
             records: RecordSource::Files(vec!["my file.csv".into()]),
+            dedupe: Some(Dedupe::Incident),
+            filter: Some("road = street".into()),
             budget: 5,
             strategy: Strategy::Kmeans,
             ..Options::default()
         };
-        assert_eq!(options.command(), "recrash run --records 'my file.csv' --budget 5 --strategy kmeans");
+        assert_eq!(
+            options.command(),
+            "recrash run --records 'my file.csv' --dedupe incident --where 'road = street' --budget 5 --strategy kmeans"
+        );
     }
 }

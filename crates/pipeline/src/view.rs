@@ -22,6 +22,7 @@ pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[
         ego: suite.ego().to_owned(),
         simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
         agents: "rules".into(),
+        seed: options.seed,
         sample: options.records == RecordSource::Sample,
         records: records.clone(),
         selection: selection.clone(),

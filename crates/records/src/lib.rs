@@ -28,7 +28,7 @@ mod text;
 pub use columns::published_header;
 pub use distribution::{Distribution, ValueCount, distributions};
 pub use error::IngestError;
-pub use filter::{Filter, FilterError};
+pub use filter::{FILTER_HELP, Filter, FilterError};
 pub use mapping::{MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, MappingError};
 pub use table::{Column, RecordTable, TableRows, record_table};
 

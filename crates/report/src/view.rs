@@ -1,6 +1,6 @@
 //! What the pipeline hands to this crate: one suite, read only. Everything the page shows is computed from it.
 //!
-//! Nothing is said twice: seed, strategy, budget and embedding stand in [`Selection`], limits in [`SystemProfile`],
+//! Nothing is said twice: strategy, budget and embedding stand in [`Selection`], limits in [`SystemProfile`],
 //! files and their hashes in [`RecordSet`].
 
 use recrash_model::Diagnostic;
@@ -34,6 +34,8 @@ pub struct SuiteView {
     pub simulator: String,
     /// Agents that wrote narratives and scenarios, such as `rules`.
     pub agents: String,
+    /// Seed of the run, as on the command line; every other seed follows from it.
+    pub seed: u64,
     /// Whether the records are the built-in sample and no real crashes.
     pub sample: bool,
     /// The records, with funnel and files.

@@ -22,6 +22,21 @@ use crate::fields::{Field, FieldValue, UNKNOWN};
 use recrash_model::record::CrashRecord;
 use std::cmp::Ordering;
 
+/// The grammar and the fields, for the command's help.
+pub const FILTER_HELP: &str = "\
+Keep the records of which this is true, such as
+
+  road = intersection and severity >= minor and entity contains \"Waymo\" and year >= 2024
+
+Comparisons: = != < <= > >= contains, in (a, b); put together with and, or, not and brackets. Letter case does not
+matter; texts with blanks stand in quotes. A value that is not known equals unknown and nothing else.
+
+Texts:    report incident entity vehicle place narrative file
+Numbers:  year month time_of_day_min posted_speed_mps sv_speed_mps
+Codes:    road sv_movement (sv) cp_movement (cp) partner severity engagement surface lighting weather sv_zones cp_zones
+          redaction edition; a wrong value lists the right ones, and severity has an order
+Yes/no:   work_zone";
+
 /// A filter over records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filter {
@@ -150,5 +165,17 @@ fn is_unknown(value: &FieldValue<'_>) -> bool {
         FieldValue::Number(number) => number.is_none(),
         FieldValue::Codes(codes) => codes.is_empty() || codes.iter().all(|code| code == UNKNOWN),
         FieldValue::Flag(_) => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_help_names_every_field() {
+        for field in Field::ALL {
+            assert!(FILTER_HELP.split_whitespace().any(|word| word == field.name()), "{}", field.name());
+        }
     }
 }
