@@ -2,11 +2,15 @@
 
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_records::{SourceText, ingest};
+use std::sync::LazyLock;
+
+static PROFILE: LazyLock<SystemProfile> = LazyLock::new(|| {
+    toml::from_str(include_str!("../../profiles/paper.toml")).expect("profiles/paper.toml is a profile")
+});
 
 /// Reading never panics, and every row in is usable or rejected: with every row counted, and with one report an incident.
 pub fn check(bytes: &[u8]) {
-    let mut profile: SystemProfile =
-        toml::from_str(include_str!("../../profiles/paper.toml")).expect("profiles/paper.toml is a profile");
+    let mut profile = PROFILE.clone();
     for dedupe in [Dedupe::None, Dedupe::Incident] {
         profile.records.dedupe = dedupe;
         let Ok(outcome) = ingest(&[SourceText { name: "fuzz.csv", bytes }], &profile) else { continue };

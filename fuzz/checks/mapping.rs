@@ -3,6 +3,11 @@
 
 use recrash_model::profile::SystemProfile;
 use recrash_records::{IngestOptions, Mapping, SourceText, ingest_with};
+use std::sync::LazyLock;
+
+static PROFILE: LazyLock<SystemProfile> = LazyLock::new(|| {
+    toml::from_str(include_str!("../../profiles/paper.toml")).expect("profiles/paper.toml is a profile")
+});
 
 /// The bytes are a mapping file and up to two tables, parted by zero bytes. Reading never panics; every row of the main
 /// table is usable or rejected; an error names the mapping file, and a line of it where it names one.
@@ -20,8 +25,7 @@ pub fn check(bytes: &[u8]) {
     let names = ["accident.csv", "vehicle.csv"];
     let files: Vec<SourceText<'_>> =
         names.into_iter().zip(parts).map(|(name, bytes)| SourceText { name, bytes }).collect();
-    let profile: SystemProfile =
-        toml::from_str(include_str!("../../profiles/paper.toml")).expect("profiles/paper.toml is a profile");
+    let profile = PROFILE.clone();
     let options = IngestOptions { filter: None, mapping: Some(&mapping) };
     let Ok(outcome) = ingest_with(&files, &profile, &options) else { return };
     let set = outcome.value;

@@ -2,6 +2,7 @@
 
 use crate::text::header_key;
 use recrash_model::record::{ContactZone, Edition, Weather};
+use std::collections::BTreeSet;
 
 /// The 122 columns of the first edition (June 2021 to mid 2023).
 const FIRST_HEADER: &str = "\
@@ -223,7 +224,10 @@ pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
         return Err(NotAHeader::Unknown);
     }
 
-    let find = |name: &str| keys.iter().position(|key| *key == header_key(name));
+    let find = |name: &str| {
+        let wanted = header_key(name);
+        keys.iter().position(|key| *key == wanted)
+    };
     let description = find("Roadway Description").map(WorkZoneColumn::Description);
     let work_zone = find("Roadway-Work Zone").map(WorkZoneColumn::Flag).or(description);
     let mut missing: Vec<&'static str> = REQUIRED.into_iter().filter(|name| find(name).is_none()).collect();
@@ -288,15 +292,13 @@ pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
         cp_zones: zones("CP"),
     };
 
-    let known_anywhere = |key: &String| {
-        editions.into_iter().any(|edition| published_header(edition).any(|name| header_key(name) == *key))
-    };
+    let published: BTreeSet<String> = editions.into_iter().flat_map(published_header).map(header_key).collect();
     let mut unknown = Vec::new();
     let mut repeated = Vec::new();
     for (position, key) in keys.iter().enumerate() {
         if keys[..position].contains(key) {
             repeated.push(names[position].trim().to_owned());
-        } else if !known_anywhere(key) {
+        } else if !published.contains(key) {
             unknown.push(names[position].trim().to_owned());
         }
     }
