@@ -7,7 +7,6 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod casework;
-mod drawing;
 mod embedding;
 mod error;
 mod exporting;

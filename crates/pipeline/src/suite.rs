@@ -107,7 +107,7 @@ impl Options {
         option("where", self.filter.clone().unwrap_or_default(), String::new());
         option("profile", self.profile.clone(), default.profile);
         option("budget", self.budget.to_string(), default.budget.to_string());
-        option("strategy", strategy_name(self.strategy).into(), strategy_name(default.strategy).into());
+        option("strategy", strategy_name(self.strategy), strategy_name(default.strategy));
         let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
         option("model-dir", model_dir.unwrap_or_default(), String::new());
         option("sim", self.simulator.name().into(), default.simulator.name().into());
