@@ -14,7 +14,7 @@ const SHOWN: [Field; 7] =
 pub struct Distribution {
     /// The field's name, or `month`.
     pub field: String,
-    /// Values, most frequent first; months in their order.
+    /// Values, most frequent first; months the latest first, `unknown` before them.
     pub values: Vec<ValueCount>,
 }
 
@@ -34,7 +34,7 @@ pub fn distributions(set: &RecordSet) -> Vec<Distribution> {
     let mut all: Vec<Distribution> =
         SHOWN.into_iter().map(|field| count(set, field.name(), |record| values(field, record))).collect();
     let mut months = count(set, "month", |record| vec![record.when.map_or(UNKNOWN.into(), |when| when.to_string())]);
-    months.values.sort_by(|a, b| a.value.cmp(&b.value));
+    months.values.sort_by(|a, b| b.value.cmp(&a.value));
     all.push(months);
     all
 }
