@@ -39,7 +39,7 @@ pub struct RecordTable {
     pub rows: usize,
 }
 
-/// Records as a table: every field of [`Field::ALL`], then the report's version and row, the template, whether the
+/// Records as a table: every field of `Field::ALL`, then the report's version and row, the template, whether the
 /// record is usable and, if not, why.
 pub fn record_table(set: &RecordSet, rows: TableRows) -> RecordTable {
     let mut usable = vec![false; set.records.len()];
