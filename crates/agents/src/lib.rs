@@ -12,6 +12,7 @@
 //! text: they are matched against patterns, never followed.
 
 mod expectation;
+pub mod llm;
 mod parameters;
 mod rules;
 
