@@ -3,21 +3,29 @@
 //! What this crate does **not** do: it opens no file, measures nothing, and loads nothing from a network, neither when it
 //! runs nor when the page is looked at.
 
+mod anchor;
+mod data;
+mod junit;
+mod page;
+mod results;
+mod summary;
 mod view;
+mod words;
 
 pub use view::{CaseView, LineKind, RoadDrawing, RoadLine, RunView, SuiteView};
 
-/// The page.
-pub fn html(_suite: &SuiteView) -> String {
-    String::new()
+/// The page. Same view, same bytes; all text of records and models is escaped, and nothing on it can load anything.
+pub fn html(suite: &SuiteView) -> String {
+    page::render(suite)
 }
 
-/// JUnit XML.
-pub fn junit(_suite: &SuiteView) -> String {
-    String::new()
+/// JUnit XML: one test suite of the scenarios as designed, one of the tuned ones. A failure is a failure of the ego; a
+/// refused scenario is skipped.
+pub fn junit(suite: &SuiteView) -> String {
+    junit::render(suite)
 }
 
-/// One row a run.
-pub fn results_csv(_suite: &SuiteView) -> String {
-    String::new()
+/// A table (RFC 4180): one row for each run of each scenario, and one for each scenario that was refused.
+pub fn results_csv(suite: &SuiteView) -> String {
+    results::render(suite)
 }

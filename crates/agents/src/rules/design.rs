@@ -1,16 +1,17 @@
 //! From a narrative to a scenario: map, lanes, speeds and timing that make the told conflict happen.
 
+use super::limits::{most_speed, most_speed_of};
 use super::retry::{Levers, Wanted, levers};
-use super::staging::{ConflictKind, KNOWN, LanePlan, Staging, fits_three_way, stagings};
+use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_way, ground, stagings};
 use super::writing::Facts;
 use crate::{AgentError, Brief, Feedback};
-use recrash_model::narrative::{FactSource, FactValue, FirstMover, LongitudinalAction, Narrative, Side};
+use recrash_model::narrative::{FactValue, FirstMover, LongitudinalAction, Narrative, Side};
 use recrash_model::record::{ContactZone, CrashRecord, PartnerKind};
 use recrash_model::scenario::{
     Approach, Author, CrossMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind,
     Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
 };
-use recrash_model::template::{Movement, RoadType};
+use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{LanePath, RoadNetwork, RoadPart};
 
@@ -112,6 +113,7 @@ struct Stage<'a> {
     ego_mps: f64,
     partner_mps: f64,
     kind: PartnerKind,
+    ground: Ground,
 }
 
 impl<'a> Stage<'a> {
@@ -129,7 +131,7 @@ impl<'a> Stage<'a> {
         });
         let kind = kind.unwrap_or_default();
         let lanes = staging.lanes[levers.lane_plan % staging.lanes.len()];
-        let road = narrative.template.road;
+        let ground = ground(&narrative.template, &staging);
         let record = brief.records.first().copied();
         let told = |pick: fn(&FactValue) -> Option<f64>| facts.find(pick).filter(|v| *v >= LEAST_TOLD_SPEED_MPS);
         let posted = record.and_then(|r| r.posted_speed_mps).map(|v| v * SHARE_OF_POSTED_SPEED);
@@ -142,14 +144,14 @@ impl<'a> Stage<'a> {
             _ => None,
         });
         let limit = |speed: f64, movement| {
-            let most = most_speed(road, movement).min(brief.profile.expresses.max_speed_mps);
+            let most = most_speed(ground, turn(ground, movement)).min(brief.profile.expresses.max_speed_mps);
             let least = brief.profile.expresses.min_speed_mps.max(LEAST_TOLD_SPEED_MPS).min(most);
             round_to((speed * levers.speed_factor).clamp(least, most), 0.1)
         };
         let ego_mps = limit(ego.or(posted).unwrap_or(DEFAULT_SPEED_MPS), narrative.template.sv);
         let partner_mps = limit(partner.or(posted).unwrap_or(ego_mps), narrative.template.cp);
         let partner_mps = partner_mps.min(most_speed_of(kind));
-        Self { brief, narrative, facts, staging, lanes, levers, wanted, ego_mps, partner_mps, kind }
+        Self { brief, narrative, facts, staging, lanes, levers, wanted, ego_mps, partner_mps, kind, ground }
     }
 
     fn draft(&self) -> ScenarioDraft {
@@ -158,15 +160,15 @@ impl<'a> Stage<'a> {
             .clamp(60.0, 280.0);
         let map = self.map(approach_m.ceil(), arm_m.ceil());
         let network = RoadNetwork::build(&map);
-        let way = Way::new(&network, Approach::Same, turn_of(self.narrative.template, true), self.lanes.ego);
+        let way = Way::new(&network, Approach::Same, turn(self.ground, self.narrative.template.sv), self.lanes.ego);
         let other =
-            Way::new(&network, self.staging.approach, turn_of(self.narrative.template, false), self.lanes.partner);
+            Way::new(&network, self.staging.approach, turn(self.ground, self.narrative.template.cp), self.lanes.partner);
         let mut draft = self.frame(map);
         match self.staging.conflict {
             ConflictKind::Paths => self.stage_paths(&mut draft, &network, &way, &other),
-            ConflictKind::Sideways => self.stage_sideways(&mut draft, &network, &way, &other),
+            ConflictKind::Sideways => self.stage_sideways(&mut draft, &way, &other),
         }
-        self.place_obstacles(&mut draft, &network, &way);
+        self.place_obstacles(&mut draft, &way);
         let length_m = way.as_ref().map_or(200.0, |way| way.path.length_m);
         draft.duration_s = ((length_m - draft.ego.s_m) / self.ego_mps * 1.25 + 6.0).ceil().clamp(15.0, 60.0);
         draft
@@ -188,7 +190,7 @@ impl<'a> Stage<'a> {
             },
             map,
             ego: EgoSpec {
-                turn: turn_of(template, true),
+                turn: turn(self.ground, template.sv),
                 lane: self.lanes.ego,
                 s_m: EGO_START_M,
                 speed_mps: self.ego_mps,
@@ -198,7 +200,7 @@ impl<'a> Stage<'a> {
                 id: "cp1".to_owned(),
                 kind: self.kind,
                 approach,
-                turn: turn_of(template, false),
+                turn: turn(self.ground, template.cp),
                 lane_offset: self.lanes.partner as i8 - self.lanes.ego as i8,
                 start: Start::ArrivalGap { arrival_gap_s: 0.0 },
                 speed_mps: self.partner_mps,
@@ -218,8 +220,8 @@ impl<'a> Stage<'a> {
             FactValue::ThreeWay { missing } => Some(*missing),
             _ => None,
         });
-        match self.narrative.template.road {
-            RoadType::TrafficCircle => MapSpec::O(RoundaboutMap {
+        match self.ground {
+            Ground::Circle => MapSpec::O(RoundaboutMap {
                 lanes,
                 lane_width_m: LANE_WIDTH_M,
                 approach_m,
@@ -227,14 +229,12 @@ impl<'a> Stage<'a> {
                 exit_radius_m: 10.0,
                 inner_radius_m: 30.0,
             }),
-            RoadType::Intersection => match missing.and_then(|arm| self.fitting_arm(arm)) {
-                Some(missing) => {
-                    MapSpec::T(TeeMap { lanes, lane_width_m: LANE_WIDTH_M, approach_m, arm_m, missing })
-                }
+            Ground::Junction => match missing.and_then(|arm| self.fitting_arm(arm)) {
+                Some(missing) => MapSpec::T(TeeMap { lanes, lane_width_m: LANE_WIDTH_M, approach_m, arm_m, missing }),
                 None => MapSpec::X(CrossMap { lanes, lane_width_m: LANE_WIDTH_M, approach_m, arm_m }),
             },
-            _ => {
-                // Room to meet, and as much again to see what comes of it.
+            Ground::Road => {
+                // Room to meet, and twice as much to see what comes of it.
                 let length_m = (self.ego_mps * 3.0 * LEAD_TIME_S).clamp(120.0, 600.0).ceil();
                 MapSpec::S(StraightMap { lanes, lane_width_m: LANE_WIDTH_M, approach_m, length_m })
             }
@@ -325,9 +325,9 @@ impl<'a> Stage<'a> {
     }
 
     /// Parallel paths: the partner drives beside the ego and comes over.
-    fn stage_sideways(&self, draft: &mut ScenarioDraft, _: &RoadNetwork, way: &Option<Way>, other: &Option<Way>) {
+    fn stage_sideways(&self, draft: &mut ScenarioDraft, way: &Option<Way>, other: &Option<Way>) {
         let (Some(way), Some(other)) = (way, other) else { return };
-        let on_highway = self.narrative.template.road == RoadType::Highway;
+        let on_highway = self.ground == Ground::Road;
         let (ego_place, partner_place) = way.meeting(other, self.ego_mps);
         let meets_s = (ego_place - draft.ego.s_m) / self.ego_mps;
         // The partner keeps beside the ego on the inside or outside of the turn.
@@ -344,10 +344,10 @@ impl<'a> Stage<'a> {
         let delta_s = partner_place + ahead - partner_mps * (ego_place - draft.ego.s_m) / self.ego_mps - draft.ego.s_m;
         let cp_turns = self.narrative.template.cp != Movement::Straight;
         let clearance = LANE_WIDTH_M - HALF_WIDTH_M - 0.5 * VehicleSpec::of(self.kind).width_m;
-        // On a highway a move of half a lane is a change of movement, so that a partner that goes straight starts near
-        // the line and a partner that turns starts far from it (see docs/models/rules.md).
+        // On a road without junction a move of half a lane counts as a turn to that side; a partner whose move must show
+        // starts on the far side of its lane, so that it has moved so far before the two can touch.
         let (from_t, to_t) = match (on_highway, cp_turns) {
-            (true, false) => (0.3, 0.3 + 0.45 * LANE_WIDTH_M),
+            (true, false) => (0.0, 0.8 * LANE_WIDTH_M),
             (true, true) => (-0.7, LANE_WIDTH_M),
             (false, _) if touched => (0.0, clearance + 0.6),
             (false, _) => (0.0, 0.6 * clearance),
@@ -366,13 +366,12 @@ impl<'a> Stage<'a> {
     }
 
     /// Cones of a work zone, in the lane beside the ego's so that they narrow its way and do not block it.
-    fn place_obstacles(&self, draft: &mut ScenarioDraft, network: &RoadNetwork, way: &Option<Way>) {
+    fn place_obstacles(&self, draft: &mut ScenarioDraft, way: &Option<Way>) {
         let told = self.facts.find_fact(|value| matches!(value, FactValue::Obstacles { .. }));
         if !self.narrative.template.work_zone && told.is_none() {
             return;
         }
         let Some(way) = way else { return };
-        let _ = network;
         let side = match told.map(|fact| &fact.value) {
             Some(FactValue::Obstacles { side, .. }) => *side,
             _ => Side::Left,
@@ -387,7 +386,7 @@ impl<'a> Stage<'a> {
         };
         let sign = if side == Side::Left { -1.0 } else { 1.0 };
         let partner_there = self.staging.beside == Some(side);
-        let end_m = if self.narrative.template.road == RoadType::Highway { way.path.length_m - 40.0 } else { way.block_m - 6.0 };
+        let end_m = if self.ground == Ground::Road { way.path.length_m - 40.0 } else { way.block_m - 6.0 };
         let first_m = (draft.ego.s_m + 18.0).min(end_m - 10.0).max(1.0);
         let count = 8_u32;
         let step_m = ((end_m - first_m) / f64::from(count)).clamp(1.0, 12.0);
@@ -401,9 +400,6 @@ impl<'a> Stage<'a> {
                 s_m: round_to(first_m + step_m * f64::from(number), 0.5),
                 t_m: round_to(sign * (0.5 * LANE_WIDTH_M + from_lane_edge), 0.05),
             });
-        }
-        if let Some(FactSource::Words { .. }) = told.map(|fact| &fact.source) {
-            // Told in words: the side is kept where the road allows it.
         }
     }
 }
@@ -445,32 +441,10 @@ impl Way {
     }
 }
 
-/// Greatest speed that lets a vehicle hold its lane, from the measurements in docs/models/rules.md. [m/s]
-fn most_speed(road: RoadType, movement: Movement) -> f64 {
-    match (road, movement) {
-        (RoadType::TrafficCircle, _) => 6.5,
-        (RoadType::Highway, _) => 20.0,
-        (_, Movement::RightTurn) => 6.0,
-        (_, Movement::LeftTurn) => 8.0,
-        _ => 15.0,
-    }
-}
-
-/// Greatest speed of a kind of road user; assumed. [m/s]
-fn most_speed_of(kind: PartnerKind) -> f64 {
-    match kind {
-        PartnerKind::Cyclist => 6.0,
-        PartnerKind::OtherNonMotorist => 5.0,
-        PartnerKind::Pedestrian | PartnerKind::Animal => 1.8,
-        _ => f64::INFINITY,
-    }
-}
-
-fn turn_of(template: recrash_model::template::Template, ego: bool) -> Turn {
-    if template.road == RoadType::Highway {
-        return Turn::Straight;
-    }
-    match if ego { template.sv } else { template.cp } {
+/// The turn that shows a movement: on a road without junction there is none.
+fn turn(ground: Ground, movement: Movement) -> Turn {
+    match movement {
+        _ if ground == Ground::Road => Turn::Straight,
         Movement::LeftTurn => Turn::Left,
         Movement::RightTurn => Turn::Right,
         _ => Turn::Straight,

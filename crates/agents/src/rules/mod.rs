@@ -2,12 +2,13 @@
 
 mod actors;
 mod design;
+pub(crate) mod limits;
 mod paraphrase;
 mod reading;
 mod retry;
-pub(crate) mod staging;
+mod staging;
 mod text;
-pub(crate) mod writing;
+mod writing;
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;

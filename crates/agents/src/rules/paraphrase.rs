@@ -2,7 +2,7 @@
 //! of the same template.
 
 use super::reading::{Reading, Relation, read, relation_from_zones};
-use super::staging::{KNOWN, Staging, stagings};
+use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
 use super::writing;
 use crate::{AgentError, Brief};
 use recrash_model::metrics::CollisionKind;
@@ -11,7 +11,7 @@ use recrash_model::narrative::{
 };
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Approach, Author};
-use recrash_model::template::RoadType;
+use recrash_model::template::{Movement, RoadType};
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
 
 /// Members of the cluster that are looked at when the pick cannot be retold.
@@ -146,7 +146,10 @@ fn stage(relation: Relation, brief: &Brief, ways: &[Staging]) -> Option<Staging>
     let road = brief.template.road;
     let (approach, side) = match relation {
         // On a road without arms and on a circle, whoever comes "from the left" comes from the lane there.
-        Relation::From(side) if road != RoadType::Intersection => (Approach::Same, Some(side)),
+        Relation::From(side) if road == RoadType::TrafficCircle => {
+            let ring = ways.iter().find(|way| way.approach == Approach::Ring && side == Side::Left);
+            return ring.or_else(|| ways.iter().find(|way| way.beside == Some(side))).copied();
+        }
         Relation::From(Side::Left) => (Approach::Left, None),
         Relation::From(Side::Right) => (Approach::Right, None),
         Relation::Crossing => {
@@ -198,7 +201,7 @@ fn complete(told: Told, brief: &Brief, diagnostics: &mut Vec<Diagnostic>) -> Vec
     facts.retain(|fact| match &fact.value {
         FactValue::CpLaneOffset { lanes } => offset_side(*lanes) == staging.beside,
         FactValue::CpLateral { towards, .. } => staging.beside.is_some_and(|side| side != *towards),
-        FactValue::ThreeWay { missing } => super::staging::fits_three_way(&brief.template, &staging, *missing),
+        FactValue::ThreeWay { missing } => fits_three_way(&brief.template, &staging, *missing),
         _ => true,
     });
     if let Some(side) = staging.beside {
@@ -207,13 +210,12 @@ fn complete(told: Told, brief: &Brief, diagnostics: &mut Vec<Diagnostic>) -> Vec
             facts.insert(1, Fact { value: FactValue::CpLaneOffset { lanes }, source: approach_source });
         }
         let moves = facts.iter().any(|fact| matches!(fact.value, FactValue::CpLateral { .. }));
-        if staging.conflict == super::staging::ConflictKind::Sideways && !moves {
+        if staging.conflict == ConflictKind::Sideways && !moves {
             let towards = if side == Side::Left { Side::Right } else { Side::Left };
-            let turning = brief.template.cp != recrash_model::template::Movement::Straight;
-            let kind = match (brief.template.road, turning) {
-                (RoadType::Highway, _) => LateralKind::CutIn,
-                (_, true) => LateralKind::WideTurn,
-                (_, false) => LateralKind::Drift,
+            let kind = match (ground(&brief.template, &staging), brief.template.cp) {
+                (Ground::Road, _) => LateralKind::CutIn,
+                (_, Movement::Straight) => LateralKind::Drift,
+                _ => LateralKind::WideTurn,
             };
             let why = "parallel paths meet only when one leaves its lane".to_owned();
             facts.push(assumed(FactValue::CpLateral { towards, kind }, why));
@@ -222,8 +224,8 @@ fn complete(told: Told, brief: &Brief, diagnostics: &mut Vec<Diagnostic>) -> Vec
     let collides = facts.iter().any(|fact| matches!(fact.value, FactValue::Collision { .. }));
     if !collides {
         let kind = match staging.conflict {
-            super::staging::ConflictKind::Paths => CollisionKind::Angle,
-            super::staging::ConflictKind::Sideways => CollisionKind::Sideswipe,
+            ConflictKind::Paths => CollisionKind::Angle,
+            ConflictKind::Sideways => CollisionKind::Sideswipe,
         };
         facts.push(assumed(FactValue::Collision { kind }, "follows from how the paths meet".to_owned()));
     }

@@ -58,11 +58,14 @@ use Approach::{Left as FromLeft, Opposite, Right as FromRight};
 use ConflictKind::{Paths, Sideways};
 use Side::{Left, Right};
 
-/// Parallel lanes with the partner on the left or right; the second plans leave a lane's room on the other side.
-const SIDE_BY_SIDE: &[Staging] = &[
-    beside(Left, Sideways, &[plan(2, 1, 0), plan(3, 1, 0), plan(3, 2, 1)]),
-    beside(Right, Sideways, &[plan(2, 0, 1), plan(3, 1, 2), plan(3, 0, 1)]),
+/// On a circle: into the ring behind or before a partner that is on it, or side by side around it.
+const CIRCLE: &[Staging] = &[
+    crossing(Approach::Ring, &[plan(1, 0, 0), plan(2, 1, 1), plan(2, 0, 0)]),
+    beside(Left, Sideways, &[plan(2, 1, 0), plan(3, 2, 1)]),
+    beside(Right, Sideways, &[plan(2, 0, 1), plan(3, 1, 2)]),
 ];
+/// On a circle with different exits the two cannot stay side by side.
+const CIRCLE_MERGE: &[Staging] = &[crossing(Approach::Ring, &[plan(1, 0, 0), plan(2, 1, 1), plan(2, 0, 0)])];
 
 /// Both straight: the cross streets meet at right angles in any lanes.
 const STRAIGHT_STRAIGHT: &[Staging] = &[
@@ -112,35 +115,70 @@ const RIGHT_RIGHT: &[Staging] = &[
 
 const RIGHT_LEFT: &[Staging] = &[crossing(Opposite, &[plan(2, 1, 1), plan(2, 0, 0), plan(1, 0, 0)])];
 
-/// On a straight road nobody can turn: the partner moves sideways, to its left where the template says left.
-const HIGHWAY_EITHER: &[Staging] = &[
-    beside(Left, Sideways, &[plan(3, 1, 0), plan(4, 2, 1)]),
-    beside(Right, Sideways, &[plan(3, 1, 2), plan(4, 1, 2)]),
+/// On a road without junction the partner moves sideways.
+const ROAD_SIDEWAYS: &[Staging] = &[
+    beside(Left, Sideways, &[plan(3, 1, 0), plan(4, 2, 1), plan(2, 1, 0)]),
+    beside(Right, Sideways, &[plan(3, 1, 2), plan(4, 1, 2), plan(2, 0, 1)]),
 ];
-const HIGHWAY_TO_THE_LEFT: &[Staging] = &[beside(Right, Sideways, &[plan(3, 1, 2), plan(4, 1, 2), plan(3, 0, 1)])];
-const HIGHWAY_TO_THE_RIGHT: &[Staging] = &[beside(Left, Sideways, &[plan(3, 1, 0), plan(4, 2, 1), plan(3, 2, 1)])];
+/// A left turn on a highway: off it at a junction, across the ego's way, or a move to the left into the ego's lane.
+const ROAD_STRAIGHT_LEFT: &[Staging] = &[
+    crossing(Opposite, &[plan(2, 1, 0), plan(2, 1, 1)]),
+    beside(Right, Sideways, &[plan(3, 1, 2), plan(4, 1, 2), plan(3, 0, 1)]),
+    crossing(FromLeft, &[plan(2, 0, 1), plan(2, 1, 1)]),
+    crossing(FromRight, &[plan(2, 1, 0), plan(1, 0, 0)]),
+];
+/// The same to the right.
+const ROAD_STRAIGHT_RIGHT: &[Staging] = &[
+    beside(Left, Sideways, &[plan(3, 1, 0), plan(4, 2, 1), plan(3, 2, 1)]),
+    crossing(FromRight, &[plan(2, 1, 1), plan(2, 0, 0)]),
+];
 
 /// What the rules can stage, for error messages.
-pub const KNOWN: &str = "intersections and traffic circles with both going straight, left or right, and highways with the ego going straight";
+pub const KNOWN: &str = "templates with both going straight, left or right";
 
 /// Every way to stage a template, most typical first; empty where there is none.
 pub fn stagings(template: &Template) -> &'static [Staging] {
     use Movement::{LeftTurn, RightTurn, Straight};
     match (template.road, template.sv, template.cp) {
+        (_, sv, cp) if ![sv, cp].iter().all(|movement| Movement::PAPER.contains(movement)) => &[],
+        (RoadType::TrafficCircle, sv, cp) if sv == cp => CIRCLE,
+        (RoadType::TrafficCircle, ..) => CIRCLE_MERGE,
         (RoadType::Intersection, Straight, Straight) => STRAIGHT_STRAIGHT,
         (RoadType::Intersection, Straight, LeftTurn) => STRAIGHT_LEFT,
         (RoadType::Intersection, Straight, RightTurn) => STRAIGHT_RIGHT,
-        (RoadType::Intersection, LeftTurn, Straight) => LEFT_STRAIGHT,
-        (RoadType::Intersection, LeftTurn, LeftTurn) => LEFT_LEFT,
-        (RoadType::Intersection, LeftTurn, RightTurn) => LEFT_RIGHT,
-        (RoadType::Intersection, RightTurn, Straight) => RIGHT_STRAIGHT,
-        (RoadType::Intersection, RightTurn, RightTurn) => RIGHT_RIGHT,
-        (RoadType::Intersection, RightTurn, LeftTurn) => RIGHT_LEFT,
-        (RoadType::Highway, Straight, Straight) => HIGHWAY_EITHER,
-        (RoadType::Highway, Straight, LeftTurn) => HIGHWAY_TO_THE_LEFT,
-        (RoadType::Highway, Straight, RightTurn) => HIGHWAY_TO_THE_RIGHT,
-        (RoadType::TrafficCircle, sv, cp) if sv == cp && Movement::PAPER.contains(&sv) => SIDE_BY_SIDE,
+        (_, Straight, Straight) => ROAD_SIDEWAYS,
+        (_, Straight, LeftTurn) => ROAD_STRAIGHT_LEFT,
+        (_, Straight, RightTurn) => ROAD_STRAIGHT_RIGHT,
+        (_, LeftTurn, Straight) => LEFT_STRAIGHT,
+        (_, LeftTurn, LeftTurn) => LEFT_LEFT,
+        (_, LeftTurn, RightTurn) => LEFT_RIGHT,
+        (_, RightTurn, Straight) => RIGHT_STRAIGHT,
+        (_, RightTurn, RightTurn) => RIGHT_RIGHT,
+        (_, RightTurn, LeftTurn) => RIGHT_LEFT,
         _ => &[],
+    }
+}
+
+/// What lies under a staging.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ground {
+    /// A road without junction.
+    Road,
+    /// An intersection.
+    Junction,
+    /// A roundabout.
+    Circle,
+}
+
+/// Where a staging of a template takes place: who turns off a highway or street needs a junction to turn at, who moves
+/// sideways on it does not.
+pub fn ground(template: &Template, staging: &Staging) -> Ground {
+    let ego_straight = template.sv == Movement::Straight;
+    match template.road {
+        RoadType::TrafficCircle => Ground::Circle,
+        RoadType::Intersection => Ground::Junction,
+        _ if ego_straight && staging.conflict == ConflictKind::Sideways => Ground::Road,
+        _ => Ground::Junction,
     }
 }
 

@@ -38,11 +38,6 @@ impl<'a> Facts<'a> {
         self.0.iter().find_map(|fact| Some((pick(&fact.value)?, &fact.source)))
     }
 
-    /// Whether the ego did this.
-    pub fn sv_did(&self, action: LongitudinalAction) -> bool {
-        self.0.iter().any(|fact| fact.value == FactValue::SvAction { action })
-    }
-
     /// Whether the partner did this.
     pub fn cp_did(&self, action: LongitudinalAction) -> bool {
         self.0.iter().any(|fact| fact.value == FactValue::CpAction { action })

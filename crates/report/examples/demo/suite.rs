@@ -64,7 +64,10 @@ fn record(index: usize, template: Template, seed: Seed) -> CrashRecord {
         verb(template.cp),
     );
     CrashRecord {
-        id: RecordRef { report_id: format!("90000-{:04}", 1000 + index), version: 1 + (index % 3 == 0) as u32 },
+        id: RecordRef {
+            report_id: format!("90000-{:04}", 1000 + index),
+            version: 1 + u32::from(index.is_multiple_of(3)),
+        },
         incident_id: Some(format!("made-up-{}", index / 2)),
         entity: pick(&mut rng, &["Example Mobility LLC", "Sample Robotics", "Placeholder AV, Inc."]).to_owned(),
         vehicle: pick(&mut rng, &["Example Shuttle 2022", "Sample Hatchback 2023"]).to_owned(),
@@ -120,7 +123,7 @@ fn selection(seed: Seed) -> Selection {
                 template: count.template,
                 pick: RecordRef {
                     report_id: format!("90000-{:04}", 1000 + own[0]),
-                    version: 1 + (own[0] % 3 == 0) as u32,
+                    version: 1 + u32::from(own[0].is_multiple_of(3)),
                 },
                 pick_index: own[0],
                 members: own,

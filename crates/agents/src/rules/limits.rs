@@ -1,0 +1,36 @@
+//! Greatest speeds.
+
+use super::staging::Ground;
+use recrash_model::record::PartnerKind;
+use recrash_model::scenario::{MapSpec, Turn};
+
+/// Greatest speed that lets a vehicle hold its lane, below the limits measured in MetaDrive (right turns 10, left turns
+/// 12, roundabouts 8.3, straight 22.2 m/s) with a margin for the lanes' centre lines. [m/s]
+pub fn most_speed(ground: Ground, turn: Turn) -> f64 {
+    match (ground, turn) {
+        (Ground::Circle, _) => 6.5,
+        (Ground::Road, _) => 20.0,
+        (Ground::Junction, Turn::Right) => 6.0,
+        (Ground::Junction, Turn::Left) => 8.0,
+        (Ground::Junction, Turn::Straight) => 15.0,
+    }
+}
+
+/// Greatest speed of a kind of road user; assumed. [m/s]
+pub fn most_speed_of(kind: PartnerKind) -> f64 {
+    match kind {
+        PartnerKind::Cyclist => 6.0,
+        PartnerKind::OtherNonMotorist => 5.0,
+        PartnerKind::Pedestrian | PartnerKind::Animal => 1.8,
+        _ => f64::INFINITY,
+    }
+}
+
+/// What lies under a map.
+pub fn ground_of(map: &MapSpec) -> Ground {
+    match map {
+        MapSpec::S(_) | MapSpec::C(_) => Ground::Road,
+        MapSpec::X(_) | MapSpec::T(_) => Ground::Junction,
+        MapSpec::O(_) => Ground::Circle,
+    }
+}

@@ -1,0 +1,244 @@
+//! The data blocks the page's scripts read: whole numbers in columns, each value as the difference from the one before.
+//!
+//! Positions are in mm (of the road: cm), headings in 1e-4 rad, speeds in mm/s, accelerations in cm/s^2. A value that
+//! is not finite is `null`, and the next difference counts from the last finite one. `assets/data.js` reads it back.
+
+use crate::anchor::Anchors;
+use crate::view::{CaseView, RunView, SuiteView};
+use crate::words;
+use recrash_model::geometry::{OrientedBox, Vec2};
+use recrash_model::record::PartnerKind;
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
+use recrash_model::tuning::TuneLog;
+use serde_json::{Value, json};
+
+/// JSON that may stand inside a `script` element: nothing in it can close the element or open a comment.
+pub fn embed(value: &Value) -> String {
+    value.to_string().replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
+}
+
+/// What the scripts need of the suite as a whole.
+pub fn suite(suite: &SuiteView, anchors: &Anchors) -> Value {
+    let records = &suite.records.records;
+    let map: Vec<Value> = suite
+        .selection
+        .map
+        .iter()
+        .filter_map(|point| {
+            let record = records.get(point.record)?;
+            let when = record.when.map_or_else(String::new, |when| when.to_string());
+            let cluster = suite.selection.clusters.get(point.cluster)?;
+            Some(json!([
+                words::clean(&record.id.to_string(), 60),
+                words::clean(&record.entity, 60),
+                when,
+                words::clean(&record.place, 60),
+                record.template().map_or_else(String::new, |template| template.to_string()),
+                cluster.number,
+                words::clean(&record.narrative, 160),
+            ]))
+        })
+        .collect();
+    json!({
+        "anchors": anchors.cases(),
+        "minGap": suite.profile.failure.min_gap_m,
+        "hardBraking": suite.profile.failure.hard_braking_mps2,
+        "map": map,
+    })
+}
+
+/// What the scripts need of one case.
+pub fn case(case: &CaseView) -> Value {
+    let polyline = |points: &[Vec2]| {
+        let columns = [column(points.iter().map(|p| p.x), 100.0), column(points.iter().map(|p| p.y), 100.0)];
+        json!(columns)
+    };
+    let line_kind = |kind: crate::LineKind| match kind {
+        crate::LineKind::Edge => "edge",
+        crate::LineKind::LaneDivider => "lane",
+        crate::LineKind::Centre => "centre",
+        crate::LineKind::Guide => "guide",
+    };
+    json!({
+        "id": words::clean(&case.scenario_id, 120),
+        "surfaces": case.drawing.surfaces.iter().map(|points| polyline(points)).collect::<Vec<_>>(),
+        "lines": case.drawing.lines.iter().map(|line| json!([line_kind(line.kind), polyline(&line.points)])).collect::<Vec<_>>(),
+        "before": case.before.as_ref().map(run),
+        "after": case.after.as_ref().map(run),
+        "tune": case.tune_log.as_ref().map(tune),
+    })
+}
+
+fn run(run: &RunView) -> Value {
+    let rollout = &run.rollout;
+    let obstacles = rollout.obstacles.iter().map(|obstacle| {
+        let pose = obstacle.pose;
+        json!([
+            words::name(&obstacle.kind),
+            short(pose.position.x, 3),
+            short(pose.position.y, 3),
+            short(pose.heading, 4),
+            obstacle.length_m,
+            obstacle.width_m
+        ])
+    });
+    let series = &run.series;
+    let mut accelerations = vec![json!([0, column(series.ego_acceleration_mps2.iter().copied(), 100.0)])];
+    accelerations
+        .extend(series.partners.iter().map(|p| json!([p.actor, column(p.acceleration_mps2.iter().copied(), 100.0)])));
+    json!({
+        "step": STEP_S,
+        "end": short(rollout.termination.time_s, 3),
+        "why": words::name(&rollout.termination.kind),
+        "actors": rollout.actors.iter().map(actor).collect::<Vec<_>>(),
+        "obstacles": obstacles.collect::<Vec<_>>(),
+        "contacts": contacts(rollout),
+        "gaps": series.partners.iter().map(|p| json!([p.actor, column(p.gap_m.iter().copied(), 1000.0)])).collect::<Vec<_>>(),
+        "accelerations": accelerations,
+        "minGap": run.metrics.min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
+    })
+}
+
+fn actor(track: &ActorTrack) -> Value {
+    let states = |of: fn(&ActorState) -> f64, scale: f64| column(track.states.iter().map(of), scale);
+    json!({
+        "id": words::clean(&track.id, 40),
+        "role": match track.role { Role::Ego => "ego", Role::Partner => "partner", Role::Traffic => "traffic" },
+        "shape": shape(track.kind),
+        "length": track.length_m,
+        "width": track.width_m,
+        "x": states(|state| state.x, 1000.0),
+        "y": states(|state| state.y, 1000.0),
+        "heading": states(|state| state.heading, 10_000.0),
+        "speed": states(|state| state.speed, 1000.0),
+        "throttle": states(|state| state.throttle, 20.0),
+    })
+}
+
+/// Which picture stands for a kind of road user.
+fn shape(kind: PartnerKind) -> &'static str {
+    match kind {
+        PartnerKind::Motorcycle | PartnerKind::Cyclist => "bike",
+        PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist | PartnerKind::Animal => "person",
+        PartnerKind::HeavyTruck | PartnerKind::Bus => "truck",
+        PartnerKind::FixedObject => "object",
+        _ => "car",
+    }
+}
+
+/// Time, place and partners of each contact.
+fn contacts(rollout: &Rollout) -> Vec<Value> {
+    let outline = |actor: usize, state: &ActorState| {
+        let track = rollout.actors.get(actor)?;
+        Some(OrientedBox::new(state.pose(), track.length_m, track.width_m))
+    };
+    let contact = |event: &recrash_model::rollout::Event| {
+        let (at, actor) = match &event.kind {
+            EventKind::Contact { a, b, a_state, b_state } => {
+                (touching_point(&outline(*a, a_state)?, &outline(*b, b_state)?), *a)
+            }
+            EventKind::ObstacleContact { actor, obstacle, state } => {
+                (touching_point(&outline(*actor, state)?, &rollout.obstacles.get(*obstacle)?.outline()), *actor)
+            }
+        };
+        Some(json!([short(event.time_s, 3), short(at.x, 3), short(at.y, 3), actor]))
+    };
+    rollout.events.iter().filter_map(contact).collect()
+}
+
+/// A point of the contact: the middle of the corners of either box that lie in the other (with a hand's breadth to
+/// spare), or of the nearest points.
+fn touching_point(a: &OrientedBox, b: &OrientedBox) -> Vec2 {
+    let inside = |of: &OrientedBox, point: &Vec2| {
+        let local = of.to_local(*point);
+        local.x.abs() <= of.half_length + 0.1 && local.y.abs() <= of.half_width + 0.1
+    };
+    let mut points: Vec<Vec2> = a.corners().into_iter().filter(|point| inside(b, point)).collect();
+    points.extend(b.corners().into_iter().filter(|point| inside(a, point)));
+    if points.is_empty() {
+        let (near_a, near_b, _) = a.nearest_points(b);
+        points = vec![near_a, near_b];
+    }
+    let sum = points.iter().fold(Vec2::default(), |sum, point| sum + *point);
+    sum * (1.0 / points.len() as f64)
+}
+
+fn tune(log: &TuneLog) -> Value {
+    let mut by: Vec<&str> = Vec::new();
+    let mut reasons: Vec<String> = Vec::new();
+    let points: Vec<Value> = log
+        .points
+        .iter()
+        .map(|point| {
+            let proposer = index_of(&mut by, point.proposed_by.as_str());
+            let refused =
+                point.score.refused.iter().map(|why| index_of(&mut reasons, words::clean(why, 200).into_owned()));
+            let refused: Vec<usize> = refused.collect();
+            json!([
+                short(point.score.objective, 3),
+                point.score.min_gap.map(|gap| short(gap.value, 3)),
+                usize::from(point.score.failed),
+                proposer,
+                refused,
+                point.values.iter().map(|value| short(*value, 3)).collect::<Vec<_>>(),
+            ])
+        })
+        .collect();
+    let names = log.parameters.iter().map(|p| words::clean(&p.pointer, 120)).collect::<Vec<_>>();
+    let by: Vec<_> = by.iter().map(|name| words::clean(name, 40)).collect();
+    json!({ "points": points, "by": by, "reasons": reasons, "parameters": names, "best": log.best })
+}
+
+fn index_of<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
+    list.iter().position(|known| *known == item).unwrap_or_else(|| {
+        list.push(item);
+        list.len() - 1
+    })
+}
+
+/// Differences of whole numbers.
+fn column(values: impl Iterator<Item = f64>, scale: f64) -> Value {
+    let mut last = 0_i64;
+    let difference = |value: f64| {
+        if !value.is_finite() {
+            return Value::Null;
+        }
+        let now = (value * scale).round() as i64;
+        let step = now.saturating_sub(last);
+        last = now;
+        Value::from(step)
+    };
+    Value::Array(values.map(difference).collect())
+}
+
+/// A number with so many decimals at most; `null` where it is not finite.
+fn short(value: f64, decimals: usize) -> Value {
+    words::fixed(value, decimals).and_then(|text| text.parse::<f64>().ok()).map_or(Value::Null, |number| {
+        if number == number.trunc() && number.abs() < 1e15 { Value::from(number as i64) } else { Value::from(number) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_hold_differences_and_skip_what_is_not_finite() {
+        assert_eq!(column([1.0, 1.002, f64::NAN, 0.5].into_iter(), 1000.0), json!([1000, 2, null, -502]));
+    }
+
+    #[test]
+    fn embedded_json_cannot_leave_its_element() {
+        let text = embed(&json!({"a": "</script><!--<img onerror=x>&amp;"}));
+        assert!(!text.contains(['<', '>', '&']), "{text}");
+        assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), json!({"a": "</script><!--<img onerror=x>&amp;"}));
+    }
+
+    #[test]
+    fn boxes_nose_to_side_touch_between_the_corners_of_the_nose() {
+        use recrash_model::geometry::Pose;
+        let at = |x: f64, y: f64, heading: f64| OrientedBox::new(Pose { position: Vec2::new(x, y), heading }, 4.0, 2.0);
+        let point = touching_point(&at(0.0, 0.0, 0.0), &at(3.0, 0.5, recrash_model::math::FRAC_PI_2));
+        assert!((point.x - 2.0).abs() < 1e-9 && point.y.abs() < 1e-9, "{point:?}");
+    }
+}

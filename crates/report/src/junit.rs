@@ -1,0 +1,125 @@
+//! JUnit XML, in the form that Jenkins, GitLab and GitHub actions read.
+
+use crate::view::{CaseView, RunView, SuiteView};
+use crate::words::{self, fixed};
+use std::fmt::Write;
+
+/// The document.
+pub fn render(suite: &SuiteView) -> String {
+    let designed: Vec<String> =
+        suite.cases.iter().map(|case| test_case(suite, case, case.before.as_ref(), "as designed")).collect();
+    let tuned: Vec<&CaseView> = suite.cases.iter().filter(|case| case.after.is_some()).collect();
+    let tuned_cases: Vec<String> =
+        tuned.iter().map(|case| test_case(suite, case, case.after.as_ref(), "tuned")).collect();
+    let failed = |run: Option<&RunView>| usize::from(run.is_some_and(RunView::failed));
+    let failed_designed: usize = suite.cases.iter().map(|case| failed(case.before.as_ref())).sum();
+    let failed_tuned: usize = tuned.iter().map(|case| failed(case.after.as_ref())).sum();
+    let skipped = suite.cases.iter().filter(|case| case.before.is_none()).count();
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let _ = writeln!(
+        text,
+        "<testsuites name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{skipped}\">",
+        escape(&suite.title),
+        suite.cases.len() + tuned.len(),
+        failed_designed + failed_tuned
+    );
+    for (name, cases, failures, skipped) in
+        [("as designed", designed, failed_designed, skipped), ("tuned", tuned_cases, failed_tuned, 0)]
+    {
+        let _ = writeln!(
+            text,
+            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failures}\" errors=\"0\" skipped=\"{skipped}\">",
+            cases.len()
+        );
+        text.push_str("    <properties>\n");
+        let settings = [
+            ("profile", suite.profile.name.clone()),
+            ("ego", suite.ego.clone()),
+            ("simulator", suite.simulator.clone()),
+            ("agents", suite.agents.clone()),
+            ("seed", suite.selection.seed.to_string()),
+            ("command", suite.command.clone()),
+            ("generator", suite.generated_by.clone()),
+        ];
+        for (name, value) in settings {
+            let _ = writeln!(text, "      <property name=\"{name}\" value=\"{}\"/>", escape(&value));
+        }
+        text.push_str("    </properties>\n");
+        text.extend(cases);
+        text.push_str("  </testsuite>\n");
+    }
+    text.push_str("</testsuites>\n");
+    text
+}
+
+fn test_case(suite: &SuiteView, case: &CaseView, run: Option<&RunView>, name: &str) -> String {
+    let time = run.and_then(|run| fixed(run.metrics.duration_s, 3)).unwrap_or_else(|| "0".to_owned());
+    let mut text = format!(
+        "    <testcase classname=\"recrash.{}.{}\" name=\"{}\" time=\"{time}\">\n",
+        escape(&suite.profile.name),
+        name.replace(' ', "-"),
+        escape(&case.scenario_id)
+    );
+    match run {
+        None => {
+            let why = case.refused.as_deref().unwrap_or("it was not run");
+            let _ = writeln!(text, "      <skipped message=\"{}\"/>", escape(why));
+        }
+        Some(run) => {
+            if run.failed() {
+                let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
+                let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
+                let sentences: Vec<_> = failures.iter().map(|finding| escape(&finding.sentence)).collect();
+                let _ = writeln!(
+                    text,
+                    "      <failure type=\"{}\" message=\"{}\">{}</failure>",
+                    kinds.first().copied().unwrap_or_default(),
+                    escape(&kinds.join(", ")),
+                    sentences.join("\n")
+                );
+            }
+            let _ = writeln!(text, "      <system-out>{}</system-out>", escape(&told(case, run)));
+        }
+    }
+    text.push_str("    </testcase>\n");
+    text
+}
+
+/// What a person reads when the test has failed.
+fn told(case: &CaseView, run: &RunView) -> String {
+    let gap = run
+        .min_gap_m()
+        .and_then(|gap| fixed(gap, 2))
+        .map_or("no gap was measured".to_owned(), |gap| format!("{gap} m"));
+    let faithful = if run.verdict.faithful() {
+        "yes".to_owned()
+    } else {
+        let failures = run.verdict.failures();
+        let why = failures
+            .map(|check| format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed));
+        format!("no ({})", why.collect::<Vec<_>>().join("; "))
+    };
+    format!(
+        "template: {}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}\nagain: {}",
+        case.template,
+        words::name(&run.metrics.termination),
+        run.rerun_command
+    )
+}
+
+/// Text for XML 1.0, which has no way to write most control characters.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in words::clean(text, words::LONGEST_TEXT).chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&apos;"),
+            '\u{fffe}' | '\u{ffff}' => escaped.push('\u{fffd}'),
+            _ => escaped.push(letter),
+        }
+    }
+    escaped
+}

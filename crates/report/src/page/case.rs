@@ -1,0 +1,165 @@
+//! One scenario: what it stands for, the replay with its plots, and tabs with everything behind it.
+
+use super::{Context, compare, icon, parts, scenario, story};
+use crate::summary::{Result, finding_kinds};
+use crate::view::{CaseView, RunView};
+use crate::{data, words};
+use maud::{Markup, PreEscaped, html};
+use recrash_model::narrative::Origin;
+
+/// The section of one case.
+pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
+    let anchor = context.anchors.case(position);
+    let tabs: [(&str, &str, Markup); 5] = [
+        ("story", "Record and narrative", story::story(context, case)),
+        ("checks", "Faithfulness", compare::checks(case)),
+        ("metrics", "Metrics", compare::metrics(context, case)),
+        ("tuning", "Tuning", scenario::tuning(position, case)),
+        ("scenario", "Scenario file", scenario::files(case)),
+    ];
+    html! {
+        section.page.case id=(anchor) data-case=(position) aria-labelledby={ (anchor) "-title" } {
+            (head(context, position, case, anchor))
+            @if let Some(why) = &case.refused {
+                p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
+            }
+            @if case.last_run().is_some() { (stage(case)) (numbers(case)) }
+            .tabs {
+                div role="tablist" aria-label="About this scenario" {
+                    @for (i, (name, label, _)) in tabs.iter().enumerate() {
+                        button type="button" role="tab" id={ (anchor) "--" (name) "-tab" } aria-controls={ (anchor) "--" (name) } aria-selected=(i == 0) tabindex=(if i == 0 { "0" } else { "-1" }) { (label) }
+                    }
+                }
+                @for (name, label, content) in &tabs {
+                    div.tab-panel role="tabpanel" id={ (anchor) "--" (name) } aria-labelledby={ (anchor) "--" (name) "-tab" } tabindex="0" {
+                        h3.only-plain { (label) }
+                        (content)
+                    }
+                }
+            }
+            script type="application/json" id={ "case-data-" (position) } { (PreEscaped(data::embed(&data::case(case)))) }
+        }
+    }
+}
+
+fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Markup {
+    let last = case.last_run();
+    let cluster = context.suite.cluster(case);
+    html! {
+        .case-head {
+            .case-title {
+                h1 id={ (anchor) "-title" } { (words::clean(&case.scenario_id, 120)) }
+                span.muted { (position + 1) " of " (context.suite.cases.len()) }
+            }
+            .chips {
+                (parts::result_chip(Result::of(last)))
+                (parts::faithful_chip(last))
+                @for kind in last.map(finding_kinds).unwrap_or_default() { (parts::finding_chip(kind)) }
+                @match case.narrative.as_ref().map(|narrative| &narrative.origin) {
+                    Some(Origin::Record) => span.chip.none { "retells the record" },
+                    Some(Origin::Alternative { .. }) => span.chip.odd { (icon::bang()) "alternative to the record" },
+                    None => "",
+                }
+            }
+            p.case-what {
+                b { (case.template) }
+                @if let Some(cluster) = cluster { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
+                @if let Some(narrative) = &case.narrative { ". " span.told { (words::clean(&narrative.text, 600)) } }
+            }
+        }
+    }
+}
+
+fn stage(case: &CaseView) -> Markup {
+    let modes = [
+        ("before", "As designed", case.before.is_some()),
+        ("after", "Tuned", case.after.is_some()),
+        ("both", "Side by side", case.before.is_some() && case.after.is_some()),
+    ];
+    html! {
+        noscript { p.banner { "The replay and the plots need scripts. Every number is in the tables below." } }
+        .stage {
+            .replay role="group" aria-label="Replay, seen from above" {
+                .replay-bar {
+                    fieldset.segments {
+                        legend.hidden-text { "Which run" }
+                        @for (value, name, there) in modes {
+                            button type="button" data-mode=(value) aria-pressed="false" disabled[!there] title=[(!there).then_some("there is no such run")] { (name) }
+                        }
+                    }
+                    .grow {}
+                    fieldset.segments {
+                        legend.hidden-text { "Camera" }
+                        @for (value, name) in [("fit", "Fit"), ("follow", "Follow ego"), ("map", "Whole map")] {
+                            button type="button" data-camera=(value) aria-pressed=(value == "fit") { (name) }
+                        }
+                    }
+                    button.small type="button" data-act="zoom-out" title="Zoom out ( \u{2212} )" aria-label="Zoom out" { (icon::minus()) }
+                    button.small type="button" data-act="zoom-in" title="Zoom in ( + )" aria-label="Zoom in" { (icon::plus()) }
+                }
+                .views tabindex="0" role="img" aria-label="Top-down picture of the run; the plots and tables hold the same in numbers" {
+                    figure.view data-run="before" hidden { canvas {} figcaption { "As designed" } }
+                    figure.view data-run="after" hidden { canvas {} figcaption { "Tuned" } }
+                }
+                .transport {
+                    button.small type="button" data-act="start" title="To the start ( Home )" aria-label="To the start" { (icon::to_start()) }
+                    button.small type="button" data-act="back" title="One step back ( \u{2190} )" aria-label="One step back" { (icon::step_back()) }
+                    button.play type="button" data-act="play" title="Play or pause ( Space )" aria-label="Play" { (icon::play_pause()) }
+                    button.small type="button" data-act="on" title="One step on ( \u{2192} )" aria-label="One step on" { (icon::step_on()) }
+                    input.scrub type="range" min="0" max="1" step="0.1" value="0" aria-label="Time in the run";
+                    output.clock { "0.0 s" }
+                    button.small type="button" data-act="closest" title="To the least gap ( M )" aria-label="To the moment of the least gap" { (icon::closest()) }
+                    button.small type="button" data-act="loop" title="Repeat ( L )" aria-label="Repeat" aria-pressed="false" { (icon::repeat()) }
+                    label { span.hidden-text { "Speed" } select data-act="rate" {
+                        @for (value, name) in [("0.25", "\u{bc}\u{d7}"), ("0.5", "\u{bd}\u{d7}"), ("1", "1\u{d7}"), ("2", "2\u{d7}"), ("4", "4\u{d7}")] {
+                            option value=(value) selected[value == "1"] { (name) }
+                        }
+                    } }
+                }
+            }
+            .plots aria-label="Values over time" role="group" {
+                .plot-key { span.key.solid { "tuned" } span.key.dashed { "as designed" } span.key.ego { "ego" } span.key.partner { "partner" } }
+                @for (name, title, unit) in [("gap", "Gap to the nearest partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
+                    figure.plot data-plot=(name) { figcaption { b { (title) } " " span.muted { (unit) } span.readout {} } svg role="img" aria-label={ (title) " over time" } {} }
+                }
+            }
+        }
+    }
+}
+
+/// The few numbers everybody looks for, before and after.
+fn numbers(case: &CaseView) -> Markup {
+    let last = case.last_run();
+    let worst = |run: &RunView, of: fn(&recrash_model::metrics::PartnerMetrics) -> Option<f64>, least: bool| {
+        let values = run.metrics.partners.iter().filter_map(of).filter(|value| value.is_finite());
+        if least { values.min_by(f64::total_cmp) } else { values.max_by(f64::total_cmp) }
+    };
+    let pair = |name: &str, unit: &str, decimals: usize, why: &str, of: &dyn Fn(&RunView) -> Option<f64>| {
+        html! {
+            .tile {
+                dt { (name) }
+                dd.value {
+                    @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, if case.after.is_some() { "" } else { unit }, why)) }
+                    @if let Some(after) = &case.after { @if case.before.is_some() { span.arrow { "\u{2192}" } } (parts::quantity(of(after), decimals, unit, why)) }
+                }
+            }
+        }
+    };
+    html! {
+        dl.tiles.compact {
+            (pair("Least gap", "m", 2, "no scripted partner took part", &RunView::min_gap_m))
+            (pair("Least TTC", "s", 2, "they were never on a course to touch", &|run| worst(run, |p| p.min_ttc.map(|t| t.value), true)))
+            (pair("PET", "s", 2, "no place was crossed by both, one after the other", &|run| worst(run, |p| p.pet.map(|t| t.value), true)))
+            (pair("Hardest braking of the ego", "m/s\u{b2}", 1, "", &|run| Some(run.metrics.ego.max_deceleration.value)))
+            .tile {
+                dt { "Contact" }
+                dd.value.words {
+                    @match last.and_then(|run| run.metrics.contact.as_ref()) {
+                        Some(contact) => { (contact.kind.label()) ", " (parts::quantity(Some(contact.relative_speed_mps), 1, "m/s", "")) },
+                        None => (parts::missing("no contact in the last run")),
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! What the suite found out about the ego.
+
+use super::{Context, parts};
+use crate::view::{CaseView, RunView};
+use crate::words::{self, fixed};
+use maud::{Markup, html};
+use recrash_model::metrics::FindingKind;
+
+const KINDS: [FindingKind; 9] = [
+    FindingKind::Contact,
+    FindingKind::ObstacleContact,
+    FindingKind::NearMiss,
+    FindingKind::OffRoad,
+    FindingKind::Stuck,
+    FindingKind::HardBraking,
+    FindingKind::PhantomBraking,
+    FindingKind::Oscillation,
+    FindingKind::LaneDeparture,
+];
+
+/// The section.
+pub fn section(context: &Context) -> Markup {
+    html! {
+        section.page #findings aria-labelledby="findings-title" {
+            .page-head {
+                h1 #findings-title { "Findings about the ego" }
+                p.lead {
+                    b { (words::clean(&context.suite.ego, 60)) } " fails " (context.summary.failed_before) " of " (context.summary.ran)
+                    " scenarios as designed and " (context.summary.failed_after) " after tuning. The other kinds are odd behaviour worth a look."
+                }
+            }
+            .panel { h2 { "By kind" } (by_kind(context)) }
+            .panel { h2 { "Every finding" } (every(context)) }
+        }
+    }
+}
+
+fn has(run: Option<&RunView>, kind: FindingKind) -> bool {
+    run.is_some_and(|run| run.findings.iter().any(|finding| finding.kind == kind))
+}
+
+fn by_kind(context: &Context) -> Markup {
+    let cases = &context.suite.cases;
+    let ran = context.summary.ran;
+    let share = |n: usize| if ran == 0 { 0.0 } else { n as f64 / ran as f64 };
+    html! {
+        table.plain {
+            caption.hidden-text { "Number of scenarios with a finding of each kind" }
+            thead { tr { th scope="col" { "Finding" } th scope="col" { "What it means" } th.right scope="col" { "As designed" } th scope="col" {} th.right scope="col" { "After tuning" } th scope="col" {} } }
+            tbody { @for kind in KINDS {
+                @let before = cases.iter().filter(|case| has(case.before.as_ref(), kind)).count();
+                @let after = cases.iter().filter(|case| has(case.last_run(), kind)).count();
+                @let class = if kind.is_failure() { "bad" } else { "odd" };
+                tr {
+                    th scope="row" { (parts::finding_chip(kind)) }
+                    td.muted { (meaning(kind, context)) }
+                    td.right.number { (before) } td.bar-cell { (parts::bar(share(before), class)) }
+                    td.right.number { (after) } td.bar-cell { (parts::bar(share(after), class)) }
+                }
+            } }
+        }
+        p.muted { "Scenarios with at least one finding of the kind, of " (ran) " that ran." }
+    }
+}
+
+fn meaning(kind: FindingKind, context: &Context) -> String {
+    let limits = &context.suite.profile.failure;
+    let number = |value: f64| fixed(value, 1).unwrap_or_default();
+    match kind {
+        FindingKind::Contact => "the ego's box touches a road user's".to_owned(),
+        FindingKind::ObstacleContact => "the ego's box touches an obstacle".to_owned(),
+        FindingKind::NearMiss => format!("box gap below {} m", number(limits.min_gap_m)),
+        FindingKind::OffRoad => "the ego leaves the road".to_owned(),
+        FindingKind::Stuck => "the ego stands still and never arrives".to_owned(),
+        FindingKind::HardBraking => format!("braking above {} m/s\u{b2}", number(limits.hard_braking_mps2)),
+        FindingKind::PhantomBraking => {
+            format!("braking above {} m/s\u{b2} with nothing in the way", number(limits.phantom_braking_mps2))
+        }
+        FindingKind::Oscillation => format!(
+            "{} changes between braking and accelerating within {} s",
+            limits.oscillation_reversals,
+            number(limits.oscillation_window_s)
+        ),
+        FindingKind::LaneDeparture => {
+            format!("a corner more than {} m beyond the lane", number(limits.lane_departure_m))
+        }
+    }
+}
+
+fn every(context: &Context) -> Markup {
+    let rows = context.suite.cases.iter().enumerate().flat_map(|(position, case)| {
+        runs(case).into_iter().flat_map(move |(name, run)| run.findings.iter().map(move |f| (position, case, name, f)))
+    });
+    let rows: Vec<_> = rows.collect();
+    html! {
+        @if rows.is_empty() { p.empty { "There are none." } } @else {
+            .table-wrap {
+                table.plain {
+                    caption.hidden-text { "Every finding of every run" }
+                    thead { tr { th scope="col" { "Scenario" } th scope="col" { "Run" } th.right scope="col" { "Time" } th scope="col" { "Finding" } th scope="col" { "In words" } } }
+                    tbody { @for (position, case, name, finding) in rows {
+                        tr {
+                            th scope="row" { a href={ "#" (context.anchors.case(position)) } { (words::clean(&case.scenario_id, 80)) } }
+                            td { (name) }
+                            td.right { (parts::quantity(Some(finding.time_s), 1, "s", "")) }
+                            td { (parts::finding_chip(finding.kind)) }
+                            td { (words::clean(&finding.sentence, 300)) }
+                        }
+                    } }
+                }
+            }
+        }
+    }
+}
+
+/// The runs of a case with their names.
+pub fn runs(case: &CaseView) -> Vec<(&'static str, &RunView)> {
+    let named = [("as designed", &case.before), ("tuned", &case.after)];
+    named.into_iter().filter_map(|(name, run)| Some((name, run.as_ref()?))).collect()
+}

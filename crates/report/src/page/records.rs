@@ -1,0 +1,149 @@
+//! The records: funnel, the paper's tables for this run, the cluster map, and what the picks cover.
+
+use super::{Context, cluster_map, coverage, parts};
+use crate::words::{self, thousands};
+use maud::{Markup, html};
+use recrash_model::record::RejectReason;
+
+/// The section.
+pub fn section(context: &Context) -> Markup {
+    let selection = &context.suite.selection;
+    html! {
+        section.page #records aria-labelledby="records-title" {
+            .page-head {
+                h1 #records-title { "Records and coverage" }
+                p.lead {
+                    (thousands(context.summary.rows)) " rows, " (thousands(context.summary.usable)) " usable records in "
+                    (selection.coverage.templates_observed) " templates, " (selection.clusters.len()) " picks."
+                }
+            }
+            .columns {
+                .panel { h2 { "From rows to usable records" } (funnel(context)) }
+                .panel { h2 { "Road types" } (road_types(context)) h2 { "Movements" } (movements(context)) }
+            }
+            .panel { h2 { "Templates" } (templates(context)) }
+            .panel { h2 { "Map of the records" } (cluster_map::map(context)) }
+            .panel { h2 { "What the picks cover" } (coverage::coverage(context)) }
+        }
+    }
+}
+
+fn share(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
+fn funnel(context: &Context) -> Markup {
+    let steps = &context.suite.records.funnel;
+    let first = steps.first().map_or(0, |step| step.remaining);
+    let rejects = &context.suite.records.rejects;
+    let mut reasons: Vec<(RejectReason, usize)> = Vec::new();
+    for reject in rejects {
+        match reasons.iter_mut().find(|(reason, _)| *reason == reject.reason) {
+            Some((_, n)) => *n += 1,
+            None => reasons.push((reject.reason, 1)),
+        }
+    }
+    reasons.sort();
+    html! {
+        table.plain {
+            caption.hidden-text { "How many rows remain after each step" }
+            thead { tr { th scope="col" { "Step" } th.right scope="col" { "Remain" } th scope="col" {} th scope="col" { "Taken away" } } }
+            tbody {
+                @for step in steps {
+                    tr {
+                        th scope="row" { (words::clean(&step.name, 120)) }
+                        td.right.number { (thousands(step.remaining)) }
+                        td.bar-cell { (parts::bar(share(step.remaining, first), "plain")) }
+                        td {
+                            @for (reason, n) in &step.lost { div { span.number { (thousands(*n)) } " " (reason.label()) } }
+                            @if step.lost.is_empty() { (parts::missing("nothing was taken away")) }
+                        }
+                    }
+                }
+            }
+        }
+        @if !reasons.is_empty() {
+            p.muted { "Rows that went no further: " @for (i, (reason, n)) in reasons.iter().enumerate() { @if i > 0 { ", " } (thousands(*n)) " " (reason.label()) } "." }
+        }
+    }
+}
+
+fn road_types(context: &Context) -> Markup {
+    let tables = &context.suite.selection.tables;
+    let most = tables.road_types.iter().map(|(_, n)| *n).max().unwrap_or(0);
+    html! {
+        table.plain {
+            caption.hidden-text { "Usable records by road type" }
+            tbody { @for (road, n) in &tables.road_types {
+                tr { th scope="row" { (road.label()) } td.right.number { (thousands(*n)) } td.bar-cell { (parts::bar(share(*n, most), "plain")) } }
+            } }
+        }
+        p.muted { (words::count(tables.work_zone, "record")) " in work zones; the largest template has " (thousands(tables.largest_template)) "." }
+    }
+}
+
+fn movements(context: &Context) -> Markup {
+    let tables = &context.suite.selection.tables;
+    let most = tables.movements.iter().flat_map(|(_, row)| row).copied().max().unwrap_or(0);
+    html! {
+        table.matrix {
+            caption { "Rows: crash partner (CP). Columns: subject vehicle (SV)." }
+            thead { tr { td {} @for sv in &tables.sv_movements { th scope="col" { "SV " (sv.label().to_lowercase()) } } } }
+            tbody { @for (cp, row) in &tables.movements {
+                tr {
+                    th scope="row" { "CP " (cp.label().to_lowercase()) }
+                    @for n in row { td.number.(heat(*n, most)) { (thousands(*n)) } }
+                }
+            } }
+        }
+    }
+}
+
+/// One of six shades; roots, so that small counts can be told apart.
+pub fn heat(n: usize, most: usize) -> &'static str {
+    const SHADES: [&str; 6] = ["heat-0", "heat-1", "heat-2", "heat-3", "heat-4", "heat-5"];
+    if n == 0 {
+        return SHADES[0];
+    }
+    SHADES[1 + (share(n, most).sqrt() * 4.999) as usize % 5]
+}
+
+fn templates(context: &Context) -> Markup {
+    let selection = &context.suite.selection;
+    let most = selection.templates.iter().map(|count| count.records).max().unwrap_or(0);
+    html! {
+        .table-wrap {
+            table.plain.sortable {
+                caption.hidden-text { "Observed templates, most frequent first" }
+                thead { tr {
+                    @for name in ["#", "Road", "SV (ego)", "CP (partner)", "Work zone"] { th scope="col" { (name) } }
+                    th.right scope="col" { "Records" } th scope="col" {} th.right scope="col" { "Picks" } th scope="col" { "Scenarios" }
+                } }
+                tbody { @for (order, count) in selection.templates.iter().enumerate() {
+                    @let t = count.template;
+                    tr {
+                        td.number { (order + 1) }
+                        td { (t.road.label()) } td { (t.sv.label()) } td { (t.cp.label()) }
+                        td { @if t.work_zone { "yes" } @else { span.muted { "no" } } }
+                        td.right.number { (thousands(count.records)) }
+                        td.bar-cell { (parts::bar(share(count.records, most), "plain")) }
+                        td.right.number { (count.picks) }
+                        td { @for (position, case) in context.suite.cases.iter().enumerate().filter(|(_, case)| case.template == t) {
+                            a.tag href={ "#" (context.anchors.case(position)) } title=(words::clean(&case.scenario_id, 80)) { (position + 1) } " "
+                        } @if count.picks == 0 { span.chip.bad { (super::icon::cross()) "no pick" } } }
+                    }
+                } }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shades_grow_with_the_count_and_keep_zero_apart() {
+        assert_eq!([0, 1, 30, 60, 120].map(|n| heat(n, 120)), ["heat-0", "heat-1", "heat-3", "heat-4", "heat-5"]);
+    }
+}

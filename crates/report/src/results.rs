@@ -1,0 +1,177 @@
+//! The results as a table for spreadsheets and data frames.
+
+use crate::summary::finding_kinds;
+use crate::view::{CaseView, RunView, SuiteView};
+use crate::words::{self, fixed};
+use recrash_model::metrics::{PartnerMetrics, Timed};
+use recrash_model::narrative::Origin;
+
+const HEADER: [&str; 37] = [
+    "scenario",
+    "run",
+    "road",
+    "sv_movement",
+    "cp_movement",
+    "work_zone",
+    "cluster",
+    "record",
+    "origin",
+    "profile",
+    "ego",
+    "simulator",
+    "seed",
+    "failed",
+    "faithful",
+    "not_faithful_because",
+    "findings",
+    "min_gap_m",
+    "min_gap_time_s",
+    "min_centre_distance_m",
+    "min_ttc_s",
+    "pet_s",
+    "max_drac_mps2",
+    "min_headway_s",
+    "contact_with",
+    "contact_time_s",
+    "collision",
+    "ego_zone",
+    "other_zone",
+    "relative_speed_mps",
+    "ego_max_deceleration_mps2",
+    "ego_max_lane_departure_m",
+    "termination",
+    "duration_s",
+    "state_hash",
+    "refused_because",
+    "command",
+];
+
+/// The table.
+pub fn render(suite: &SuiteView) -> String {
+    let mut text = String::new();
+    push_row(&mut text, HEADER.iter().map(|&name| name.to_owned()));
+    for case in &suite.cases {
+        let runs = [("as designed", &case.before), ("tuned", &case.after)];
+        let mut any = false;
+        for (name, run) in runs {
+            if let Some(run) = run {
+                any = true;
+                push_row(&mut text, row(suite, case, name, Some(run)));
+            }
+        }
+        if !any {
+            push_row(&mut text, row(suite, case, "not run", None));
+        }
+    }
+    text
+}
+
+fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) -> Vec<String> {
+    let t = case.template;
+    let cluster = suite.cluster(case);
+    let origin = match case.narrative.as_ref().map(|narrative| &narrative.origin) {
+        Some(Origin::Record) => "record",
+        Some(Origin::Alternative { .. }) => "alternative",
+        None => "",
+    };
+    let mut row = vec![
+        case.scenario_id.clone(),
+        name.to_owned(),
+        t.road.slug().to_owned(),
+        t.sv.slug().to_owned(),
+        t.cp.slug().to_owned(),
+        t.work_zone.to_string(),
+        cluster.map_or_else(String::new, |cluster| cluster.number.to_string()),
+        suite.case_records(case).next().map_or_else(String::new, |record| record.id.to_string()),
+        origin.to_owned(),
+        suite.profile.name.clone(),
+        suite.ego.clone(),
+        suite.simulator.clone(),
+        suite.selection.seed.to_string(),
+    ];
+    match run {
+        Some(run) => row.extend(measured(run)),
+        None => row.extend(std::iter::repeat_n(String::new(), 22)),
+    }
+    row.push(case.refused.clone().unwrap_or_default());
+    row.push(run.map_or_else(String::new, |run| run.rerun_command.clone()));
+    row
+}
+
+fn measured(run: &RunView) -> Vec<String> {
+    let m = &run.metrics;
+    let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
+    let worst = |of: fn(&PartnerMetrics) -> Option<Timed>| m.partners.iter().filter_map(of).map(|timed| timed.value);
+    let least = |of| number(worst(of).min_by(f64::total_cmp));
+    let contact = m.contact.as_ref();
+    let kinds: Vec<&str> = finding_kinds(run).into_iter().map(|kind| kind.label()).collect();
+    let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
+    vec![
+        run.failed().to_string(),
+        run.verdict.faithful().to_string(),
+        why.join("; "),
+        kinds.join("; "),
+        number(run.min_gap_m()),
+        number(m.min_gap.map(|gap| gap.time_s)),
+        number(m.min_centre_distance.map(|distance| distance.value)),
+        least(|partner| partner.min_ttc),
+        least(|partner| partner.pet),
+        number(worst(|partner| partner.max_drac).max_by(f64::total_cmp)),
+        least(|partner| partner.min_headway),
+        contact.map_or_else(String::new, |contact| contact.id.clone()),
+        number(contact.map(|contact| contact.time_s)),
+        contact.map_or("", |contact| contact.kind.label()).to_owned(),
+        contact.map_or("", |contact| contact.ego_zone.label()).to_owned(),
+        contact.map_or("", |contact| contact.other_zone.label()).to_owned(),
+        number(contact.map(|contact| contact.relative_speed_mps)),
+        number(Some(m.ego.max_deceleration.value)),
+        number(Some(m.ego.max_lane_departure.value)),
+        words::name(&m.termination),
+        number(Some(m.duration_s)),
+        run.rollout.state_hash.clone(),
+    ]
+}
+
+fn push_row(text: &mut String, cells: impl IntoIterator<Item = String>) {
+    for (position, cell) in cells.into_iter().enumerate() {
+        if position > 0 {
+            text.push(',');
+        }
+        push_cell(text, &cell);
+    }
+    text.push_str("\r\n");
+}
+
+/// A cell. Texts that a spreadsheet would take for a formula get an apostrophe; numbers stay as they are.
+fn push_cell(text: &mut String, cell: &str) {
+    let cell = words::clean(cell, words::LONGEST_TEXT);
+    let formula = cell.starts_with(['=', '+', '-', '@', '\t']) && cell.parse::<f64>().is_err();
+    let quoted = cell.contains(['"', ',', '\n', '\r']) || formula;
+    if quoted {
+        text.push('"');
+    }
+    if formula {
+        text.push('\'');
+    }
+    text.push_str(&cell.replace('"', "\"\""));
+    if quoted {
+        text.push('"');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_quoted_and_formulas_are_defused() {
+        let written = |cell: &str| {
+            let mut text = String::new();
+            push_cell(&mut text, cell);
+            text
+        };
+        assert_eq!(written("a,\"b\""), "\"a,\"\"b\"\"\"");
+        assert_eq!(written("=HYPERLINK(1)"), "\"'=HYPERLINK(1)\"");
+        assert_eq!(written("-1.5"), "-1.5");
+    }
+}

@@ -1,0 +1,134 @@
+//! The headline numbers, computed once, so that no two places of the report can disagree.
+
+use crate::view::{CaseView, RunView, SuiteView};
+use recrash_model::metrics::FindingKind;
+use recrash_model::narrative::Origin;
+
+/// How a run ended for the ego.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Result {
+    /// It failed.
+    Failed,
+    /// It did not.
+    Passed,
+    /// There is no run.
+    Missing,
+}
+
+impl Result {
+    /// Of a run.
+    pub fn of(run: Option<&RunView>) -> Self {
+        match run {
+            Some(run) if run.failed() => Self::Failed,
+            Some(_) => Self::Passed,
+            None => Self::Missing,
+        }
+    }
+
+    /// For tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Failed => "fails",
+            Self::Passed => "passes",
+            Self::Missing => "not run",
+        }
+    }
+}
+
+/// Headline numbers of a suite. "After" is the last run of each case: the tuned one, or the one as designed where tuning
+/// kept it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// Data rows of all files.
+    pub rows: usize,
+    /// Records the profile can use.
+    pub usable: usize,
+    /// Scenarios.
+    pub cases: usize,
+    /// Scenarios that ran.
+    pub ran: usize,
+    /// Scenarios that were refused.
+    pub refused: usize,
+    /// Scenarios that retell their record.
+    pub from_record: usize,
+    /// Scenarios whose narrative takes the record's place.
+    pub alternatives: usize,
+    /// Scenarios whose last run is faithful.
+    pub faithful: usize,
+    /// Scenarios the ego fails as designed.
+    pub failed_before: usize,
+    /// Scenarios the ego fails after tuning.
+    pub failed_after: usize,
+    /// Scenarios that passed as designed and have a smaller least gap after tuning.
+    pub closer: usize,
+    /// Median of the least gaps as designed. [m]
+    pub median_before_m: Option<f64>,
+    /// Median of the least gaps after tuning. [m]
+    pub median_after_m: Option<f64>,
+}
+
+impl Summary {
+    /// Of a suite.
+    pub fn of(suite: &SuiteView) -> Self {
+        let count = |holds: &dyn Fn(&CaseView) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
+        let origin = |case: &CaseView| case.narrative.as_ref().map(|narrative| narrative.origin == Origin::Record);
+        let gaps = |of: &dyn Fn(&CaseView) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
+        Self {
+            rows: suite.records.files.iter().map(|file| file.rows).sum(),
+            usable: suite.records.usable.len(),
+            cases: suite.cases.len(),
+            ran: count(&|case| case.last_run().is_some()),
+            refused: count(&|case| case.refused.is_some()),
+            from_record: count(&|case| origin(case) == Some(true)),
+            alternatives: count(&|case| origin(case) == Some(false)),
+            faithful: count(&|case| case.last_run().is_some_and(|run| run.verdict.faithful())),
+            failed_before: count(&|case| case.before.as_ref().is_some_and(RunView::failed)),
+            failed_after: count(&|case| case.last_run().is_some_and(RunView::failed)),
+            closer: count(&|case| closer(case) == Some(true)),
+            median_before_m: gaps(&|case| case.before.as_ref()?.min_gap_m()),
+            median_after_m: gaps(&|case| case.last_run()?.min_gap_m()),
+        }
+    }
+
+    /// Scenarios that ran and passed as designed.
+    pub fn passed_before(&self) -> usize {
+        self.ran - self.failed_before
+    }
+}
+
+/// Whether tuning brought the partner closer, where the ego did not fail as designed.
+fn closer(case: &CaseView) -> Option<bool> {
+    let (before, after) = (case.before.as_ref()?, case.after.as_ref()?);
+    Some(!before.failed() && after.min_gap_m()? < before.min_gap_m()?)
+}
+
+/// The kinds of finding of a run, each once, in the order of severity.
+pub fn finding_kinds(run: &RunView) -> Vec<FindingKind> {
+    let mut kinds: Vec<FindingKind> = run.findings.iter().map(|finding| finding.kind).collect();
+    kinds.sort();
+    kinds.dedup();
+    kinds
+}
+
+/// The median: the middle value, or the mean of the two in the middle.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        n if n.is_multiple_of(2) => Some(0.5 * (values[middle - 1] + values[middle])),
+        _ => Some(values[middle]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![]), None);
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), Some(2.5));
+    }
+}
