@@ -81,7 +81,10 @@ fn a_contact_at_a_crossing() {
     assert_eq!(metrics.termination, TerminationKind::Contact);
     assert_eq!(kinds(&rollout, &metrics), [FindingKind::Contact]);
     let sentence = &findings_of(&rollout, &metrics, &CRITERIA)[0].sentence;
-    assert!(sentence.contains("cp1") && sentence.contains("left against front") && sentence.contains("9.4 m/s"), "{sentence}");
+    assert!(
+        sentence.contains("cp1") && sentence.contains("left against front") && sentence.contains("9.4 m/s"),
+        "{sentence}"
+    );
 }
 
 #[test]
@@ -199,7 +202,8 @@ fn leaving_the_lane_counts_and_changing_it_does_not() {
     close(metrics.ego.max_lane_departure.value, 1.5 + 0.5 * WIDTH_M - 1.75, 1e-9);
     // Into the left lane within 3 s, and on in it: a lane change.
     let change = |time: f64| -3.5 * (time / 3.0).min(1.0);
-    let metrics = measure(&network, &way, 10.0, &rollout(drive_at(&network, &way, 5.0, steps, |_| 10.0, change), vec![]));
+    let metrics =
+        measure(&network, &way, 10.0, &rollout(drive_at(&network, &way, 5.0, steps, |_| 10.0, change), vec![]));
     assert!(metrics.ego.max_lane_departure.value < 0.1, "{:?}", metrics.ego.max_lane_departure);
     // Off the road on the right: no lane there to change to.
     let off = |time: f64| 3.0 * (time / 3.0).min(1.0);

@@ -18,6 +18,7 @@ mod notes;
 mod row;
 mod text;
 
+pub use columns::published_header;
 pub use error::IngestError;
 
 use recrash_model::profile::{Dedupe, SystemProfile};

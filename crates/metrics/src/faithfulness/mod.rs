@@ -207,23 +207,10 @@ impl Witness<'_> {
             (format!("never closer than {:.1} m", gap.value), false)
         } else if gap.time_s < START_S {
             (format!("closest at the very start ({:.1} m)", gap.value), false)
-        } else if self.both_stand(partner) {
-            (format!("both stand at {:.1} m, {:.1} s", gap.value, gap.time_s), false)
         } else {
             (format!("{:.1} m to {} at {:.1} s", gap.value, partner.id, gap.time_s), true)
         };
         check(CheckKind::Encounter, EXPECTED, observed, agrees)
-    }
-
-    /// Whether neither moved in the second before the closest approach.
-    fn both_stand(&self, partner: &PartnerMetrics) -> bool {
-        let step = self.step_at(partner.min_gap.time_s, partner.actor);
-        let before = step.saturating_sub((1.0 / time_of(1)) as usize);
-        let moved = |actor: usize| {
-            let outlines = &self.scene.outlines[actor];
-            outlines[before].centre.distance(outlines[step].centre) > 0.1
-        };
-        !moved(0) && !moved(partner.actor)
     }
 
     fn contact_zones(&self) -> Check {

@@ -123,7 +123,14 @@ pub fn glide(x: f64, y: f64, heading: f64, speed: f64, steps: usize) -> Vec<Acto
 }
 
 pub fn actor(id: &str, role: Role, states: Vec<ActorState>) -> ActorTrack {
-    ActorTrack { id: id.to_owned(), role, kind: PartnerKind::PassengerCar, length_m: LENGTH_M, width_m: WIDTH_M, states }
+    ActorTrack {
+        id: id.to_owned(),
+        role,
+        kind: PartnerKind::PassengerCar,
+        length_m: LENGTH_M,
+        width_m: WIDTH_M,
+        states,
+    }
 }
 
 /// A rollout of the ego and partners `cp1`, `cp2`, ..., ended as a simulator would: at the first recorded overlap.
