@@ -126,13 +126,17 @@ impl<'a> Live<'a> {
         let mut retries = 0;
         loop {
             let begun = Instant::now();
-            match self.client.exec_chat(question.model.as_str(), request(question), Some(&chat_options(question))).await {
+            match self.client.exec_chat(question.model.as_str(), request(question), Some(&chat_options(question))).await
+            {
                 Ok(response) => return Ok(self.exchange(question, &response, begun.elapsed(), retries)),
                 Err(error) => {
                     let fault = Fault::of(&error);
                     if !fault.passing || retries == self.options.retries {
                         let tries = retries + 1;
-                        return Err(AskError::Provider(format!("{} (asked {tries} times): {}", question.model, fault.text)));
+                        return Err(AskError::Provider(format!(
+                            "{} (asked {tries} times): {}",
+                            question.model, fault.text
+                        )));
                     }
                     tokio::time::sleep(wait(question, retries, fault.retry_after_s)).await;
                     retries += 1;
@@ -202,7 +206,9 @@ impl Fault {
     fn of(error: &genai::Error) -> Self {
         use genai::webc::Error as Web;
         let web = match error {
-            genai::Error::WebModelCall { webc_error, .. } | genai::Error::WebAdapterCall { webc_error, .. } => webc_error,
+            genai::Error::WebModelCall { webc_error, .. } | genai::Error::WebAdapterCall { webc_error, .. } => {
+                webc_error
+            }
             other => return Self { passing: false, retry_after_s: None, text: brief(&other.to_string()) },
         };
         let status = web.status().map(|status| status.as_u16());

@@ -1,6 +1,7 @@
 //! Prompts: files in `prompts/`, filled in with minijinja. Their hash is part of what the ledger keeps.
 
 use crate::{AgentError, Brief};
+use minijinja::value::Serde;
 use minijinja::{Environment, context};
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{Coded, ContactZone, CrashRecord};
@@ -30,6 +31,7 @@ pub fn system() -> String {
 /// The prompt file and what fills it do not fit.
 pub fn paraphrase(brief: &Brief) -> Result<String, AgentError> {
     let records: Vec<QuotedRecord> = brief.records.iter().map(|record| QuotedRecord::new(record)).collect();
+    let records = minijinja::Value::from(Serde(&records));
     let BriefContext { scenario_id, template, profile } = BriefContext::new(brief);
     render("paraphrase.md", PARAPHRASE, context! { scenario_id, template, profile, records })
 }
@@ -41,7 +43,7 @@ pub fn paraphrase(brief: &Brief) -> Result<String, AgentError> {
 pub fn design(brief: &Brief, narrative: &Narrative) -> Result<String, AgentError> {
     let BriefContext { scenario_id, template, profile } = BriefContext::new(brief);
     let narrative = quotable(&narrative.text);
-    render("design.md", DESIGN, context! { scenario_id, template, profile, narrative, examples => EXAMPLES })
+    render("design.md", DESIGN, context! { scenario_id, template, profile, narrative, examples => EXAMPLES.to_vec() })
 }
 
 /// Asks for other numbers.
@@ -55,6 +57,8 @@ pub fn tune(
     history: &[TunePoint],
 ) -> Result<String, AgentError> {
     let tried: Vec<Tried> = history.iter().map(Tried::new).collect();
+    let tried = minijinja::Value::from(Serde(&tried));
+    let parameters = minijinja::Value::from(Serde(parameters));
     let narrative = quotable(&narrative.text);
     render("tune.md", TUNE, context! { scenario_id, narrative, parameters, history => tried })
 }
@@ -64,7 +68,7 @@ pub fn tune(
 /// # Errors
 /// As [`paraphrase`].
 pub fn repair(problems: &[String]) -> Result<String, AgentError> {
-    render("repair.md", REPAIR, context! { problems })
+    render("repair.md", REPAIR, context! { problems => problems.to_vec() })
 }
 
 fn render(name: &'static str, source: &'static str, values: minijinja::Value) -> Result<String, AgentError> {
@@ -81,8 +85,8 @@ impl BriefContext {
     fn new(brief: &Brief) -> Self {
         Self {
             scenario_id: brief.scenario_id.to_owned(),
-            template: minijinja::Value::from_serialize(brief.template),
-            profile: minijinja::Value::from_serialize(brief.profile),
+            template: minijinja::Value::from(Serde(brief.template)),
+            profile: minijinja::Value::from(Serde(brief.profile)),
         }
     }
 }

@@ -161,8 +161,12 @@ impl<'a> Stage<'a> {
         let map = self.map(approach_m.ceil(), arm_m.ceil());
         let network = RoadNetwork::build(&map);
         let way = Way::new(&network, Approach::Same, turn(self.ground, self.narrative.template.sv), self.lanes.ego);
-        let other =
-            Way::new(&network, self.staging.approach, turn(self.ground, self.narrative.template.cp), self.lanes.partner);
+        let other = Way::new(
+            &network,
+            self.staging.approach,
+            turn(self.ground, self.narrative.template.cp),
+            self.lanes.partner,
+        );
         let mut draft = self.frame(map);
         match self.staging.conflict {
             ConflictKind::Paths => self.stage_paths(&mut draft, &network, &way, &other),
@@ -336,7 +340,8 @@ impl<'a> Stage<'a> {
         let partner_mps = round_to(self.ego_mps * ratio, 0.01);
         let towards = if self.staging.beside == Some(Side::Left) { 1.0 } else { -1.0 };
         let touched = !self.wanted.sv.is_empty() && !self.wanted.cp.is_empty() && !self.levers.near_miss;
-        let ahead = if touched { shift_of_contact(self.wanted).clamp(-4.0, 4.0) } else { 5.5 } + self.levers.start_shift_m;
+        let ahead =
+            if touched { shift_of_contact(self.wanted).clamp(-4.0, 4.0) } else { 5.5 } + self.levers.start_shift_m;
         let delta_s = partner_place + ahead - partner_mps * meets_s - draft.ego.s_m;
         if delta_s < 0.0 {
             draft.ego.s_m = round_to(draft.ego.s_m - delta_s, 0.5);
@@ -356,8 +361,7 @@ impl<'a> Stage<'a> {
         let partner = &mut draft.partners[0];
         partner.speed_mps = partner_mps;
         partner.policy = Policy::IdmNominal { target_speed_mps: partner_mps };
-        partner.start =
-            Start::Offset { delta_s_m: round_to(delta_s, 0.1), delta_t_m: round_to(from_t * towards, 0.1) };
+        partner.start = Start::Offset { delta_s_m: round_to(delta_s, 0.1), delta_t_m: round_to(from_t * towards, 0.1) };
         partner.lateral = vec![LateralMove {
             start_s: round_to((meets_s - move_s).max(0.5), 0.1),
             duration_s: move_s,

@@ -26,12 +26,7 @@ impl Paraphrase for Rules {
 }
 
 impl Design for Rules {
-    fn design(
-        &self,
-        brief: &Brief,
-        narrative: &Narrative,
-        feedback: &[Feedback],
-    ) -> Result<ScenarioDraft, AgentError> {
+    fn design(&self, brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Result<ScenarioDraft, AgentError> {
         design::design(brief, narrative, feedback)
     }
 }

@@ -6,9 +6,7 @@ use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, groun
 use super::writing;
 use crate::{AgentError, Brief};
 use recrash_model::metrics::CollisionKind;
-use recrash_model::narrative::{
-    Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side,
-};
+use recrash_model::narrative::{Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side};
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Approach, Author};
 use recrash_model::template::{Movement, RoadType};
@@ -86,14 +84,18 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
     let (staging, source) = match &reading.relation {
         Some((relation, source)) => match stage(*relation, brief, ways) {
             Some(staging) => (staging, source.clone()),
-            None => return Err(format!("{id} tells of a partner {}, which cannot end in this template", phrase(*relation))),
+            None => {
+                return Err(format!("{id} tells of a partner {}, which cannot end in this template", phrase(*relation)));
+            }
         },
         None => match from_zones(reading, ways) {
             Some(staging) => {
                 let why = "not told; the contact areas suggest this side".to_owned();
                 (staging, FactSource::Assumed { why })
             }
-            None => (ways[0], FactSource::Assumed { why: "not told; the most typical approach of the template".into() }),
+            None => {
+                (ways[0], FactSource::Assumed { why: "not told; the most typical approach of the template".into() })
+            }
         },
     };
     let facts = reading.facts.clone();

@@ -27,39 +27,55 @@ fn pattern(text: &str) -> Regex {
 }
 
 static FROM: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:approach\w*|com(?:e|ing)|came|enter\w*|proceed\w*|travel\w*|driv\w+|emerg\w+|mov(?:ed|ing))?(?: \w+){0,6}? ?\bfrom (?:the|its|their)(?: [\w']+ ?\w*'s?)? (?P<side>left|right)(?:[- ]hand)?(?: side| cross street)?\b")
+    pattern(
+        r"(?i)\b(?:approach\w*|com(?:e|ing)|came|enter\w*|proceed\w*|travel\w*|driv\w+|emerg\w+|mov(?:ed|ing))?(?: \w+){0,6}? ?\bfrom (?:the|its|their)(?: [\w']+ ?\w*'s?)? (?P<side>left|right)(?:[- ]hand)?(?: side| cross street)?\b",
+    )
 });
 /// What makes `from the left` a lane's place: `second lane from the left`, `from the left lane`.
-static LANE_BEFORE: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:second|third|fourth|2nd|3rd|4th|lanes?|one|two|three|\d)(?: (?:lane|most))? from the (?:left|right)"));
-static LANE_AFTER: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)^(?:[- ](?:hand|most))?(?: \w+){0,2} (?:lanes?|turn)\b"));
+static LANE_BEFORE: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:second|third|fourth|2nd|3rd|4th|lanes?|one|two|three|\d)(?: (?:lane|most))? from the (?:left|right)",
+    )
+});
+static LANE_AFTER: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)^(?:[- ](?:hand|most))?(?: \w+){0,2} (?:lanes?|turn)\b"));
 static BESIDE_SIDED: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
         r"(?i)\b(?P<a>left|right)(?:[- ]hand)?[ -]adjacent\b|\badjacent (?:\w+ )?lanes?,? (?:directly |immediately )?(?:to|on) (?:the|its) (?:\w+ \w*'s )?(?P<b>left|right)\b|\badjacent (?P<c>left|right)\b|\blanes? (?:\w+ ){0,2}(?:to|on) (?:the|its) (?P<d>left|right)\b|\b(?:to|on) the (?P<e>left|right)(?:[- ]hand)?(?: side)? of the\b|\b(?:to|on) its (?P<f>left|right)\b|\b(?:pass\w*|overt\w+)\b[^.]{0,40}?\bon (?:the|its) (?P<g>left|right)\b|\bfrom the (?P<h>left|right)(?:most)?(?:[- ]hand)? (?:\w+ )?lane\b|\b(?:pass\w*|overt\w+) to the (?P<i>left|right)\b",
     )
 });
 static BESIDE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\badjacent (?:\w+ )?lanes?\b|\badjacent to\b|\bparallel\b|\b(?:next|neighbou?ring) lane\b|\bnext to\b|\balongside\b|\bside[- ]by[- ]side\b|\bside-?swip\w+|\bchang(?:ed|ing) lanes\b|\blane change\b|\bmerg(?:ed|ing)\b|\bcut(?:ting)? (?:in|off)\b|\bdrift\w*|\bencroach\w*|\b(?:into|across) (?:the )?[^.]{1,30}'s? (?:lane|path)\b")
+    pattern(
+        r"(?i)\badjacent (?:\w+ )?lanes?\b|\badjacent to\b|\bparallel\b|\b(?:next|neighbou?ring) lane\b|\bnext to\b|\balongside\b|\bside[- ]by[- ]side\b|\bside-?swip\w+|\bchang(?:ed|ing) lanes\b|\blane change\b|\bmerg(?:ed|ing)\b|\bcut(?:ting)? (?:in|off)\b|\bdrift\w*|\bencroach\w*|\b(?:into|across) (?:the )?[^.]{1,30}'s? (?:lane|path)\b",
+    )
 });
 static ONCOMING: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b")
+    pattern(
+        r"(?i)\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b",
+    )
 });
 static BEHIND: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:from|directly|closely|immediately|travell?ing|following|stopped|driving|waiting|queued|was|vehicle|car|suv|truck|van|bus|right) behind\b|\bfollowing (?:closely |directly )?(?:the|behind)\b|\btrailing\b|\bfrom the rear\b|\brear[- ]?end(?:ed|ing)?\b")
+    pattern(
+        r"(?i)\b(?:from|directly|closely|immediately|travell?ing|following|stopped|driving|waiting|queued|was|vehicle|car|suv|truck|van|bus|right) behind\b|\bfollowing (?:closely |directly )?(?:the|behind)\b|\btrailing\b|\bfrom the rear\b|\brear[- ]?end(?:ed|ing)?\b",
+    )
 });
 static CROSSING: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\bcross(?:ing)? (?:traffic|street|road)\b|\bperpendicular\b|\b(?:against|ran|running|through|disregard\w*|violat\w+) (?:a|the|its|their) (?:\w+ )?(?:red|stop)\b|\b(?:without|failed to|did not|not) (?:first )?stop(?:ping)?\b")
+    pattern(
+        r"(?i)\bcross(?:ing)? (?:traffic|street|road)\b|\bperpendicular\b|\b(?:against|ran|running|through|disregard\w*|violat\w+) (?:a|the|its|their) (?:\w+ )?(?:red|stop)\b|\b(?:without|failed to|did not|not) (?:first )?stop(?:ping)?\b",
+    )
 });
-static UNPROTECTED: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\bunprotected left\b|\byield\w* (?:to|for) oncoming\b|\boncoming traffic\b")
+static UNPROTECTED: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)\bunprotected left\b|\byield\w* (?:to|for) oncoming\b|\boncoming traffic\b"));
+static COMPASS: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(r"(?i)\b(?P<a>north|south)?[- ]?(?P<b>north|south|east|west)(?P<bound>[- ]?bound)?(?:ly)?\b")
 });
-static COMPASS: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?P<a>north|south)?[- ]?(?P<b>north|south|east|west)(?P<bound>[- ]?bound)?(?:ly)?\b"));
 static COMPASS_GOAL: LazyLock<Regex> = LazyLock::new(|| {
     pattern(r"(?i)\b(?:onto|on to|toward|towards|to|into|for)(?: the| go| head| proceed| travel| continue)*\s*$")
 });
 static COMPASS_VERB: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:travel\w*|head\w*|driv\w+|proceed\w*|going|coming|moving|facing|straight|oriented|continu\w+|approach\w*)(?: (?:in an?|in the|due|straight))?\s*$")
+    pattern(
+        r"(?i)\b(?:travel\w*|head\w*|driv\w+|proceed\w*|going|coming|moving|facing|straight|oriented|continu\w+|approach\w*)(?: (?:in an?|in the|due|straight))?\s*$",
+    )
 });
 
 /// The relation the narrative states, with the words. A side that is told outright comes before compass directions, a
@@ -195,9 +211,8 @@ fn by_phrase(
             let inside = sentence.mentions.subject_at(found.end());
             let about = sentence.mentions.subject_at(found.start());
             let by_partner = about == Some(Actor::Cp) || (about.is_none() && inside == Some(Actor::Cp));
-            let partner_named = relation == Relation::Oncoming
-                && inside == Some(Actor::Cp)
-                && sentence.mentions.includes(Actor::Cp);
+            let partner_named =
+                relation == Relation::Oncoming && inside == Some(Actor::Cp) && sentence.mentions.includes(Actor::Cp);
             (by_partner || partner_named).then(|| (relation, words(record, found.as_str())))
         })
     })

@@ -3,9 +3,7 @@
 use super::super::actors::Actor;
 use super::approach::Relation;
 use super::{Sentence, column, words};
-use recrash_model::narrative::{
-    FactSource, FactValue, LanePosition, LateralKind, LongitudinalAction, Side, Signal,
-};
+use recrash_model::narrative::{FactSource, FactValue, LanePosition, LateralKind, LongitudinalAction, Side, Signal};
 use recrash_model::record::{CrashRecord, MPS_PER_MPH};
 use recrash_model::scenario::{MissingArm, ObstacleKind};
 use regex::Regex;
@@ -19,32 +17,52 @@ fn pattern(text: &str) -> Regex {
 }
 
 static LANE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:(?P<far>far )?(?P<side>left|right)(?P<most>[- ]?most)?(?:[- ]hand)?|(?P<mid>middle|cent(?:er|re)|(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?))(?P<kind>(?: (?:dedicated|through|thru|travel|traffic|left|right|turn|turning|only|straight|driving))*) lanes?\b")
+    pattern(
+        r"(?i)\b(?:(?P<far>far )?(?P<side>left|right)(?P<most>[- ]?most)?(?:[- ]hand)?|(?P<mid>middle|cent(?:er|re)|(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?))(?P<kind>(?: (?:dedicated|through|thru|travel|traffic|left|right|turn|turning|only|straight|driving))*) lanes?\b",
+    )
 });
-static SECOND_LANE: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:second|third|2nd|3rd) lane (?:from|to) the (?:left|right)\b|\bsecond (?:from|to) the (?:left|right)(?:most)? lane\b"));
+static SECOND_LANE: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:second|third|2nd|3rd) lane (?:from|to) the (?:left|right)\b|\bsecond (?:from|to) the (?:left|right)(?:most)? lane\b",
+    )
+});
 static SIGNAL: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b")
+    pattern(
+        r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",
+    )
 });
 static SPEED: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?P<n>\d{1,3}(?:\.\d{1,3})?) ?(?P<unit>mph|miles per hour|miles an hour|m\.p\.h|km/h|kph|mps|m/s|meters per second)")
+    pattern(
+        r"(?i)\b(?P<n>\d{1,3}(?:\.\d{1,3})?) ?(?P<unit>mph|miles per hour|miles an hour|m\.p\.h|km/h|kph|mps|m/s|meters per second)",
+    )
 });
 static SPEED_LIMIT: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\b(?:limit|posted|zone)\b"));
-static AT_IMPACT: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:impact|contact|collision|crash|reducing|reduced|slowed|decelerat\w+|brak\w+)\b"));
+static AT_IMPACT: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(r"(?i)\b(?:impact|contact|collision|crash|reducing|reduced|slowed|decelerat\w+|brak\w+)\b")
+});
 static ACTION: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:(?P<hard>(?:brak\w+|stopp\w+) (?:hard|suddenly|abruptly|sharply)|hard[- ]brak\w+|(?:suddenly|abruptly) (?:brak\w+|stopp\w+)|slammed (?:on )?(?:the |its )?brakes)|(?P<halt>(?:came|coming|come|slowed|braked) to (?:a|an) (?:\w+ ){0,2}?(?:stop|halt))|(?P<stood>(?:was|were|been|previously|remained|fully) (?:\w+ )?stopped|stopped (?:at|for|in|behind|and|facing|before)|stationary|at rest|at a (?:complete |full )?stop|waiting)|(?P<yielded>yield\w*)|(?P<faster>accelerat\w+|sped up|speeding up|began (?:to )?(?:mov\w+|proceed\w*|go|driv\w+)|started (?:to )?(?:mov\w+|proceed\w*|forward)|set off)|(?P<slower>brak\w+|slow(?:ed|ing|s)?|decelerat\w+))\b")
+    pattern(
+        r"(?i)\b(?:(?P<hard>(?:brak\w+|stopp\w+) (?:hard|suddenly|abruptly|sharply)|hard[- ]brak\w+|(?:suddenly|abruptly) (?:brak\w+|stopp\w+)|slammed (?:on )?(?:the |its )?brakes)|(?P<halt>(?:came|coming|come|slowed|braked) to (?:a|an) (?:\w+ ){0,2}?(?:stop|halt))|(?P<stood>(?:was|were|been|previously|remained|fully) (?:\w+ )?stopped|stopped (?:at|for|in|behind|and|facing|before)|stationary|at rest|at a (?:complete |full )?stop|waiting)|(?P<yielded>yield\w*)|(?P<faster>accelerat\w+|sped up|speeding up|began (?:to )?(?:mov\w+|proceed\w*|go|driv\w+)|started (?:to )?(?:mov\w+|proceed\w*|forward)|set off)|(?P<slower>brak\w+|slow(?:ed|ing|s)?|decelerat\w+))\b",
+    )
 });
 static LATERAL: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:(?P<wide>wide(?:ly)?)|(?P<cut>cut(?:s|ting)? (?:in|into|off|across|in front)|swerv\w+ (?:in front|into))|(?P<change>(?:chang\w+|switch\w+) (?:\w+ )?lanes?|lane[- ]chang\w+|merg(?:e|ed|es|ing)|(?:moved?|moving|mov\w+ over|entered|entering|came over|coming over|cross(?:ed|es|ing)(?: over)?|turn\w+) (?:partially )?into (?:the )?[^.]{0,30}?lane)|(?P<drift>drift\w*|encroach\w*|veer\w*|swerv\w+|(?:partially|over) (?:\w+ )?(?:the )?(?:line|lane marking)))\b")
+    pattern(
+        r"(?i)\b(?:(?P<wide>wide(?:ly)?)|(?P<cut>cut(?:s|ting)? (?:in|into|off|across|in front)|swerv\w+ (?:in front|into))|(?P<change>(?:chang\w+|switch\w+) (?:\w+ )?lanes?|lane[- ]chang\w+|merg(?:e|ed|es|ing)|(?:moved?|moving|mov\w+ over|entered|entering|came over|coming over|cross(?:ed|es|ing)(?: over)?|turn\w+) (?:partially )?into (?:the )?[^.]{0,30}?lane)|(?P<drift>drift\w*|encroach\w*|veer\w*|swerv\w+|(?:partially|over) (?:\w+ )?(?:the )?(?:line|lane marking)))\b",
+    )
 });
-static TOWARDS: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)^[^.]{0,30}?\b(?:to(?:wards?)? (?:the|its) )?(?P<side>left|right)\b"));
-static THREE_WAY: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"\bT[- ](?:[Ii]ntersection|[Jj]unction)|(?i:\bthree[- ]way (?:intersection|junction|stop)|\bthree[- ]legged|\b3[- ]way (?:intersection|junction|stop))"));
+static TOWARDS: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)^[^.]{0,30}?\b(?:to(?:wards?)? (?:the|its) )?(?P<side>left|right)\b"));
+static THREE_WAY: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"\bT[- ](?:[Ii]ntersection|[Jj]unction)|(?i:\bthree[- ]way (?:intersection|junction|stop)|\bthree[- ]legged|\b3[- ]way (?:intersection|junction|stop))",
+    )
+});
 static SIDE_STREET: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?i)\b(?:intersects|joins|meets)(?: \w+){0,3} from the (?P<side>left|right)\b"));
 static CLOSED: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?P<a>left|right)(?:most)?(?: \w+){0,2} lanes? (?:was|were|is|are)(?: \w+)? closed\b|\bcones?[^.]{0,40}?\bon (?:the|its) (?P<b>left|right)\b")
+    pattern(
+        r"(?i)\b(?P<a>left|right)(?:most)?(?: \w+){0,2} lanes? (?:was|were|is|are)(?: \w+)? closed\b|\bcones?[^.]{0,40}?\bon (?:the|its) (?P<b>left|right)\b",
+    )
 });
 
 /// Reads everything but approach, collision and contact areas.
@@ -127,9 +145,8 @@ fn lanes(
             };
             Some((whole.start(), lane, whole.as_str()))
         });
-        let second = SECOND_LANE
-            .find_iter(sentence.text)
-            .map(|found| (found.start(), LanePosition::Middle, found.as_str()));
+        let second =
+            SECOND_LANE.find_iter(sentence.text).map(|found| (found.start(), LanePosition::Middle, found.as_str()));
         for (at, lane, text) in plain.chain(second) {
             match sentence.mentions.subject_at(at) {
                 Some(Actor::Sv) if sv.is_none() => sv = Some((lane, text)),
@@ -239,9 +256,9 @@ fn lateral(
             } else {
                 LateralKind::Drift
             };
-            let told = TOWARDS.captures(&sentence.text[whole.end()..]).map(|towards| {
-                if towards["side"].eq_ignore_ascii_case("left") { Side::Left } else { Side::Right }
-            });
+            let told = TOWARDS
+                .captures(&sentence.text[whole.end()..])
+                .map(|towards| if towards["side"].eq_ignore_ascii_case("left") { Side::Left } else { Side::Right });
             // A partner on the left comes to the ego by moving right.
             let towards = match beside {
                 Some(Side::Left) => Some(Side::Right),
@@ -264,7 +281,8 @@ fn layout(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fac
         let missing = if found["side"].eq_ignore_ascii_case("left") { MissingArm::Right } else { MissingArm::Left };
         Some((missing, found.get(0).expect("group 0").as_str()))
     });
-    let three_way = || sentences.iter().find_map(|s| THREE_WAY.find(s.text)).map(|found| (MissingArm::Ahead, found.as_str()));
+    let three_way =
+        || sentences.iter().find_map(|s| THREE_WAY.find(s.text)).map(|found| (MissingArm::Ahead, found.as_str()));
     if let Some((missing, text)) = side_street.or_else(three_way) {
         add(FactValue::ThreeWay { missing }, words(record, text));
     }

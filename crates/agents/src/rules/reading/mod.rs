@@ -238,9 +238,7 @@ fn contradiction(record: &CrashRecord, sentences: &[Sentence]) -> Option<String>
     let sentence = |who: &str, side: &str, movement: Movement| {
         format!("the narrative says that {who} turned {side}, the column says \"{}\"", movement.label())
     };
-    if let (Some(side), Some(movement)) =
-        (against(Actor::Sv, record.sv_movement.known()), record.sv_movement.known())
-    {
+    if let (Some(side), Some(movement)) = (against(Actor::Sv, record.sv_movement.known()), record.sv_movement.known()) {
         return Some(sentence("the ego", side, movement));
     }
     match (against(Actor::Cp, record.cp_movement.known()), record.cp_movement.known()) {
