@@ -65,10 +65,22 @@ const OBLIQUE_WINDOW_BYTES: usize = 60;
 /// What stands before a mention that is no subject.
 static OBLIQUE_BEFORE: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(
-        r"(?i)\b(?:of|with|behind|to|toward|towards|by|near|past|into|onto|at|for|in front|ahead|beside|alongside|left|right|passed|passing|overtook|overtaking|struck|hit|striking|hitting|following|trailing|contacted|sideswiped|sideswiping|clipped|avoid|in|across|from|next to)(?: of)?(?: the| a| an| another| our| its)?(?: (?:side|stopped|stationary|slowing|moving|turning))?\s*$",
+        r"(?i)\b(?:of|with|behind|to|toward|towards|by|near|past|into|onto|at|for|in front|ahead|beside|alongside|left|right|approach(?:ed|es)?|passed|passing|overtook|overtaking|struck|hit|striking|hitting|following|trailing|contacted|sideswiped|sideswiping|clipped|avoid|in|across|from|next to)(?: of)?(?: the| a| an| another| our| its)?(?: (?:side|stopped|stationary|slowing|moving|turning))?\s*$",
     )
     .expect("constant pattern")
 });
+
+/// A participle behind a mention: what follows is about that mention, whatever stands before it (`for a motorcyclist
+/// travelling north`).
+static PARTICIPLE_AFTER: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(
+        r"(?i)^,? (?:that (?:was |were |had been )?|which (?:was |were |had been )?|who (?:was |were )?|also )?(?:travell?ing|approaching|heading|driving|proceeding|coming|moving|going|turning|making|entering|facing|signall?ing|following|stopped (?:at|in|behind)|in the (?:left|right|adjacent|number|next)|operating)\b",
+    )
+    .expect("constant pattern")
+});
+
+/// Words that may mean either vehicle.
+const EITHER: [&str; 4] = ["vehicle", "car", "driver", "motorist"];
 
 impl Cast {
     /// The cast of a record whose narrative has these sentences.
@@ -123,7 +135,7 @@ impl Cast {
         let mut list: Vec<Mention> = Vec::new();
         for capture in MENTION.captures_iter(sentence) {
             let whole = capture.get(0).expect("group 0");
-            let actor = if capture.name("nobody").is_some() {
+            let actor = if capture.name("nobody").is_some() || (self.kind_named && means_either(sentence, &whole)) {
                 continue;
             } else if capture.name("ego").is_some() {
                 Actor::Sv
@@ -160,7 +172,15 @@ fn mention(sentence: &str, actor: Actor, at: Range<usize>) -> Mention {
     }
     let before = &sentence[window..at.start];
     let owner = sentence[at.end..].starts_with("'s") || sentence[..at.end].ends_with("'s");
-    Mention { actor, oblique: owner || OBLIQUE_BEFORE.is_match(before), at }
+    let acts = PARTICIPLE_AFTER.is_match(&sentence[at.end..]);
+    Mention { actor, oblique: !acts && (owner || OBLIQUE_BEFORE.is_match(before)), at }
+}
+
+/// Whether `vehicle` or `driver` stands there for either of the two.
+fn means_either(sentence: &str, whole: &regex::Match) -> bool {
+    let before = sentence[..whole.start()].to_ascii_lowercase();
+    EITHER.contains(&whole.as_str().to_ascii_lowercase().as_str())
+        && ["the ", "each ", "both ", "its ", "my "].iter().any(|word| before.ends_with(word))
 }
 
 impl Mentions {
@@ -178,6 +198,11 @@ impl Mentions {
             .or_else(|| before().next())
             .or_else(|| self.list.iter().find(|m| m.at.start >= place))
             .map(|m| m.actor)
+    }
+
+    /// The last mention before a place, within a few words.
+    pub fn nearest_before(&self, place: usize) -> Option<Actor> {
+        self.list.iter().rev().find(|m| m.at.end <= place && m.at.end + 24 >= place).map(|m| m.actor)
     }
 
     /// Whom a phrase that ends at this place speaks of next: the first mention after it, within a few words.

@@ -1,6 +1,6 @@
 //! From a narrative to a scenario: map, lanes, speeds and timing that make the told conflict happen.
 
-use super::limits::{most_speed, most_speed_of};
+use super::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
 use super::retry::{Levers, Wanted, levers};
 use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_way, ground, stagings};
 use super::writing::Facts;
@@ -21,9 +21,6 @@ const LANE_WIDTH_M: f64 = 3.5;
 const LEAD_TIME_S: f64 = 5.5;
 /// The ego's start along the approach: MetaDrive's. [m]
 const EGO_START_M: f64 = 5.0;
-/// A recorded speed below this is that of a vehicle that had braked or stopped, not its speed on the approach; assumed.
-/// [m/s]
-const LEAST_TOLD_SPEED_MPS: f64 = 3.0;
 /// Speed where neither record nor road sign tells one: 30 km/h, MetaDrive's. [m/s]
 const DEFAULT_SPEED_MPS: f64 = 8.3;
 /// Drivers near a conflict go slower than the posted speed; assumed.

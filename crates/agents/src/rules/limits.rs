@@ -4,6 +4,10 @@ use super::staging::Ground;
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{MapSpec, Turn};
 
+/// A recorded speed below this is that of a vehicle that had braked or stopped, not its speed on the approach; assumed.
+/// [m/s]
+pub const LEAST_TOLD_SPEED_MPS: f64 = 3.0;
+
 /// Greatest speed that lets a vehicle hold its lane, below the limits measured in MetaDrive (right turns 10, left turns
 /// 12, roundabouts 8.3, straight 22.2 m/s) with a margin for the lanes' centre lines. [m/s]
 pub fn most_speed(ground: Ground, turn: Turn) -> f64 {

@@ -171,13 +171,26 @@ fn stage(relation: Relation, brief: &Brief, ways: &[Staging]) -> Option<Staging>
         .copied()
 }
 
+/// The staging the contact areas suggest: on which side of the ego the partner was, and from where a partner of this
+/// template typically comes there.
 fn from_zones(reading: &Reading, ways: &[Staging]) -> Option<Staging> {
     let side = relation_from_zones(reading.record)?;
     let arm = match side {
         Side::Left => Approach::Left,
         Side::Right => Approach::Right,
     };
-    ways.iter().find(|way| way.approach == arm).or_else(|| ways.iter().find(|way| way.beside == Some(side))).copied()
+    let movements = (reading.record.sv_movement.known(), reading.record.cp_movement.known());
+    let oncoming = match movements {
+        // An ego that turns left shows its right side to oncoming traffic, one that goes straight meets the front or the
+        // right side of an oncoming left-turner with its left.
+        (Some(Movement::LeftTurn), Some(Movement::Straight)) => side == Side::Right,
+        (Some(Movement::Straight), Some(Movement::LeftTurn)) => side == Side::Left,
+        _ => false,
+    };
+    let first = |is: &dyn Fn(&Staging) -> bool| ways.iter().find(|way| is(way)).copied();
+    first(&|way| oncoming && way.approach == Approach::Opposite)
+        .or_else(|| first(&|way| way.approach == arm))
+        .or_else(|| first(&|way| way.beside == Some(side)))
 }
 
 fn phrase(relation: Relation) -> &'static str {

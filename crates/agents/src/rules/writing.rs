@@ -1,5 +1,6 @@
 //! The narrative's text: our own plain sentences, made from its facts.
 
+use super::limits::LEAST_TOLD_SPEED_MPS;
 use super::paraphrase::offset_side;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{
@@ -74,7 +75,7 @@ fn movement(road: RoadType, movement: Movement) -> &'static str {
         (RoadType::Highway, Movement::RightTurn) => "moves to its right",
         (_, Movement::LeftTurn) => "turns left",
         (_, Movement::RightTurn) => "turns right",
-        _ => "drives straight on",
+        _ => "drives straight ahead",
     }
 }
 
@@ -90,6 +91,8 @@ fn lane(lane: LanePosition) -> &'static str {
 fn speed(speed: Option<(f64, &FactSource)>) -> String {
     match speed {
         None => String::new(),
+        // A vehicle this slow had braked or stopped before the impact.
+        Some((mps, _)) if mps < LEAST_TOLD_SPEED_MPS => String::new(),
         Some((mps, FactSource::Assumed { .. })) => format!(" at about {mps:.1} m/s"),
         Some((mps, _)) => format!(" at {mps:.1} m/s ({:.0} mph)", mps / MPS_PER_MPH),
     }

@@ -1,8 +1,8 @@
 //! From where the partner came, seen from the ego before any turn.
 
 use super::super::actors::Actor;
-use super::{Sentence, words};
-use recrash_model::narrative::{FactSource, Side};
+use super::{MEETING, Sentence, details, is_front, is_rear, only, words};
+use recrash_model::narrative::{FactSource, LanePosition, Side};
 use recrash_model::record::{ContactZone, CrashRecord};
 use regex::Regex;
 use std::sync::LazyLock;
@@ -28,7 +28,7 @@ fn pattern(text: &str) -> Regex {
 
 static FROM: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\b(?:approach\w*|com(?:e|ing)|came|enter\w*|proceed\w*|travel\w*|driv\w+|emerg\w+|mov(?:ed|ing))?(?: \w+){0,6}? ?\bfrom (?:the|its|their)(?: [\w']+ ?\w*'s?)? (?P<side>left|right)(?:[- ]hand)?(?: side| cross street)?\b",
+        r"(?i)\b(?:(?:approach\w*|com(?:e|ing)|came|enter\w*|proceed\w*|travel\w*|driv\w+|emerg\w+|mov(?:ed|ing))(?: \w+){0,6}? )?from (?:the|its|their)(?: [\w']+ ?\w*'s?)? (?P<side>left|right)(?:[- ]hand)?(?: side| cross street)?\b",
     )
 });
 /// What makes `from the left` a lane's place: `second lane from the left`, `from the left lane`.
@@ -46,7 +46,7 @@ static BESIDE_SIDED: LazyLock<Regex> = LazyLock::new(|| {
 });
 static BESIDE: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\badjacent (?:\w+ )?lanes?\b|\badjacent to\b|\bparallel\b|\b(?:next|neighbou?ring) lane\b|\bnext to\b|\balongside\b|\bside[- ]by[- ]side\b|\bside-?swip\w+|\bchang(?:ed|ing) lanes\b|\blane change\b|\bmerg(?:ed|ing)\b|\bcut(?:ting)? (?:in|off)\b|\bdrift\w*|\bencroach\w*|\b(?:into|across) (?:the )?[^.]{1,30}'s? (?:lane|path)\b",
+        r"(?i)\badjacent (?:\w+ )?lanes?\b|\badjacent to\b|\bparallel\b|\b(?:next|neighbou?ring) lane\b|\bnext to\b|\balongside\b|\bside[- ]by[- ]side\b|\bside-?swip\w+|\bchang(?:ed|ing) lanes\b|\blane change\b|\bmerg(?:ed|ing)\b|\bcut(?:ting)? (?:in|off)\b|\bdrift\w*|\bencroach\w*|\binto (?:the )?[^.]{1,30}'s? lane\b",
     )
 });
 static ONCOMING: LazyLock<Regex> = LazyLock::new(|| {
@@ -61,13 +61,13 @@ static BEHIND: LazyLock<Regex> = LazyLock::new(|| {
 });
 static CROSSING: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\bcross(?:ing)? (?:traffic|street|road)\b|\bperpendicular\b|\b(?:against|ran|running|through|disregard\w*|violat\w+) (?:a|the|its|their) (?:\w+ )?(?:red|stop)\b|\b(?:without|failed to|did not|not) (?:first )?stop(?:ping)?\b",
+        r"(?i)\bcross(?:ing)? (?:traffic|street|road)\b|\bperpendicular\b|\b(?:against|ran|running|through|disregard\w*|violat\w+) (?:a|the|its|their) (?:\w+ )?(?:red|stop)\b|\b(?:entered|entering|into|through|past)\b[^.]{0,60}? without (?:first )?stopping\b|\b(?:failed to|did not) (?:first )?stop (?:at|for)\b",
     )
 });
 static UNPROTECTED: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?i)\bunprotected left\b|\byield\w* (?:to|for) oncoming\b|\boncoming traffic\b"));
 static COMPASS: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?P<a>north|south)?[- ]?(?P<b>north|south|east|west)(?P<bound>[- ]?bound)?(?:ly)?\b")
+    pattern(r"(?i)\b(?:(?P<a>north|south)[- ]?)?(?P<b>north|south|east|west)(?P<bound>[- ]?bound)?(?:ly)?\b")
 });
 static COMPASS_GOAL: LazyLock<Regex> = LazyLock::new(|| {
     pattern(r"(?i)\b(?:onto|on to|toward|towards|to|into|for)(?: the| go| head| proceed| travel| continue)*\s*$")
@@ -78,13 +78,16 @@ static COMPASS_VERB: LazyLock<Regex> = LazyLock::new(|| {
     )
 });
 
+static COMPASS_LEAVES: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)\b(?:proceeded|continued|fled|left|departed|drove|drove off)\s*$"));
+
 /// The relation the narrative states, with the words. A side that is told outright comes before compass directions, a
 /// crossing or opposite compass direction before words on lanes, and words on lanes before `from behind`, because the
 /// weaker phrases are often about third parties.
 pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let compass = by_compass(record, sentences);
     let told = from_side(record, sentences)
-        .or_else(|| compass.clone().filter(|(relation, _)| !matches!(relation, Relation::Beside(_))))
+        .or_else(|| compass.clone().filter(|(relation, _)| !matches!(relation, Relation::Beside(_) | Relation::Behind)))
         .or_else(|| beside_sided(record, sentences))
         .or_else(|| by_lane_numbers(record, sentences))
         .or_else(|| by_phrase(record, sentences, &ONCOMING, Relation::Oncoming))
@@ -94,7 +97,9 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
         .or_else(|| by_unprotected_turn(record, sentences))
         .or(compass);
     told.map(|(relation, source)| match relation {
-        Relation::Beside(None) => (Relation::Beside(side_from_zones(record)), source),
+        Relation::Beside(None) => {
+            (Relation::Beside(side_from_zones(record).or_else(|| side_from_lanes(sentences))), source)
+        }
         Relation::Crossing => match side_from_zones(record) {
             Some(side) => (Relation::From(side), source),
             None => (Relation::Crossing, source),
@@ -120,6 +125,21 @@ fn side_from_zones(record: &CrashRecord) -> Option<Side> {
     match sv_left.cmp(&sv_right).then(cp_right.cmp(&cp_left)) {
         std::cmp::Ordering::Greater => Some(Side::Left),
         std::cmp::Ordering::Less => Some(Side::Right),
+        std::cmp::Ordering::Equal => None,
+    }
+}
+
+/// The side from the lanes told of both.
+fn side_from_lanes(sentences: &[Sentence]) -> Option<Side> {
+    let (sv, cp) = details::told_lanes(sentences);
+    let place = |lane| match lane {
+        LanePosition::Leftmost => 0,
+        LanePosition::Middle => 1,
+        LanePosition::Rightmost => 2,
+    };
+    match place(cp?.0).cmp(&place(sv?.0)) {
+        std::cmp::Ordering::Less => Some(Side::Left),
+        std::cmp::Ordering::Greater => Some(Side::Right),
         std::cmp::Ordering::Equal => None,
     }
 }
@@ -154,6 +174,10 @@ fn beside_sided(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relatio
     sentences.iter().find_map(|sentence| {
         BESIDE_SIDED.captures_iter(sentence.text).find_map(|found| {
             let whole = found.get(0).expect("group 0");
+            if LANE_BEFORE.find_iter(sentence.text).any(|lane| lane.start() < whole.end() && whole.start() < lane.end())
+            {
+                return None;
+            }
             let named = ["a", "b", "c", "d", "e", "f", "g", "h", "i"].iter().find_map(|group| found.name(group))?;
             let told = side(named.as_str());
             let told = match (sentence.mentions.subject_at(whole.start())?, found.name("e").is_some()) {
@@ -244,12 +268,15 @@ struct Heading<'a> {
 /// The relation from the compass directions of both.
 fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let mut headings: [Option<Heading>; 2] = [None, None];
+    let mut met = false;
     for (number, sentence) in sentences.iter().enumerate() {
+        let meeting = MEETING.find(sentence.text).map(|found| found.end());
         for found in COMPASS.captures_iter(sentence.text) {
             let whole = found.get(0).expect("group 0");
             let before = &sentence.text[..whole.start()];
             let travels = found.name("bound").is_some() || COMPASS_VERB.is_match(before);
-            if !travels || COMPASS_GOAL.is_match(before) {
+            let afterwards = met || meeting.is_some_and(|meeting| meeting <= whole.start());
+            if !travels || COMPASS_GOAL.is_match(before) || (afterwards && COMPASS_LEAVES.is_match(before)) {
                 continue;
             }
             let who = match sentence.mentions.subject_at(whole.start()) {
@@ -268,9 +295,13 @@ fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation,
                 });
             }
         }
+        met |= meeting.is_some();
     }
     let (sv, cp) = (headings[0]?, headings[1]?);
     let told = match (8 + cp.eighths - sv.eighths) % 8 {
+        // Front and rear touch: one followed the other.
+        0 if only(&record.sv_zones, is_rear) && only(&record.cp_zones, is_front) => Relation::Behind,
+        0 if only(&record.sv_zones, is_front) && record.cp_zones == [ContactZone::Rear] => Relation::Behind,
         0 => Relation::Beside(None),
         // Heading to the ego's right, it came from the ego's left.
         2 => Relation::From(Side::Left),

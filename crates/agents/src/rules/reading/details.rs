@@ -21,11 +21,8 @@ static LANE: LazyLock<Regex> = LazyLock::new(|| {
         r"(?i)\b(?:(?P<far>far )?(?P<side>left|right)(?P<most>[- ]?most)?(?:[- ]hand)?|(?P<mid>middle|cent(?:er|re)|(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?))(?P<kind>(?: (?:dedicated|through|thru|travel|traffic|left|right|turn|turning|only|straight|driving))*) lanes?\b",
     )
 });
-static SECOND_LANE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:second|third|2nd|3rd) lane (?:from|to) the (?:left|right)\b|\bsecond (?:from|to) the (?:left|right)(?:most)? lane\b",
-    )
-});
+static SECOND_LANE: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)\b(?:second|third|2nd|3rd) lane (?:from|to) the (?:left|right)(?:most)?\b"));
 static SIGNAL: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
         r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",
@@ -37,9 +34,8 @@ static SPEED: LazyLock<Regex> = LazyLock::new(|| {
     )
 });
 static SPEED_LIMIT: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\b(?:limit|posted|zone)\b"));
-static AT_IMPACT: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:impact|contact|collision|crash|reducing|reduced|slowed|decelerat\w+|brak\w+)\b")
-});
+static AT_IMPACT: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)\b(?:impact|contact|collision|reducing|reduced|slowed|decelerat\w+|brak\w+)\b"));
 static ACTION: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
         r"(?i)\b(?:(?P<hard>(?:brak\w+|stopp\w+) (?:hard|suddenly|abruptly|sharply)|hard[- ]brak\w+|(?:suddenly|abruptly) (?:brak\w+|stopp\w+)|slammed (?:on )?(?:the |its )?brakes)|(?P<halt>(?:came|coming|come|slowed|braked) to (?:a|an) (?:\w+ ){0,2}?(?:stop|halt))|(?P<stood>(?:was|were|been|previously|remained|fully) (?:\w+ )?stopped|stopped (?:at|for|in|behind|and|facing|before)|stationary|at rest|at a (?:complete |full )?stop|waiting)|(?P<yielded>yield\w*)|(?P<faster>accelerat\w+|sped up|speeding up|began (?:to )?(?:mov\w+|proceed\w*|go|driv\w+)|started (?:to )?(?:mov\w+|proceed\w*|forward)|set off)|(?P<slower>brak\w+|slow(?:ed|ing|s)?|decelerat\w+))\b",
@@ -76,7 +72,7 @@ pub(super) fn read(
         add(FactValue::Partner { kind }, column(record, "Crash With", format!("{kind:?}")));
     }
     speeds(record, sentences, add);
-    lanes(record, sentences, relation, add);
+    lanes(record, sentences, add);
     signals(record, sentences, add);
     actions(record, sentences, add);
     lateral(record, sentences, relation, add);
@@ -94,7 +90,8 @@ fn speeds(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fac
             if SPEED_LIMIT.is_match(clause) || AT_IMPACT.is_match(clause) {
                 continue;
             }
-            match sentence.mentions.subject_at(whole.start()) {
+            let nearest = sentence.mentions.nearest_before(whole.start());
+            match nearest.or_else(|| sentence.mentions.subject_at(whole.start())) {
                 Some(Actor::Sv) if sv.is_none() => sv = Some((speed_mps, whole.as_str())),
                 Some(Actor::Cp) if cp.is_none() => cp = Some((speed_mps, whole.as_str())),
                 _ => {}
@@ -124,12 +121,11 @@ fn speed(number: &str, unit: &str) -> Option<f64> {
     Some(value * factor).filter(|speed| *speed <= GREATEST_SPEED_MPS)
 }
 
-fn lanes(
-    record: &CrashRecord,
-    sentences: &[Sentence],
-    relation: Option<Relation>,
-    add: &mut impl FnMut(FactValue, FactSource),
-) {
+/// A lane and the words that name it.
+type ToldLane<'a> = Option<(LanePosition, &'a str)>;
+
+/// The first lane told of each: the ego, the partner.
+pub(super) fn told_lanes<'a>(sentences: &[Sentence<'a>]) -> (ToldLane<'a>, ToldLane<'a>) {
     let (mut sv, mut cp) = (None, None);
     for sentence in sentences {
         let plain = LANE.captures_iter(sentence.text).filter_map(|found| {
@@ -147,7 +143,9 @@ fn lanes(
         });
         let second =
             SECOND_LANE.find_iter(sentence.text).map(|found| (found.start(), LanePosition::Middle, found.as_str()));
-        for (at, lane, text) in plain.chain(second) {
+        let mut named: Vec<_> = plain.chain(second).collect();
+        named.sort_by_key(|(at, ..)| *at);
+        for (at, lane, text) in named {
             match sentence.mentions.subject_at(at) {
                 Some(Actor::Sv) if sv.is_none() => sv = Some((lane, text)),
                 Some(Actor::Cp) if cp.is_none() => cp = Some((lane, text)),
@@ -155,22 +153,16 @@ fn lanes(
             }
         }
     }
+    (sv, cp)
+}
+
+fn lanes(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(FactValue, FactSource)) {
+    let (sv, cp) = told_lanes(sentences);
     if let Some((lane, text)) = sv {
         add(FactValue::SvLane { lane }, words(record, text));
     }
     if let Some((lane, text)) = cp {
         add(FactValue::CpLane { lane }, words(record, text));
-    }
-    if let (Some((sv, _)), Some((cp, text)), Some(Relation::Beside(None))) = (sv, cp, relation) {
-        let place = |lane| match lane {
-            LanePosition::Leftmost => 0_i8,
-            LanePosition::Middle => 1,
-            LanePosition::Rightmost => 2,
-        };
-        let lanes = (place(cp) - place(sv)).signum();
-        if lanes != 0 {
-            add(FactValue::CpLaneOffset { lanes }, words(record, text));
-        }
     }
 }
 

@@ -38,7 +38,7 @@ pub struct Reading<'a> {
     pub facts: Vec<Fact>,
 }
 
-static MEETING: LazyLock<Regex> = LazyLock::new(|| {
+pub(super) static MEETING: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(
         r"(?i)\b(?:contact\w*|struck|strik\w+|hit|hitting|collid\w+|sideswip\w+|side-swip\w+|clipped|scrap\w+|impacted|impacting|rear[- ]?end\w*|ran into|crash\w+ into|bumped)\b",
     )
@@ -145,6 +145,8 @@ pub fn only(zones: &[ContactZone], sort: fn(ContactZone) -> bool) -> bool {
 
 static REAR_END: LazyLock<Regex> =
     LazyLock::new(|| Regex::new(r"(?i)\brear[- ]?end(?:ed|ing|s)?\b").expect("constant pattern"));
+static REAR_ENDED_BY: LazyLock<Regex> =
+    LazyLock::new(|| Regex::new(r"(?i)^rear[- ]?ended(?: \w+)? by\b").expect("constant pattern"));
 static HEAD_ON: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"(?i)\bhead[- ]on\b").expect("constant pattern"));
 static HIT_REAR_OF: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(r"(?i)\b(?:contact\w*|struck|hit|collided|impacted|bumped)\b(?: with)?(?: into)? (?:the )?(?:rear|back)(?:[- ]end| bumper)?(?: bumper)?(?: of)?")
@@ -164,8 +166,9 @@ fn collision(
             return Some((CollisionKind::HeadOn, words(record, found.as_str())));
         }
         if let Some(found) = REAR_END.find(sentence.text) {
+            let passive = REAR_ENDED_BY.is_match(&sentence.text[found.start()..]);
             let kind = match sentence.mentions.subject_at(found.start()) {
-                Some(Actor::Sv) if sentence.mentions.object_after(found.end()) == Some(Actor::Cp) => {
+                Some(Actor::Sv) if !passive && sentence.mentions.object_after(found.end()) == Some(Actor::Cp) => {
                     CollisionKind::RearEndByEgo
                 }
                 _ => CollisionKind::RearEndOfEgo,
