@@ -145,8 +145,11 @@ impl List {
             }
             Policy::SuddenBrake { target_speed, brake_step, brake_steps, .. } => {
                 self.speed(&to("target_speed"), target_speed, limits, reason);
-                self.steps(to("brake_step"), brake_step, TIME_TOLERANCE_S, 0, "the record does not tell when");
-                self.steps(to("brake_steps"), brake_steps, 1.0, 1, "the record does not tell how long");
+                // Without steps of braking it holds its speed all along, and that is what the narrative says.
+                if brake_steps > 0 {
+                    self.steps(to("brake_step"), brake_step, TIME_TOLERANCE_S, 0, "the record does not tell when");
+                    self.steps(to("brake_steps"), brake_steps, 1.0, 1, "the record does not tell how long");
+                }
             }
             Policy::AccelThenBrake { accel_mag, accel_steps, cruise_speed, .. } => {
                 let bounds = ((accel_mag - 0.2).max(0.15), (accel_mag + 0.2).min(0.9));

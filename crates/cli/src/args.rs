@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use recrash_model::selection::Strategy;
-use recrash_pipeline::{Options, RecordSource};
+use recrash_pipeline::{Format, Options, RecordSource};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -10,6 +10,7 @@ Examples:
   recrash run                                            the built-in sample, everything else by default, into suite/
   recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
   recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
+  recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used";
@@ -48,6 +49,8 @@ pub enum Command {
     Tune(SuiteArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
     Report(SuiteArgs),
+    /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
+    Export(ExportArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -102,6 +105,26 @@ pub struct RecordsArgs {
     /// Options of the suite.
     #[command(flatten)]
     pub suite: SuiteArgs,
+}
+
+/// Options of `export`.
+#[derive(Debug, Clone, Args)]
+pub struct ExportArgs {
+    /// Folder of a suite, or a scenario file (JSON).
+    #[arg(value_name = "SUITE|SCENARIO")]
+    pub source: PathBuf,
+    /// Formats, separated by commas: openscenario (with OpenDRIVE), scenic, metadrive, commonroad.
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
+    pub to: Vec<Format>,
+    /// How partners move: by their policies as actions, or on the trajectory that was recorded.
+    #[arg(long = "as", value_name = "HOW", value_parser = ["actions", "trajectory"], default_value = "actions")]
+    pub partners_as: String,
+    /// Target folder; each format gets a folder in it. [default: exports, in the suite or beside the file]
+    #[arg(long, value_name = "DIR")]
+    pub to_dir: Option<PathBuf>,
+    /// Overwrite files that are there already.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `simulate`.

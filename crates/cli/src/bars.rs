@@ -49,7 +49,8 @@ impl Progress for Bars {
             ProgressEvent::Finished { stage } => {
                 if let Some(done) = current.take() {
                     done.bar.finish_and_clear();
-                    let there = if done.skipped > 0 { format!(" ({} there already)", done.skipped) } else { String::new() };
+                    let there =
+                        if done.skipped > 0 { format!(" ({} there already)", done.skipped) } else { String::new() };
                     let seconds = done.begun.elapsed().as_secs_f64();
                     // A closed standard error is no reason to stop.
                     let _ = writeln!(

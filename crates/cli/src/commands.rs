@@ -1,12 +1,13 @@
 //! What each subcommand does.
 
-use crate::args::{Cli, Command, RecordsArgs, SimulateArgs, SuiteArgs};
+use crate::args::{Cli, Command, ExportArgs, RecordsArgs, SimulateArgs, SuiteArgs};
 use crate::bars::Bars;
 use crate::show;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
 use recrash_pipeline::{
-    NoProgress, Options, PipelineError, Progress, Stage, StageReport, Suite, Summary, schema, simulate_file,
+    ExportRequest, NoProgress, Options, PartnersAs, PipelineError, Progress, Stage, StageReport, Suite, Summary,
+    schema, simulate_file,
 };
 
 /// Runs a subcommand.
@@ -21,6 +22,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Simulate(args) => simulate(args, output),
         Command::Tune(args) => one_stage(args, Stage::Tune, output),
         Command::Report(args) => report(args, output),
+        Command::Export(args) => export(args, output),
         Command::Schema => {
             show::json(&schema());
             Ok(())
@@ -149,4 +151,27 @@ fn simulate(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
         show::run(&result);
     }
     Ok(())
+}
+
+fn export(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
+    let partners_as = if args.partners_as == "trajectory" { PartnersAs::Trajectory } else { PartnersAs::Actions };
+    let report = recrash_pipeline::export(&ExportRequest {
+        source: args.source.clone(),
+        formats: args.to.clone(),
+        partners_as,
+        target: args.to_dir.clone(),
+        force: args.force,
+    })?;
+    if output.json {
+        show::json(&report);
+    } else if !output.quiet {
+        show::exported(&report);
+    }
+    match report.failures.is_empty() {
+        true => Ok(()),
+        false => Err(PipelineError::BadInput {
+            what: format!("{} scenarios were not exported; the others were", report.failures.len()),
+            diagnostics: report.failures,
+        }),
+    }
 }

@@ -1,12 +1,12 @@
 //! Tables and lines for people. Colours only on a terminal.
 
 use anstream::{eprintln, println};
-use comfy_table::{Attribute, Cell, CellAlignment, Table, presets};
+use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, Table, presets};
 use owo_colors::OwoColorize;
 use recrash_model::diagnostic::{Diagnostic, Severity};
 use recrash_model::record::{FunnelStep, RecordSet};
 use recrash_model::selection::{Coverage, Selection, StageTables, TemplateCount};
-use recrash_pipeline::{FileRun, PipelineError, RunSummary, Stage, StageReport, Suite, Summary};
+use recrash_pipeline::{ExportReport, FileRun, PipelineError, RunSummary, Stage, StageReport, Suite, Summary};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -73,7 +73,8 @@ pub fn stage_done(report: &StageReport, stage: Stage, dir: &Path) {
 
 fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
-    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
+    // A line under the header and none between rows: a table of 20 scenarios fits on a screen.
+    table.load_style(presets::NOTHING.header_separator(LineStyle::new(' ', '\u{2500}', '\u{2500}', ' ')));
     table.set_header(header.iter().map(|h| Cell::new(h).add_attribute(Attribute::Bold)));
     table
 }
@@ -160,11 +161,7 @@ pub fn picks(selection: &Selection) {
     title("Picks");
     let mut rows = table(&["scenario", "record", "cluster of"]);
     for cluster in &selection.clusters {
-        rows.add_row(vec![
-            Cell::new(&cluster.scenario_id),
-            Cell::new(&cluster.pick),
-            number(cluster.members.len()),
-        ]);
+        rows.add_row(vec![Cell::new(&cluster.scenario_id), Cell::new(&cluster.pick), number(cluster.members.len())]);
     }
     println!("{rows}");
 }
@@ -172,6 +169,7 @@ pub fn picks(selection: &Selection) {
 fn gap(run: &RunSummary) -> String {
     match (&run.contact, run.min_gap_m) {
         (Some(kind), _) => format!("contact: {kind}"),
+        (None, Some(gap)) if gap < 0.01 => "< 0.01 m".into(),
         (None, Some(gap)) => format!("{gap:.2} m"),
         (None, None) => "-".into(),
     }
@@ -217,7 +215,13 @@ pub fn summary(summary: &Summary, dir: &Path) {
 pub fn run(result: &FileRun) {
     let run = &result.run;
     result.diagnostics.iter().for_each(remark);
-    println!("{} under {}: {:?} after {:.1} s", run.rollout.scenario_id.bold(), run.rollout.ego, run.metrics.termination, run.metrics.duration_s);
+    println!(
+        "{} under {}: {:?} after {:.1} s",
+        run.rollout.scenario_id.bold(),
+        run.rollout.ego,
+        run.metrics.termination,
+        run.metrics.duration_s
+    );
     let mut rows = table(&["with", "min gap", "at", "centres", "TTC", "PET", "DRAC", "headway"]);
     let timed = |value: Option<f64>, unit: &str| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.2} {unit}"));
     for partner in &run.metrics.partners {
@@ -249,4 +253,18 @@ pub fn run(result: &FileRun) {
         println!("  {mark} {}", finding.sentence);
     }
     println!("state hash {}", run.rollout.state_hash);
+}
+
+/// Prints what was exported.
+pub fn exported(report: &ExportReport) {
+    let mut folders: Vec<(&Path, usize)> = Vec::new();
+    for folder in report.files.iter().filter_map(|file| file.parent()) {
+        match folders.last_mut() {
+            Some((last, count)) if *last == folder => *count += 1,
+            _ => folders.push((folder, 1)),
+        }
+    }
+    for (folder, count) in folders {
+        println!("{count} files in {}", folder.display());
+    }
 }

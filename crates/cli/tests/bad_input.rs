@@ -45,8 +45,7 @@ impl Case {
 
     fn run(&self, arguments: &[&str]) -> (i32, String) {
         let output = recrash(arguments).output().unwrap();
-        let shown =
-            format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        let shown = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
         assert!(shown.lines().count() <= 60, "more than a screen:\n{shown}");
         assert!(!shown.contains("panicked"), "{shown}");
         (output.status.code().unwrap(), shown)
@@ -145,13 +144,23 @@ fn a_good_scenario_file_is_run_and_measured() {
 fn scenarios_that_cannot_be_run_name_the_place_and_what_is_allowed() {
     let cases: [(&str, &str, &str, &[&str]); 9] = [
         ("an unknown field", "\"lanes\": 2,", "\"lanes\": 2, \"colour\": 1,", &["map", "colour"]),
-        ("a wrong type", "\"speed_mps\": 8.0, \"target", "\"speed_mps\": \"fast\", \"target", &["ego.speed_mps", "fast"]),
+        (
+            "a wrong type",
+            "\"speed_mps\": 8.0, \"target",
+            "\"speed_mps\": \"fast\", \"target",
+            &["ego.speed_mps", "fast"],
+        ),
         ("not a number", "\"duration_s\": 30.0", "\"duration_s\": NaN", &["line"]),
         ("an infinite number", "\"duration_s\": 30.0", "\"duration_s\": 1e999", &["line"]),
         ("a negative time", "\"duration_s\": 30.0", "\"duration_s\": -3.0", &["duration_s", "-3"]),
         ("an unknown map", "\"type\": \"X\"", "\"type\": \"Q\"", &["map", "Q", "S", "C", "T", "O"]),
         ("an unknown lane", "\"lane\": 1,", "\"lane\": 5,", &["ego.lane", "5"]),
-        ("an absurd speed", "\"speed_mps\": 8.0, \"policy\"", "\"speed_mps\": 99.0, \"policy\"", &["partners[0].speed_mps", "99"]),
+        (
+            "an absurd speed",
+            "\"speed_mps\": 8.0, \"policy\"",
+            "\"speed_mps\": 99.0, \"policy\"",
+            &["partners[0].speed_mps", "99"],
+        ),
         ("a missing field", "\"duration_s\": 30.0", "\"traffic\": {}", &["duration_s"]),
     ];
     for (what, from, to, words) in cases {
@@ -164,7 +173,8 @@ fn scenarios_that_cannot_be_run_name_the_place_and_what_is_allowed() {
 
 #[test]
 fn an_unreachable_turn_says_what_the_map_has() {
-    let tee = r#"{"type": "T", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "arm_m": 80.0, "missing": "ahead"}"#;
+    let tee =
+        r#"{"type": "T", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "arm_m": 80.0, "missing": "ahead"}"#;
     let cross = r#"{"type": "X", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "arm_m": 80.0}"#;
     assert!(SCENARIO.contains(cross));
     let (code, shown) = Case::new().simulate(&SCENARIO.replacen(cross, tee, 1));
@@ -216,7 +226,9 @@ fn unknown_names_list_the_known_ones() {
     let case = Case::new();
     let out = case.out();
     let out = out.to_str().unwrap();
-    for (option, known) in [("--profile", "paper"), ("--ego", "metadrive-idm"), ("--searcher", "cma"), ("--strategy", "kmeans")] {
+    for (option, known) in
+        [("--profile", "paper"), ("--ego", "metadrive-idm"), ("--searcher", "cma"), ("--strategy", "kmeans")]
+    {
         let (code, shown) = case.run(&["run", "--out", out, option, "nonsense"]);
         assert!(code == BAD_INPUT || code == USAGE, "{option}: {shown}");
         assert_says(&shown, &["nonsense", known]);

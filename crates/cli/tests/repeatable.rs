@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{assert_same_files, files, recrash};
+use common::recrash;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -40,8 +41,10 @@ fn another_seed_writes_other_scenarios_and_leaves_none_of_the_old() {
     let folder = tempfile::tempdir().unwrap();
     let (changed, fresh) = (folder.path().join("changed"), folder.path().join("fresh"));
     run(&changed, &[]);
-    run(&changed, &["--budget", "4", "--seed", "6"]);
-    run(&fresh, &["--budget", "4", "--seed", "6"]);
+    for out in [&changed, &fresh] {
+        let other = ["--budget", "4", "--tune-budget", "24", "--seed", "6"];
+        recrash(&["run", "--quiet", "--out", out.to_str().unwrap()]).args(other).assert().success();
+    }
     assert_same_files(&changed, &fresh);
 }
 
@@ -107,4 +110,31 @@ fn stages_one_by_one_give_what_run_gives() {
         recrash(&[stage, "--quiet", "--out", out]).assert().success();
     }
     assert_same_files(&whole, &parts);
+}
+
+/// Every file below a folder, with its content.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(&next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+                all.insert(name, std::fs::read(&path).unwrap());
+            }
+        }
+    }
+    all
+}
+
+/// Asserts that two folders hold the same files with the same bytes, and names the first that differs.
+fn assert_same_files(left: &Path, right: &Path) {
+    let (left, right) = (files(left), files(right));
+    assert_eq!(left.keys().collect::<Vec<_>>(), right.keys().collect::<Vec<_>>());
+    for (name, content) in &left {
+        assert!(right[name] == *content, "{name} differs");
+    }
 }

@@ -57,8 +57,7 @@ impl Element {
         let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
         let emitted = (|| {
             writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-            // "--" may not stand in a comment.
-            let safe = format!(" {} ", comment.replace("--", "- -"));
+            let safe = format!(" {} ", in_comment(comment));
             writer.write_event(Event::Comment(BytesText::from_escaped(safe)))?;
             self.write(&mut writer)
         })();
@@ -93,6 +92,18 @@ fn allowed(text: &str) -> String {
         .filter(|&c| c >= ' ' || c == '\n' || c == '\t')
         .filter(|&c| c != '\u{fffe}' && c != '\u{ffff}')
         .collect()
+}
+
+/// Text as a comment can hold it: no two hyphens in a row.
+fn in_comment(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in allowed(text).chars() {
+        if c == '-' && safe.ends_with('-') {
+            safe.push(' ');
+        }
+        safe.push(c);
+    }
+    safe
 }
 
 /// A number as XML and every format here take it: no exponent, no negative zero, the shortest digits that read back to

@@ -15,11 +15,10 @@ use recrash_roads::RoadPart;
 /// Weaker braking is no braking: engine drag alone gives 0.36 m/s^2. [m/s^2] (assumed)
 const LEAST_BRAKING_MPS2: f64 = 0.5;
 
-/// Slower than this the ego stands, and its jitter is no oscillation. [m/s] (METADRIVE.md 3.4: up to 0.24 m/s)
+/// Slower than this the ego stands, and its jitter is no oscillation. [m/s] (full brakes make MetaDrive vehicles jitter by 0.24 m/s)
 const STANDSTILL_MPS: f64 = 0.3;
 
-/// Whatever lies in the corridor within this time at present speed is a reason to brake. [s] (assumed; a driver who keeps
-/// more than 3 s is not following, SWOV)
+/// Whatever lies in the corridor within this time at present speed is a reason to brake. [s] (assumed)
 const LOOK_AHEAD_S: f64 = 3.0;
 
 /// And within this distance at any speed. [m] (assumed)

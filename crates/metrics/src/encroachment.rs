@@ -10,13 +10,16 @@ use recrash_model::metrics::Timed;
 /// Segments in one block of the coarse search.
 const BLOCK: usize = 8;
 
+/// Who comes later than this has not met the other. [s] (assumed; conflict studies use 5 s and less)
+const LONGEST_S: f64 = 10.0;
+
 /// Post-encroachment time of two tracks sampled every `step_s`: the least time between one box leaving a spot and the
-/// other reaching it, with the time at which the second one came. `None` where their swept areas share no spot. [s]
+/// other reaching it, with the time at which the second one came. `None` where no spot is shared within 10 s. [s]
 ///
 /// Between two samples a box moves in a straight line at constant velocity, with the heading of its middle.
 pub fn post_encroachment_time(a: &[OrientedBox], b: &[OrientedBox], step_s: f64) -> Option<Timed> {
     let (blocks_a, blocks_b) = (blocks(a), blocks(b));
-    let mut best = Best { lag: f64::INFINITY, second: 0.0 };
+    let mut best = Best { lag: LONGEST_S / step_s, second: None };
     // Outwards from the diagonal: the least lag a block pair can have grows, and ends the search.
     for apart in 0..blocks_a.len().max(blocks_b.len()) {
         if (apart as f64 - 1.0) * BLOCK as f64 >= best.lag {
@@ -32,13 +35,13 @@ pub fn post_encroachment_time(a: &[OrientedBox], b: &[OrientedBox], step_s: f64)
             }
         }
     }
-    best.lag.is_finite().then_some(Timed { value: best.lag * step_s, time_s: best.second * step_s })
+    best.second.map(|second| Timed { value: best.lag * step_s, time_s: second * step_s })
 }
 
-/// Least lag found, and when the second of the two came. [steps]
+/// Least lag found so far, and when the second of the two came; before any is found, the longest that counts. [steps]
 struct Best {
     lag: f64,
-    second: f64,
+    second: Option<f64>,
 }
 
 /// The upright rectangle around some consecutive boxes.
@@ -90,10 +93,16 @@ fn search_block(a: &[OrientedBox], b: &[OrientedBox], start_a: usize, start_b: u
 /// |d0 + p u + q v| <= reach on each of the four axes: a convex polygon in the unit square of (u, v). The lag
 /// |(i + u) - (j + v)| is least at one of its corners, or nil where it changes sign.
 fn search_segments(a: [&OrientedBox; 2], b: [&OrientedBox; 2], i: f64, j: f64, best: &mut Best) {
-    let middle_a = OrientedBox { axis: mean_axis(a), ..*a[0] };
-    let middle_b = OrientedBox { axis: mean_axis(b), ..*b[0] };
     let offset = b[0].centre - a[0].centre;
     let (move_a, move_b) = (a[1].centre - a[0].centre, b[1].centre - b[0].centre);
+    let reach = a[0].radius() + b[0].radius();
+    let apart_squared = (offset + (move_b - move_a) * 0.5).length_squared();
+    // From middle to middle of the segments; each end is half a move away.
+    if apart_squared > 2.0 * (reach * reach + 0.5 * (move_a.length_squared() + move_b.length_squared())) {
+        return;
+    }
+    let middle_a = OrientedBox { axis: mean_axis(a), ..*a[0] };
+    let middle_b = OrientedBox { axis: mean_axis(b), ..*b[0] };
     let constraints = separating_axes(&middle_a, &middle_b)
         .map(|(axis, reach)| (axis.dot(offset), Vec2::new(-axis.dot(move_a), axis.dot(move_b)), reach));
     for (distance, rate, reach) in constraints {
@@ -115,11 +124,11 @@ fn search_segments(a: [&OrientedBox; 2], b: [&OrientedBox; 2], i: f64, j: f64, b
         before |= time_a <= time_b;
         after |= time_a >= time_b;
         if lag < best.lag {
-            *best = Best { lag, second: time_a.max(time_b) };
+            *best = Best { lag, second: Some(time_a.max(time_b)) };
         }
     }
     if before && after && best.lag > 0.0 {
-        *best = Best { lag: 0.0, second: i.max(j) };
+        *best = Best { lag: 0.0, second: Some(i.max(j)) };
     }
 }
 

@@ -16,6 +16,8 @@ pub mod faithfulness;
 pub mod findings;
 pub mod following;
 pub mod measure;
+#[cfg(test)]
+mod oracle;
 mod polygon;
 mod scene;
 pub mod swept;

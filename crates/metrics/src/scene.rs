@@ -3,7 +3,8 @@
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, Rollout, STEP_S};
-use recrash_roads::{LanePath, RoadNetwork, Scenario};
+use recrash_roads::path::SegmentShape;
+use recrash_roads::{LanePath, PathPoint, RoadNetwork, Scenario};
 
 /// The way the ego was to take, and how fast.
 #[derive(Debug, Clone, Copy)]
@@ -138,6 +139,21 @@ fn is_finite(state: &ActorState) -> bool {
     state.x.is_finite() && state.y.is_finite() && state.heading.is_finite() && state.speed.is_finite()
 }
 
+/// Unit vector along the way at a point of it.
+fn forward_at(way: &EgoWay<'_>, point: Vec2, place: PathPoint) -> Vec2 {
+    let segment = &way.path.segments[place.segment];
+    match segment.shape {
+        SegmentShape::Straight { forward, .. } => forward,
+        // Across the radius: no angle is needed.
+        SegmentShape::Arc { centre, turn, .. } if (0.0..=segment.length_m).contains(&(place.s - segment.start_m)) => {
+            let outward = point - centre;
+            let length = outward.length();
+            if length > 1e-9 { outward.left() * (turn / length) } else { outward }
+        }
+        SegmentShape::Arc { .. } => Vec2::from_heading(way.path.pose(way.network, place.s, 0.0).heading),
+    }
+}
+
 /// A box in the coordinates of the ego's way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Along {
@@ -159,7 +175,7 @@ impl Along {
     /// A box on a way, looked for from segment `hint` on.
     pub fn of(way: &EgoWay<'_>, outline: &OrientedBox, hint: usize) -> Self {
         let place = way.path.project(way.network, outline.centre, hint);
-        let forward = Vec2::from_heading(way.path.pose(way.network, place.s, 0.0).heading);
+        let forward = forward_at(way, outline.centre, place);
         let (cos, sin) = (outline.axis.dot(forward), outline.axis.cross(forward).abs());
         Self {
             s: place.s,

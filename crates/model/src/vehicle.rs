@@ -2,21 +2,34 @@
 
 use crate::record::PartnerKind;
 
-/// Size and limits of one kind of road user. Sources: `docs/models/vehicles.md`.
+/// Size and limits of one kind of road user. Sources: `docs/models/vehicle.md`.
+///
+/// The outline is what others can touch; the chassis is what the physics turns and tilts. Kinds shorter than a car move
+/// on a car's chassis: they differ in outline and limits alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VehicleSpec {
-    /// Length of the box. [m]
+    /// Length of the outline. [m]
     pub length_m: f64,
-    /// Width of the box. [m]
+    /// Width of the outline. [m]
     pub width_m: f64,
-    /// From the centre of the box forward to the front axle. [m]
+    /// From the centre of the outline forward to the front axle. [m]
     pub front_axle_m: f64,
-    /// From the centre of the box back to the rear axle. [m]
+    /// From the centre of the outline back to the rear axle. [m]
     pub rear_axle_m: f64,
+    /// Half of the distance between left and right wheels. [m]
+    pub half_track_m: f64,
+    /// Length of the body whose inertia resists yaw and pitch. [m]
+    pub chassis_length_m: f64,
+    /// Width of that body. [m]
+    pub chassis_width_m: f64,
+    /// Height of that body. [m]
+    pub chassis_height_m: f64,
     /// Acceleration at full throttle. [m/s^2]
     pub max_acceleration_mps2: f64,
-    /// Deceleration at full brake. [m/s^2, positive]
+    /// Deceleration at full brake on a dry road. [m/s^2, positive]
     pub max_deceleration_mps2: f64,
+    /// Deceleration the brakes ask for at full brake; where it is more than the tyres hold, they decide. [m/s^2]
+    pub brake_demand_mps2: f64,
     /// Speed at which the engine is cut. [m/s]
     pub max_speed_mps: f64,
     /// Wheel angle at full steering. [rad]
@@ -29,8 +42,13 @@ const CAR: VehicleSpec = VehicleSpec {
     width_m: 1.852,
     front_axle_m: 1.052_34,
     rear_axle_m: 1.416_6,
-    max_acceleration_mps2: 2.909,
+    half_track_m: 0.815,
+    chassis_length_m: 4.515,
+    chassis_width_m: 1.852,
+    chassis_height_m: 1.19,
+    max_acceleration_mps2: 2.909_090_909_090_909,
     max_deceleration_mps2: 15.13,
+    brake_demand_mps2: 27.272_727_272_727_273,
     max_speed_mps: 80.0 / 3.6,
     max_wheel_angle_rad: 40.0 * std::f64::consts::PI / 180.0,
 };
@@ -40,17 +58,48 @@ impl VehicleSpec {
     pub const fn of(kind: PartnerKind) -> Self {
         match kind {
             PartnerKind::PassengerCar => CAR,
+            // MetaDrive's LVehicle and XLVehicle in outline.
             PartnerKind::Suv => Self { length_m: 4.87, width_m: 2.046, ..CAR },
-            PartnerKind::Van => Self { length_m: 5.4, width_m: 2.0, ..CAR },
             PartnerKind::PickupTruck | PartnerKind::FirstResponder => Self { length_m: 5.74, width_m: 2.3, ..CAR },
-            PartnerKind::HeavyTruck => Self { length_m: 9.0, width_m: 2.5, ..CAR },
-            PartnerKind::Bus => Self { length_m: 12.0, width_m: 2.55, ..CAR },
-            PartnerKind::Motorcycle => Self { length_m: 2.2, width_m: 0.8, ..CAR },
-            PartnerKind::Cyclist => Self { length_m: 1.8, width_m: 0.6, ..CAR },
-            PartnerKind::OtherNonMotorist => Self { length_m: 1.2, width_m: 0.6, ..CAR },
-            PartnerKind::Pedestrian => Self { length_m: 0.5, width_m: 0.5, ..CAR },
-            PartnerKind::Animal => Self { length_m: 1.0, width_m: 0.4, ..CAR },
-            PartnerKind::FixedObject => Self { length_m: 1.0, width_m: 1.0, ..CAR },
+            PartnerKind::Van => Self { length_m: 5.4, width_m: 2.0, ..CAR },
+            // AASHTO's single-unit truck SU-30 (9.1 m, wheelbase 6.1 m) and city bus (12.2 m, wheelbase 7.6 m).
+            PartnerKind::HeavyTruck => Self::heavy(9.1, 2.4, 6.1, 1.1, 6.0),
+            PartnerKind::Bus => Self::heavy(12.2, 2.6, 7.6, 1.0, 6.0),
+            PartnerKind::Motorcycle => Self { length_m: 2.2, width_m: 0.8, ..Self::light(2.909, 8.0, 80.0 / 3.6) },
+            PartnerKind::Cyclist => Self { length_m: 1.8, width_m: 0.6, ..Self::light(1.0, 3.4, 9.0) },
+            PartnerKind::OtherNonMotorist => Self { length_m: 1.2, width_m: 0.6, ..Self::light(1.0, 3.4, 7.0) },
+            PartnerKind::Pedestrian => Self { length_m: 0.5, width_m: 0.5, ..Self::light(1.5, 3.0, 3.0) },
+            PartnerKind::Animal => Self { length_m: 1.0, width_m: 0.4, ..Self::light(2.909, 5.0, 12.0) },
+            PartnerKind::FixedObject => Self { length_m: 1.0, width_m: 1.0, ..Self::light(0.0, 8.0, 0.0) },
+        }
+    }
+
+    /// A long vehicle: its body, and so its inertia, is as long as its outline.
+    const fn heavy(length_m: f64, width_m: f64, wheelbase_m: f64, acceleration: f64, deceleration: f64) -> Self {
+        Self {
+            length_m,
+            width_m,
+            // Axles so that the centre of the outline lies a little ahead of the middle of the wheelbase, as the car's.
+            front_axle_m: 0.45 * wheelbase_m,
+            rear_axle_m: 0.55 * wheelbase_m,
+            half_track_m: 1.0,
+            chassis_length_m: length_m,
+            chassis_width_m: width_m,
+            max_acceleration_mps2: acceleration,
+            max_deceleration_mps2: deceleration,
+            brake_demand_mps2: deceleration,
+            ..CAR
+        }
+    }
+
+    /// A light road user: a car's chassis with these limits.
+    const fn light(acceleration: f64, deceleration: f64, max_speed_mps: f64) -> Self {
+        Self {
+            max_acceleration_mps2: acceleration,
+            max_deceleration_mps2: deceleration,
+            brake_demand_mps2: deceleration,
+            max_speed_mps,
+            ..CAR
         }
     }
 }

@@ -122,10 +122,8 @@ pub fn design_case(
             Ok(Outcome { value: scenario, diagnostics }) => {
                 let run = run_scenario(&scenario, ego, brief.profile, Some(expectation));
                 let failures: Vec<Check> = run.verdict.iter().flat_map(|v| v.failures().cloned()).collect();
-                let problem = (!failures.is_empty()).then(|| Problem::NotFaithful {
-                    failures: failures.clone(),
-                    metrics: Box::new(run.metrics),
-                });
+                let problem = (!failures.is_empty())
+                    .then(|| Problem::NotFaithful { failures: failures.clone(), metrics: Box::new(run.metrics) });
                 (DesignAttempt { draft, diagnostics, unfaithful: Some(failures) }, problem)
             }
         };

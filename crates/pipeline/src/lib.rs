@@ -7,7 +7,9 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod casework;
+mod drawing;
 mod error;
+mod exporting;
 mod profiles;
 mod progress;
 mod scoring;
@@ -19,10 +21,12 @@ mod view;
 
 pub use casework::{CaseRun, DesignAttempt, DesignLog, FileRun, read_scenario, run_scenario, simulate_file};
 pub use error::PipelineError;
+pub use exporting::{ExportReport, ExportRequest, export};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
+pub use recrash_export::{Format, PartnersAs};
+pub use recrash_roads::scenario_schema as schema;
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Stage, Suite};
-pub use recrash_roads::scenario_schema as schema;
 pub use summary::{CaseSummary, RunSummary, Summary};

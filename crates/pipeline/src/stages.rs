@@ -177,8 +177,8 @@ fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     }
     let mut report = work.whole(&inputs, || {
         let sources: Vec<SourceText> = files.iter().map(|(name, bytes)| SourceText { name, bytes }).collect();
-        let Outcome { value, diagnostics } = recrash_records::ingest(&sources, suite.profile())
-            .map_err(|e| PipelineError::bad_input(e.to_string()))?;
+        let Outcome { value, diagnostics } =
+            recrash_records::ingest(&sources, suite.profile()).map_err(|e| PipelineError::bad_input(e.to_string()))?;
         Ok(vec![
             (names::RECORDS.into(), to_compact_json(&value)),
             (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
@@ -281,7 +281,11 @@ fn case_hash(suite: &Suite, stage: Stage, cluster: &Cluster, file: &str) -> Resu
     suite.output_hash(stage, &format!("{}/{}", stage.name(), cluster.scenario_id), file)
 }
 
-fn case_expectation(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<(Narrative, Expectation), PipelineError> {
+fn case_expectation(
+    suite: &Suite,
+    cases: &Cases,
+    cluster: &Cluster,
+) -> Result<(Narrative, Expectation), PipelineError> {
     let narrative: Narrative = suite.store().read_json(&names::narrative(&cluster.scenario_id))?;
     let expectation = expectation(&narrative, &cases.records.records[cluster.pick_index], suite.profile());
     Ok((narrative, expectation))

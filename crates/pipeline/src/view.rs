@@ -1,6 +1,7 @@
 //! The suite as the report sees it.
 
 use crate::casework::CaseRun;
+use crate::drawing::drawing;
 use crate::stages::{Case, names};
 use crate::suite::{RecordSource, Suite};
 use recrash_model::metrics::Verdict;
@@ -31,7 +32,8 @@ pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[
 
 fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseView {
     let id = &case.cluster.scenario_id;
-    let positions = case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
+    let positions =
+        case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
     let moved = case.tune_log.best != 0;
     CaseView {
         scenario_id: id.clone(),
@@ -39,7 +41,7 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
         cluster: Some(index),
         records: positions.collect(),
         narrative: Some(case.narrative.clone()),
-        drawing: case.scenario.network().drawing(),
+        drawing: drawing(case.scenario.network()),
         before: Some(run_view(suite, &case.scenario, &case.first, &names::scenario(id))),
         after: moved.then(|| run_view(suite, &case.tuned, &case.tuned_run, &names::tuned(id))),
         tune_log: Some(case.tune_log.clone()),

@@ -152,7 +152,8 @@ pub fn look_up<T: Copy>(table: &Table<T>, cell: &str) -> Coded<T> {
     if cell.is_empty() {
         return Coded::Blank;
     }
-    if let Some((_, value)) = table.iter().find(|(text, _)| same_code(text, cell)) {
+    let as_published = table.iter().find(|(text, _)| *text == cell);
+    if let Some((_, value)) = as_published.or_else(|| table.iter().find(|(text, _)| same_code(text, cell))) {
         return Coded::Known(*value);
     }
     if OTHERS.iter().any(|text| same_code(text, cell)) {

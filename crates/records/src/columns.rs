@@ -99,6 +99,9 @@ const REQUIRED: [&str; 6] =
 /// How many known columns make a line a header.
 const LEAST_KNOWN_COLUMNS: usize = 4;
 
+/// A line with more fields than this is no header.
+const MOST_COLUMNS: usize = 1000;
+
 /// Weather columns of all editions. `Weather - Unknown`, `- Other`, `- Other Text` and `- Unk - See Narrative` say
 /// nothing that a scenario could show.
 const WEATHER: [(&str, Weather); 11] = [
@@ -206,6 +209,9 @@ pub fn edition_name(edition: Edition) -> &'static str {
 /// Recognises a header by its column names: the edition that shares most of them wins, the later one on a tie.
 /// Order, letter case, blanks and the kind of dash do not matter.
 pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
+    if names.len() > MOST_COLUMNS {
+        return Err(NotAHeader::Unknown);
+    }
     let keys: Vec<String> = names.iter().map(|name| header_key(name)).collect();
     let known_in = |edition| published_header(edition).filter(|name| keys.contains(&header_key(name))).count();
     let editions = [Edition::First, Edition::Second, Edition::Third];

@@ -21,9 +21,9 @@ pub enum IngestError {
     TooLarge {
         /// File name.
         file: String,
-        /// Its size. [byte]
+        /// Its size, in bytes.
         bytes: usize,
-        /// The limit. [byte]
+        /// The limit, in bytes.
         limit: usize,
     },
     /// The file is no text.
@@ -89,11 +89,11 @@ const SIGNATURES: [(&[u8], &str, &str); 7] = [
     (b"\x89PNG", "a picture", "give the CSV file"),
 ];
 
-/// How far to look for bytes that no text has. [byte]
+/// How far to look for bytes that no text has, in bytes.
 const BINARY_PROBE_BYTES: usize = 8192;
 
-/// What the file is, when it is no text: `(looks like, hint)`.
-pub fn not_text(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+/// What the file is, when its first bytes are those of another format: `(looks like, hint)`.
+pub fn other_format(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     if let Some((_, looks_like, hint)) = SIGNATURES.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
         return Some((looks_like, hint));
     }
@@ -102,6 +102,11 @@ pub fn not_text(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     if opening.eq_ignore_ascii_case(b"<!doctype") || opening.to_ascii_lowercase().starts_with(b"<html") {
         return Some(("a web page", "download the CSV file itself; the link led to a page"));
     }
-    let probe = &bytes[..bytes.len().min(BINARY_PROBE_BYTES)];
-    probe.contains(&0).then_some(("a binary file", "give the CSV file as NHTSA publishes it"))
+    None
+}
+
+/// Whether the bytes are no text: a text has no zero bytes. Asked only where no header was found, so that one stray zero
+/// in a narrative costs nothing.
+pub fn is_binary(bytes: &[u8]) -> bool {
+    bytes[..bytes.len().min(BINARY_PROBE_BYTES)].contains(&0)
 }

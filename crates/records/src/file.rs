@@ -1,7 +1,7 @@
 //! One file: bytes in, records and rejected rows out, in file order.
 
 use crate::columns::{Columns, NotAHeader, Recognised, edition_name, recognise};
-use crate::error::{IngestError, not_text};
+use crate::error::{IngestError, is_binary, other_format};
 use crate::notes::Notes;
 use crate::row::{self, Draft};
 use crate::text::{decode, excerpt};
@@ -23,6 +23,13 @@ const MOST_MALFORMED_TOLD: usize = 100;
 /// A field longer than this has swallowed rows behind an unclosed quote. The longest published narrative has 3,500
 /// bytes. [byte]
 const LONGEST_FIELD_BYTES: usize = 100_000;
+
+/// Most headers in one file; further ones count as malformed rows.
+const MOST_HEADERS: usize = 100;
+
+/// How many times its own size of a file is read again at most, to save rows behind unclosed quotes. A file can be built
+/// in which every line swallows all that follow; without a bound its time would grow with the square of its size.
+const MOST_REREADS: usize = 16;
 
 /// What one file holds.
 #[derive(Debug)]
@@ -52,13 +59,17 @@ pub fn read_file(source: &SourceText<'_>, sha256: &str) -> Result<FileContent, I
     if bytes.trim_ascii().is_empty() {
         return Err(IngestError::Empty { file: file() });
     }
-    if let Some((looks_like, hint)) = not_text(&bytes) {
+    if let Some((looks_like, hint)) = other_format(&bytes) {
         return Err(IngestError::NotText { file: file(), looks_like, hint });
     }
     let (delimiter, recognised) = match first_header(&bytes) {
         Ok(found) => found,
         Err((_, NotAHeader::Missing { edition, names })) => {
             return Err(IngestError::MissingColumns { file: file(), edition: edition_name(edition), missing: names });
+        }
+        Err((_, NotAHeader::Unknown)) if is_binary(&bytes) => {
+            let (looks_like, hint) = ("a binary file", "give the CSV file as NHTSA publishes it");
+            return Err(IngestError::NotText { file: file(), looks_like, hint });
         }
         Err((start, NotAHeader::Unknown)) => return Err(IngestError::UnknownHeader { file: file(), start }),
     };
@@ -100,7 +111,7 @@ fn reader(bytes: &[u8], delimiter: u8) -> csv::Reader<Cursor<&[u8]>> {
 }
 
 fn names(row: &ByteRecord) -> Vec<String> {
-    row.iter().map(|name| decode(name).0).collect()
+    row.iter().map(|name| decode(name).0.into_owned()).collect()
 }
 
 struct FileReader<'a> {
@@ -127,14 +138,18 @@ impl<'a> FileReader<'a> {
         let mut reader = reader(bytes, delimiter);
         let mut row = ByteRecord::new();
         let mut header_pending = true;
+        let mut reread = 0;
+        let mut headers = 1;
         while let Ok(true) = reader.read_byte_record(&mut row) {
             if std::mem::take(&mut header_pending) {
                 continue;
             }
             let span = Span::of(&row, reader.position(), bytes);
             if is_header(&row)
+                && headers < MOST_HEADERS
                 && let Ok(recognised) = recognise(&names(&row))
             {
+                headers += 1;
                 self.begin_part(recognised, span.line);
                 continue;
             }
@@ -151,6 +166,11 @@ impl<'a> FileReader<'a> {
                 Err((problem, hint)) => {
                     self.reject(&row, &span, problem, hint);
                     if let Some(position) = span.next_row_inside(delimiter) {
+                        reread += span.end() - position.byte() as usize;
+                        if reread > MOST_REREADS * bytes.len() {
+                            self.give_up(&span);
+                            break;
+                        }
                         // A reader over bytes in memory can be put anywhere inside them.
                         let _ = reader.seek(position);
                     }
@@ -252,6 +272,12 @@ impl<'a> FileReader<'a> {
         }
     }
 
+    fn give_up(&mut self, span: &Span<'_>) {
+        let location = Location { row: Some(self.rows), line: Some(span.line), ..self.in_file() };
+        let message = "too many quotes are never closed; nothing below this row was read".to_owned();
+        self.tell(Severity::Error, "records.quotes-broken", location, message);
+    }
+
     fn in_file(&self) -> Location {
         Location { file: Some(self.name.to_owned()), ..Location::default() }
     }
@@ -283,6 +309,11 @@ impl<'a> Span<'a> {
         let blank = whole.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
         let lines = whole[..blank].iter().filter(|byte| **byte == b'\n').count() as u64;
         Self { raw: &whole[blank..], start: start + blank, line: line + lines, is_last: end == bytes.len() }
+    }
+
+    /// Position of the first byte behind the row.
+    fn end(&self) -> usize {
+        self.start + self.raw.len()
     }
 
     /// Whether this is the file's last row, cut inside a quoted field.

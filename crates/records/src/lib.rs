@@ -33,7 +33,7 @@ pub const SAMPLE_NAME: &str = "built-in sample";
 /// template counts. Written by `cargo run -p recrash-records --example make_sample`.
 pub const SAMPLE_CSV: &str = include_str!("../data/sample.csv");
 
-/// Largest file that is read. [byte]
+/// Largest file that is read, in bytes.
 pub const MAX_FILE_BYTES: usize = 1 << 30;
 
 /// A file's content and the name it is called by.

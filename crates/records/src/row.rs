@@ -7,6 +7,7 @@ use crate::notes::{Notes, Remark};
 use crate::text::{decode, mend_twice_encoded, same_code};
 use csv::ByteRecord;
 use recrash_model::record::{Coded, CrashRecord, Engagement, Provenance, RecordRef, Redaction, Surface};
+use std::borrow::Cow;
 
 /// NHTSA's mark for a narrative, or a part of one, withheld as confidential business information.
 pub const REDACTED: &str = "[REDACTED, MAY CONTAIN CONFIDENTIAL BUSINESS INFORMATION]";
@@ -35,7 +36,7 @@ pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes:
         .ok_or("the report id is empty or too long, or the report version is no whole number")?;
     let mut cells = Cells { row, number, notes };
 
-    let entity = cells.text(columns.entity);
+    let entity = cells.owned(columns.entity);
     let operator = cells.text(columns.operator);
     let narrative = cells.narrative(columns.narrative);
     let redaction = if narrative.contains(REDACTED) {
@@ -47,11 +48,11 @@ pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes:
     };
     let record = CrashRecord {
         id,
-        incident_id: Some(cells.text(columns.incident_id)).filter(|text| !text.is_empty()),
-        vehicle: joined(" ", [cells.text(columns.model_year), cells.text(columns.make), cells.text(columns.model)]),
+        incident_id: Some(cells.owned(columns.incident_id)).filter(|text| !text.is_empty()),
+        vehicle: joined(" ", &[cells.text(columns.model_year), cells.text(columns.make), cells.text(columns.model)]),
         when: cells.read(columns.date, "Incident Date", cells::year_month),
         time_of_day_min: cells.read(columns.time, "Incident Time (24:00)", cells::time_of_day_min),
-        place: joined(", ", [cells.text(columns.city), cells.text(columns.state), String::new()]),
+        place: joined(", ", &[cells.text(columns.city), cells.text(columns.state)]),
         road: cells.code(Some(columns.road), "Roadway Type", codes::ROAD_TYPES),
         work_zone: cells.work_zone(columns.work_zone),
         surface: cells.surface(columns),
@@ -88,8 +89,9 @@ fn same_entity(entity: &str, operator: &str) -> bool {
     !operator.is_empty() && first_word(entity) == first_word(operator)
 }
 
-fn joined(separator: &str, parts: [String; 3]) -> String {
-    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(separator)
+fn joined(separator: &str, parts: &[Cow<'_, str>]) -> String {
+    let given: Vec<&str> = parts.iter().map(AsRef::as_ref).filter(|part| !part.is_empty()).collect();
+    given.join(separator)
 }
 
 struct Cells<'a> {
@@ -103,7 +105,7 @@ impl<'a> Cells<'a> {
         position.and_then(|position| self.row.get(position)).unwrap_or_default().trim_ascii()
     }
 
-    fn text(&mut self, position: Option<usize>) -> String {
+    fn text(&mut self, position: Option<usize>) -> Cow<'a, str> {
         let (text, windows_1252) = decode(self.bytes(position));
         if windows_1252 {
             self.notes.add_windows_1252();
@@ -111,8 +113,12 @@ impl<'a> Cells<'a> {
         text
     }
 
+    fn owned(&mut self, position: Option<usize>) -> String {
+        self.text(position).into_owned()
+    }
+
     fn narrative(&mut self, position: usize) -> String {
-        let text = self.text(Some(position));
+        let text = self.owned(Some(position));
         match mend_twice_encoded(&text) {
             Some(mended) => {
                 self.notes.add_mended();

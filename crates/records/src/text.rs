@@ -1,15 +1,16 @@
 //! Text out of untrusted bytes: encodings, twice-encoded characters, and keys that forgive blanks and letter case.
 
 use encoding_rs::WINDOWS_1252;
+use std::borrow::Cow;
 
 /// Longest excerpt of a file's text in a message. [characters]
 const EXCERPT_CHARS: usize = 60;
 
 /// The text of a cell, and whether it was no UTF-8 and had to be read as Windows-1252.
-pub fn decode(bytes: &[u8]) -> (String, bool) {
+pub fn decode(bytes: &[u8]) -> (Cow<'_, str>, bool) {
     match std::str::from_utf8(bytes) {
-        Ok(text) => (text.to_owned(), false),
-        Err(_) => (WINDOWS_1252.decode_without_bom_handling(bytes).0.into_owned(), true),
+        Ok(text) => (Cow::Borrowed(text), false),
+        Err(_) => (WINDOWS_1252.decode_without_bom_handling(bytes).0, true),
     }
 }
 
@@ -108,8 +109,8 @@ mod tests {
 
     #[test]
     fn windows_1252_is_the_fallback() {
-        assert_eq!(decode(b"caf\xe9 \x93x\x94"), ("caf\u{e9} \u{201c}x\u{201d}".to_owned(), true));
-        assert_eq!(decode("caf\u{e9}".as_bytes()), ("caf\u{e9}".to_owned(), false));
+        assert_eq!(decode(b"caf\xe9 \x93x\x94"), ("caf\u{e9} \u{201c}x\u{201d}".into(), true));
+        assert_eq!(decode("caf\u{e9}".as_bytes()), ("caf\u{e9}".into(), false));
     }
 
     #[test]

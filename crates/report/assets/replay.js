@@ -1,0 +1,218 @@
+// The replay of one scenario: time, which run, camera, and the controls that move them.
+
+const MODES = ['before', 'after', 'both'];
+const CAMERAS = ['fit', 'follow', 'map'];
+
+class Replay {
+  constructor(section) {
+    this.section = section;
+    this.kase = readCase(Number(section.dataset.case));
+    this.root = one('.replay', section);
+    this.views = one('.views', section);
+    this.scrub = one('.scrub', section);
+    this.clock = one('.clock', section);
+    this.time = 0;
+    this.rate = 1;
+    this.loop = false;
+    this.camera = 'fit';
+    this.zoom = 1;
+    this.pan = [0, 0];
+    this.playing = false;
+    this.plots = all('.plot', section).map((figure) => new Plot(figure, this.kase, (time) => this.seek(time)));
+    this.bounds = boundsOf(this.kase.drawing.surfaces.flat());
+    this.bind();
+    this.show(this.kase.after ? 'after' : 'before');
+    new ResizeObserver(() => this.draw()).observe(this.views);
+  }
+
+  bind() {
+    all('[data-mode]', this.root).forEach((button) => button.addEventListener('click', () => this.show(button.dataset.mode)));
+    all('[data-camera]', this.root).forEach((button) => button.addEventListener('click', () => this.look(button.dataset.camera)));
+    all('button[data-act]', this.root).forEach((button) => button.addEventListener('click', () => this.act(button.dataset.act)));
+    one('select[data-act=rate]', this.root).addEventListener('change', (event) => {
+      this.rate = Number(event.target.value);
+    });
+    this.scrub.addEventListener('input', () => this.seek(Number(this.scrub.value)));
+    this.views.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      this.zoomBy(event.deltaY < 0 ? 1.12 : 1 / 1.12);
+    }, { passive: false });
+    this.views.addEventListener('pointerdown', (event) => this.views.setPointerCapture(event.pointerId));
+    this.views.addEventListener('pointermove', (event) => {
+      if (!(event.buttons & 1) || !this.lastCamera) return;
+      this.pan[0] -= event.movementX / this.lastCamera.scale;
+      this.pan[1] += event.movementY / this.lastCamera.scale;
+      this.draw();
+    });
+    this.views.addEventListener('dblclick', () => this.act('reset'));
+  }
+
+  get runs() {
+    return (this.mode === 'both' ? ['before', 'after'] : [this.mode]).map((which) => [which, this.kase[which]]).filter(([, run]) => run);
+  }
+
+  get end() {
+    return Math.max(...this.runs.map(([, run]) => run.end), 0);
+  }
+
+  /** The run whose numbers are told: the tuned one where both are seen. */
+  get told() {
+    return this.runs[this.runs.length - 1];
+  }
+
+  show(mode) {
+    const there = mode === 'both' ? this.kase.before && this.kase.after : this.kase[mode];
+    if (!there) return;
+    this.mode = mode;
+    all('[data-mode]', this.root).forEach((button) => button.setAttribute('aria-pressed', button.dataset.mode === mode));
+    all('.view', this.views).forEach((view) => {
+      view.hidden = !this.runs.some(([which]) => which === view.dataset.run);
+    });
+    this.scrub.max = this.end;
+    this.scrub.step = this.runs[0][1].step;
+    this.seek(Math.min(this.time, this.end));
+  }
+
+  look(camera) {
+    this.camera = camera;
+    this.zoom = 1;
+    this.pan = [0, 0];
+    all('[data-camera]', this.root).forEach((button) => button.setAttribute('aria-pressed', button.dataset.camera === camera));
+    this.draw();
+  }
+
+  zoomBy(factor) {
+    this.zoom = clamp(this.zoom * factor, 0.2, 12);
+    this.draw();
+  }
+
+  seek(time) {
+    this.time = clamp(time, 0, this.end);
+    this.draw();
+  }
+
+  step(seconds) {
+    this.pause();
+    const step = this.runs[0][1].step;
+    this.seek(Math.round((this.time + seconds) / step) * step);
+  }
+
+  act(name) {
+    const closest = this.told[1].minGap;
+    const acts = {
+      play: () => (this.playing ? this.pause() : this.play()),
+      start: () => this.seek(0),
+      end: () => this.seek(this.end),
+      back: () => this.step(-0.1),
+      on: () => this.step(0.1),
+      'back-far': () => this.step(-1),
+      'on-far': () => this.step(1),
+      closest: () => closest && (this.pause(), this.seek(closest.time)),
+      loop: () => {
+        this.loop = !this.loop;
+        one('[data-act=loop]', this.root).setAttribute('aria-pressed', this.loop);
+      },
+      'zoom-in': () => this.zoomBy(1.25),
+      'zoom-out': () => this.zoomBy(0.8),
+      reset: () => this.look(this.camera),
+      follow: () => this.look(this.camera === 'follow' ? 'fit' : 'follow'),
+      mode: () => {
+        const modes = MODES.filter((mode) => !one(`[data-mode=${mode}]`, this.root).disabled);
+        this.show(modes[(modes.indexOf(this.mode) + 1) % modes.length]);
+      },
+    };
+    acts[name]?.();
+  }
+
+  play() {
+    if (this.time >= this.end - 1e-6) this.time = 0;
+    this.playing = true;
+    this.root.classList.add('playing');
+    one('.play', this.root).setAttribute('aria-label', 'Pause');
+    let last = null;
+    const frameOn = (now) => {
+      if (!this.playing) return;
+      // A tab that was hidden must not jump.
+      if (last !== null) this.time += (Math.min(now - last, 100) / 1000) * this.rate;
+      last = now;
+      if (this.time >= this.end) {
+        if (this.loop) this.time = 0;
+        else {
+          this.time = this.end;
+          this.pause();
+        }
+      }
+      this.draw();
+      if (this.playing) requestAnimationFrame(frameOn);
+    };
+    requestAnimationFrame(frameOn);
+  }
+
+  pause() {
+    this.playing = false;
+    this.root.classList.remove('playing');
+    one('.play', this.root).setAttribute('aria-label', 'Play');
+  }
+
+  cameraFor(width, height) {
+    let camera;
+    if (this.camera === 'map') camera = frame(this.bounds, width, height, 2, [10, 10], 0.3, 20);
+    else if (this.camera === 'follow') camera = { x: 0, y: 0, scale: clamp(height / 46, 4, 12), follow: true };
+    else camera = frame(boundsOf(this.runs.flatMap(([, run]) => interesting(run, Math.min(this.time, run.end)))), width, height, 4, [Math.min(80, width / 6), 44], 1, 13);
+    camera.scale *= this.zoom;
+    camera.x += this.pan[0];
+    camera.y += this.pan[1];
+    return camera;
+  }
+
+  draw() {
+    for (const view of all('.view:not([hidden])', this.views)) {
+      const canvas = one('canvas', view);
+      if (!canvas.clientWidth) return;
+      const run = this.kase[view.dataset.run];
+      const camera = this.cameraFor(canvas.clientWidth, canvas.clientHeight);
+      if (camera.follow) {
+        const ego = stateAt(run.actors[0], run, this.time);
+        camera.x += ego.x;
+        camera.y += ego.y;
+      }
+      this.lastCamera = camera;
+      drawScene(canvas, this.kase, run, Math.min(this.time, run.end), camera);
+    }
+    this.scrub.value = this.time;
+    this.scrub.setAttribute('aria-valuetext', `${fixed(this.time, 1)} seconds`);
+    this.clock.textContent = `${fixed(this.time, 1)} / ${fixed(this.end, 1)} s`;
+    this.plots.forEach((plot) => plot.at(this.time, this.told[0]));
+  }
+}
+
+const KEYS = {
+  ' ': 'play', ArrowLeft: 'back', ArrowRight: 'on', Home: 'start', End: 'end', m: 'closest', b: 'mode', f: 'follow',
+  l: 'loop', '+': 'zoom-in', '=': 'zoom-in', '-': 'zoom-out', 0: 'reset',
+};
+
+/** What a key does to the replay; whether it did something. */
+function replayKey(replay, event) {
+  const act = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  if (!act) return false;
+  replay.act(event.shiftKey && (act === 'back' || act === 'on') ? `${act}-far` : act);
+  return true;
+}
+
+/** Small pictures of the moment of the least gap, for the table. Drawn when they come into sight. */
+function setUpThumbs() {
+  const draw = (canvas) => {
+    const kase = readCase(Number(canvas.dataset.case));
+    const run = kase.after ?? kase.before;
+    const time = run ? run.minGap?.time ?? run.end : 0;
+    const points = run ? run.actors.filter((actor) => actor.role !== 'traffic').map((actor) => stateAt(actor, run, time)).map(({ x, y }) => [x, y]) : kase.drawing.surfaces.flat();
+    if (!points.length) return;
+    drawScene(canvas, kase, run, time, frame(boundsOf(points), 96, 60, run ? 6.5 : 2, [0, 0], 0.2, 4.6), { bare: true });
+  };
+  const thumbs = all('.thumb');
+  const observer = new IntersectionObserver((entries) => {
+    for (const entry of entries) if (entry.isIntersecting) draw(entry.target);
+  }, { rootMargin: '200px' });
+  thumbs.forEach((thumb) => observer.observe(thumb));
+  return () => thumbs.filter((thumb) => thumb.clientWidth).forEach(draw);
+}

@@ -33,7 +33,7 @@ pub fn suite(suite: &SuiteView, anchors: &Anchors) -> Value {
                 words::clean(&record.entity, 60),
                 when,
                 words::clean(&record.place, 60),
-                record.template().map_or_else(String::new, |template| template.to_string()),
+                record.template().map_or_else(String::new, |template| words::template(&template)),
                 cluster.number,
                 words::clean(&record.narrative, 160),
             ]))
@@ -184,9 +184,10 @@ fn tune(log: &TuneLog) -> Value {
             ])
         })
         .collect();
+    let best = log.points.iter().position(|point| point.number == log.best);
     let names = log.parameters.iter().map(|p| words::clean(&p.pointer, 120)).collect::<Vec<_>>();
     let by: Vec<_> = by.iter().map(|name| words::clean(name, 40)).collect();
-    json!({ "points": points, "by": by, "reasons": reasons, "parameters": names, "best": log.best })
+    json!({ "points": points, "by": by, "reasons": reasons, "parameters": names, "best": best })
 }
 
 fn index_of<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {

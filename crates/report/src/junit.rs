@@ -91,7 +91,9 @@ fn told(case: &CaseView, run: &RunView) -> String {
         .min_gap_m()
         .and_then(|gap| fixed(gap, 2))
         .map_or("no gap was measured".to_owned(), |gap| format!("{gap} m"));
-    let faithful = if run.verdict.faithful() {
+    let faithful = if run.faithful().is_none() {
+        "not checked".to_owned()
+    } else if run.verdict.faithful() {
         "yes".to_owned()
     } else {
         let failures = run.verdict.failures();

@@ -108,7 +108,7 @@ fn measured(run: &RunView) -> Vec<String> {
     let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
     vec![
         run.failed().to_string(),
-        run.verdict.faithful().to_string(),
+        run.faithful().map_or_else(String::new, |faithful| faithful.to_string()),
         why.join("; "),
         kinds.join("; "),
         number(run.min_gap_m()),

@@ -81,7 +81,7 @@ impl Summary {
             refused: count(&|case| case.refused.is_some()),
             from_record: count(&|case| origin(case) == Some(true)),
             alternatives: count(&|case| origin(case) == Some(false)),
-            faithful: count(&|case| case.last_run().is_some_and(|run| run.verdict.faithful())),
+            faithful: count(&|case| case.last_run().is_some_and(|run| run.faithful() == Some(true))),
             failed_before: count(&|case| case.before.as_ref().is_some_and(RunView::failed)),
             failed_after: count(&|case| case.last_run().is_some_and(RunView::failed)),
             closer: count(&|case| closer(case) == Some(true)),

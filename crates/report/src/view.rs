@@ -146,6 +146,11 @@ impl RunView {
         self.findings.iter().any(|finding| finding.kind.is_failure())
     }
 
+    /// Whether it is true to its record; `None` where nothing was checked.
+    pub fn faithful(&self) -> Option<bool> {
+        (!self.verdict.checks.is_empty()).then(|| self.verdict.faithful())
+    }
+
     /// Least box gap to a scripted partner. [m]
     pub fn min_gap_m(&self) -> Option<f64> {
         self.metrics.min_gap.map(|gap| gap.value).filter(|gap| gap.is_finite())

@@ -2,6 +2,7 @@
 
 use recrash_model::narrative::{FactSource, FactValue};
 use recrash_model::record::{Coded, ContactZone, MPS_PER_MPH};
+use recrash_model::template::Template;
 use serde::Serialize;
 use serde_json::Value;
 use std::borrow::Cow;
@@ -92,6 +93,10 @@ pub fn coded<T: Copy>(value: &Coded<T>, label: impl Fn(T) -> String) -> Result<S
 
 /// What a fact states: its name and its value.
 pub fn fact(value: &FactValue) -> (String, String) {
+    if let FactValue::Contact { sv, cp } = value {
+        let told = |of: &[ContactZone]| if of.is_empty() { "none named".to_owned() } else { zones(of) };
+        return ("Contact".to_owned(), format!("SV {}; CP {}", told(sv), told(cp)));
+    }
     let Ok(Value::Object(fields)) = serde_json::to_value(value) else { return (String::new(), String::new()) };
     let tag = fields.get("fact").and_then(Value::as_str).unwrap_or_default();
     let parts: Vec<String> = fields
@@ -135,6 +140,11 @@ pub fn source(source: &FactSource) -> (&'static str, Cow<'_, str>) {
     }
 }
 
+/// A template in few words, such as "Intersection, SV straight, CP left turn".
+pub fn template(template: &Template) -> String {
+    template.to_string().replace("proceeding straight", "straight")
+}
+
 /// Time of day from minutes after midnight.
 pub fn clock(minutes: u16) -> String {
     format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
@@ -171,6 +181,6 @@ mod tests {
         assert_eq!(fact(&FactValue::Approach { approach: Approach::Left }), ("Approach".into(), "left".into()));
         assert_eq!(fact(&FactValue::CpSignal { signal: Signal::StopSign }), ("CP signal".into(), "stop sign".into()));
         let zones = FactValue::Contact { sv: vec![ContactZone::FrontLeft, ContactZone::Left], cp: vec![] };
-        assert_eq!(fact(&zones), ("Contact".into(), "SV front left + left, CP none named".into()));
+        assert_eq!(fact(&zones), ("Contact".into(), "SV front left, left; CP none named".into()));
     }
 }

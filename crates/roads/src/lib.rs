@@ -6,13 +6,20 @@
 mod blocks;
 pub mod check;
 mod conflict;
+pub mod drawing;
+pub mod json_place;
 pub mod lane;
 pub mod network;
+mod paper_dialect;
 pub mod path;
+mod read;
 pub mod scenario;
 
-pub use check::{check, read_draft};
+pub use check::check;
+pub use drawing::{LineKind, RoadDrawing, RoadLine};
+pub use json_place::{add_lines, locate};
 pub use lane::{Centreline, Lane, LaneId};
 pub use network::{Road, RoadId, RoadNetwork, RoadPart};
 pub use path::{Conflict, LanePath, PathPoint};
-pub use scenario::{ObstaclePlacement, Placement, Scenario};
+pub use read::{MAX_SCENARIO_BYTES, read_draft, scenario_schema, write_draft};
+pub use scenario::{ObstaclePlacement, Placement, Scenario, obstacle_size};

@@ -222,6 +222,7 @@ fn inertia(points: &Matrix, weights: &[f64], clustering: &Clustering) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::oracle::oracle;
 
     fn line(xs: &[f64]) -> Matrix {
         let rows: Vec<[f64; 1]> = xs.iter().map(|&x| [x]).collect();
@@ -274,6 +275,20 @@ mod tests {
             Clustering { groups: vec![0, 0, 1], centres: Matrix::from_rows(1, &[[1.05], [3.9]]), inertia: 0.0 };
         hartigan(&line(&[0.0, 2.1, 3.9]), &[1.0; 3], &mut goes);
         assert_eq!(goes.groups, [0, 1, 1]);
+    }
+
+    #[test]
+    fn inertia_is_no_worse_than_scikit_learns() {
+        let fixture = oracle("clusters.json");
+        let points = fixture.matrix("points");
+        let theirs = fixture.numbers("kmeans_inertia");
+        let (k, restarts) = (fixture.number("k") as usize, fixture.number("restarts") as usize);
+        let inertia = |seed| kmeans(&points, &vec![1.0; points.rows], k, restarts, Seed(seed)).inertia;
+        let ours: Vec<f64> = (0..theirs.len() as u64).map(inertia).collect();
+        let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
+        let least = |x: &[f64]| x.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(mean(&ours) <= mean(&theirs), "{} > {}", mean(&ours), mean(&theirs));
+        assert!(least(&ours) <= least(&theirs) * (1.0 + 1e-12));
     }
 
     #[test]

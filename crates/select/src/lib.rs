@@ -17,9 +17,12 @@ mod greedy;
 mod kmeans;
 mod lexical;
 mod matrix;
+#[cfg(test)]
+mod oracle;
 mod pca;
 mod space;
 mod strategy;
+mod stratified;
 mod study;
 mod words;
 
@@ -39,7 +42,7 @@ pub struct SelectOptions {
     pub strategy: Strategy,
     /// Number of picks asked for.
     pub budget: usize,
-    /// Seed of the k-means starts. Other strategies use none.
+    /// Seed of the k-means starts. `k-center` and `facility-location` use none.
     pub seed: Seed,
     /// Principal components of the embedding that enter the clustering space. The paper's six.
     pub dimensions: usize,
@@ -61,7 +64,7 @@ impl Default for SelectOptions {
             dimensions: 6,
             template_weight: 1.0,
             weighting: Weighting::Frequency,
-            restarts: 10,
+            restarts: 20,
         }
     }
 }
@@ -159,10 +162,16 @@ pub fn usable_narratives(records: &RecordSet) -> Vec<&str> {
     records.usable.iter().map(narrative).collect()
 }
 
-/// The lexical embedding of the usable records. The words that name the reporting entity and the vehicle are left out:
-/// they tell who wrote the report, not what happened.
+/// Who reported each of the usable records, in order: for [`Embedding::without_house_style`].
+pub fn usable_reporters(records: &RecordSet) -> Vec<&str> {
+    let reporter = |&i: &usize| records.records.get(i).map_or("", |record| record.entity.as_str());
+    records.usable.iter().map(reporter).collect()
+}
+
+/// The embedding [`select`] uses: the lexical one of the usable records, without what tells who wrote the report instead
+/// of what happened (the words that name reporter and vehicle, and the reporter's house style).
 pub fn embed_records(records: &RecordSet) -> Embedding {
     let used = records.usable.iter().filter_map(|&i| records.records.get(i));
     let authors: Vec<&str> = used.flat_map(|record| [record.entity.as_str(), record.vehicle.as_str()]).collect();
-    lexical_embedding(&usable_narratives(records), &authors)
+    lexical_embedding(&usable_narratives(records), &authors).without_house_style(&usable_reporters(records))
 }

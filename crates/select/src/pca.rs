@@ -77,6 +77,7 @@ fn gram_of_rows(x: &Matrix) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::oracle::oracle;
 
     #[test]
     fn points_on_a_line_have_one_component() {
@@ -103,6 +104,25 @@ mod tests {
             }
         }
         assert!((wide.explained_variance - tall.explained_variance).abs() < 1e-12);
+    }
+
+    #[test]
+    fn scikit_learn_gives_the_same_scores() {
+        let fixture = oracle("pca.json");
+        for shape in ["tall", "wide"] {
+            let expected = fixture.matrix(&format!("{shape}_scores"));
+            let pca = principal_components(&fixture.matrix(shape), expected.columns);
+            let explained = fixture.number(&format!("{shape}_explained_variance"));
+            assert!((pca.explained_variance - explained).abs() < 1e-10);
+            for k in 0..expected.columns {
+                // Equal up to the sign of each component.
+                let same = (0..expected.rows).map(|i| pca.scores.row(i)[k] * expected.row(i)[k]).sum::<f64>();
+                for i in 0..expected.rows {
+                    let difference = pca.scores.row(i)[k] - same.signum() * expected.row(i)[k];
+                    assert!(difference.abs() < 1e-10, "{shape}, row {i}, component {k}: {difference}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! The strategies: from the clustering space to groups with a pick each.
 
 use crate::SelectOptions;
-use crate::apportion::equal_proportions;
 use crate::greedy::{facility_location, k_center};
 use crate::kmeans::kmeans;
 use crate::matrix::{Matrix, squared_distance};
 use crate::space::ClusteringSpace;
+use crate::stratified::stratified;
 use recrash_model::selection::Strategy;
 
 /// A cluster: rows of the space, the pick first, then the nearest to the centre first. Never empty.
@@ -36,36 +36,9 @@ pub(crate) fn choose(space: &ClusteringSpace, options: &SelectOptions) -> Vec<Gr
     }
 }
 
-/// One pick per observed template first; the others shared out by equal proportions; k-means inside each template.
-fn stratified(space: &ClusteringSpace, options: &SelectOptions) -> Vec<Group> {
-    // Heaviest first, so that they win where the budget is short; equals stay in the order of tables.
-    let mut order: Vec<usize> = (0..space.observed.len()).collect();
-    order.sort_by(|&a, &b| space.observed[b].weight.total_cmp(&space.observed[a].weight));
-    let weights: Vec<f64> = order.iter().map(|&t| space.observed[t].weight).collect();
-    let of_template: Vec<Matrix> = order.iter().map(|&t| space.narrative.select(&space.observed[t].rows)).collect();
-    // Equal narratives of one template are one point: a second pick there would be the same scenario again.
-    let limits: Vec<usize> = of_template.iter().map(Matrix::distinct_rows).collect();
-    let shares = equal_proportions(&weights, &limits, options.budget);
-
-    let mut groups = Vec::new();
-    let mut without_pick = Vec::new();
-    for ((&t, points), &share) in order.iter().zip(&of_template).zip(&shares) {
-        let template = &space.observed[t];
-        if share == 0 {
-            without_pick.extend_from_slice(&template.rows);
-            continue;
-        }
-        let weights: Vec<f64> = template.rows.iter().map(|&row| space.weights[row]).collect();
-        let seed = options.seed.child(&template.template.slug());
-        groups.extend(groups_by_kmeans(points, &weights, &template.rows, share, options.restarts, seed));
-    }
-    join_nearest(space, &mut groups, &without_pick);
-    groups
-}
-
 /// k-means on `points`; point `i` is row `rows[i]` of the space. The pick is the point nearest to the centre, the first
 /// of equals.
-fn groups_by_kmeans(
+pub(crate) fn groups_by_kmeans(
     points: &Matrix,
     weights: &[f64],
     rows: &[usize],
@@ -91,7 +64,7 @@ fn groups_around(space: &ClusteringSpace, picks: Vec<usize>) -> Vec<Group> {
 }
 
 /// Appends rows to the groups of their nearest picks, the nearest row first.
-fn join_nearest(space: &ClusteringSpace, groups: &mut [Group], rows: &[usize]) {
+pub(crate) fn join_nearest(space: &ClusteringSpace, groups: &mut [Group], rows: &[usize]) {
     let mut joining: Vec<Vec<(f64, usize)>> = vec![Vec::new(); groups.len()];
     for &row in rows {
         let to = |group: &Group| squared_distance(space.points.row(row), space.points.row(group.pick()));

@@ -2,7 +2,7 @@
 
 use crate::assemble::inertia;
 use crate::coverage::coverage;
-use crate::matrix::distance;
+use crate::matrix::{Matrix, distance};
 use crate::space::ClusteringSpace;
 use crate::strategy::{Group, choose};
 use crate::{Embedding, SelectError, SelectOptions};
@@ -85,7 +85,7 @@ pub fn budget_table(
         table.push(BudgetRow {
             budget,
             inertia: inertia(&space, &groups),
-            silhouette: silhouette(&space, &groups),
+            silhouette: silhouette(&space.points, &groups),
             templates_covered: coverage.templates_covered,
             radius: coverage.radius,
             mean_distance: coverage.mean_distance,
@@ -105,8 +105,8 @@ fn labels(groups: &[Group], rows: usize) -> Vec<usize> {
 
 /// Mean of `(b - a) / max(a, b)` over the rows, where `a` is the mean distance to the others of the own group and `b`
 /// the least mean distance to another group; 0 for a row alone in its group (Rousseeuw 1987).
-fn silhouette(space: &ClusteringSpace, groups: &[Group]) -> Option<f64> {
-    let rows = space.points.rows;
+fn silhouette(points: &Matrix, groups: &[Group]) -> Option<f64> {
+    let rows = points.rows;
     if groups.len() < 2 || groups.len() >= rows {
         return None;
     }
@@ -115,7 +115,7 @@ fn silhouette(space: &ClusteringSpace, groups: &[Group]) -> Option<f64> {
         for &row in &group.members {
             let mean_distance = |other: usize| {
                 let members = &groups[other].members;
-                let total: f64 = members.iter().map(|&m| distance(space.points.row(row), space.points.row(m))).sum();
+                let total: f64 = members.iter().map(|&m| distance(points.row(row), points.row(m))).sum();
                 total / if other == own { (members.len() - 1) as f64 } else { members.len() as f64 }
             };
             if group.members.len() > 1 {
@@ -157,6 +157,7 @@ fn adjusted_rand_index(a: &[usize], b: &[usize]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::oracle::oracle;
 
     #[test]
     fn adjusted_rand_index_by_hand() {
@@ -164,6 +165,18 @@ mod tests {
         // Pairs together: both 1; in a 2, in b 3; of 6. Chance 1, most 2.5: (1 - 1) / 1.5.
         assert_eq!(adjusted_rand_index(&[0, 0, 1, 1], &[0, 0, 0, 1]), 0.0);
         assert_eq!(adjusted_rand_index(&[0, 0, 0], &[1, 1, 1]), 1.0);
+    }
+
+    #[test]
+    fn silhouette_and_rand_index_agree_with_scikit_learn() {
+        let fixture = oracle("clusters.json");
+        let points = fixture.matrix("points");
+        let (a, b) = (fixture.whole_numbers("labels"), fixture.whole_numbers("other_labels"));
+        let groups: Vec<Group> = (0..=a.iter().copied().max().unwrap())
+            .map(|g| Group { members: (0..points.rows).filter(|&i| a[i] == g).collect() })
+            .collect();
+        assert!((silhouette(&points, &groups).unwrap() - fixture.number("silhouette")).abs() < 1e-12);
+        assert!((adjusted_rand_index(&a, &b) - fixture.number("adjusted_rand_index")).abs() < 1e-12);
     }
 
     #[test]

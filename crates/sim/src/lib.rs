@@ -1,1 +1,43 @@
-//! stub
+//! The native simulator: deterministic, two-dimensional, without a screen.
+//!
+//! One scenario and one ego give one rollout. Physics steps take 0.02 s, decisions are made every 0.1 s, and the order is
+//! always the same: sense, decide, move, collide, record; every actor decides on the same frozen world. It cannot fail:
+//! whatever a checked scenario asks for, a run ends with a termination that is data.
+//!
+//! - [`simulate`] runs one scenario and keeps everything.
+//! - [`Simulator`] runs many, with a [`Recorder`] that keeps what is wanted; a step allocates nothing.
+//! - The models behind it are described in `docs/models`: vehicle, metadrive-idm, idm, policies.
+//!
+//! What this crate does **not** do: it never sees a crash record, opens no file, reads no clock and starts no thread.
+
+mod chassis;
+mod ego;
+mod give_way;
+mod idm;
+mod lanes;
+mod metadrive_idm;
+mod recorder;
+mod scene;
+mod script;
+mod simulator;
+mod steering;
+mod traffic;
+
+pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand, friction_of};
+pub use ego::{Ego, UnknownEgo};
+pub use idm::IdmParameters;
+pub use metadrive_idm::{Lead, SIGHT_M, throttle as metadrive_idm_throttle};
+pub use recorder::{CastMember, Recorder, RolloutRecorder, Summary, SummaryRecorder};
+pub use simulator::Simulator;
+
+use recrash_model::rollout::Rollout;
+use recrash_roads::Scenario;
+
+/// Runs one scenario.
+///
+/// For many runs keep a [`Simulator`]: it reuses its memory.
+pub fn simulate(scenario: &Scenario, ego: Ego) -> Rollout {
+    let mut recorder = RolloutRecorder::new();
+    Simulator::new().run(scenario, ego, &mut recorder);
+    recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends"))
+}

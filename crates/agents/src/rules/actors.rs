@@ -47,8 +47,8 @@ pub struct Cast {
 /// that they are taken and mean nobody.
 const NOBODY: &str = r"bik(?:e|ing) lanes?|bicycle lanes?|bus (?:lanes?|stop|bay|zone)|truck lanes?|car ?pool lanes?|test driver|safety driver|vehicle operator|(?:passenger|driver)(?:'s)?[- ]side|vehicle'?s? (?:hood|bumper|door)|parked (?:cars?|vehicles?|trucks?|vans?|suvs?)";
 const EGO: &str = r"(?:waymo|zoox|cruise|apollo|argo|nuro|ghost|beep|kodiak|lucid|aurora|motional|avride|pony|weride|wayve|gatik|navya|easymile|may mobility|autonomous|automated|self-driving|driverless|subject|test|host|ego|ads-equipped)(?:'s)?(?:[ -](?:llc|inc|driver|operated|equipped|ai|prius|autonomous|automated|driving|motor))*(?:[ -](?:vehicle|av\w?|adv|car|truck|shuttle|robotaxi|taxi|suv|bus|van))?\b|\b(?:avs?|adv|ads|sv|robotaxi|shuttle|vehicle (?:1|one)|car (?:1|one)|v1)";
-const TRAFFIC: &str = r"(?:oncoming |cross |crossing |stopped |slow |slower |slowing |the |other )?traffic|crossing guard|queue|emergency vehicles?|police (?:car|vehicle|officer)";
-const FOUR_WHEELS: &str = r"passenger (?:cars?|vehicles?)|sport utility vehicle|suv|crossover|minivan|van|pick-?up(?: truck)?|box truck|semi(?:-?trailer|-?truck)?|tractor(?:[- ]trailer)?|dump truck|garbage truck|fire truck|ambulance|truck|(?:\w+ )?bus|trailer|sedan|hatchback|coupe|taxi|vehicle (?:2|two)|car (?:2|two)|v2|(?:other|second|another|third[- ]party|opposing|approaching) (?:vehicle|driver|car|party|motorist)|honda|toyota|ford|tesla|chevrolet|chevy|nissan|hyundai|kia|subaru|mazda|volkswagen|bmw|audi|mercedes(?:-benz)?|lexus|jeep|dodge|ram|gmc|cadillac|buick|acura|infiniti|volvo|range rover|driver|motorist|vehicle|car";
+const TRAFFIC: &str = r"(?:oncoming |cross |crossing |stopped |slow |slower |slowing |the |other )?traffic|crossing guard|queue|police officer";
+const FOUR_WHEELS: &str = r"passenger (?:cars?|vehicles?)|sport utility vehicle|suv|crossover|minivan|van|pick-?up(?: truck)?|police (?:car|vehicle|cruiser|suv)|patrol car|emergency vehicle|fire (?:truck|engine)|ambulance|golf cart|cart|rickshaw|station wagon|convertible|limousine|tow truck|delivery (?:truck|van|vehicle)|box truck|semi(?:-?trailer|-?truck)?|tractor(?:[- ]trailer)?|dump truck|garbage truck|tanker(?: truck)?|truck|(?:\w+ )?bus|trailer|sedan|hatchback|coupe|taxi|vehicle (?:2|two)|car (?:2|two)|v2|(?:other|second|another|third[- ]party|opposing|approaching) (?:vehicle|driver|car|party|motorist)|honda|toyota|ford|tesla|chevrolet|chevy|nissan|hyundai|kia|subaru|mazda|volkswagen|bmw|audi|mercedes(?:-benz)?|lexus|jeep|dodge|ram|gmc|cadillac|buick|acura|infiniti|volvo|range rover|driver|motorist|vehicle|car";
 const TWO_WHEELS: &str = r"motorcycl\w+|motorbike|moped|(?:motor )?scooter(?:ist)?|e-?scooter|cyclist|bicyclist|bicycl\w+|e-?bike|bike|skateboard\w*|delivery robot|robot|(?:person|rider|man|woman|individual) (?:on|operating|riding)(?: an?)?(?: electric| motorized)? \w+";
 const WALKING: &str = r"pedestrians?|person|people|child";
 
@@ -122,6 +122,9 @@ impl Cast {
             t if t.ends_with("bus") => kind == PartnerKind::Bus,
             t if t.contains("semi") || t.contains("tractor") || t.ends_with("box truck") => {
                 kind == PartnerKind::HeavyTruck
+            }
+            t if ["police", "patrol", "emergency", "fire", "ambulance"].iter().any(|word| t.starts_with(word)) => {
+                kind == PartnerKind::FirstResponder
             }
             "truck" => matches!(kind, PartnerKind::HeavyTruck | PartnerKind::PickupTruck),
             _ if on_four_wheels => return None,

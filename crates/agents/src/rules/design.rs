@@ -1,34 +1,36 @@
 //! From a narrative to a scenario: map, lanes, speeds and timing that make the told conflict happen.
 
 use super::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
-use super::retry::{Levers, Wanted, levers};
+use super::retry::{Aim, Plan, plan};
 use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_way, ground, stagings};
+use super::timing::{Course, Task, Timing, Wanted, best_timings};
 use super::writing::Facts;
 use crate::{AgentError, Brief, Feedback};
 use recrash_model::narrative::{FactValue, FirstMover, LongitudinalAction, Narrative, Side};
 use recrash_model::record::{ContactZone, CrashRecord, PartnerKind};
 use recrash_model::scenario::{
-    Approach, Author, CrossMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind,
-    Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
+    Author, CrossMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind, Partner, Policy,
+    RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
 };
 use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::{LanePath, RoadNetwork, RoadPart};
 
 /// Lane width in towns, MetaDrive's. [m]
 const LANE_WIDTH_M: f64 = 3.5;
 /// How long the two drive before they meet: long enough to settle, short enough for the replay; assumed. [s]
 const LEAD_TIME_S: f64 = 5.5;
+/// The shortest the ego drives before the intersection, where the partner's way needs it to start nearer; assumed. [s]
+const SHORTEST_LEAD_S: f64 = 1.5;
 /// The ego's start along the approach: MetaDrive's. [m]
 const EGO_START_M: f64 = 5.0;
 /// Speed where neither record nor road sign tells one: 30 km/h, MetaDrive's. [m/s]
 const DEFAULT_SPEED_MPS: f64 = 8.3;
 /// Drivers near a conflict go slower than the posted speed; assumed.
 const SHARE_OF_POSTED_SPEED: f64 = 0.8;
-/// Half the length of a passenger car. [m]
-const HALF_LENGTH_M: f64 = 2.2575;
-/// Half its width. [m]
-const HALF_WIDTH_M: f64 = 0.926;
+/// Who sets off does so at this throttle, about 1.5 m/s^2: brisk; assumed.
+const SETTING_OFF_THROTTLE: f64 = 0.5;
+/// Speed of somebody who has just set off. [m/s]
+const SETTING_OFF_MPS: f64 = 1.0;
 /// Records named in a scenario's source.
 const MOST_SOURCES: usize = 4;
 
@@ -39,14 +41,14 @@ pub fn design(brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Re
         let scenario_id = brief.scenario_id.to_owned();
         return Err(AgentError::TemplateUnknown { scenario_id, template: narrative.template, known: KNOWN });
     };
-    let wanted = facts
+    let told = facts
         .find(|value| match value {
-            FactValue::Contact { sv, cp } => Some(Wanted { sv, cp }),
+            FactValue::Contact { sv, cp } => Some((sv.as_slice(), cp.as_slice())),
             _ => None,
         })
-        .unwrap_or(Wanted { sv: &[], cp: &[] });
-    let levers = levers(feedback, wanted);
-    Ok(Stage::new(brief, narrative, staging, levers, wanted).draft())
+        .unwrap_or((&[], &[]));
+    let plan = plan(feedback, !told.0.is_empty(), staging.conflict == ConflictKind::Sideways);
+    Ok(Stage::new(brief, narrative, staging, plan, told).draft())
 }
 
 /// The staging the facts name, or the template's most typical one.
@@ -66,47 +68,15 @@ fn staging_of(narrative: &Narrative, facts: &Facts) -> Option<Staging> {
         .copied()
 }
 
-/// The gap in arrival at the conflict point that brings these zones together, for paths at right angles. [s]
-///
-/// With f and g the places of the zones along the ego and the partner (1 front, -1 rear), and L and W half length and
-/// width: a front touches the near side of the other, W before the point where the centre lines cross, so a vehicle that
-/// is hit with its zone at x reaches the point (x L + \[x is front\] W) / v after the contact.
-pub fn gap_of_contact(zones: Wanted, (ego_mps, partner_mps): (f64, f64)) -> f64 {
-    let reach = |zones: &[ContactZone]| {
-        let along = along(zones);
-        along * HALF_LENGTH_M + if along >= 0.7 { HALF_WIDTH_M } else { 0.0 }
-    };
-    reach(zones.cp) / partner_mps - reach(zones.sv) / ego_mps
-}
-
-/// How far ahead of the ego a partner beside it must be to bring these zones together. [m]
-pub fn shift_of_contact(zones: Wanted) -> f64 {
-    (along(zones.sv) - along(zones.cp)) * HALF_LENGTH_M
-}
-
-/// Mean place of zones along a vehicle: 1 front, 0 middle, -1 rear.
-fn along(zones: &[ContactZone]) -> f64 {
-    let place = |zone: &ContactZone| match zone {
-        ContactZone::Front => Some(1.0),
-        ContactZone::FrontLeft | ContactZone::FrontRight => Some(0.75),
-        ContactZone::Left | ContactZone::Right => Some(0.0),
-        ContactZone::RearLeft | ContactZone::RearRight => Some(-0.75),
-        ContactZone::Rear => Some(-1.0),
-        ContactZone::Top | ContactZone::Bottom => None,
-    };
-    let places: Vec<f64> = zones.iter().filter_map(place).collect();
-    if places.is_empty() { 0.0 } else { places.iter().sum::<f64>() / places.len() as f64 }
-}
-
 /// Everything that is decided before numbers are worked out.
 struct Stage<'a> {
     brief: &'a Brief<'a>,
     narrative: &'a Narrative,
     facts: Facts<'a>,
     staging: Staging,
-    lanes: LanePlan,
-    levers: Levers,
-    wanted: Wanted<'a>,
+    plan: Plan,
+    /// Zones told on the ego and on the partner.
+    told: (&'a [ContactZone], &'a [ContactZone]),
     ego_mps: f64,
     partner_mps: f64,
     kind: PartnerKind,
@@ -118,8 +88,8 @@ impl<'a> Stage<'a> {
         brief: &'a Brief<'a>,
         narrative: &'a Narrative,
         staging: Staging,
-        levers: Levers,
-        wanted: Wanted<'a>,
+        plan: Plan,
+        told_zones: (&'a [ContactZone], &'a [ContactZone]),
     ) -> Self {
         let facts = Facts(&narrative.facts);
         let kind = facts.find(|value| match value {
@@ -127,7 +97,6 @@ impl<'a> Stage<'a> {
             _ => None,
         });
         let kind = kind.unwrap_or_default();
-        let lanes = staging.lanes[levers.lane_plan % staging.lanes.len()];
         let ground = ground(&narrative.template, &staging);
         let record = brief.records.first().copied();
         let told = |pick: fn(&FactValue) -> Option<f64>| facts.find(pick).filter(|v| *v >= LEAST_TOLD_SPEED_MPS);
@@ -143,40 +112,132 @@ impl<'a> Stage<'a> {
         let limit = |speed: f64, movement| {
             let most = most_speed(ground, turn(ground, movement)).min(brief.profile.expresses.max_speed_mps);
             let least = brief.profile.expresses.min_speed_mps.max(LEAST_TOLD_SPEED_MPS).min(most);
-            round_to((speed * levers.speed_factor).clamp(least, most), 0.1)
+            round_to((speed * plan.speed_factor).clamp(least, most), 0.1)
         };
         let ego_mps = limit(ego.or(posted).unwrap_or(DEFAULT_SPEED_MPS), narrative.template.sv);
         let partner_mps = limit(partner.or(posted).unwrap_or(ego_mps), narrative.template.cp);
         let partner_mps = partner_mps.min(most_speed_of(kind));
-        Self { brief, narrative, facts, staging, lanes, levers, wanted, ego_mps, partner_mps, kind, ground }
+        Self { brief, narrative, facts, staging, plan, told: told_zones, ego_mps, partner_mps, kind, ground }
     }
 
     fn draft(&self) -> ScenarioDraft {
-        let approach_m = ((EGO_START_M + LEAD_TIME_S * self.ego_mps) * self.levers.length_factor).clamp(40.0, 280.0);
-        let arm_m = (LEAD_TIME_S * self.ego_mps.max(self.partner_mps) * 1.5 * self.levers.length_factor + 20.0)
-            .clamp(60.0, 280.0);
-        let map = self.map(approach_m.ceil(), arm_m.ceil());
-        let network = RoadNetwork::build(&map);
-        let way = Way::new(&network, Approach::Same, turn(self.ground, self.narrative.template.sv), self.lanes.ego);
-        let other = Way::new(
-            &network,
-            self.staging.approach,
-            turn(self.ground, self.narrative.template.cp),
-            self.lanes.partner,
-        );
-        let mut draft = self.frame(map);
-        match self.staging.conflict {
-            ConflictKind::Paths => self.stage_paths(&mut draft, &network, &way, &other),
-            ConflictKind::Sideways => self.stage_sideways(&mut draft, &way, &other),
+        let factor = self.plan.length_factor;
+        let approach_m = ((EGO_START_M + LEAD_TIME_S * self.ego_mps) * factor).clamp(40.0, 280.0).ceil();
+        let arm_m = (LEAD_TIME_S * self.ego_mps.max(self.partner_mps) * 1.8 * factor + 20.0).clamp(60.0, 280.0).ceil();
+        let (ego_turn, partner_turn) = (self.turn(self.narrative.template.sv), self.turn(self.narrative.template.cp));
+        let plans: Vec<(LanePlan, Course)> = self
+            .staging
+            .lanes
+            .iter()
+            .filter_map(|lanes| {
+                let map = self.map(lanes.lanes, approach_m, arm_m);
+                let partner = (self.staging.approach, partner_turn, lanes.partner);
+                Some((*lanes, Course::new(&map, (ego_turn, lanes.ego), partner)?))
+            })
+            .collect();
+        let (lane_plans, courses): (Vec<LanePlan>, Vec<Course>) = plans.into_iter().unzip();
+        // The partner must fit on its way: where it would start before it, the ego starts farther on.
+        let mut ego_start_m = EGO_START_M;
+        let farthest_m = (approach_m - SHORTEST_LEAD_S * self.ego_mps).max(EGO_START_M);
+        let least_m = 0.5 * VehicleSpec::of(self.kind).length_m + 1.0;
+        let mut timed = best_timings(&self.task(ego_start_m), &courses, &self.plan);
+        for _ in 0..4 {
+            let missing_m = timed.first().map_or(0.0, |(_, timing)| least_m - timing.partner_start_m);
+            if missing_m <= 0.0 || ego_start_m >= farthest_m {
+                break;
+            }
+            let partner_mps = timed.first().map_or(self.partner_mps, |(_, timing)| timing.partner_mps);
+            let moved_m = missing_m / partner_mps.max(1.0) * self.ego_mps + 1.0;
+            ego_start_m = round_to((ego_start_m + moved_m).min(farthest_m), 0.5);
+            timed = best_timings(&self.task(ego_start_m), &courses, &self.plan);
         }
-        self.place_obstacles(&mut draft, &way);
-        let length_m = way.as_ref().map_or(200.0, |way| way.path.length_m);
-        draft.duration_s = ((length_m - draft.ego.s_m) / self.ego_mps * 1.25 + 6.0).ceil().clamp(15.0, 60.0);
+        let (position, timing) = timed.first().map_or((0, None), |(position, timing)| (*position, Some(*timing)));
+        let lanes = lane_plans.get(position).copied().unwrap_or(self.staging.lanes[0]);
+        let mut draft = self.frame(lanes, self.map(lanes.lanes, approach_m, arm_m), ego_start_m);
+        if let Some(timing) = timing {
+            self.apply(&mut draft, &timing);
+        }
+        if let Some(course) = courses.get(position) {
+            self.place_obstacles(&mut draft, course, lanes);
+            let length_m = course.ego.path.length_m;
+            draft.duration_s = ((length_m - draft.ego.s_m) / self.ego_mps * 1.25 + 6.0).ceil().clamp(15.0, 60.0);
+        }
         draft
     }
 
+    fn turn(&self, movement: Movement) -> Turn {
+        turn(self.ground, movement)
+    }
+
+    fn task(&self, ego_start_m: f64) -> Task<'_> {
+        Task {
+            template: &self.narrative.template,
+            ground: self.ground,
+            conflict: self.staging.conflict,
+            towards: if self.staging.beside == Some(Side::Left) { 1.0 } else { -1.0 },
+            kind: self.kind,
+            ego_start_m,
+            ego_mps: self.ego_mps,
+            partner_mps: self.partner_mps,
+            sets_off: self.sets_off(),
+            wanted: Wanted {
+                sv: self.told.0,
+                cp: self.told.1,
+                excluded: &self.brief.profile.excludes.collisions,
+                partner_first: self.partner_first(),
+            },
+        }
+    }
+
+    /// First speed and acceleration of a partner that had stood. [m/s, m/s^2]
+    fn sets_off(&self) -> Option<(f64, f64)> {
+        let stood = self.staging.conflict == ConflictKind::Paths
+            && self.facts.cp_did(LongitudinalAction::WasStopped)
+            && self.partner_mps > SETTING_OFF_MPS;
+        stood.then(|| (SETTING_OFF_MPS, SETTING_OFF_THROTTLE * VehicleSpec::of(self.kind).max_acceleration_mps2))
+    }
+
+    /// Puts a timing into the draft.
+    fn apply(&self, draft: &mut ScenarioDraft, timing: &Timing) {
+        let partner = &mut draft.partners[0];
+        partner.speed_mps = timing.partner_mps;
+        match self.staging.conflict {
+            ConflictKind::Paths => {
+                partner.start = Start::ArrivalGap { arrival_gap_s: round_to(timing.start, 0.01) };
+                partner.policy = Policy::IdmNominal { target_speed_mps: timing.partner_mps };
+                if let Some((start_mps, acceleration)) = self.sets_off() {
+                    partner.speed_mps = start_mps;
+                    partner.policy = Policy::AccelThenBrake {
+                        accel_mag: SETTING_OFF_THROTTLE,
+                        accel_steps: ((timing.partner_mps - start_mps) / acceleration * 10.0).ceil() as u32,
+                        cruise_speed: timing.partner_mps,
+                        brake_step: 0,
+                        brake_steps: 0,
+                        speed_kp: None,
+                    };
+                }
+            }
+            ConflictKind::Sideways => {
+                partner.start = Start::Offset { delta_s_m: timing.start, delta_t_m: timing.start_t_m };
+                // It holds its speed, whoever and whatever is near: a driver who comes over has not seen.
+                partner.policy = Policy::SuddenBrake {
+                    target_speed: timing.partner_mps,
+                    brake_step: 0,
+                    brake_steps: 0,
+                    speed_kp: None,
+                };
+                partner.lateral = timing.lateral.into_iter().collect();
+                if let (Aim::Pass(_), Some(over)) = (self.plan.aim, timing.lateral) {
+                    // It notices, and goes back.
+                    let start_s = round_to(over.start_s + over.duration_s + 1.0, 0.1);
+                    partner.lateral.push(LateralMove { start_s, duration_s: 2.0, to_t_m: 0.0 });
+                }
+            }
+        }
+    }
+
     /// The scenario without timing.
-    fn frame(&self, map: MapSpec) -> ScenarioDraft {
+    fn frame(&self, lanes: LanePlan, map: MapSpec, ego_start_m: f64) -> ScenarioDraft {
         let template = self.narrative.template;
         let approach = self.staging.approach;
         ScenarioDraft {
@@ -191,9 +252,9 @@ impl<'a> Stage<'a> {
             },
             map,
             ego: EgoSpec {
-                turn: turn(self.ground, template.sv),
-                lane: self.lanes.ego,
-                s_m: EGO_START_M,
+                turn: self.turn(template.sv),
+                lane: lanes.ego,
+                s_m: ego_start_m,
                 speed_mps: self.ego_mps,
                 target_speed_mps: self.ego_mps,
             },
@@ -201,8 +262,8 @@ impl<'a> Stage<'a> {
                 id: "cp1".to_owned(),
                 kind: self.kind,
                 approach,
-                turn: turn(self.ground, template.cp),
-                lane_offset: self.lanes.partner as i8 - self.lanes.ego as i8,
+                turn: self.turn(template.cp),
+                lane_offset: lanes.partner as i8 - lanes.ego as i8,
                 start: Start::ArrivalGap { arrival_gap_s: 0.0 },
                 speed_mps: self.partner_mps,
                 policy: Policy::IdmNominal { target_speed_mps: self.partner_mps },
@@ -215,8 +276,7 @@ impl<'a> Stage<'a> {
         }
     }
 
-    fn map(&self, approach_m: f64, arm_m: f64) -> MapSpec {
-        let lanes = self.lanes.lanes;
+    fn map(&self, lanes: u8, approach_m: f64, arm_m: f64) -> MapSpec {
         let missing = self.facts.find(|value| match value {
             FactValue::ThreeWay { missing } => Some(*missing),
             _ => None,
@@ -228,7 +288,7 @@ impl<'a> Stage<'a> {
                 approach_m,
                 arm_m,
                 exit_radius_m: 10.0,
-                inner_radius_m: 30.0,
+                inner_radius_m: 20.0,
             }),
             Ground::Junction => match missing.and_then(|arm| self.fitting_arm(arm)) {
                 Some(missing) => MapSpec::T(TeeMap { lanes, lane_width_m: LANE_WIDTH_M, approach_m, arm_m, missing }),
@@ -255,130 +315,27 @@ impl<'a> Stage<'a> {
             FactValue::Order { first } => Some(*first),
             _ => None,
         });
-        let first = match told {
+        match told {
             Some(FirstMover::Cp) => true,
             Some(FirstMover::Sv) => false,
             Some(FirstMover::Both) | None => {
                 self.brief.seed.child(self.brief.scenario_id).child("order").rng().below(2) == 0
             }
-        };
-        first != self.levers.swap_order
-    }
-
-    /// Arrival gap that brings the told zones together, or lets the two pass closely. [s]
-    fn arrival_gap(&self) -> f64 {
-        let touched = !self.wanted.sv.is_empty();
-        if touched && !self.levers.near_miss {
-            return gap_of_contact(self.wanted, (self.ego_mps, self.partner_mps)) + self.levers.gap_shift_s;
         }
-        // Two cars at right angles touch while their gap is below (2 L + 2 W) / v of the later one; a little more passes.
-        let later_mps = if self.partner_first() { self.ego_mps } else { self.partner_mps };
-        let clear = 2.0 * (HALF_LENGTH_M + HALF_WIDTH_M + 0.7) / later_mps;
-        let length = 0.5 * (VehicleSpec::of(self.kind).length_m - 2.0 * HALF_LENGTH_M).max(0.0) / self.partner_mps;
-        let gap = clear + length + self.levers.gap_shift_s.abs();
-        if self.partner_first() { -gap } else { gap }
-    }
-
-    /// Paths that cross or merge: the arrival gap makes the meeting.
-    fn stage_paths(&self, draft: &mut ScenarioDraft, network: &RoadNetwork, way: &Option<Way>, other: &Option<Way>) {
-        let mut gap = self.arrival_gap();
-        let (policy, start_mps, lost_s) = self.policy();
-        gap -= lost_s;
-        let partner = &mut draft.partners[0];
-        partner.policy = policy;
-        partner.speed_mps = start_mps;
-        partner.start = Start::ArrivalGap { arrival_gap_s: round_to(gap, 0.01) };
-        let (Some(way), Some(other)) = (way, other) else { return };
-        let width = VehicleSpec::of(self.kind).width_m;
-        let Some(conflict) = way.path.conflict(&other.path, network, 2.0 * HALF_WIDTH_M, width) else { return };
-        // The partner must fit on its arm: where it would start before it, the ego starts nearer.
-        let meets_s = (conflict.s_a - draft.ego.s_m) / self.ego_mps;
-        let start_m = conflict.s_b - self.partner_mps * (meets_s + gap);
-        let least_m = 0.5 * VehicleSpec::of(self.kind).length_m + 1.0;
-        if start_m < least_m {
-            let moved = (least_m - start_m) / self.partner_mps * self.ego_mps;
-            let most = way.block_m - self.ego_mps * 2.0;
-            draft.ego.s_m = round_to((draft.ego.s_m + moved).min(most.max(draft.ego.s_m)), 0.5);
-        }
-    }
-
-    /// What the partner does along its lane, its first speed, and how much later it arrives for it. [s]
-    fn policy(&self) -> (Policy, f64, f64) {
-        let target = self.partner_mps;
-        if self.facts.cp_did(LongitudinalAction::WasStopped) {
-            // Sets off at half throttle, about 1.5 m/s^2.
-            let throttle = 0.5;
-            let acceleration = throttle * VehicleSpec::of(self.kind).max_acceleration_mps2;
-            let start_mps = 1.0_f64.min(target);
-            let speeding_up_s = (target - start_mps) / acceleration;
-            let lost_s = (target - start_mps) * speeding_up_s / (2.0 * target);
-            let policy = Policy::AccelThenBrake {
-                accel_mag: throttle,
-                accel_steps: (speeding_up_s * 10.0).ceil() as u32,
-                cruise_speed: target,
-                brake_step: 600,
-                brake_steps: 1,
-                speed_kp: None,
-            };
-            return (policy, start_mps, lost_s);
-        }
-        (Policy::IdmNominal { target_speed_mps: target }, target, 0.0)
-    }
-
-    /// Parallel paths: the partner drives beside the ego and comes over.
-    fn stage_sideways(&self, draft: &mut ScenarioDraft, way: &Option<Way>, other: &Option<Way>) {
-        let (Some(way), Some(other)) = (way, other) else { return };
-        let on_highway = self.ground == Ground::Road;
-        let (ego_place, partner_place) = way.meeting(other, self.ego_mps);
-        let meets_s = (ego_place - draft.ego.s_m) / self.ego_mps;
-        // The partner keeps beside the ego on the inside or outside of the turn.
-        let block = way.block_m;
-        let ratio = if ego_place > block { (partner_place - block) / (ego_place - block) } else { 1.0 };
-        let partner_mps = round_to(self.ego_mps * ratio, 0.01);
-        let towards = if self.staging.beside == Some(Side::Left) { 1.0 } else { -1.0 };
-        let touched = !self.wanted.sv.is_empty() && !self.wanted.cp.is_empty() && !self.levers.near_miss;
-        let ahead =
-            if touched { shift_of_contact(self.wanted).clamp(-4.0, 4.0) } else { 5.5 } + self.levers.start_shift_m;
-        let delta_s = partner_place + ahead - partner_mps * meets_s - draft.ego.s_m;
-        if delta_s < 0.0 {
-            draft.ego.s_m = round_to(draft.ego.s_m - delta_s, 0.5);
-        }
-        let delta_s = partner_place + ahead - partner_mps * (ego_place - draft.ego.s_m) / self.ego_mps - draft.ego.s_m;
-        let cp_turns = self.narrative.template.cp != Movement::Straight;
-        let clearance = LANE_WIDTH_M - HALF_WIDTH_M - 0.5 * VehicleSpec::of(self.kind).width_m;
-        // On a road without junction a move of half a lane counts as a turn to that side; a partner whose move must show
-        // starts on the far side of its lane, so that it has moved so far before the two can touch.
-        let (from_t, to_t) = match (on_highway, cp_turns) {
-            (true, false) => (0.0, 0.8 * LANE_WIDTH_M),
-            (true, true) => (-0.7, LANE_WIDTH_M),
-            (false, _) if touched => (0.0, clearance + 0.6),
-            (false, _) => (0.0, 0.6 * clearance),
-        };
-        let move_s: f64 = if on_highway { 2.5 } else { 1.8 };
-        let partner = &mut draft.partners[0];
-        partner.speed_mps = partner_mps;
-        partner.policy = Policy::IdmNominal { target_speed_mps: partner_mps };
-        partner.start = Start::Offset { delta_s_m: round_to(delta_s, 0.1), delta_t_m: round_to(from_t * towards, 0.1) };
-        partner.lateral = vec![LateralMove {
-            start_s: round_to((meets_s - move_s).max(0.5), 0.1),
-            duration_s: move_s,
-            to_t_m: round_to((from_t + (to_t - from_t) * self.levers.sideways_factor) * towards, 0.05),
-        }];
     }
 
     /// Cones of a work zone, in the lane beside the ego's so that they narrow its way and do not block it.
-    fn place_obstacles(&self, draft: &mut ScenarioDraft, way: &Option<Way>) {
+    fn place_obstacles(&self, draft: &mut ScenarioDraft, course: &Course, lanes: LanePlan) {
         let told = self.facts.find_fact(|value| matches!(value, FactValue::Obstacles { .. }));
         if !self.narrative.template.work_zone && told.is_none() {
             return;
         }
-        let Some(way) = way else { return };
         let side = match told.map(|fact| &fact.value) {
             Some(FactValue::Obstacles { side, .. }) => *side,
             _ => Side::Left,
         };
-        let has_left = self.lanes.ego > 0;
-        let has_right = self.lanes.ego + 1 < self.lanes.lanes;
+        let has_left = lanes.ego > 0;
+        let has_right = lanes.ego + 1 < lanes.lanes;
         let side = match (side, has_left, has_right) {
             (Side::Left, true, _) | (Side::Right, true, false) => Side::Left,
             (Side::Right, _, true) | (Side::Left, false, true) => Side::Right,
@@ -387,7 +344,8 @@ impl<'a> Stage<'a> {
         };
         let sign = if side == Side::Left { -1.0 } else { 1.0 };
         let partner_there = self.staging.beside == Some(side);
-        let end_m = if self.ground == Ground::Road { way.path.length_m - 40.0 } else { way.block_m - 6.0 };
+        let end_m =
+            if self.ground == Ground::Road { course.ego.path.length_m - 40.0 } else { course.ego.block_m - 6.0 };
         let first_m = (draft.ego.s_m + 18.0).min(end_m - 10.0).max(1.0);
         let count = 8_u32;
         let step_m = ((end_m - first_m) / f64::from(count)).clamp(1.0, 12.0);
@@ -401,43 +359,6 @@ impl<'a> Stage<'a> {
                 s_m: round_to(first_m + step_m * f64::from(number), 0.5),
                 t_m: round_to(sign * (0.5 * LANE_WIDTH_M + from_lane_edge), 0.05),
             });
-        }
-    }
-}
-
-/// A way through the map, with the places that matter.
-struct Way {
-    path: LanePath,
-    /// Where the block begins. [m]
-    block_m: f64,
-    /// The part of the block in which the movement shows: the connector of a junction, the way out of a circle. [m]
-    show: Option<(f64, f64)>,
-}
-
-impl Way {
-    fn new(network: &RoadNetwork, approach: Approach, turn: Turn, lane: u8) -> Option<Self> {
-        let roads = network.route(approach, turn)?;
-        let path = LanePath::new(network, roads.clone(), lane);
-        let part = |n: usize| network.road(roads[n]).part;
-        let inside: Vec<usize> =
-            (0..roads.len()).filter(|n| matches!(part(*n), RoadPart::Inner | RoadPart::Ring)).collect();
-        let start = |n: usize| path.segments.get(n).map_or(path.length_m, |segment| segment.start_m);
-        let block_m = inside.first().map_or(0.5 * path.length_m, |n| start(*n));
-        let show = inside.last().map(|n| (start(*n), start(*n + 1)));
-        Some(Self { block_m, show, path })
-    }
-
-    /// Where two that drive side by side meet, along each path: well inside the movement that must show.
-    fn meeting(&self, other: &Self, ego_mps: f64) -> (f64, f64) {
-        match (self.show, other.show) {
-            (Some(show), Some(other_show)) => {
-                let share = 0.6;
-                (show.0 + share * (show.1 - show.0), other_show.0 + share * (other_show.1 - other_show.0))
-            }
-            _ => {
-                let place = EGO_START_M + LEAD_TIME_S * ego_mps;
-                (place, place)
-            }
         }
     }
 }

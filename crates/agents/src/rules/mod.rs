@@ -5,9 +5,11 @@ mod design;
 pub(crate) mod limits;
 mod paraphrase;
 mod reading;
+mod rehearsal;
 mod retry;
 mod staging;
 mod text;
+mod timing;
 mod writing;
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};

@@ -85,7 +85,10 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
         Some((relation, source)) => match stage(*relation, brief, ways) {
             Some(staging) => (staging, source.clone()),
             None => {
-                return Err(format!("{id} tells of a partner {}, which cannot end in this template", phrase(*relation)));
+                return Err(format!(
+                    "{id} tells of a partner {}, which cannot end in this template",
+                    phrase(*relation)
+                ));
             }
         },
         None => match from_zones(reading, ways) {
@@ -105,7 +108,11 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
 /// Another record of the cluster that can be retold, else a staging of the template chosen by the seed, with what of the
 /// pick does not depend on the conflict.
 fn alternative(pick: &Reading, brief: &Brief, ways: &[Staging]) -> (Told, String) {
-    for donor in brief.records.iter().skip(1).take(MOST_DONORS) {
+    let mut rng = brief.seed.child(brief.scenario_id).child("alternative").rng();
+    let mut donors: Vec<_> = brief.records.iter().skip(1).take(MOST_DONORS).collect();
+    // Scenarios of one template look at the same few records; each begins elsewhere.
+    rng.shuffle(&mut donors);
+    for donor in donors {
         if donor.template() != Some(brief.template) {
             continue;
         }
@@ -120,10 +127,7 @@ fn alternative(pick: &Reading, brief: &Brief, ways: &[Staging]) -> (Told, String
     let by_zones = if pick.collision.is_none() { from_zones(pick, ways) } else { None };
     let (staging, why) = match by_zones {
         Some(staging) => (staging, "the contact areas suggest this side"),
-        None => {
-            let mut rng = brief.seed.child(brief.scenario_id).child("alternative").rng();
-            (ways[rng.below(ways.len())], "chosen among the approaches of the template")
-        }
+        None => (ways[rng.below(ways.len())], "chosen among the approaches of the template"),
     };
     let facts = pick.facts.iter().filter(|fact| survives(&fact.value)).cloned().collect();
     let source = FactSource::Assumed { why: why.to_owned() };

@@ -1,122 +1,98 @@
-//! What is changed when a design is tried again: levers, moved by what was wrong with the earlier tries.
+//! What is aimed at when a design is tried again: told by what was wrong with the earlier tries.
 
-use super::design::{gap_of_contact, shift_of_contact};
 use crate::{Feedback, Problem};
-use recrash_model::metrics::{Check, CheckKind, Metrics};
-use recrash_model::record::ContactZone;
+use recrash_model::metrics::CheckKind;
 use recrash_model::scenario::{ScenarioDraft, Start};
 
-/// How a try differs from the first design.
+/// What a try aims at.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levers {
-    /// Position in the staging's list of lane plans.
-    pub lane_plan: usize,
-    /// Added to the arrival gap. [s]
-    pub gap_shift_s: f64,
-    /// Added to the partner's start along the road. [m]
-    pub start_shift_m: f64,
-    /// Factor on the sideways move.
-    pub sideways_factor: f64,
+pub enum Aim {
+    /// The contact the facts tell of.
+    Touch,
+    /// To pass each other at this distance. [m]
+    Pass(f64),
+}
+
+/// A near miss: close enough for the profile of the paper to count it, too close for comfort. [m]
+const CLOSE_PASS_M: f64 = 1.2;
+/// A miss that no check takes for nearly a contact (below 2 m the zones of a near miss are predicted). [m]
+const WIDE_PASS_M: f64 = 2.8;
+
+/// How a try differs from the first design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// What it aims at.
+    pub aim: Aim,
+    /// Whether the other one than the facts suggest goes first.
+    pub swap_order: bool,
     /// Factor on both speeds.
     pub speed_factor: f64,
     /// Factor on the lengths of approach and arms.
     pub length_factor: f64,
-    /// Whether to pass each other closely rather than to touch.
-    pub near_miss: bool,
-    /// Whether the other one than the facts suggest goes first.
-    pub swap_order: bool,
+    /// Lane numbers and start of every earlier try.
+    pub tried: Vec<Tried>,
 }
 
-impl Default for Levers {
-    fn default() -> Self {
-        Self {
-            lane_plan: 0,
-            gap_shift_s: 0.0,
-            start_shift_m: 0.0,
-            sideways_factor: 1.0,
-            speed_factor: 1.0,
-            length_factor: 1.0,
-            near_miss: false,
-            swap_order: false,
-        }
+/// Lanes and start of an earlier try.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tried {
+    /// Lanes in each direction.
+    pub lanes: u8,
+    /// The ego's lane.
+    pub ego_lane: u8,
+    /// Arrival gap [s], or place ahead of the ego [m].
+    pub start: f64,
+}
+
+impl Tried {
+    /// Of a draft with a partner.
+    fn of(draft: &ScenarioDraft) -> Option<Self> {
+        let start = match draft.partners.first()?.start {
+            Start::ArrivalGap { arrival_gap_s } => arrival_gap_s,
+            Start::Offset { delta_s_m, .. } => delta_s_m,
+        };
+        Some(Self { lanes: draft.map.carriageway().lanes, ego_lane: draft.ego.lane, start })
     }
 }
 
-/// What the facts say about the contact; empty where they say nothing.
-#[derive(Debug, Clone, Copy)]
-pub struct Wanted<'a> {
-    /// On the ego.
-    pub sv: &'a [ContactZone],
-    /// On the partner.
-    pub cp: &'a [ContactZone],
-}
-
-/// The levers after all feedback, oldest first.
-pub fn levers(feedback: &[Feedback], wanted: Wanted) -> Levers {
-    let mut levers = Levers::default();
-    for (number, entry) in feedback.iter().enumerate() {
+/// The plan after all feedback. `told` says whether the facts tell of a contact.
+///
+/// With a contact told, three tries aim at it in ever other ways, then two let the two pass: close, then wide, so that
+/// both finish their movements. Without, the first try already passes, and what failed decides whether closer or wider.
+///
+/// Two that drive side by side are close anyway, so that a wide pass is left for the last tries.
+pub fn plan(feedback: &[Feedback], told: bool, side_by_side: bool) -> Plan {
+    let mut plan = Plan {
+        aim: match (told, side_by_side) {
+            (true, _) => Aim::Touch,
+            (false, true) => Aim::Pass(CLOSE_PASS_M),
+            (false, false) => Aim::Pass(WIDE_PASS_M),
+        },
+        swap_order: false,
+        speed_factor: 1.0,
+        length_factor: 1.0,
+        tried: feedback.iter().filter_map(|entry| Tried::of(&entry.draft)).collect(),
+    };
+    let mut unfaithful = 0;
+    for entry in feedback {
         match &entry.problem {
-            Problem::NotRunnable { diagnostics } => {
-                levers.length_factor *= 1.3;
-                levers.speed_factor *= 0.9;
-                let says = |word: &str| diagnostics.iter().any(|d| d.is_error() && d.code.contains(word));
-                if says("overlap") {
-                    levers.start_shift_m += 4.0;
-                }
-                if says("turn") || says("lane") || says("route") || says("conflict") {
-                    levers.lane_plan += 1;
-                }
+            Problem::NotRunnable { .. } => {
+                plan.length_factor *= 1.3;
+                plan.speed_factor *= 0.85;
             }
-            Problem::NotFaithful { failures, metrics } => {
-                unfaithful(&mut levers, &entry.draft, failures, metrics, wanted, number);
+            Problem::NotFaithful { failures, .. } => {
+                unfaithful += 1;
+                let failed = |kind: CheckKind| failures.iter().any(|check| check.kind == kind);
+                let too_far = failed(CheckKind::Encounter);
+                plan.aim = match (told, unfaithful) {
+                    (true, 1 | 2) => Aim::Touch,
+                    (true, 3) => Aim::Pass(CLOSE_PASS_M),
+                    _ if too_far => Aim::Pass(CLOSE_PASS_M),
+                    _ => Aim::Pass(WIDE_PASS_M),
+                };
+                plan.swap_order = unfaithful >= 5 || (!told && unfaithful >= 2);
             }
         }
     }
-    levers
-}
-
-fn unfaithful(
-    levers: &mut Levers,
-    draft: &ScenarioDraft,
-    failures: &[Check],
-    metrics: &Metrics,
-    wanted: Wanted,
-    number: usize,
-) {
-    let failed = |kind: CheckKind| failures.iter().any(|check| check.kind == kind);
-    let movement = failed(CheckKind::SvMovement) || failed(CheckKind::CpMovement) || failed(CheckKind::Approach);
-    if movement || failed(CheckKind::ExcludedCollision) {
-        // Met too early in the turn, or at a bad angle: first pass closely, so that both finish their movement; then try
-        // other lanes.
-        if levers.near_miss {
-            levers.lane_plan += 1;
-            levers.swap_order = number % 2 == 1;
-        } else {
-            levers.near_miss = true;
-        }
-        if failed(CheckKind::CpMovement) {
-            levers.sideways_factor *= 0.85;
-        }
-    } else if failed(CheckKind::ContactZones) {
-        match &metrics.contact {
-            Some(contact) if number < 3 => {
-                let seen = Wanted { sv: &[contact.ego_zone], cp: &[contact.other_zone] };
-                let partner = draft.partners.first();
-                let speeds = (draft.ego.target_speed_mps, partner.map_or(8.0, |p| p.policy.target_speed().max(1.0)));
-                match partner.map(|p| p.start) {
-                    Some(Start::Offset { .. }) => {
-                        levers.start_shift_m += shift_of_contact(wanted) - shift_of_contact(seen);
-                    }
-                    _ => levers.gap_shift_s += gap_of_contact(wanted, speeds) - gap_of_contact(seen, speeds),
-                }
-            }
-            _ => levers.near_miss = true,
-        }
-    } else if failed(CheckKind::Encounter) {
-        levers.gap_shift_s *= 0.5;
-        levers.near_miss = false;
-        levers.lane_plan += usize::from(number > 0);
-    } else {
-        levers.lane_plan += 1;
-    }
+    plan
 }

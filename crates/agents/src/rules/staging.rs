@@ -123,15 +123,13 @@ const ROAD_SIDEWAYS: &[Staging] = &[
 /// A left turn on a highway: off it at a junction, across the ego's way, or a move to the left into the ego's lane.
 const ROAD_STRAIGHT_LEFT: &[Staging] = &[
     crossing(Opposite, &[plan(2, 1, 0), plan(2, 1, 1)]),
-    beside(Right, Sideways, &[plan(3, 1, 2), plan(4, 1, 2), plan(3, 0, 1)]),
+    beside(Right, Sideways, &[plan(3, 0, 1), plan(4, 1, 2)]),
     crossing(FromLeft, &[plan(2, 0, 1), plan(2, 1, 1)]),
     crossing(FromRight, &[plan(2, 1, 0), plan(1, 0, 0)]),
 ];
 /// The same to the right.
-const ROAD_STRAIGHT_RIGHT: &[Staging] = &[
-    beside(Left, Sideways, &[plan(3, 1, 0), plan(4, 2, 1), plan(3, 2, 1)]),
-    crossing(FromRight, &[plan(2, 1, 1), plan(2, 0, 0)]),
-];
+const ROAD_STRAIGHT_RIGHT: &[Staging] =
+    &[beside(Left, Sideways, &[plan(3, 2, 1), plan(4, 2, 1)]), crossing(FromRight, &[plan(2, 1, 1), plan(2, 0, 0)])];
 
 /// What the rules can stage, for error messages.
 pub const KNOWN: &str = "templates with both going straight, left or right";

@@ -66,13 +66,13 @@ fn place(narrative: &Narrative, facts: &Facts) -> String {
     }
 }
 
-fn movement(road: RoadType, movement: Movement) -> &'static str {
+fn movement(road: RoadType, movement: Movement, beside: bool) -> &'static str {
     match (road, movement) {
         (RoadType::TrafficCircle, Movement::LeftTurn) => "drives round to the third exit",
         (RoadType::TrafficCircle, Movement::RightTurn) => "leaves by the first exit",
         (RoadType::TrafficCircle, _) => "leaves by the second exit",
-        (RoadType::Highway, Movement::LeftTurn) => "moves to its left",
-        (RoadType::Highway, Movement::RightTurn) => "moves to its right",
+        (RoadType::Highway, Movement::LeftTurn) if beside => "moves to its left",
+        (RoadType::Highway, Movement::RightTurn) if beside => "moves to its right",
         (_, Movement::LeftTurn) => "turns left",
         (_, Movement::RightTurn) => "turns right",
         _ => "drives straight ahead",
@@ -125,7 +125,7 @@ fn ego_sentence(narrative: &Narrative, facts: &Facts) -> String {
     format!(
         "{}, the ego {}{}{}{}.",
         place(narrative, facts),
-        movement(narrative.template.road, narrative.template.sv),
+        movement(narrative.template.road, narrative.template.sv, false),
         lane.unwrap_or(""),
         control(signal, " after a red light"),
         speed,
@@ -185,7 +185,7 @@ fn partner_sentence(narrative: &Narrative, facts: &Facts) -> String {
     format!(
         "{} {from}{start} and {}{}{speed}.",
         partner(facts),
-        movement(narrative.template.road, narrative.template.cp),
+        movement(narrative.template.road, narrative.template.cp, approach == Some(Approach::Same)),
         control(signal, " against a red light"),
     )
 }

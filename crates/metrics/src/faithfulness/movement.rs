@@ -143,13 +143,17 @@ fn shift(layout: &Layout, network: &RoadNetwork, first: &OrientedBox, last: &Ori
 
 /// The way around a circle. Traffic circulates anticlockwise; the arms lie at the four quarters as seen from the centre.
 fn around_circle(layout: &Layout, network: &RoadNetwork, track: &[OrientedBox]) -> DrivenKind {
-    let Layout::Circle { centre, .. } = layout else { return DrivenKind::NotInCircle };
+    let Layout::Circle { centre, radius_m } = layout else { return DrivenKind::NotInCircle };
     let part_at = |outline: &OrientedBox| {
         let nose = outline.centre + outline.axis * outline.half_length;
         let heading = math::atan2(outline.axis.y, outline.axis.x);
         network.lane_at(nose, heading).map(|id| network.road(network.lane(id).road).part)
     };
-    let Some(joined) = track.iter().position(|outline| part_at(outline) == Some(RoadPart::Ring)) else {
+    // Looking up lanes is dear: only where the ring can be.
+    let on_ring = |outline: &OrientedBox| {
+        outline.centre.distance(*centre) <= radius_m + outline.half_length && part_at(outline) == Some(RoadPart::Ring)
+    };
+    let Some(joined) = track.iter().position(on_ring) else {
         return DrivenKind::NotInCircle;
     };
     let quarter = math::FRAC_PI_2;

@@ -1,6 +1,8 @@
 //! What the tests share: profiles, and the real files where they are at hand.
 #![allow(dead_code)]
 
+pub mod builder;
+
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::RecordSet;
 use recrash_model::{Diagnostic, Outcome};

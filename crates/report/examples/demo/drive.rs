@@ -23,6 +23,7 @@ pub struct Plan {
     partner: Path,
     partner_kind: PartnerKind,
     drift: bool,
+    brake_m: f64,
     /// Speed of the ego. [m/s]
     pub ego_speed: f64,
     /// Speed of the partner. [m/s]
@@ -79,6 +80,7 @@ impl Plan {
             partner,
             partner_kind: kinds[cluster.number % kinds.len()],
             drift,
+            brake_m: if cluster.number % 4 == 1 { 5.2 } else { 1.4 },
             ego_speed: 7.0 + 0.13 * number,
             partner_speed: 8.6 - 0.11 * number,
             designed_gap_s: if cluster.number % 5 == 1 { 0.2 } else { 1.6 + 0.06 * number },
@@ -99,8 +101,8 @@ impl Plan {
         let arrive = 6.0;
         let ego = sample(&self.ego, |time| {
             let s = self.meet.0 + self.ego_speed * (time - arrive);
-            let brake = 1.2 * math::exp(-math::sq(time - 4.6));
-            (s - brake * 1.2, 0.0)
+            let brake = self.brake_m * math::exp(-math::sq(time - 4.6));
+            (s - brake, 0.0)
         });
         let partner = sample(&self.partner, |time| {
             let s = self.meet.1 + self.partner_speed * (time - arrive - arrival_gap_s);
@@ -236,7 +238,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
             sentence: format!("The gap to cp1 fell to {:.2} m, below 2.00 m.", min_gap.value),
         });
     }
-    if cluster.number % 4 == 1 {
+    if -hardest.value > 4.0 {
         findings.push(Finding {
             kind: FindingKind::HardBraking,
             time_s: hardest.time_s,

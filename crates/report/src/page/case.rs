@@ -62,7 +62,7 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
                 }
             }
             p.case-what {
-                b { (case.template) }
+                b { (words::template(&case.template)) }
                 @if let Some(cluster) = cluster { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
                 @if let Some(narrative) = &case.narrative { ". " span.told { (words::clean(&narrative.text, 600)) } }
             }
@@ -118,7 +118,10 @@ fn stage(case: &CaseView) -> Markup {
                 }
             }
             .plots aria-label="Values over time" role="group" {
-                .plot-key { span.key.solid { "tuned" } span.key.dashed { "as designed" } span.key.ego { "ego" } span.key.partner { "partner" } }
+                .plot-key {
+                    @if case.after.is_some() { span.key.solid { "tuned" } @if case.before.is_some() { span.key.dashed { "as designed" } } }
+                    @else { span.key.solid { "as designed" } }
+                    span.key.ego { "ego" } span.key.partner { "partner" } }
                 @for (name, title, unit) in [("gap", "Gap to the nearest partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
                     figure.plot data-plot=(name) { figcaption { b { (title) } " " span.muted { (unit) } span.readout {} } svg role="img" aria-label={ (title) " over time" } {} }
                 }
@@ -139,7 +142,7 @@ fn numbers(case: &CaseView) -> Markup {
             .tile {
                 dt { (name) }
                 dd.value {
-                    @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, if case.after.is_some() { "" } else { unit }, why)) }
+                    @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, unit, why)) }
                     @if let Some(after) = &case.after { @if case.before.is_some() { span.arrow { "\u{2192}" } } (parts::quantity(of(after), decimals, unit, why)) }
                 }
             }

@@ -34,7 +34,7 @@ pub fn map(context: &Context) -> Markup {
     if points.iter().filter(|point| point.x.is_finite() && point.y.is_finite()).count() == 0 {
         return html! { p.empty { "No record has a place on the map." } };
     }
-    let frame = Frame::around(&points);
+    let layout = Layout::of(&points, |point| selection.clusters[point.cluster].pick_index == point.record);
     let order = |template: Option<Template>| {
         selection
             .templates
@@ -48,7 +48,7 @@ pub fn map(context: &Context) -> Markup {
         p.muted {
             "Each mark is a record, at the first two principal components of what the clusters were made from: its template and its narrative ("
             (words::clean(&embedding.name, 80)) ", " (embedding.dimensions) " dimensions kept, "
-            (fixed(embedding.explained_variance * 100.0, 0).unwrap_or_default()) "\u{a0}% of the variance). Large and numbered: the picks. "
+            (fixed(embedding.explained_variance * 100.0, 0).unwrap_or_default()) "\u{a0}% of the variance). Dense spots are stretched. Large and numbered: the picks. "
             "Point at a mark, or put the focus on the map and use the arrow keys."
         }
         .map-grid {
@@ -56,14 +56,15 @@ pub fn map(context: &Context) -> Markup {
                 defs { @for (shape, path) in SHAPES.iter().enumerate() { path id={ "mark-" (shape) } d=(path) {} } }
                 @for (index, point) in points.iter().enumerate() {
                     @let t = template_of(point);
-                    @let (x, y) = frame.place(point);
-                    use.mark.{ "c" (t % COLOURS) } href={ "#mark-" (t % SHAPES.len()) } x=(x) y=(y) data-point=(index) data-template=(t) {}
+                    @let (x, y) = layout.marks[index];
+                    use.mark.{ "c" (t % COLOURS) } href={ "#mark-" (t % SHAPES.len()) } x=(text(x)) y=(text(y)) data-point=(index) data-template=(t) {}
                 }
                 @for (index, point) in points.iter().enumerate() {
                     @let cluster = &selection.clusters[point.cluster];
                     @if cluster.pick_index == point.record {
-                        @let (x, y) = frame.place(point);
-                        g.pick data-point=(index) data-template=(template_of(point)) transform={ "translate(" (x) " " (y) ")" } {
+                        @let ((mx, my), (x, y)) = (layout.marks[index], layout.labels[index]);
+                        @if (mx - x).abs() + (my - y).abs() > 4.0 { line.leader x1=(text(mx)) y1=(text(my)) x2=(text(x)) y2=(text(y)) {} }
+                        g.pick data-point=(index) data-template=(template_of(point)) transform={ "translate(" (text(x)) " " (text(y)) ")" } {
                             circle.{ "c" (template_of(point) % COLOURS) } r="10" {}
                             text y="3.6" text-anchor="middle" { (cluster.number) }
                         }
@@ -77,7 +78,7 @@ pub fn map(context: &Context) -> Markup {
                     @for (t, count) in selection.templates.iter().enumerate() {
                         li { button type="button" data-template=(t) aria-pressed="false" {
                             svg.icon viewBox="-6 -6 12 12" aria-hidden="true" { path.{ "c" (t % COLOURS) } d=(SHAPES[t % SHAPES.len()]) {} }
-                            span { (count.template) } span.muted { " " (count.records) }
+                            span { (words::template(&count.template)) } span.muted { " " (count.records) }
                         } }
                     }
                 }
@@ -86,28 +87,103 @@ pub fn map(context: &Context) -> Markup {
     }
 }
 
-/// From the clustering space to the picture.
-struct Frame {
-    low: (f64, f64),
-    scale: (f64, f64),
+/// Share of a mark's place that is its rank along the axis; the rest is its value. Templates pull the records into a few
+/// dense spots, and ranks stretch those. (Chosen by eye.)
+const RANK_SHARE: f64 = 0.65;
+
+/// Places of the marks in the picture, and of the picks' labels, which make room for each other.
+struct Layout {
+    marks: Vec<(f64, f64)>,
+    labels: Vec<(f64, f64)>,
 }
 
-impl Frame {
-    fn around(points: &[&MapPoint]) -> Self {
-        let range = |of: fn(&MapPoint) -> f64| {
-            let finite = points.iter().map(|point| of(point)).filter(|value| value.is_finite());
-            let (low, high) =
-                finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-            (low, (high - low).max(1e-9))
-        };
-        let (x, y) = (range(|point| point.x), range(|point| point.y));
-        Self { low: (x.0, y.0), scale: ((WIDTH - 2.0 * MARGIN) / x.1, (HEIGHT - 2.0 * MARGIN) / y.1) }
+impl Layout {
+    fn of(points: &[&MapPoint], is_pick: impl Fn(&MapPoint) -> bool) -> Self {
+        let xs = stretched(points, |point| point.x);
+        let ys = stretched(points, |point| point.y);
+        let place =
+            |(x, y): (f64, f64)| (MARGIN + x * (WIDTH - 2.0 * MARGIN), HEIGHT - MARGIN - y * (HEIGHT - 2.0 * MARGIN));
+        let marks: Vec<(f64, f64)> = xs.into_iter().zip(ys).map(place).collect();
+        let mut labels = marks.clone();
+        let picks: Vec<usize> = (0..points.len()).filter(|&i| is_pick(points[i])).collect();
+        part(&mut labels, &picks);
+        Self { marks, labels }
+    }
+}
+
+/// Values of an axis in [0, 1], stretched where they are dense. What is not finite goes to the middle.
+fn stretched(points: &[&MapPoint], of: fn(&MapPoint) -> f64) -> Vec<f64> {
+    let mut order: Vec<f64> = points.iter().map(|point| of(point)).filter(|value| value.is_finite()).collect();
+    order.sort_by(f64::total_cmp);
+    let (Some(&low), Some(&high)) = (order.first(), order.last()) else { return vec![0.5; points.len()] };
+    let width = (high - low).max(1e-12);
+    let last = (order.len() - 1).max(1) as f64;
+    let place = |value: f64| {
+        if !value.is_finite() {
+            return 0.5;
+        }
+        let before = order.partition_point(|other| *other < value);
+        let upto = order.partition_point(|other| *other <= value);
+        let rank = 0.5 * (before + upto - 1) as f64 / last;
+        RANK_SHARE * rank + (1.0 - RANK_SHARE) * (value - low) / width
+    };
+    points.iter().map(|point| place(of(point))).collect()
+}
+
+/// Moves labels that cover each other apart, each by half of what is missing, a fixed number of times.
+fn part(labels: &mut [(f64, f64)], picks: &[usize]) {
+    const APART: f64 = 22.0;
+    for _ in 0..60 {
+        for (position, &a) in picks.iter().enumerate() {
+            for &b in &picks[position + 1..] {
+                let (dx, dy) = (labels[b].0 - labels[a].0, labels[b].1 - labels[a].1);
+                let distance = (dx * dx + dy * dy).sqrt();
+                if distance >= APART {
+                    continue;
+                }
+                // Labels on the very same spot part along a line that depends on nothing but their numbers.
+                let (ux, uy) = if distance > 1e-6 { (dx / distance, dy / distance) } else { (0.8, 0.6) };
+                let push = 0.5 * (APART - distance);
+                for (label, sign) in [(a, -1.0), (b, 1.0)] {
+                    let at = &mut labels[label];
+                    at.0 = (at.0 + sign * push * ux).clamp(12.0, WIDTH - 12.0);
+                    at.1 = (at.1 + sign * push * uy).clamp(12.0, HEIGHT - 12.0);
+                }
+            }
+        }
+    }
+}
+
+fn text(value: f64) -> String {
+    fixed(value, 1).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(values: &[(f64, f64)]) -> Vec<MapPoint> {
+        values.iter().enumerate().map(|(record, &(x, y))| MapPoint { record, cluster: 0, x, y }).collect()
     }
 
-    fn place(&self, point: &MapPoint) -> (String, String) {
-        let text = |value: f64| fixed(value, 1).unwrap_or_else(|| "-50".to_owned());
-        let x = MARGIN + (point.x - self.low.0) * self.scale.0;
-        let y = HEIGHT - MARGIN - (point.y - self.low.1) * self.scale.1;
-        (text(x), text(y))
+    #[test]
+    fn the_order_along_an_axis_stays_and_equal_values_stay_equal() {
+        let points = points(&[(0.0, 0.0), (0.001, 0.0), (0.001, 0.0), (10.0, f64::NAN)]);
+        let places = stretched(&points.iter().collect::<Vec<_>>(), |point| point.x);
+        assert_eq!(places[0], 0.0);
+        assert!(places[0] < places[1] && places[1] == places[2] && places[2] < places[3]);
+        assert!((places[3] - 1.0).abs() < 1e-12);
+        assert_eq!(stretched(&points.iter().collect::<Vec<_>>(), |point| point.y)[3], 0.5);
+    }
+
+    #[test]
+    fn labels_on_one_spot_make_room() {
+        let points = points(&[(1.0, 1.0); 4]);
+        let layout = Layout::of(&points.iter().collect::<Vec<_>>(), |_| true);
+        for (i, a) in layout.labels.iter().enumerate() {
+            for b in &layout.labels[i + 1..] {
+                assert!(((a.0 - b.0).abs() + (a.1 - b.1).abs()) > 15.0, "{:?}", layout.labels);
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What the picks cover: numbers, a grid of every template the profile can express, and the holes by name.
 
 use super::{Context, parts, records::heat};
-use crate::words::{fixed, thousands};
+use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
 use recrash_model::template::{RoadType, Template};
 
@@ -55,7 +55,7 @@ fn holes(name: &str, holes: &[Template], open: bool) -> Markup {
         @if holes.is_empty() {
             p.empty { (name) ": none." }
         } @else {
-            details open[open] { summary { (name) " (" (holes.len()) ")" } ul.flow { @for hole in holes { li { (hole) } } } }
+            details open[open] { summary { (name) " (" (holes.len()) ")" } ul.flow { @for hole in holes { li { (words::template(hole)) } } } }
         }
     }
 }

@@ -168,7 +168,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
     let suite = context.suite;
     let last = case.last_run();
     let result = Result::of(last);
-    let faithful = last.is_some_and(|run| run.verdict.faithful());
+    let faithful = last.and_then(RunView::faithful);
     let alternative = matches!(case.narrative.as_ref().map(|n| &n.origin), Some(Origin::Alternative { .. }));
     let mut tags = vec![match result {
         Result::Failed => "failed",
@@ -176,7 +176,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
         Result::Missing => "missing",
     }];
     for (tag, holds) in
-        [("unfaithful", last.is_some() && !faithful), ("alternative", alternative), ("refused", case.refused.is_some())]
+        [("unfaithful", faithful == Some(false)), ("alternative", alternative), ("refused", case.refused.is_some())]
     {
         if holds {
             tags.push(tag);
@@ -194,8 +194,8 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
             td { a.thumb-link href={ "#" (anchor) } tabindex="-1" aria-hidden="true" { canvas.thumb width="192" height="120" data-case=(position) {} } }
             th scope="row" data-sort=(position) {
                 a.case-link href={ "#" (anchor) } { (words::clean(&case.scenario_id, 80)) }
-                .muted { (case.template) }
-                @if let Some(why) = &case.refused { .refused { (icon::cross()) "refused: " (words::clean(why, 200)) } }
+                .muted { (words::template(&case.template)) }
+                @if let Some(why) = &case.refused { .refused-why { (icon::cross()) "refused: " (words::clean(why, 200)) } }
             }
             td data-sort=(members) {
                 @match suite.case_records(case).next() {
@@ -203,7 +203,8 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
                     None => (missing("the suite names no record")),
                 }
                 .muted {
-                    @if members > 0 { "1 of " (members) " in its cluster" }
+                    @if members > 0 { "cluster of " (members) }
+                    @if alternative { br; }
                     @if alternative { span.chip.odd { (icon::bang()) "alternative" } }
                 }
             }
@@ -217,7 +218,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
                 @for kind in &kinds { (parts::finding_chip(*kind)) " " }
                 @if kinds.is_empty() { (missing(if last.is_some() { "no finding" } else { not_run })) }
             }
-            td data-sort=(if faithful { "1" } else { "0" }) { (parts::faithful_chip(last)) }
+            td data-sort=(match faithful { Some(true) => "2", Some(false) => "1", None => "" }) { (parts::faithful_chip(last)) }
         }
     }
 }
@@ -247,7 +248,9 @@ fn gap_chart(case: &CaseView, threshold_m: f64) -> Markup {
     let place = |gap: f64| fixed(at(gap), 1).unwrap_or_default();
     let before = case.before.as_ref().and_then(RunView::min_gap_m);
     let after = case.after.as_ref().and_then(RunView::min_gap_m);
-    let Some(first) = before.or(after) else { return missing("no gap was measured") };
+    if before.or(after).is_none() {
+        return missing("no gap was measured");
+    }
     let told = |gap: Option<f64>| gap.and_then(|gap| fixed(gap, 2)).map_or("none".to_owned(), |gap| format!("{gap} m"));
     let label = format!("Least gap as designed {}, tuned {}; failure below {threshold_m} m", told(before), told(after));
     html! {
@@ -259,9 +262,12 @@ fn gap_chart(case: &CaseView, threshold_m: f64) -> Markup {
             @if let (Some(before), Some(after)) = (before, after) {
                 line.change x1=(place(before)) x2=(place(after)) y1="13" y2="13" {}
             }
-            @if let Some(before) = before { circle.before cx=(place(before)) cy="13" r="4.4" {} }
-            @if let Some(after) = after { circle.after cx=(place(after)) cy="13" r="4.6" {} }
-            @if first > CHART_M { text.beyond x="140" y="9" text-anchor="end" { "\u{203a}10" } }
+            @if let Some(before) = before {
+                @if before > CHART_M { path.before.beyond d="M128 8.5l8 4.5-8 4.5z" {} } @else { circle.before cx=(place(before)) cy="13" r="4.4" {} }
+            }
+            @if let Some(after) = after {
+                @if after > CHART_M { path.after.beyond d="M128 8.5l8 4.5-8 4.5z" {} } @else { circle.after cx=(place(after)) cy="13" r="4.6" {} }
+            }
         }
     }
 }

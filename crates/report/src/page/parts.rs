@@ -15,7 +15,7 @@ pub fn missing(why: &str) -> Markup {
 /// A number with its unit, or a dash that says why there is none.
 pub fn quantity(value: Option<f64>, decimals: usize, unit: &str, why: &str) -> Markup {
     match value.map(|value| words::fixed(value, decimals)) {
-        Some(Some(text)) => html! { span.number { (text) "\u{a0}" (unit) } },
+        Some(Some(text)) => html! { span.number { (text) @if !unit.is_empty() { "\u{a0}" (unit) } } },
         Some(None) => missing("the value is not a finite number"),
         None => missing(why),
     }
@@ -50,8 +50,10 @@ pub fn result_chip(result: Result) -> Markup {
 /// Whether a run is faithful, with the checks that failed.
 pub fn faithful_chip(run: Option<&RunView>) -> Markup {
     let Some(run) = run else { return missing("it was not run") };
-    if run.verdict.faithful() {
-        return html! { span.chip.good { (icon::tick()) "faithful" } };
+    match run.faithful() {
+        None => return html! { span.chip.none { (icon::dash()) "not checked" } },
+        Some(true) => return html! { span.chip.good { (icon::tick()) "faithful" } },
+        Some(false) => {}
     }
     let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
     html! { span.chip.bad { (icon::cross()) "not faithful" } span.why { (why.join(", ")) } }

@@ -44,6 +44,7 @@ fn funnel(context: &Context) -> Markup {
         }
     }
     reasons.sort();
+    let told: usize = steps.iter().flat_map(|step| &step.lost).map(|(_, n)| n).sum();
     html! {
         table.plain {
             caption.hidden-text { "How many rows remain after each step" }
@@ -62,7 +63,7 @@ fn funnel(context: &Context) -> Markup {
                 }
             }
         }
-        @if !reasons.is_empty() {
+        @if told < rejects.len() {
             p.muted { "Rows that went no further: " @for (i, (reason, n)) in reasons.iter().enumerate() { @if i > 0 { ", " } (thousands(*n)) " " (reason.label()) } "." }
         }
     }

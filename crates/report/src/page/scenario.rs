@@ -21,13 +21,13 @@ pub fn tuning(position: usize, case: &CaseView) -> Markup {
         .columns {
             figure.tune-figure {
                 figcaption { b { "Objective by point" } " " span.muted { "least box gap plus penalties, m; smaller is worse for the ego" } }
-                svg.tune-plot data-case=(position) role="img" tabindex="0" aria-label="Objective of each point; arrow keys go from point to point" {}
-                p.tune-detail.muted role="status" aria-live="polite" { "Point at a mark, or put the focus on the plot and use the arrow keys." }
                 p.plot-key { span.key.point { "passes" } span.key.failed { "fails" } span.key.refused { "refused" } span.key.best { "best so far" } span.key.kept { "kept" } }
+                svg.tune-plot data-case=(position) role="application" tabindex="0" aria-label="Objective of each point; arrow keys go from point to point" {}
+                p.tune-detail.muted role="status" aria-live="polite" { "Point at a mark, or put the focus on the plot and use the arrow keys." }
             }
-            .table-wrap { table.plain {
+            .table-wrap { table.plain.tuning {
                 caption.hidden-text { "Numbers that may move" }
-                thead { tr { th scope="col" { "Number" } th.right scope="col" { "From" } th.right scope="col" { "To" } th.right scope="col" { "As designed" } th.right scope="col" { "Kept" } th scope="col" { "Place in its bounds" } } }
+                thead { tr { th scope="col" { "Number" } th.right scope="col" { "From" } th.right scope="col" { "To" } th.right scope="col" { "As designed" } th.right scope="col" { "Kept" } th scope="col" { "In its bounds" } } }
                 tbody { @for (i, parameter) in log.parameters.iter().enumerate() { (parameter_row(parameter, kept.and_then(|point| point.values.get(i)).copied())) } }
             } }
         }

@@ -4,6 +4,7 @@ use super::super::actors::Actor;
 use super::{MEETING, Sentence, details, is_front, is_rear, only, words};
 use recrash_model::narrative::{FactSource, LanePosition, Side};
 use recrash_model::record::{ContactZone, CrashRecord};
+use recrash_model::template::Movement;
 use regex::Regex;
 use std::sync::LazyLock;
 
@@ -51,7 +52,7 @@ static BESIDE: LazyLock<Regex> = LazyLock::new(|| {
 });
 static ONCOMING: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b",
+        r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b",
     )
 });
 static BEHIND: LazyLock<Regex> = LazyLock::new(|| {
@@ -94,6 +95,7 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
         .or_else(|| by_phrase(record, sentences, &BEHIND, Relation::Behind))
         .or_else(|| by_phrase(record, sentences, &BESIDE, Relation::Beside(None)))
         .or_else(|| by_phrase(record, sentences, &CROSSING, Relation::Crossing))
+        .or_else(|| by_told_lanes(record, sentences))
         .or_else(|| by_unprotected_turn(record, sentences))
         .or(compass);
     told.map(|(relation, source)| match relation {
@@ -104,6 +106,13 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
             Some(side) => (Relation::From(side), source),
             None => (Relation::Crossing, source),
         },
+        // Who came from behind and touched the side had come up beside it.
+        Relation::Behind if !record.sv_zones.is_empty() && !record.sv_zones.iter().any(|zone| is_rear(*zone)) => {
+            match side_from_zones(record) {
+                Some(side) if !record.sv_zones.contains(&ContactZone::Front) => (Relation::Beside(Some(side)), source),
+                _ => (Relation::Behind, source),
+            }
+        }
         told => (told, source),
     })
 }
@@ -127,6 +136,14 @@ fn side_from_zones(record: &CrashRecord) -> Option<Side> {
         std::cmp::Ordering::Less => Some(Side::Right),
         std::cmp::Ordering::Equal => None,
     }
+}
+
+/// A partner that turns off, told in another lane than the ego: it drove beside it.
+fn by_told_lanes(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
+    let turns = record.cp_movement.known().is_some_and(|movement| movement != Movement::Straight);
+    let side = side_from_lanes(sentences).filter(|_| turns)?;
+    let (_, text) = details::told_lanes(sentences).1?;
+    Some((Relation::Beside(Some(side)), words(record, text)))
 }
 
 /// The side from the lanes told of both.
@@ -159,7 +176,7 @@ fn from_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, 
     sentences.iter().find_map(|sentence| {
         FROM.captures_iter(sentence.text).find_map(|found| {
             let whole = found.get(0).expect("group 0");
-            let named = found.name("side").expect("always there");
+            let named = found.name("side").or_else(|| found.name("place"))?;
             let lane = LANE_BEFORE.find_iter(sentence.text).any(|lane| lane.end() == named.end())
                 || LANE_AFTER.is_match(&sentence.text[named.end()..]);
             let from = sentence.text[..named.start()].rfind("from").unwrap_or(whole.start());

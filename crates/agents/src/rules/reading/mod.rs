@@ -63,7 +63,8 @@ pub fn read(record: &CrashRecord) -> Reading<'_> {
     let sentences: Vec<Sentence> =
         texts.into_iter().map(|text| Sentence { text, mentions: cast.mentions(text) }).collect();
     let relation = approach::relation(record, &sentences);
-    let meets = sentences.iter().any(|s| MEETING.is_match(s.text) && s.mentions.includes(Actor::Cp));
+    let partner_named = sentences.iter().any(|sentence| sentence.mentions.includes(Actor::Cp));
+    let meets = partner_named && sentences.iter().any(|sentence| MEETING.is_match(sentence.text));
     let collision = collision(record, &sentences, relation.as_ref().map(|(relation, _)| *relation));
     Reading {
         record,

@@ -1,0 +1,183 @@
+//! Entities: the ego with its controller slot, the partners, cones and barriers.
+
+use super::{Context, obstacle_name};
+use crate::openscenario::places::reference_to_centre;
+use crate::xml::Element;
+use recrash_model::record::PartnerKind;
+use recrash_model::rollout::EGO_ID;
+use recrash_model::scenario::ObstacleKind;
+use recrash_model::vehicle::VehicleSpec;
+use serde::Serialize;
+
+/// Property that holds what the format has no element for, as JSON of `recrash.scenario/1`.
+pub(crate) const PROPERTY: &str = "recrash.scenario/1";
+
+/// All entities, the ego first.
+pub(super) fn entities(context: &Context<'_>) -> Element {
+    let draft = context.scenario.draft();
+    let mut list = vec![
+        Element::new("ScenarioObject")
+            .with("name", EGO_ID)
+            .child(vehicle("ego", PartnerKind::PassengerCar, &draft.ego))
+            .child(Element::new("ObjectController").child(controller_slot())),
+    ];
+    for partner in &draft.partners {
+        list.push(Element::new("ScenarioObject").with("name", &partner.id).child(road_user(partner.kind, partner)));
+    }
+    for (position, obstacle) in draft.obstacles.iter().enumerate() {
+        let placed = &context.scenario.obstacles()[position].placed;
+        list.push(Element::new("ScenarioObject").with("name", obstacle_name(position)).child(misc_object(
+            obstacle_kind_name(obstacle.kind),
+            if obstacle.kind == ObstacleKind::Barrier { "barrier" } else { "obstacle" },
+            [placed.length_m, placed.width_m, obstacle_height(obstacle.kind)],
+            obstacle,
+        )));
+    }
+    Element::new("Entities").children(list)
+}
+
+/// Where the user's system under test goes: replace the controller, and set the parameter `egoControllerActive`.
+fn controller_slot() -> Element {
+    let note = "put the system under test here and set the parameter egoControllerActive to true; \
+                until then the ego drives along its route at its target speed";
+    Element::new("Controller")
+        .with("name", "system-under-test")
+        .with("controllerType", "movement")
+        .child(Element::new("Properties").child(property("slot", note)))
+}
+
+fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {
+    let spec = VehicleSpec::of(kind);
+    match kind {
+        PartnerKind::Pedestrian | PartnerKind::Animal => {
+            let category = if kind == PartnerKind::Animal { "animal" } else { "pedestrian" };
+            Element::new("Pedestrian")
+                .with("name", category)
+                .with("mass", "80")
+                .with("pedestrianCategory", category)
+                .child(bounding_box(0.0, [spec.length_m, spec.width_m, height(kind)]))
+                .child(properties(description))
+        }
+        PartnerKind::FixedObject => {
+            misc_object("object", "obstacle", [spec.length_m, spec.width_m, height(kind)], description)
+        }
+        _ => vehicle(kind_name(kind), kind, description),
+    }
+}
+
+fn vehicle(name: &str, kind: PartnerKind, description: &impl Serialize) -> Element {
+    let spec = VehicleSpec::of(kind);
+    let to_centre = reference_to_centre(kind);
+    let axle = |element: &str, steering: f64, x: f64| {
+        Element::new(element)
+            .with_number("maxSteering", steering)
+            .with("wheelDiameter", "0.626")
+            .with_number("trackWidth", (0.88 * spec.width_m * 1e3).round() / 1e3)
+            .with_number("positionX", x)
+            .with("positionZ", "0.313")
+    };
+    let mut element = Element::new("Vehicle").with("name", name).with("vehicleCategory", category(kind));
+    if kind == PartnerKind::FirstResponder {
+        element = element.with("role", "police");
+    }
+    element
+        .child(bounding_box(to_centre, [spec.length_m, spec.width_m, height(kind)]))
+        .child(
+            Element::new("Performance")
+                .with_number("maxSpeed", spec.max_speed_mps)
+                .with_number("maxAcceleration", spec.max_acceleration_mps2)
+                .with_number("maxDeceleration", spec.max_deceleration_mps2),
+        )
+        .child(Element::new("Axles").children([
+            axle("FrontAxle", spec.max_wheel_angle_rad, spec.front_axle_m + to_centre),
+            axle("RearAxle", 0.0, 0.0),
+        ]))
+        .child(properties(description))
+}
+
+fn misc_object(name: &str, category: &str, size: [f64; 3], description: &impl Serialize) -> Element {
+    Element::new("MiscObject")
+        .with("name", name)
+        .with("miscObjectCategory", category)
+        .with("mass", "5")
+        .child(bounding_box(0.0, size))
+        .child(properties(description))
+}
+
+/// A box of length, width and height whose centre is this far ahead of the reference point. [m]
+fn bounding_box(to_centre: f64, [length, width, height]: [f64; 3]) -> Element {
+    Element::new("BoundingBox").children([
+        Element::new("Center").with_number("x", to_centre).with("y", "0").with_number("z", 0.5 * height),
+        Element::new("Dimensions")
+            .with_number("width", width)
+            .with_number("length", length)
+            .with_number("height", height),
+    ])
+}
+
+fn properties(description: &impl Serialize) -> Element {
+    let json = serde_json::to_string(description).unwrap_or_default();
+    Element::new("Properties").child(property(PROPERTY, &json))
+}
+
+pub(super) fn property(name: &str, value: &str) -> Element {
+    Element::new("Property").with("name", name).with("value", value)
+}
+
+/// Heights of obstacles; the plane model has none. Usual sizes, assumed. [m]
+fn obstacle_height(kind: ObstacleKind) -> f64 {
+    match kind {
+        ObstacleKind::Cone => 0.75,
+        ObstacleKind::Barrier => 1.0,
+        ObstacleKind::Warning => 0.8,
+    }
+}
+
+fn obstacle_kind_name(kind: ObstacleKind) -> &'static str {
+    match kind {
+        ObstacleKind::Cone => "cone",
+        ObstacleKind::Barrier => "barrier",
+        ObstacleKind::Warning => "warning",
+    }
+}
+
+/// Heights of road users; the plane model has none. Usual sizes, assumed. [m]
+fn height(kind: PartnerKind) -> f64 {
+    match kind {
+        PartnerKind::PassengerCar | PartnerKind::Motorcycle | PartnerKind::FirstResponder => 1.5,
+        PartnerKind::Suv | PartnerKind::PickupTruck => 1.8,
+        PartnerKind::Van => 2.2,
+        PartnerKind::HeavyTruck | PartnerKind::Bus => 3.2,
+        PartnerKind::Cyclist | PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist => 1.75,
+        PartnerKind::Animal | PartnerKind::FixedObject => 1.0,
+    }
+}
+
+fn category(kind: PartnerKind) -> &'static str {
+    match kind {
+        PartnerKind::Van => "van",
+        PartnerKind::HeavyTruck => "truck",
+        PartnerKind::Bus => "bus",
+        PartnerKind::Motorcycle => "motorbike",
+        PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => "bicycle",
+        _ => "car",
+    }
+}
+
+fn kind_name(kind: PartnerKind) -> &'static str {
+    match kind {
+        PartnerKind::PassengerCar => "passenger car",
+        PartnerKind::Suv => "SUV",
+        PartnerKind::Van => "van",
+        PartnerKind::PickupTruck => "pickup truck",
+        PartnerKind::HeavyTruck => "heavy truck",
+        PartnerKind::Bus => "bus",
+        PartnerKind::Motorcycle => "motorcycle",
+        PartnerKind::Cyclist => "cyclist",
+        PartnerKind::OtherNonMotorist => "other non-motorist",
+        PartnerKind::FirstResponder => "first responder",
+        PartnerKind::Pedestrian => "pedestrian",
+        PartnerKind::Animal => "animal",
+        PartnerKind::FixedObject => "fixed object",
+    }
+}

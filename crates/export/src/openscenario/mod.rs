@@ -1,0 +1,110 @@
+//! OpenSCENARIO XML 1.3, with its OpenDRIVE map and, where numbers may move, the files of the logical scenario.
+
+mod entities;
+mod environment;
+mod lateral;
+pub(crate) mod names;
+mod places;
+mod speed;
+mod storyboard;
+mod sweep;
+
+use crate::opendrive::DriveMap;
+use crate::xml::Element;
+use crate::{ExportError, ExportFile, ExportOptions, PartnersAs};
+use names::Declarations;
+use recrash_model::rollout::{ActorTrack, Role, Rollout};
+use recrash_model::tuning::Parameter;
+use recrash_roads::Scenario;
+
+/// What the parts of a document are made from.
+pub(crate) struct Context<'a> {
+    pub scenario: &'a Scenario,
+    pub map: DriveMap,
+    pub names: Declarations,
+    pub parameters: &'a [Parameter],
+    /// The partners' recorded tracks; empty where they act by their policies.
+    pub tracks: Vec<&'a ActorTrack>,
+    pub rollout: Option<&'a Rollout>,
+    pub options: &'a ExportOptions,
+}
+
+/// The files of a scenario: map, scenario, ranges, points.
+pub(crate) fn files(
+    scenario: &Scenario,
+    rollout: Option<&Rollout>,
+    parameters: &[Parameter],
+    options: &ExportOptions,
+) -> Result<Vec<ExportFile>, ExportError> {
+    let draft = scenario.draft();
+    let id = &draft.id;
+    let tracks = match options.partners_as {
+        PartnersAs::Actions => Vec::new(),
+        PartnersAs::Trajectory => {
+            let rollout = rollout.ok_or_else(|| ExportError::NeedsRollout { scenario: id.clone() })?;
+            rollout.actors.iter().filter(|actor| actor.role == Role::Partner).collect()
+        }
+    };
+    let map = DriveMap::new(scenario.network());
+    let names = Declarations::new(draft, parameters);
+    let context = Context { scenario, map, names, parameters, tracks, rollout, options };
+    let comment = crate::comment(draft);
+    let title = crate::title(draft);
+    let file = |name: String, root: Element| ExportFile { name, content: root.document(&comment) };
+
+    let scenario_file = format!("{id}.xosc");
+    let map_file = format!("{id}.xodr");
+    let mut files = vec![
+        file(map_file.clone(), context.map.document(scenario.network(), id)),
+        file(scenario_file.clone(), document(&context, &title, &map_file)),
+    ];
+    // A recording cannot be varied.
+    let varies = context.tracks.is_empty();
+    if varies && parameters.iter().any(|parameter| context.names.find(&parameter.pointer).is_some()) {
+        let header = |what: &str| header(&context, &format!("{title}: {what}"));
+        let ranges = sweep::ranges(&context, header("ranges of its parameters"), &scenario_file);
+        files.push(file(format!("{id}.ranges.xosc"), ranges));
+        if let Some(points) = sweep::points(&context, header("points in the ranges of its parameters"), &scenario_file)
+        {
+            files.push(file(format!("{id}.points.xosc"), points));
+        }
+    }
+    Ok(files)
+}
+
+fn document(context: &Context<'_>, title: &str, map_file: &str) -> Element {
+    let draft = context.scenario.draft();
+    let json = |value: serde_json::Result<String>| value.unwrap_or_default();
+    let carried = [
+        ("recrash.id", draft.id.clone()),
+        ("recrash.source", json(serde_json::to_string(&draft.source))),
+        ("recrash.map", json(serde_json::to_string(&draft.map))),
+        ("recrash.traffic", json(serde_json::to_string(&draft.traffic))),
+        ("recrash.environment", json(serde_json::to_string(&draft.environment))),
+    ];
+    let properties =
+        Element::new("Properties").children(carried.iter().map(|(name, value)| entities::property(name, value)));
+    Element::new("OpenSCENARIO").children([
+        header(context, title).child(properties),
+        storyboard::parameters(&context.names),
+        storyboard::variables(),
+        Element::new("CatalogLocations"),
+        Element::new("RoadNetwork").child(Element::new("LogicFile").with("filepath", map_file)),
+        entities::entities(context),
+        storyboard::storyboard(context),
+    ])
+}
+
+fn header(context: &Context<'_>, description: &str) -> Element {
+    Element::new("FileHeader")
+        .with("revMajor", "1")
+        .with("revMinor", "3")
+        .with("date", &context.options.created)
+        .with("description", description)
+        .with("author", "recrash")
+}
+
+/// The entity of an obstacle. Partners' ids hold no dot, so that the names never meet.
+pub(crate) fn obstacle_name(position: usize) -> String {
+    format!("obstacle.{}", position + 1)
+}

@@ -1,0 +1,206 @@
+//! The partners of a Scenic file: a behavior for each policy, and where each starts.
+
+use super::{Context, constant, road_user, start_offset};
+use crate::xml::{number, rounded};
+use recrash_model::record::PartnerKind;
+use recrash_model::scenario::{Approach, DEFAULT_SPEED_KP, Policy, Start};
+use std::fmt::Write;
+
+/// The name of a partner's object.
+pub(super) fn variable(position: usize) -> String {
+    format!("partner{}", position + 1)
+}
+
+/// The definition of a partner's behavior.
+pub(super) fn behavior(context: &Context<'_>, position: usize) -> String {
+    let partner = &context.scenario.draft().partners[position];
+    let way = format!("PARTNER{}_WAY", position + 1);
+    let at = |field: &str, value: f64| context.value(&format!("/partners/{position}/policy/{field}"), value);
+    let step = |field: &str, value: u32| format!("{} * STEP", at(field, f64::from(value)));
+    let t = lateral_term(context, position);
+    let mut text = String::from("\n");
+    if partner.kind == PartnerKind::Pedestrian {
+        return walk(context, position);
+    }
+    let _ =
+        writeln!(text, "behavior Partner{}():    # \"{}\", {}", position + 1, partner.id, policy_name(&partner.policy));
+    let hold = |speed: &str, gain: Option<f64>| match gain {
+        None => format!("hold(self, {speed})"),
+        Some(gain) if gain == DEFAULT_SPEED_KP => format!("hold(self, {speed})"),
+        Some(gain) => format!("{} * ({speed} - self.speed)", number(gain)),
+    };
+    let take = |command: &str| format!("take drive(self, {way}, {command}, {t})");
+    let forever = |command: &str| format!("        while True:\n            {}\n", take(command));
+    let window = |from: &str, until: &str, command: &str| {
+        format!("    interrupt when {from} <= seconds() + 1e-6 < {until}:\n        {}\n", take(command))
+    };
+    match partner.policy {
+        Policy::SuddenBrake { target_speed, brake_step, brake_steps, speed_kp } => {
+            let (from, during) = (step("brake_step", brake_step), step("brake_steps", brake_steps));
+            text.push_str("    try:\n");
+            text.push_str(&forever(&hold(&at("target_speed", target_speed), speed_kp)));
+            text.push_str(&window(&from, &format!("{from} + {during}"), "-1"));
+        }
+        Policy::AccelThenBrake { accel_mag, accel_steps, cruise_speed, brake_step, brake_steps, speed_kp } => {
+            let (from, during) = (step("brake_step", brake_step), step("brake_steps", brake_steps));
+            text.push_str("    try:\n");
+            text.push_str(&forever(&hold(&at("cruise_speed", cruise_speed), speed_kp)));
+            text.push_str(&window("0", &step("accel_steps", accel_steps), &at("accel_mag", accel_mag)));
+            text.push_str(&window(&from, &format!("{from} + {during}"), "-1"));
+        }
+        Policy::IdmNominal { target_speed_mps } => {
+            let speed = at("target_speed_mps", target_speed_mps);
+            let _ = writeln!(text, "    while True:\n        {}", take(&format!("follow(self, {way}, {speed})")));
+        }
+        Policy::Stopped { depart_step, target_speed_mps } => {
+            text.push_str("    try:\n");
+            text.push_str(&forever(&hold(&at("target_speed_mps", target_speed_mps), None)));
+            let until = depart_step.map_or_else(|| "math.inf".to_owned(), |from| step("depart_step", from));
+            text.push_str(&window("0", &until, "-1"));
+        }
+        Policy::Yielding { target_speed_mps, gap_s } => {
+            let (speed, gap) = (at("target_speed_mps", target_speed_mps), at("gap_s", gap_s));
+            let conflict = &context.scenario.partners()[position].conflict;
+            if conflict.is_none() {
+                let _ = writeln!(text, "    while True:\n        {}", take(&hold(&speed, None)));
+            }
+            if let Some(conflict) = conflict {
+                text.push_str("    try:\n");
+                text.push_str(&forever(&hold(&speed, None)));
+                // It stops short of the conflict while the ego is about to come: v^2 = 2 * 3 m/s^2 * distance.
+                let (mine, theirs) = (number(rounded(conflict.s_b - 6.0)), number(rounded(conflict.s_a)));
+                let _ = writeln!(
+                    text,
+                    "    interrupt when (0 < {mine} - along({way}, self) < self.speed ** 2 / 6 + 2\n            \
+                     and 0 < {theirs} - along(EGO_WAY, ego) < {gap} * max(ego.speed, 1)):\n        {}",
+                    take("-0.2")
+                );
+            }
+        }
+    }
+    text
+}
+
+/// A pedestrian walks along its way.
+fn walk(context: &Context<'_>, position: usize) -> String {
+    let partner = &context.scenario.draft().partners[position];
+    let way = format!("PARTNER{}_WAY", position + 1);
+    let (from, speed) = match partner.policy {
+        Policy::Stopped { depart_step, target_speed_mps } => (
+            depart_step.map_or_else(|| "math.inf".to_owned(), |step| number(rounded(f64::from(step) * 0.1))),
+            target_speed_mps,
+        ),
+        _ => ("0".to_owned(), partner.policy.target_speed()),
+    };
+    format!(
+        "\nbehavior Partner{0}():    # \"{1}\", walks\n    while True:\n        \
+         take (SetWalkingDirectionAction(direction({way}, along({way}, self))),\n            \
+         SetWalkingSpeedAction({2} if seconds() >= {from} else 0))\n",
+        position + 1,
+        partner.id,
+        number(speed),
+    )
+}
+
+/// The partner's object.
+pub(super) fn instance(context: &Context<'_>, position: usize) -> String {
+    let draft = context.scenario.draft();
+    let partner = &draft.partners[position];
+    let placement = &context.scenario.partners()[position];
+    let at = |field: &str, value: f64| context.value(&format!("/partners/{position}/{field}"), value);
+    let ego_s = context.value("/ego/s_m", draft.ego.s_m);
+    let s = match partner.start {
+        Start::Offset { delta_s_m, .. } => {
+            let moved = at("start/delta_s_m", delta_s_m);
+            let along = draft.ego.s_m + delta_s_m;
+            match partner.approach {
+                Approach::Opposite => format!("{} - ({ego_s} + {moved})", number(rounded(placement.s_m + along))),
+                _ if rounded(placement.s_m - along) == 0.0 => format!("{ego_s} + {moved}"),
+                _ => format!("{} + {ego_s} + {moved}", number(rounded(placement.s_m - along))),
+            }
+        }
+        Start::ArrivalGap { arrival_gap_s } => match &placement.conflict {
+            Some(conflict) => format!(
+                "{} - {} * (({} - {ego_s}) / {} + {})",
+                number(rounded(conflict.s_b)),
+                target_name(context, position),
+                number(rounded(conflict.s_a)),
+                context.value("/ego/target_speed_mps", draft.ego.target_speed_mps),
+                at("start/arrival_gap_s", arrival_gap_s),
+            ),
+            None => number(rounded(placement.s_m)),
+        },
+    };
+    let t = match partner.start {
+        Start::Offset { delta_t_m, .. } => at("start/delta_t_m", delta_t_m),
+        Start::ArrivalGap { .. } => "0".to_owned(),
+    };
+    let outline = recrash_model::geometry::OrientedBox::new(
+        placement.pose,
+        recrash_model::vehicle::VehicleSpec::of(placement.kind).length_m,
+        recrash_model::vehicle::VehicleSpec::of(placement.kind).width_m,
+    );
+    let on_road = outline.corners().into_iter().all(|corner| context.scenario.network().on_road(corner));
+    let speed = at("speed_mps", partner.speed_mps);
+    let way = format!("PARTNER{}_WAY", position + 1);
+    let behavior = format!("Partner{}()", position + 1);
+    format!(
+        "\nPARTNER{0}_S = {s}    # start along its way [m]\nrequire 0 <= PARTNER{0}_S <= PARTNER{0}_WAY.length\n{1} = {2}\n",
+        position + 1,
+        variable(position),
+        road_user(placement, &way, &format!("PARTNER{}_S", position + 1), &t, &speed, &behavior, on_road)
+    )
+}
+
+/// The parameter that holds the speed a partner's policy wants.
+fn target_name(context: &Context<'_>, position: usize) -> String {
+    ["target_speed", "cruise_speed", "target_speed_mps"]
+        .iter()
+        .find_map(|field| context.names.find(&format!("/partners/{position}/policy/{field}")))
+        .map_or_else(
+            || number(context.scenario.draft().partners[position].policy.target_speed()),
+            |found| constant(&found.name),
+        )
+}
+
+/// The lateral target over time.
+fn lateral_term(context: &Context<'_>, position: usize) -> String {
+    let partner = &context.scenario.draft().partners[position];
+    let start = start_offset(partner.start);
+    let start_text = match partner.start {
+        Start::Offset { .. } => context.value(&format!("/partners/{position}/start/delta_t_m"), start),
+        Start::ArrivalGap { .. } => "0".to_owned(),
+    };
+    if partner.lateral.is_empty() {
+        return if start == 0.0 && context.parameters.is_empty() { "0".to_owned() } else { start_text };
+    }
+    let moves: Vec<String> = partner
+        .lateral
+        .iter()
+        .enumerate()
+        .map(|(number_of, step)| {
+            let at = |field: &str, value: f64| {
+                context.value(&format!("/partners/{position}/lateral/{number_of}/{field}"), value)
+            };
+            format!(
+                "({}, {}, {})",
+                at("start_s", step.start_s),
+                at("duration_s", step.duration_s),
+                at("to_t_m", step.to_t_m)
+            )
+        })
+        .collect();
+    format!("lateral(self, {start_text}, [{}])", moves.join(", "))
+}
+
+fn policy_name(policy: &Policy) -> &'static str {
+    match policy {
+        Policy::SuddenBrake { .. } => "sudden_brake: holds a speed, brakes fully for a while, holds it again",
+        Policy::AccelThenBrake { .. } => {
+            "accel_then_brake: a throttle, a speed, full brake for a while, the speed again"
+        }
+        Policy::IdmNominal { .. } => "idm_nominal: MetaDrive's gap law",
+        Policy::Stopped { .. } => "stopped: stands, then sets off",
+        Policy::Yielding { .. } => "yielding: holds a speed, waits while the ego is about to come",
+    }
+}

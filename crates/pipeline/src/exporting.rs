@@ -1,0 +1,124 @@
+//! Exports of a suite or of one scenario file.
+
+use crate::casework::{parse_ego, read_scenario, run_scenario};
+use crate::error::PipelineError;
+use crate::profiles::load_profile;
+use crate::stages::names;
+use crate::store::{Store, write_file_whole};
+use crate::suite::Suite;
+use recrash_export::{ExportOptions, Format, PartnersAs};
+use recrash_model::diagnostic::{Diagnostic, Location, Severity};
+use recrash_model::selection::Selection;
+use recrash_model::tuning::{Parameter, TuneLog};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What to export, and where to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportRequest {
+    /// A suite's folder, or a scenario file.
+    pub source: PathBuf,
+    /// Formats.
+    pub formats: Vec<Format>,
+    /// How partners move.
+    pub partners_as: PartnersAs,
+    /// Target folder; each format gets a folder in it. Where not given: `exports` in the suite, or beside the file.
+    pub target: Option<PathBuf>,
+    /// Whether files that are there already may be overwritten.
+    pub force: bool,
+}
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExportReport {
+    /// Files written, in order.
+    pub files: Vec<PathBuf>,
+    /// Scenarios that could not be exported, each with its reason.
+    pub failures: Vec<Diagnostic>,
+}
+
+/// Exports every scenario that can be; one that cannot is named, and the rest goes on.
+///
+/// # Errors
+/// The source is no suite and no file, or the target holds files already.
+pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
+    let sources = sources(&request.source)?;
+    let beside = if request.source.is_dir() { request.source.clone() } else { parent(&request.source) };
+    let target = request.target.clone().unwrap_or_else(|| beside.join("exports"));
+    let mut report = ExportReport { files: Vec::new(), failures: Vec::new() };
+    for &format in &request.formats {
+        let folder = target.join(format.name());
+        if !request.force && std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some()) {
+            return Err(PipelineError::bad_input(format!(
+                "{} holds files already; add --force to overwrite them, or choose another --to-dir",
+                folder.display()
+            )));
+        }
+        let store = Store::create(&folder, write_file_whole)?;
+        for source in &sources {
+            match files_of(source, format, request.partners_as) {
+                Ok(files) => {
+                    for file in files {
+                        store.write(&file.name, &file.content)?;
+                        report.files.push(folder.join(&file.name));
+                    }
+                }
+                Err(why) => report.failures.push(Diagnostic::new(
+                    Severity::Error,
+                    "export.failed",
+                    Location { file: Some(source.path.display().to_string()), ..Location::default() },
+                    format!("not exported to {}: {why}", format.name()),
+                )),
+            }
+        }
+    }
+    Ok(report)
+}
+
+struct ScenarioSource {
+    path: PathBuf,
+    parameters: Vec<Parameter>,
+    ego: String,
+}
+
+fn parent(file: &Path) -> PathBuf {
+    file.parent().map_or_else(PathBuf::new, Path::to_owned)
+}
+
+fn sources(source: &Path) -> Result<Vec<ScenarioSource>, PipelineError> {
+    let Some(options) = source.is_dir().then(|| Suite::saved_options(source)).transpose()? else {
+        let ego = load_profile("paper")?.ego;
+        return Ok(vec![ScenarioSource { path: source.to_owned(), parameters: Vec::new(), ego }]);
+    };
+    let options = options.ok_or_else(|| {
+        PipelineError::bad_input(format!("{} is not a suite: it holds no suite.json", source.display()))
+    })?;
+    let ego = options.ego.clone().map_or_else(|| load_profile(&options.profile).map(|p| p.ego), Ok)?;
+    let store = Store::create(source, write_file_whole)?;
+    let selection: Selection = store.read_json(names::SELECTION)?;
+    let of = |id: &str| {
+        // A damaged log costs the ranges, not the scenario.
+        let log: Option<TuneLog> = store.read_json(&names::tune_log(id)).ok();
+        let parameters = log.map_or_else(Vec::new, |log| log.parameters);
+        ScenarioSource { path: store.path(&names::tuned(id)), parameters, ego: ego.clone() }
+    };
+    Ok(selection.clusters.iter().map(|cluster| of(&cluster.scenario_id)).collect())
+}
+
+fn files_of(
+    source: &ScenarioSource,
+    format: Format,
+    partners_as: PartnersAs,
+) -> Result<Vec<recrash_export::ExportFile>, String> {
+    let told = |error: PipelineError| match &error {
+        PipelineError::BadInput { diagnostics, .. } if !diagnostics.is_empty() => {
+            diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        }
+        _ => error.to_string(),
+    };
+    let (scenario, _) = read_scenario(&source.path).map_err(told)?;
+    let profile = load_profile("paper").map_err(told)?;
+    let rollout = run_scenario(&scenario, parse_ego(&source.ego).map_err(told)?, &profile, None).rollout;
+    let options = ExportOptions { partners_as, ..ExportOptions::new(format) };
+    recrash_export::export(&scenario, Some(&rollout), &source.parameters, &options).map_err(|e| e.to_string())
+}

@@ -1,0 +1,237 @@
+//! Names, counts and ranges: everything that can be said without looking at the road.
+
+use super::{Remarks, shown};
+use recrash_model::scenario::{LateralMove, MapSpec, Obstacle, Partner, Policy, SCENARIO_FORMAT, ScenarioDraft, Start};
+use std::collections::BTreeSet;
+
+/// The fastest any vehicle drives: MetaDrive cuts the engine at 80 km/h. [m/s]
+pub(super) const MAX_SPEED_MPS: f64 = 80.0 / 3.6;
+
+/// Steps a policy may count, 0.1 s each: more than the longest rollout has.
+const MAX_STEPS: u32 = 10_000;
+
+/// The radius of the innermost lane of a curve, at least: two thirds more than a car's own turning circle. [m]
+const MIN_LANE_RADIUS_M: f64 = 5.0;
+
+/// Which parts of a draft have numbers that geometry can be built from.
+pub(super) struct Fit {
+    pub map: bool,
+    pub ego: bool,
+    pub partners: Vec<bool>,
+    pub obstacles: Vec<bool>,
+}
+
+/// Checks names, counts and ranges.
+pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
+    if draft.format != SCENARIO_FORMAT {
+        let message = format!("format is {:?}, not {SCENARIO_FORMAT:?}", shorten(&draft.format));
+        remarks.error("scenario.format", "format", message, "write the format tag as shown");
+    }
+    name("id", &draft.id, 80, "._-", remarks);
+    let map = map(&draft.map, remarks);
+    remarks.number("duration_s", draft.duration_s, 1.0, 120.0, "s");
+    let ego = {
+        let speed = remarks.number("ego.speed_mps", draft.ego.speed_mps, 0.0, MAX_SPEED_MPS, "m/s");
+        let target = remarks.number("ego.target_speed_mps", draft.ego.target_speed_mps, 1.0, MAX_SPEED_MPS, "m/s");
+        let longest = if map { draft.map.carriageway().approach_m } else { 300.0 };
+        let start = remarks.number("ego.s_m", draft.ego.s_m, 0.0, longest, "m");
+        speed && target && start
+    };
+    remarks.count("partners", draft.partners.len(), 16);
+    remarks.count("obstacles", draft.obstacles.len(), 64);
+    remarks.number("traffic.density", draft.traffic.density, 0.0, 1.0, "");
+    let mut ids = BTreeSet::new();
+    let mut partners = Vec::with_capacity(draft.partners.len());
+    for (position, each) in draft.partners.iter().enumerate() {
+        let path = format!("partners[{position}]");
+        name(&format!("{path}.id"), &each.id, 32, "_-", remarks);
+        if each.id == recrash_model::rollout::EGO_ID {
+            remarks.error("scenario.id", format!("{path}.id"), "\"ego\" is the ego's own name", "choose another id");
+        } else if !ids.insert(each.id.as_str()) {
+            let message = format!("a partner before has the id {:?} too", shorten(&each.id));
+            remarks.error("scenario.duplicate-id", format!("{path}.id"), message, "give each partner its own id");
+        }
+        partners.push(partner(each, &path, remarks));
+    }
+    let obstacles = draft.obstacles.iter().enumerate().map(|(n, each)| obstacle(each, n, remarks)).collect();
+    Fit { map, ego, partners, obstacles }
+}
+
+impl Remarks {
+    /// Whether a number is finite and in range; says so where it is not.
+    pub(super) fn number(&mut self, path: &str, value: f64, min: f64, max: f64, unit: &str) -> bool {
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let allowed = format!("allowed: {} to {}{unit}", shown(min), shown(max));
+        if !value.is_finite() {
+            let message = format!("{} is {value}, which is no finite number", last_name(path));
+            self.error("scenario.not-finite", path, message, allowed);
+            return false;
+        }
+        if !(min..=max).contains(&value) {
+            let message = format!("{} is {}{unit}, out of range", last_name(path), shown(value));
+            self.error("scenario.range", path, message, allowed);
+            return false;
+        }
+        true
+    }
+
+    fn count(&mut self, path: &str, found: usize, most: usize) {
+        if found > most {
+            let message = format!("{found} {path}, at most {most} are allowed");
+            self.error("scenario.count", path, message, "leave out those that the conflict does not need");
+        }
+    }
+
+    fn steps(&mut self, path: &str, value: u32) {
+        if value > MAX_STEPS {
+            let message = format!("{} is {value} steps, out of range", last_name(path));
+            self.error("scenario.range", path, message, format!("allowed: 0 to {MAX_STEPS} steps of 0.1 s"));
+        }
+    }
+}
+
+fn last_name(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+/// The beginning of a text that may be very long.
+fn shorten(text: &str) -> String {
+    if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(40).chain(['…']).collect() }
+}
+
+fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
+    let listed = marks.chars().map(|mark| format!("'{mark}'")).collect::<Vec<_>>().join(", ");
+    let allowed = format!("allowed: 1 to {longest} letters a-z A-Z, digits and {listed}");
+    let length = text.chars().count();
+    if length == 0 || length > longest {
+        remarks.error("scenario.id", path, format!("the id has {length} characters"), allowed);
+    } else if let Some(bad) = text.chars().find(|c| !c.is_ascii_alphanumeric() && !marks.contains(*c)) {
+        remarks.error("scenario.id", path, format!("the id {:?} holds {bad:?}", shorten(text)), allowed);
+    } else if text.starts_with('.') {
+        remarks.error(
+            "scenario.id",
+            path,
+            format!("the id {text:?} begins with a dot"),
+            "begin with a letter or digit",
+        );
+    }
+}
+
+fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
+    let shared = map.carriageway();
+    let mut fit = true;
+    if !(1..=4).contains(&shared.lanes) {
+        let message = format!("lanes is {}, out of range", shared.lanes);
+        remarks.error("scenario.range", "map.lanes", message, "allowed: 1 to 4 in each direction");
+        fit = false;
+    }
+    let width_fits = remarks.number("map.lane_width_m", shared.lane_width_m, 2.5, 4.5, "m");
+    fit &= width_fits;
+    fit &= remarks.number("map.approach_m", shared.approach_m, 20.0, 300.0, "m");
+    match map {
+        MapSpec::S(m) => fit &= remarks.number("map.length_m", m.length_m, 20.0, 600.0, "m"),
+        MapSpec::C(m) => {
+            fit &= remarks.number("map.length_m", m.length_m, 10.0, 300.0, "m");
+            fit &= remarks.number("map.angle_deg", m.angle_deg, 10.0, 135.0, "deg");
+            let radius_fits = remarks.number("map.radius_m", m.radius_m, 15.0, 200.0, "m");
+            fit &= radius_fits;
+            if radius_fits && width_fits && m.direction == recrash_model::narrative::Side::Left {
+                let inner = f64::from(2 * shared.lanes.min(4)) * shared.lane_width_m - shared.lane_width_m;
+                let least = inner + MIN_LANE_RADIUS_M;
+                if m.radius_m < least {
+                    let message = format!(
+                        "with {} lanes of {} m each way the innermost oncoming lane of this left curve would have a radius of {} m",
+                        shared.lanes,
+                        shown(shared.lane_width_m),
+                        shown(m.radius_m - inner)
+                    );
+                    let hint = format!("allowed: radius_m from {} m, or fewer lanes, or a right curve", shown(least));
+                    remarks.error("scenario.curve-too-tight", "map.radius_m", message, hint);
+                    fit = false;
+                }
+            }
+        }
+        MapSpec::X(m) => fit &= remarks.number("map.arm_m", m.arm_m, 20.0, 300.0, "m"),
+        MapSpec::T(m) => fit &= remarks.number("map.arm_m", m.arm_m, 20.0, 300.0, "m"),
+        MapSpec::O(m) => {
+            fit &= remarks.number("map.arm_m", m.arm_m, 20.0, 300.0, "m");
+            fit &= remarks.number("map.exit_radius_m", m.exit_radius_m, 5.0, 15.0, "m");
+            fit &= remarks.number("map.inner_radius_m", m.inner_radius_m, 15.0, 45.0, "m");
+        }
+    }
+    fit
+}
+
+/// Whether what a placement needs is in range.
+fn partner(partner: &Partner, path: &str, remarks: &mut Remarks) -> bool {
+    let mut fit = remarks.number(&format!("{path}.speed_mps"), partner.speed_mps, 0.0, MAX_SPEED_MPS, "m/s");
+    match partner.start {
+        Start::Offset { delta_s_m, delta_t_m } => {
+            fit &= remarks.number(&format!("{path}.start.delta_s_m"), delta_s_m, -1000.0, 1000.0, "m");
+            fit &= remarks.number(&format!("{path}.start.delta_t_m"), delta_t_m, -10.0, 10.0, "m");
+        }
+        Start::ArrivalGap { arrival_gap_s } => {
+            fit &= remarks.number(&format!("{path}.start.arrival_gap_s"), arrival_gap_s, -60.0, 60.0, "s");
+        }
+    }
+    for (position, step) in partner.lateral.iter().enumerate() {
+        lateral(step, &format!("{path}.lateral[{position}]"), remarks);
+    }
+    if partner.lateral.len() > 32 {
+        remarks.count(&format!("{path}.lateral"), partner.lateral.len(), 32);
+    }
+    policy(&partner.policy, &format!("{path}.policy"), remarks) && fit
+}
+
+fn lateral(step: &LateralMove, path: &str, remarks: &mut Remarks) {
+    remarks.number(&format!("{path}.start_s"), step.start_s, 0.0, 120.0, "s");
+    remarks.number(&format!("{path}.duration_s"), step.duration_s, 0.5, 120.0, "s");
+    remarks.number(&format!("{path}.to_t_m"), step.to_t_m, -10.0, 10.0, "m");
+}
+
+fn policy(policy: &Policy, path: &str, remarks: &mut Remarks) -> bool {
+    let at = |name: &str| format!("{path}.{name}");
+    let gain = |kp: Option<f64>, remarks: &mut Remarks| {
+        if let Some(kp) = kp {
+            remarks.number(&at("speed_kp"), kp, 0.01, 10.0, "throttle per m/s");
+        }
+    };
+    // IDM divides by the speed it wants, so that may not be nothing.
+    let least_idm_speed = 0.5;
+    match *policy {
+        Policy::SuddenBrake { target_speed, brake_step, brake_steps, speed_kp } => {
+            remarks.steps(&at("brake_step"), brake_step);
+            remarks.steps(&at("brake_steps"), brake_steps);
+            gain(speed_kp, remarks);
+            remarks.number(&at("target_speed"), target_speed, 0.0, MAX_SPEED_MPS, "m/s")
+        }
+        Policy::AccelThenBrake { accel_mag, accel_steps, cruise_speed, brake_step, brake_steps, speed_kp } => {
+            remarks.number(&at("accel_mag"), accel_mag, -1.0, 1.0, "");
+            remarks.steps(&at("accel_steps"), accel_steps);
+            remarks.steps(&at("brake_step"), brake_step);
+            remarks.steps(&at("brake_steps"), brake_steps);
+            gain(speed_kp, remarks);
+            remarks.number(&at("cruise_speed"), cruise_speed, 0.0, MAX_SPEED_MPS, "m/s")
+        }
+        Policy::IdmNominal { target_speed_mps } => {
+            remarks.number(&at("target_speed_mps"), target_speed_mps, least_idm_speed, MAX_SPEED_MPS, "m/s")
+        }
+        Policy::Stopped { depart_step, target_speed_mps } => {
+            if let Some(step) = depart_step {
+                remarks.steps(&at("depart_step"), step);
+            }
+            let least = if depart_step.is_some() { least_idm_speed } else { 0.0 };
+            remarks.number(&at("target_speed_mps"), target_speed_mps, least, MAX_SPEED_MPS, "m/s")
+        }
+        Policy::Yielding { target_speed_mps, gap_s } => {
+            remarks.number(&at("gap_s"), gap_s, 0.0, 20.0, "s");
+            remarks.number(&at("target_speed_mps"), target_speed_mps, least_idm_speed, MAX_SPEED_MPS, "m/s")
+        }
+    }
+}
+
+fn obstacle(obstacle: &Obstacle, position: usize, remarks: &mut Remarks) -> bool {
+    let along = remarks.number(&format!("obstacles[{position}].s_m"), obstacle.s_m, 0.0, 2000.0, "m");
+    let across = remarks.number(&format!("obstacles[{position}].t_m"), obstacle.t_m, -50.0, 50.0, "m");
+    along && across
+}

@@ -1,0 +1,95 @@
+//! Measures every strategy on a crash file over many seeds: the table of `docs/models/selection.md`.
+//!
+//!     cargo run --release -p recrash-select --example measure -- ../shared/data/nhtsa/ads-2021-06-to-2025-06.csv
+//!
+//! Without a file the built-in sample is measured. With a second argument the embedding, the templates and the k-means
+//! inertia of each seed go to that file as JSON, for `crates/select/oracle/oracle.py`. A third argument is a profile
+//! instead of the paper's.
+
+use recrash_model::Seed;
+use recrash_model::profile::SystemProfile;
+use recrash_model::selection::Strategy;
+use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText, ingest};
+use recrash_select::{SelectOptions, budget_table, embed_records, select_with, stability};
+use std::time::Instant;
+
+const SEEDS: usize = 50;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (name, bytes) = match arguments.first() {
+        Some(path) => (path.as_str(), std::fs::read(path)?),
+        None => (SAMPLE_NAME, SAMPLE_CSV.as_bytes().to_vec()),
+    };
+    let profile: SystemProfile = match arguments.get(2) {
+        Some(path) => toml::from_str(&std::fs::read_to_string(path)?)?,
+        None => toml::from_str(include_str!("../../../profiles/paper.toml"))?,
+    };
+    let records = ingest(&[SourceText { name, bytes: &bytes }], &profile)?.value;
+    let started = Instant::now();
+    let embedding = embed_records(&records);
+    println!(
+        "{} usable records, embedding of {} dimensions in {:?}",
+        embedding.rows(),
+        embedding.dimensions(),
+        started.elapsed()
+    );
+
+    println!(
+        "| strategy | templates covered (seeds) | radius | mean | narrative radius | narrative mean | same picks | same clusters |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for strategy in Strategy::ALL {
+        let options = SelectOptions { strategy, ..SelectOptions::default() };
+        let s = stability(&records, &profile, &options, &embedding, SEEDS)?;
+        println!(
+            "| {} | {:?} | {:.3} | {:.3} | {:.3} | {:.3} | {:.2} | {:.2} |",
+            strategy.name(),
+            s.templates_covered,
+            s.mean_radius,
+            s.mean_distance,
+            s.mean_embedding_radius,
+            s.mean_embedding_distance,
+            s.picks_in_common,
+            s.cluster_agreement
+        );
+    }
+
+    let started = Instant::now();
+    let options = SelectOptions::default();
+    let selection = select_with(&records, &profile, &options, &embedding)?.value;
+    println!("\none selection in {:?}, variance kept {:.3}", started.elapsed(), selection.embedding.explained_variance);
+    println!(
+        "pairs {} covered / {} observed / {} possible",
+        selection.coverage.pairs.covered, selection.coverage.pairs.observed, selection.coverage.pairs.possible
+    );
+    for cluster in &selection.clusters {
+        println!("{:40} {:>3} records, radius {:.3}", cluster.scenario_id, cluster.members.len(), cluster.radius);
+    }
+    println!("\n| budget | inertia | silhouette | templates | radius | mean |\n|---|---|---|---|---|---|");
+    for row in budget_table(&records, &profile, &options, &embedding, &[5, 10, 14, 20, 30, 40, 60])? {
+        let silhouette = row.silhouette.map_or("-".to_owned(), |s| format!("{s:.3}"));
+        println!(
+            "| {} | {:.2} | {silhouette} | {} | {:.3} | {:.3} |",
+            row.budget, row.inertia, row.templates_covered, row.radius, row.mean_distance
+        );
+    }
+
+    if let Some(path) = arguments.get(1) {
+        let options = SelectOptions { strategy: Strategy::Kmeans, ..options };
+        let inertia = |seed| {
+            Ok(select_with(&records, &profile, &SelectOptions { seed: Seed(seed), ..options.clone() }, &embedding)?
+                .value
+                .inertia)
+        };
+        let inertia: Vec<f64> = (0..20).map(inertia).collect::<Result<_, recrash_select::SelectError>>()?;
+        let templates: Vec<String> =
+            records.usable.iter().filter_map(|&i| Some(records.records[i].template()?.slug())).collect();
+        let entities: Vec<&str> = records.usable.iter().map(|&i| records.records[i].entity.as_str()).collect();
+        let rows: Vec<&[f64]> = (0..embedding.rows()).map(|i| embedding.row(i)).collect();
+        let json = serde_json::json!({ "rows": rows, "templates": templates, "entities": entities, "budget": options.budget,
+            "dimensions": options.dimensions, "restarts": options.restarts, "inertia": inertia });
+        std::fs::write(path, json.to_string())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,69 @@
+//! Which driver the subject vehicle gets.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// The subject vehicle's driver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Ego {
+    /// MetaDrive's `IDMPolicy` with its quirks.
+    MetadriveIdm,
+    /// The intelligent driver model in SI units; sees crossing traffic and gives way.
+    Idm,
+}
+
+impl Ego {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::MetadriveIdm, Self::Idm];
+
+    /// Their names, in the same order.
+    pub const NAMES: [&'static str; 2] = ["metadrive-idm", "idm"];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::MetadriveIdm => "metadrive-idm",
+            Self::Idm => "idm",
+        }
+    }
+}
+
+impl fmt::Display for Ego {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// No ego of that name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownEgo(pub String);
+
+impl fmt::Display for UnknownEgo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no ego is called `{}`; there are: {}", self.0, Ego::NAMES.join(", "))
+    }
+}
+
+impl std::error::Error for UnknownEgo {}
+
+impl FromStr for Ego {
+    type Err = UnknownEgo;
+
+    fn from_str(name: &str) -> Result<Self, UnknownEgo> {
+        Self::ALL.into_iter().find(|ego| ego.name() == name).ok_or_else(|| UnknownEgo(name.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_ego_is_found_by_its_name() {
+        for (ego, name) in Ego::ALL.into_iter().zip(Ego::NAMES) {
+            assert_eq!(name.parse(), Ok(ego));
+            assert_eq!(ego.to_string(), name);
+        }
+        assert!("human".parse::<Ego>().unwrap_err().to_string().contains("metadrive-idm, idm"));
+    }
+}

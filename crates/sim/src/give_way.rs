@@ -1,0 +1,158 @@
+//! Giving way where paths cross or merge: who may go first, and where the other waits.
+
+use crate::scene::Scene;
+use recrash_model::math;
+use recrash_roads::{Conflict, LanePath, RoadNetwork};
+
+/// A place where an actor's path meets another's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Crossing {
+    /// Whose path this is seen from, and whose it meets.
+    pub(crate) me: usize,
+    pub(crate) other: usize,
+    /// The stretch of each path on which the two can touch, for the centre of the vehicle. [m]
+    pub(crate) mine: Stretch,
+    pub(crate) theirs: Stretch,
+    /// The paths go on in one lane.
+    pub(crate) merges: bool,
+}
+
+/// A stretch of a path. [m]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stretch {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+}
+
+/// Half sizes of a vehicle. [m]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HalfSize {
+    pub(crate) length: f64,
+    pub(crate) width: f64,
+}
+
+/// Room added on both sides of a stretch. [m]
+const MARGIN_M: f64 = 0.5;
+
+impl Crossing {
+    /// The crossing of two paths, from their conflict.
+    pub(crate) fn new(
+        network: &RoadNetwork,
+        (me, path, size): (usize, &LanePath, HalfSize),
+        (other, other_path, other_size): (usize, &LanePath, HalfSize),
+        conflict: Conflict,
+    ) -> Self {
+        let heading = path.pose(network, conflict.s_a, 0.0).heading;
+        let other_heading = other_path.pose(network, conflict.s_b, 0.0).heading;
+        let (sin, cos) = math::sincos(heading - other_heading);
+        let (sin, cos) = (sin.abs().max(0.5), cos.abs());
+        // Half of the other's lane, cut by mine at an angle, and half of my own length.
+        let reach = |mine: HalfSize, theirs: HalfSize| mine.length + (theirs.width + mine.width * cos) / sin + MARGIN_M;
+        let stretch = |s: f64, mine: HalfSize, theirs: HalfSize| {
+            let reach = reach(mine, theirs);
+            Stretch { from: s - reach, to: if conflict.merges { f64::INFINITY } else { s + reach } }
+        };
+        Self {
+            me,
+            other,
+            mine: stretch(conflict.s_a, size, other_size),
+            theirs: stretch(conflict.s_b, other_size, size),
+            merges: conflict.merges,
+        }
+    }
+}
+
+/// How careful somebody is about others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Manners {
+    /// Time that must be left between one leaving the crossing and the other reaching it. [s]
+    pub(crate) gap_s: f64,
+}
+
+/// Somebody below this speed is waiting, not coming. [m/s]
+const WAITING_MPS: f64 = 0.3;
+
+/// After standing this long at a crossing where the other stands too, the one who came later goes as well. [steps]
+const PATIENCE_STEPS: u32 = 30;
+
+/// Nobody further away than this is thought about. [s]
+const HORIZON_S: f64 = 12.0;
+
+/// Where paths merge, the other has gone first when he is this far along the common lane. [m]
+const MERGED_M: f64 = 12.0;
+
+/// What has to be remembered between decisions.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct GiveWay {
+    standing_steps: u32,
+}
+
+impl GiveWay {
+    /// The distance from the centre of the vehicle to where it has to wait; `None` where it may go. [m]
+    pub(crate) fn stop_line(
+        &mut self,
+        scene: &Scene<'_>,
+        me: usize,
+        crossings: &[Crossing],
+        wanted_mps: f64,
+        manners: Manners,
+    ) -> Option<f64> {
+        let speed = scene.actors[me].speed;
+        self.standing_steps = if speed < WAITING_MPS { self.standing_steps + 1 } else { 0 };
+        if crossings.iter().all(|crossing| crossing.me != me) {
+            return None;
+        }
+        let s = scene.path_s(me);
+        let mut nearest: Option<f64> = None;
+        for crossing in crossings.iter().filter(|crossing| crossing.me == me) {
+            let ahead = crossing.mine.from - s;
+            if ahead < 0.0 || !self.must_wait(scene, me, crossing, ahead, s, wanted_mps, manners) {
+                continue;
+            }
+            nearest = Some(nearest.map_or(ahead, |least| least.min(ahead)));
+        }
+        nearest
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "one private caller")]
+    fn must_wait(
+        &self,
+        scene: &Scene<'_>,
+        me: usize,
+        crossing: &Crossing,
+        ahead: f64,
+        s: f64,
+        wanted_mps: f64,
+        manners: Manners,
+    ) -> bool {
+        let other = &scene.actors[crossing.other];
+        if !other.present {
+            return false;
+        }
+        let other_s = scene.path_s(crossing.other);
+        // Over, or (where the paths merge) now simply somebody in front.
+        let their_end = if crossing.merges { crossing.theirs.from + MERGED_M } else { crossing.theirs.to };
+        if other_s > their_end {
+            return false;
+        }
+        let inside = other_s > crossing.theirs.from;
+        if inside {
+            return true;
+        }
+        if other.speed < WAITING_MPS {
+            // Both stand: the first in the list goes, the other when he has waited long enough.
+            return crossing.other < me && scene.actors[me].speed < WAITING_MPS && self.standing_steps < PATIENCE_STEPS;
+        }
+        let speed = scene.actors[me].speed.max(0.5 * wanted_mps).max(WAITING_MPS);
+        let my_entry = ahead / speed;
+        let my_exit = if crossing.merges { my_entry + 1.0 } else { (crossing.mine.to - s) / speed };
+        let their_entry = (crossing.theirs.from - other_s) / other.speed;
+        let their_exit = if crossing.merges { their_entry + 1.0 } else { (crossing.theirs.to - other_s) / other.speed };
+        if their_entry > HORIZON_S || my_entry > HORIZON_S {
+            return false;
+        }
+        let clear_before = my_exit + manners.gap_s <= their_entry;
+        let clear_behind = their_exit + 0.5 * manners.gap_s <= my_entry;
+        !clear_before && !clear_behind
+    }
+}

@@ -1,0 +1,72 @@
+//! The frozen world of one decision: what every actor sees, and nobody changes while others still decide.
+
+use crate::lanes::{LaneIndex, LaneTable, Navigator};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_roads::RoadId;
+
+/// A road user as others see it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    pub(crate) pose: Pose,
+    /// Unit vector of its heading.
+    pub(crate) forward: Vec2,
+    pub(crate) velocity: Vec2,
+    /// [m/s]
+    pub(crate) speed: f64,
+    /// Where it is along its route, and on which lane.
+    pub(crate) place: Navigator,
+    pub(crate) half_length: f64,
+    pub(crate) half_width: f64,
+    /// Still in the world: background traffic that drove off the map is not.
+    pub(crate) present: bool,
+}
+
+/// An obstacle as others see it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SeenObstacle {
+    pub(crate) outline: OrientedBox,
+    /// The lane it is registered to.
+    pub(crate) lane: LaneIndex,
+    /// Along that lane. [m]
+    pub(crate) s: f64,
+}
+
+/// The frozen world.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    /// Number of the step, from 0.
+    pub(crate) step: u32,
+    pub(crate) lanes: &'a LaneTable,
+    /// All actors' routes, one after the other.
+    pub(crate) routes: &'a [RoadId],
+    /// The lane of each road of `routes` that the actor was placed on.
+    pub(crate) route_lanes: &'a [LaneIndex],
+    /// Where each of these lanes begins along the actor's path. [m]
+    pub(crate) route_starts: &'a [f64],
+    pub(crate) actors: &'a [Seen],
+    pub(crate) obstacles: &'a [SeenObstacle],
+}
+
+impl Scene<'_> {
+    /// The lanes of the road an actor is routed along, leftmost first.
+    #[inline]
+    pub(crate) fn lanes_of(&self, actor: usize) -> &[LaneIndex] {
+        self.lanes.of_road(self.actors[actor].place.road(self.routes))
+    }
+
+    /// The lane an actor was placed on, on the road it is now on.
+    #[inline]
+    pub(crate) fn path_lane(&self, actor: usize) -> LaneIndex {
+        self.route_lanes[self.actors[actor].place.route_position()]
+    }
+
+    /// How far an actor has come along its path. [m]
+    #[inline]
+    pub(crate) fn path_s(&self, actor: usize) -> f64 {
+        let seen = &self.actors[actor];
+        let position = seen.place.route_position();
+        let lane = self.route_lanes[position];
+        let s = if lane == seen.place.lane { seen.place.s } else { self.lanes.lane(lane).local(seen.pose.position).0 };
+        self.route_starts[position] + s
+    }
+}

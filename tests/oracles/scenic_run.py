@@ -1,0 +1,57 @@
+"""Compiles Scenic files and runs each once. Prints one JSON object per file: its trajectories and how it ended.
+
+Runs in the environment of requirements/scenic.txt: scenic_run.py newtonian|metadrive|compile STEPS FILE...
+"""
+
+import json
+import os
+import random
+import sys
+import traceback
+
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+import numpy
+import scenic
+
+MODELS = {
+    "newtonian": "scenic.simulators.newtonian.driving_model",
+    "metadrive": "scenic.simulators.metadrive.model",
+    "compile": "scenic.simulators.newtonian.driving_model",
+}
+
+
+def run(path, simulator, steps, params):
+    random.seed(1)
+    numpy.random.seed(1)
+    scenario = scenic.scenarioFromFile(path, mode2D=True, model=MODELS[simulator], params=params)
+    scene, iterations = scenario.generate(maxIterations=2000)
+    names = [getattr(obj, "name", None) for obj in scene.objects]
+    if simulator == "compile":
+        poses = [[obj.position.x, obj.position.y, obj.heading] for obj in scene.objects]
+        return {"file": path, "iterations": iterations, "objects": len(names), "start": poses}
+    result = scenario.getSimulator().simulate(scene, maxSteps=steps).result
+    moving = [i for i, obj in enumerate(scene.objects) if getattr(obj, "behavior", None) is not None]
+    # In 2-D mode positions are x, y, z of the centre.
+    trajectory = [[[state.positions[i].x, state.positions[i].y] for i in moving] for state in result.trajectory] \
+        if hasattr(result.trajectory[0], "positions") else [[[p.x, p.y] for p in state] for state in result.trajectory]
+    return {
+        "file": path,
+        "iterations": iterations,
+        "objects": len(names),
+        "trajectory": trajectory,
+        "end": str(result.terminationReason),
+        "records": {name: len(values) for name, values in result.records.items() if hasattr(values, "__len__")},
+    }
+
+
+if __name__ == "__main__":
+    chosen, count, *files = sys.argv[1:]
+    extra = dict(item.split("=") for item in files if "=" in item and not item.endswith(".scenic"))
+    for name in (name for name in files if name.endswith(".scenic")):
+        try:
+            print(json.dumps(run(name, chosen, int(count), {key: float(value) for key, value in extra.items()})))
+        except Exception as problem:  # whatever is wrong with a file is the answer
+            traceback.print_exc()
+            print(json.dumps({"file": name, "error": f"{type(problem).__name__}: {problem}"}))
