@@ -8,9 +8,12 @@ use std::time::Instant;
 /// What a step gives: why it failed, in one line.
 pub type Result<T = ()> = std::result::Result<T, String>;
 
+/// Name of a step, and what it does.
+type Step = (&'static str, fn() -> Result);
+
 /// Everything, in order of cost.
 pub fn ci() -> Result {
-    let steps: [(&str, fn() -> Result); 7] = [
+    let steps: [Step; 7] = [
         ("format", format),
         ("tidy", tidy::run),
         ("lint", lint),

@@ -1,7 +1,7 @@
 //! Runs paraphrase, design, check, simulation and the faithfulness check on records of a crash file, a few of each
 //! template, and prints what came of it: for those who work on the rules.
 //!
-//! `cargo run -p recrash-agents --example stage [FILE.csv|sample] [PER-TEMPLATE] [trace]`
+//! `cargo run -p recrash-agents --example stage [FILE.csv|sample] [PER-TEMPLATE] [EGO] [trace]`
 
 use recrash_agents::{Brief, Design, Feedback, Paraphrase, Problem, Rules, expectation, parameters};
 use recrash_metrics::{faithfulness, measure};
@@ -18,6 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let file = arguments.next().filter(|file| file != "sample");
     let per_template: usize = arguments.next().map_or(Ok(2), |n| n.parse())?;
+    let ego: Ego = arguments.next().map_or(Ok(Ego::MetadriveIdm), |name| name.parse())?;
     let trace = arguments.next().is_some();
     let profile: SystemProfile = toml::from_str(include_str!("../../../profiles/paper.toml"))?;
     let bytes = match &file {
@@ -84,7 +85,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                         continue;
                     }
                 };
-                let rollout = simulate(&scenario, Ego::MetadriveIdm);
+                let rollout = simulate(&scenario, ego);
                 let metrics = measure(&scenario, &rollout, &profile.failure);
                 let verdict = faithfulness(&scenario, &rollout, &metrics, &expectation);
                 println!(

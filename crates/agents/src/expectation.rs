@@ -9,8 +9,8 @@ use recrash_model::record::CrashRecord;
 /// zones where the narrative retells the record (an alternative is another collision, so they do not bind); and none of
 /// the collisions the profile excludes.
 ///
-/// On a highway nobody can turn: there a movement to one side counts as that turn when the path ends at least half a
-/// lane width to that side of where it began (see `docs/models/rules.md`).
+/// On a road without junction nobody can turn: there a move of at least half a lane width to one side counts as the turn
+/// to that side (see `docs/models/rules.md` and `docs/models/faithfulness.md`).
 pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &SystemProfile) -> Expectation {
     let approach = narrative.facts.iter().find_map(|fact| match fact.value {
         FactValue::Approach { approach } => Some(approach),

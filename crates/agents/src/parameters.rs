@@ -3,8 +3,9 @@
 use crate::rules::limits::{ground_of, most_speed, most_speed_of};
 use recrash_model::narrative::{Fact, FactSource, FactValue, FirstMover, Narrative, Origin};
 use recrash_model::profile::SystemProfile;
-use recrash_model::scenario::{Partner, Policy, ScenarioDraft, Start};
+use recrash_model::scenario::{Approach, Partner, Policy, ScenarioDraft, Start};
 use recrash_model::tuning::Parameter;
+use recrash_model::vehicle::VehicleSpec;
 
 /// Speeds may differ by this share: police reports and readers of dashboards err by as much. Assumed.
 const SPEED_SHARE: f64 = 0.3;
@@ -39,7 +40,7 @@ pub fn parameters(draft: &ScenarioDraft, narrative: &Narrative, profile: &System
         let at = format!("/partners/{number}");
         let most = most_speed(ground, partner.turn).min(profile.expresses.max_speed_mps);
         let most = most.min(most_speed_of(partner.kind));
-        list.start(&at, partner, narrative);
+        list.start(&at, partner, draft, narrative);
         let reason = speed_reason(told(|value| matches!(value, FactValue::CpSpeed { .. })));
         list.policy(&at, partner, (0.5_f64.min(most), most), &reason);
         list.lateral(&at, partner, draft.map.carriageway().lane_width_m);
@@ -99,7 +100,7 @@ impl List {
         self.add(pointer.to_owned(), "m/s", bounds, start, reason);
     }
 
-    fn start(&mut self, at: &str, partner: &Partner, narrative: &Narrative) {
+    fn start(&mut self, at: &str, partner: &Partner, draft: &ScenarioDraft, narrative: &Narrative) {
         match partner.start {
             Start::ArrivalGap { arrival_gap_s } => {
                 let (mut min, mut max) = (arrival_gap_s - GAP_TOLERANCE_S, arrival_gap_s + GAP_TOLERANCE_S);
@@ -128,6 +129,10 @@ impl List {
                 let (mut min, mut max) = (delta_s_m - START_TOLERANCE_M, delta_s_m + START_TOLERANCE_M);
                 if partner.lane_offset == 0 && delta_s_m.abs() > 6.0 {
                     (min, max) = if delta_s_m > 0.0 { (min.max(6.0), max) } else { (min, max.min(-6.0)) };
+                }
+                if partner.approach == Approach::Same {
+                    // On the road, with its rear.
+                    min = min.max(0.5 * VehicleSpec::of(partner.kind).length_m - draft.ego.s_m);
                 }
                 let reason = "the record tells the lane, not the place along it";
                 self.add(format!("{at}/start/delta_s_m"), "m", (min, max), delta_s_m, reason);
@@ -173,11 +178,23 @@ impl List {
 
     fn lateral(&mut self, at: &str, partner: &Partner, lane_width_m: f64) {
         for (number, step) in partner.lateral.iter().enumerate() {
+            // Moves follow each other: two that move at once share the time between them.
+            let slack_s = partner
+                .lateral
+                .get(number + 1)
+                .map_or(f64::INFINITY, |next| 0.5 * (next.start_s - step.start_s - step.duration_s).max(0.0));
             let to = |field: &str| format!("{at}/lateral/{number}/{field}");
-            let bounds = ((step.start_s - TIME_TOLERANCE_S).max(0.0), step.start_s + TIME_TOLERANCE_S);
-            self.add(to("start_s"), "s", bounds, step.start_s, "the record does not tell when");
-            let bounds = ((step.duration_s * 0.6).max(0.8), (step.duration_s * 1.6).min(6.0));
+            if number == 0 {
+                let latest = step.start_s + TIME_TOLERANCE_S.min(slack_s);
+                let bounds = ((step.start_s - TIME_TOLERANCE_S).max(0.0), latest);
+                self.add(to("start_s"), "s", bounds, step.start_s, "the record does not tell when");
+            }
+            let longest = (step.duration_s * 1.6).min(6.0).min(step.duration_s + slack_s);
+            let bounds = ((step.duration_s * 0.6).max(0.8), longest);
             self.add(to("duration_s"), "s", bounds, step.duration_s, "a lane change takes 1 to 6 s");
+            if step.to_t_m == 0.0 {
+                continue;
+            }
             // Into the ego's lane by up to a lane width, and no less than towards it.
             let size = step.to_t_m.abs();
             let (near, far) = ((0.6 * size).max(0.3), (1.5 * size).min(1.2 * lane_width_m).max(size));

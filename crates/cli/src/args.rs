@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use recrash_model::selection::Strategy;
-use recrash_pipeline::{Format, Options, RecordSource};
+use recrash_pipeline::{Format, Options, RecordSource, Resources, SimulatorKind};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -76,9 +76,15 @@ pub struct SuiteArgs {
     /// Who paraphrases and designs: the built-in rules. [default: rules]
     #[arg(long, value_name = "NAME", value_parser = ["rules"])]
     pub agent: Option<String>,
-    /// Simulator. [default: native]
-    #[arg(long, value_name = "NAME", value_parser = ["native"])]
-    pub sim: Option<String>,
+    /// Folder with the files of all-MiniLM-L6-v2, to embed narratives with. [default: a lexical embedding]
+    #[arg(long, value_name = "DIR")]
+    pub model_dir: Option<PathBuf>,
+    /// Simulator: native, or metadrive (needs Python with metadrive-simulator 0.4.3). [default: native]
+    #[arg(long, value_name = "NAME")]
+    pub sim: Option<SimulatorKind>,
+    /// Python interpreter for MetaDrive.
+    #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
+    pub python: PathBuf,
     /// System under test: metadrive-idm, idm. [default: the profile's]
     #[arg(long, value_name = "NAME")]
     pub ego: Option<String>,
@@ -149,11 +155,20 @@ impl SuiteArgs {
             profile: self.profile.clone().unwrap_or(base.profile),
             budget: self.budget.map_or(base.budget, usize::from),
             strategy: self.strategy.unwrap_or(base.strategy),
+            model_dir: self.model_dir.clone().or(base.model_dir),
+            simulator: self.sim.unwrap_or(base.simulator),
             ego: self.ego.clone().or(base.ego),
             tune_budget: self.tune_budget.map_or(base.tune_budget, |n| n as usize),
             searcher: self.searcher.clone().unwrap_or(base.searcher),
             seed: self.seed.unwrap_or(base.seed),
         }
+    }
+}
+
+impl SuiteArgs {
+    /// What may be used of the machine.
+    pub fn resources(&self) -> Resources {
+        Resources { threads: self.threads.map(usize::from), python: self.python.clone() }
     }
 }
 

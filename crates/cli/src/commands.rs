@@ -6,8 +6,8 @@ use crate::show;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
 use recrash_pipeline::{
-    ExportRequest, NoProgress, Options, PartnersAs, PipelineError, Progress, Stage, StageReport, Suite, Summary,
-    schema, simulate_file,
+    ExportRequest, FileRequest, NoProgress, Options, PartnersAs, PipelineError, Progress, Stage, StageReport, Suite,
+    Summary, schema, simulate_file,
 };
 
 /// Runs a subcommand.
@@ -49,7 +49,7 @@ impl Output {
 
 /// The suite a stage works on, with what was typed over what is saved there.
 fn open(args: &SuiteArgs, base: Options) -> Result<Suite, PipelineError> {
-    Suite::open(&args.out, args.options(base), args.threads.map(usize::from))
+    Suite::open(&args.out, args.options(base), args.resources())
 }
 
 fn open_saved(args: &SuiteArgs) -> Result<Suite, PipelineError> {
@@ -144,7 +144,14 @@ fn simulate(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
     };
     let defaults = Options::default();
     let profile = args.suite.profile.as_deref().unwrap_or(&defaults.profile);
-    let result = simulate_file(scenario, args.suite.ego.as_deref(), profile, args.rollout.as_deref())?;
+    let result = simulate_file(&FileRequest {
+        scenario,
+        profile,
+        ego: args.suite.ego.as_deref(),
+        simulator: args.suite.sim.unwrap_or_default(),
+        python: &args.suite.python,
+        rollout: args.rollout.as_deref(),
+    })?;
     if output.json {
         show::json(&result.run);
     } else if !output.quiet {

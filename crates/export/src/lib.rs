@@ -7,11 +7,17 @@
 //!
 //! What this crate does **not** do: it writes no file, and simulates nothing.
 
+mod commonroad;
+mod import;
+mod metadrive;
 mod opendrive;
 mod openscenario;
 mod scenic;
 mod xml;
 
+pub use import::{MAX_IMPORT_BYTES, import, parameter_name};
+
+use recrash_model::record::Surface;
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Parameter;
@@ -123,9 +129,17 @@ pub fn export(
     match options.format {
         Format::OpenScenario => openscenario::files(scenario, rollout, parameters, options),
         Format::Scenic => Ok(scenic::files(scenario, parameters)),
-        Format::MetaDrive | Format::CommonRoad => {
-            Err(ExportError::NeedsRollout { scenario: scenario.draft().id.clone() })
-        }
+        Format::MetaDrive => Ok(metadrive::files(scenario)),
+        Format::CommonRoad => commonroad::files(scenario, rollout, options),
+    }
+}
+
+/// Friction relative to a dry road, as the simulator's (`docs/models/vehicle.md`).
+pub(crate) fn relative_friction(surface: Surface) -> f64 {
+    match surface {
+        Surface::Dry => 1.0,
+        Surface::Wet => 0.7,
+        Surface::SnowIce => 0.3,
     }
 }
 
@@ -135,11 +149,15 @@ pub(crate) fn title(draft: &ScenarioDraft) -> String {
     format!("{}{template}", draft.id)
 }
 
-/// What stands at the top of every file: where it comes from.
+/// What stands at the top of every file, on one line: where it comes from.
 pub(crate) fn comment(draft: &ScenarioDraft) -> String {
     let records: Vec<String> = draft.source.records.iter().map(ToString::to_string).collect();
     let records = if records.is_empty() { "none".to_owned() } else { records.join(", ") };
-    format!("{}. Made by recrash from crash records: {records}. {}", title(draft), draft.source.narrative)
-        .trim_end()
-        .to_owned()
+    let text = format!("{}. Made by recrash from crash records: {records}. {}", title(draft), draft.source.narrative);
+    one_line(text.trim_end())
+}
+
+/// Text that cannot end a line.
+pub(crate) fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() || c == '\u{2028}' || c == '\u{2029}' { ' ' } else { c }).collect()
 }

@@ -1,7 +1,7 @@
 //! XML as a tree: small enough to be built, compared and written whole. Escaping and parsing are quick-xml's.
 
-use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
+use quick_xml::{Reader, Writer, XmlVersion};
 
 /// An element.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -52,14 +52,36 @@ impl Element {
         self
     }
 
+    /// The value of an attribute.
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        self.attributes.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
+
+    /// The first child of this name.
+    pub fn find(&self, name: &str) -> Option<&Element> {
+        self.children.iter().find(|child| child.name == name)
+    }
+
+    /// All children of this name.
+    pub fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
+        self.children.iter().filter(move |child| child.name == name)
+    }
+
+    /// The first element of this name at any depth.
+    pub fn deep(&self, name: &str) -> Option<&Element> {
+        self.children.iter().find_map(|child| if child.name == name { Some(child) } else { child.deep(name) })
+    }
+
     /// The document with this root, a comment above it.
     pub fn document(&self, comment: &str) -> Vec<u8> {
-        let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
+        let mut writer = Writer::new(Vec::new());
         let emitted = (|| {
             writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+            new_line(&mut writer, 0)?;
             let safe = format!(" {} ", in_comment(comment));
             writer.write_event(Event::Comment(BytesText::from_escaped(safe)))?;
-            self.write(&mut writer)
+            new_line(&mut writer, 0)?;
+            self.write(&mut writer, 0)
         })();
         emitted.expect("writing into memory cannot fail");
         let mut bytes = writer.into_inner();
@@ -67,7 +89,7 @@ impl Element {
         bytes
     }
 
-    fn write(&self, writer: &mut Writer<Vec<u8>>) -> std::io::Result<()> {
+    fn write(&self, writer: &mut Writer<Vec<u8>>, depth: usize) -> std::io::Result<()> {
         let mut start = BytesStart::new(self.name.as_str());
         for (name, value) in &self.attributes {
             start.push_attribute((name.as_str(), allowed(value).as_str()));
@@ -79,11 +101,97 @@ impl Element {
         if self.children.is_empty() {
             writer.write_event(Event::Text(BytesText::new(&allowed(&self.text))))?;
         }
+        // Points and the like read best on one line.
+        let short = self.children.len() <= 3 && self.children.iter().all(|child| !child.text.is_empty());
         for child in &self.children {
-            child.write(writer)?;
+            if !short {
+                new_line(writer, depth + 1)?;
+            }
+            child.write(writer, depth + 1)?;
+        }
+        if !short {
+            new_line(writer, depth)?;
         }
         writer.write_event(Event::End(BytesEnd::new(self.name.as_str())))
     }
+}
+
+fn new_line(writer: &mut Writer<Vec<u8>>, depth: usize) -> std::io::Result<()> {
+    writer.write_event(Event::Text(BytesText::from_escaped(format!("\n{}", "  ".repeat(depth)))))
+}
+
+/// Elements inside one another that are read; our own files have 16.
+const MOST_DEPTH: usize = 64;
+
+/// Elements that are read in all. A recorded partner takes three per step.
+const MOST_ELEMENTS: usize = 1 << 20;
+
+/// Reads a document.
+///
+/// # Errors
+/// The line, and what is wrong there.
+pub(crate) fn parse(text: &str) -> Result<Element, (u64, String)> {
+    let mut reader = Reader::from_str(text);
+    let line = |reader: &Reader<&[u8]>| {
+        let until = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX).min(text.len());
+        text.as_bytes()[..until].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1
+    };
+    let mut open: Vec<Element> = Vec::new();
+    let mut root = None;
+    let mut count = 0_usize;
+    loop {
+        let event = reader.read_event().map_err(|error| (line(&reader), format!("not well-formed XML: {error}")))?;
+        let finished = match event {
+            Event::Start(start) => {
+                open.push(element(&start).map_err(|message| (line(&reader), message))?);
+                count += 1;
+                None
+            }
+            Event::Empty(start) => {
+                count += 1;
+                Some(element(&start).map_err(|message| (line(&reader), message))?)
+            }
+            Event::End(_) => open.pop(),
+            Event::Text(text) => {
+                let text = text.xml10_content();
+                if let Some(inner) = open.last_mut() {
+                    inner.text.push_str(text.trim());
+                }
+                None
+            }
+            Event::DocType(_) => return Err((line(&reader), "a document type is not read".to_owned())),
+            Event::Eof => break,
+            Event::CData(_) | Event::Comment(_) | Event::Decl(_) | Event::PI(_) | Event::GeneralRef(_) => None,
+        };
+        if count > MOST_ELEMENTS || open.len() > MOST_DEPTH {
+            let message = format!("more than {MOST_ELEMENTS} elements, or {MOST_DEPTH} inside one another");
+            return Err((line(&reader), message));
+        }
+        if let Some(finished) = finished {
+            match open.last_mut() {
+                Some(outer) => outer.children.push(finished),
+                None if root.is_none() => root = Some(finished),
+                None => return Err((line(&reader), "a second root element".to_owned())),
+            }
+        }
+    }
+    match (root, open.is_empty()) {
+        (Some(root), true) => Ok(root),
+        _ => Err((line(&reader), "the file ends before its root element does".to_owned())),
+    }
+}
+
+fn element(start: &BytesStart<'_>) -> Result<Element, String> {
+    let mut element = Element::new(start.name().as_ref());
+    for attribute in start.attributes() {
+        let attribute = attribute.map_err(|error| format!("not well-formed XML: {error}"))?;
+        let name = attribute.key.as_ref().to_owned();
+        let value = attribute
+            .normalized_value(XmlVersion::Explicit1_0)
+            .map_err(|error| format!("attribute {name}: {error}"))?;
+        element.attributes.push((name, value.into_owned()));
+    }
+    Ok(element)
 }
 
 /// Text without the characters XML 1.0 has no way to hold.

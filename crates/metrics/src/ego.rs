@@ -15,6 +15,9 @@ use recrash_roads::RoadPart;
 /// Weaker braking is no braking: engine drag alone gives 0.36 m/s^2. [m/s^2] (assumed)
 const LEAST_BRAKING_MPS2: f64 = 0.5;
 
+/// A weaker command to the brake is none: this one gives those 0.5 m/s^2. [share of full brake]
+const LEAST_BRAKE: f64 = 0.02;
+
 /// Slower than this the ego stands, and its jitter is no oscillation. [m/s] (full brakes make MetaDrive vehicles jitter by 0.24 m/s)
 const STANDSTILL_MPS: f64 = 0.3;
 
@@ -26,6 +29,13 @@ const LOOK_AHEAD_M: f64 = 10.0;
 
 /// Whatever would come within the margin in this time, if all went straight on, is a reason to brake. [s] (assumed)
 const CROSSING_AHEAD_S: f64 = 4.0;
+
+/// Whoever comes into the corridor within this time, no farther ahead than this time at present speed, is a reason to
+/// brake. [s] (assumed; gap acceptance at junctions is 4 to 7 s)
+const GIVE_WAY_S: f64 = 5.0;
+
+/// And within this distance at any speed. [m] (assumed)
+const GIVE_WAY_M: f64 = 15.0;
 
 /// Room a driver leaves beside the vehicle. [m] (assumed)
 const MARGIN_M: f64 = 0.5;
@@ -59,10 +69,32 @@ pub fn measure_ego(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], criteri
     }
 }
 
+/// How the ego's brake is told from other losses of speed: a steered wheel costs speed, too.
+struct Brake {
+    /// Whether the rollout says what the ego commanded; without, every deceleration counts as braking.
+    commands_known: bool,
+}
+
+impl Brake {
+    fn of(scene: &Scene<'_>) -> Self {
+        let ego = scene.rollout.actors.first();
+        Self { commands_known: ego.is_some_and(|track| track.states.iter().any(|state| state.throttle != 0.0)) }
+    }
+
+    /// Deceleration over the step that begins at `step`, where the ego brakes; else nil. [m/s^2, positive]
+    fn deceleration(&self, scene: &Scene<'_>, step: usize) -> f64 {
+        if self.commands_known && scene.state(0, step).throttle > -LEAST_BRAKE {
+            return 0.0;
+        }
+        (-scene.acceleration(0, step)).max(0.0)
+    }
+}
+
 fn hardest_braking(scene: &Scene<'_>) -> Timed {
+    let brake = Brake::of(scene);
     let mut hardest = Timed { value: 0.0, time_s: 0.0 };
-    for step in 0..scene.steps() {
-        let deceleration = -scene.acceleration(0, step);
+    for step in 0..scene.steps().saturating_sub(1) {
+        let deceleration = brake.deceleration(scene, step);
         if deceleration > hardest.value {
             hardest = Timed { value: deceleration, time_s: time_of(step) };
         }
@@ -72,9 +104,10 @@ fn hardest_braking(scene: &Scene<'_>) -> Timed {
 
 fn hardest_phantom_braking(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> Option<Timed> {
     let release_steps = (RELEASE_S / time_of(1)).round() as usize;
+    let brake = Brake::of(scene);
     let mut hardest: Option<Timed> = None;
-    for step in 0..scene.steps() {
-        let deceleration = -scene.acceleration(0, step);
+    for step in 0..scene.steps().saturating_sub(1) {
+        let deceleration = brake.deceleration(scene, step);
         if deceleration < LEAST_BRAKING_MPS2 || hardest.is_some_and(|hardest| deceleration <= hardest.value) {
             continue;
         }
@@ -110,11 +143,25 @@ fn reason_to_brake(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], step: u
         let other_along = Along::of(way, other, ego_along.segment);
         ego_along.free_space_to(&other_along, MARGIN_M).is_some_and(|free| free <= look_ahead_m)
     };
-    let others = 1..scene.outlines.len();
-    others
-        .filter(|&actor| step < scene.outlines[actor].len())
-        .any(|actor| asks(&scene.outlines[actor][step], scene.velocity(actor, step)))
-        || scene.obstacles.iter().any(|obstacle| asks(obstacle, Vec2::default()))
+    let mut others = (1..scene.outlines.len()).filter(|&actor| step < scene.outlines[actor].len());
+    others.any(|actor| {
+        asks(&scene.outlines[actor][step], scene.velocity(actor, step))
+            || comes_into_the_way(way, ego_along, speed, &scene.outlines[actor][step..])
+    }) || scene.obstacles.iter().any(|obstacle| asks(obstacle, Vec2::default()))
+}
+
+/// Whether a road user that is not in the ego's corridor now comes into it soon, as it really drove.
+fn comes_into_the_way(way: &EgoWay<'_>, ego: &Along, speed: f64, future: &[OrientedBox]) -> bool {
+    const EVERY: usize = 5;
+    let near_m = (GIVE_WAY_S * speed).max(GIVE_WAY_M);
+    let in_the_way = |outline: &OrientedBox| {
+        let free = ego.free_space_to(&Along::of(way, outline, ego.segment), MARGIN_M);
+        free.is_some_and(|free| free <= near_m)
+    };
+    let last = (GIVE_WAY_S / time_of(1)).round() as usize;
+    let now_in_lane =
+        future.first().is_some_and(|now| ego.free_space_to(&Along::of(way, now, ego.segment), 0.0).is_some());
+    !now_in_lane && future.iter().take(last + 1).step_by(EVERY).any(in_the_way)
 }
 
 fn curve_asks(way: &EgoWay<'_>, s: f64, look_ahead_m: f64, speed: f64) -> bool {
@@ -128,13 +175,14 @@ fn curve_asks(way: &EgoWay<'_>, s: f64, look_ahead_m: f64, speed: f64) -> bool {
 /// The most changes between braking and accelerating within a window, and when that window ended.
 fn most_reversals(scene: &Scene<'_>, window_s: f64) -> (u32, f64) {
     let mut reversals: Vec<f64> = Vec::new();
+    let brake = Brake::of(scene);
     let mut braked: Option<bool> = None;
-    for step in 0..scene.steps() {
-        let acceleration = scene.acceleration(0, step);
-        if acceleration.abs() < LEAST_BRAKING_MPS2 || scene.state(0, step).speed.abs() < STANDSTILL_MPS {
+    for step in 0..scene.steps().saturating_sub(1) {
+        let brakes = brake.deceleration(scene, step) >= LEAST_BRAKING_MPS2;
+        let accelerates = scene.acceleration(0, step) >= LEAST_BRAKING_MPS2;
+        if !(brakes || accelerates) || scene.state(0, step).speed.abs() < STANDSTILL_MPS {
             continue;
         }
-        let brakes = acceleration < 0.0;
         if braked.is_some_and(|before| before != brakes) {
             reversals.push(time_of(step));
         }
@@ -180,9 +228,16 @@ fn farthest_departure(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> T
             if over_m <= farthest.value {
                 continue;
             }
+            // Cut short by a contact while still over that edge: nobody knows what it was to become.
+            let unfinished = scene.contact.is_some()
+                && step + around >= track.len()
+                && track.last().copied().flatten().is_some_and(|last| {
+                    if neighbour < here.lane { last.over_left_m > 0.0 } else { last.over_right_m > 0.0 }
+                });
             let window = step.saturating_sub(around)..=(step + around).min(track.len() - 1);
             let changes = track[window].iter().flatten().any(|there| there.lane == neighbour);
-            if !changes {
+            let excused = changes || (unfinished && has_lane(way, along[step].segment, neighbour));
+            if !excused {
                 farthest = Timed { value: over_m, time_s: time_of(step) };
             }
         }
@@ -210,6 +265,13 @@ fn in_lane(way: &EgoWay<'_>, outline: &OrientedBox, along: &Along) -> Option<InL
         over_left_m = over_left_m.max(-t - 0.5 * lane.width_m);
     }
     Some(InLane { lane: offset, over_left_m, over_right_m })
+}
+
+/// Whether a road of the way has a lane this many lanes to the right of the one followed.
+fn has_lane(way: &EgoWay<'_>, segment: usize, to_the_right: i32) -> bool {
+    let lane = way.network.lane(way.path.segments[segment].lane);
+    let index = i32::from(lane.index) + to_the_right;
+    (0..way.network.road(lane.road).lanes.len() as i32).contains(&index)
 }
 
 /// Whether a segment of the way crosses a junction, where no lanes are marked.

@@ -191,8 +191,8 @@ fn on_a_roundabout_the_way_around_counts() {
     let far = || glide(-500.0, 0.0, 0.0, 1.0, 400);
     for (turn, shown) in [(Turn::Right, RightTurn), (Turn::Straight, Straight), (Turn::Left, LeftTurn)] {
         let way = path(&network, Approach::Same, turn, 1);
-        // All the way to the exit's arm.
-        let steps = ((way.length_m - 35.0) / 0.8) as usize;
+        // All the way out, and beyond the end of the map.
+        let steps = ((way.length_m + 5.0) / 0.8) as usize;
         let rollout = rollout(drive(&network, &way, 5.0, steps, |_| 8.0), vec![far()]);
         for expected in [Straight, LeftTurn, RightTurn] {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, expected, Straight));
@@ -213,7 +213,8 @@ fn on_the_ring_a_left_turn_is_shown_until_it_leaves_and_straight_until_the_secon
         .find(|segment| network.road(network.lane(segment.lane).road).part == recrash_roads::RoadPart::Ring);
     let joined = on_ring.unwrap().start_m;
     for (driven_m, wanted) in [
-        (joined - 15.0, [(Straight, CheckResult::Fail), (LeftTurn, CheckResult::Fail), (RightTurn, CheckResult::Fail)]),
+        (joined - 25.0, [(Straight, CheckResult::Fail), (LeftTurn, CheckResult::Fail), (RightTurn, CheckResult::Fail)]),
+        (joined - 9.0, [(Straight, CheckResult::Pass), (LeftTurn, CheckResult::Fail), (RightTurn, CheckResult::Fail)]),
         (joined + 10.0, [(Straight, CheckResult::Pass), (LeftTurn, CheckResult::Pass), (RightTurn, CheckResult::Fail)]),
         (
             joined + 100.0,
@@ -226,6 +227,23 @@ fn on_the_ring_a_left_turn_is_shown_until_it_leaves_and_straight_until_the_secon
         for (expected, wanted) in wanted {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, expected, Straight));
             assert_eq!(result(&verdict, CheckKind::SvMovement), wanted, "{driven_m} {expected:?}: {verdict:#?}");
+        }
+    }
+}
+
+#[test]
+fn who_starts_on_the_ring_turns_as_seen_from_the_egos_entry() {
+    use Movement::{LeftTurn, RightTurn, Straight};
+    let network = circle();
+    for (turn, shown) in [(Turn::Right, RightTurn), (Turn::Straight, Straight), (Turn::Left, LeftTurn)] {
+        let way = path(&network, Approach::Ring, turn, 1);
+        let steps = ((way.length_m - 10.0) / 0.8) as usize;
+        let ego = drive(&network, &path(&network, Approach::Same, Turn::Straight, 1), 5.0, steps, |_| 0.2);
+        let rollout = rollout(ego, vec![drive(&network, &way, 5.0, steps, |_| 8.0)]);
+        for expected in [Straight, LeftTurn, RightTurn] {
+            let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, Straight, expected));
+            let wanted = if expected == shown { CheckResult::Pass } else { CheckResult::Fail };
+            assert_eq!(result(&verdict, CheckKind::CpMovement), wanted, "{turn:?} {expected:?}: {verdict:#?}");
         }
     }
 }

@@ -152,12 +152,54 @@ fn braking_on_an_empty_road_is_phantom_braking() {
     assert_eq!(measure(&network, &way, 15.0, &coned).ego.phantom_braking, None);
     let crossing = rollout(ego.clone(), vec![glide(70.0, 25.0, -FRAC_PI_2, 5.0, 60)]);
     assert_eq!(measure(&network, &way, 15.0, &crossing).ego.phantom_braking, None);
+    // One that is still 30 m off the ego's lane, and crosses it 4 s later, well behind the place where the ego would be.
+    let gives_way = rollout(ego.clone(), vec![glide(70.0, 34.0, -FRAC_PI_2, 6.0, 60)]);
+    assert_eq!(measure(&network, &way, 15.0, &gives_way).ego.phantom_braking, None);
+    let stays_off = rollout(ego.clone(), vec![glide(70.0, 64.0, -FRAC_PI_2, 6.0, 60)]);
+    assert!(measure(&network, &way, 15.0, &stays_off).ego.phantom_braking.is_some());
     // Too fast is a reason, too.
     assert_eq!(measure(&network, &way, 7.0, &rollout_free).ego.phantom_braking, None);
     // A cone beside the lane is none.
     let mut beside = rollout(ego, vec![]);
     beside.obstacles.push(cone(75.0, -2.6));
     assert!(measure(&network, &way, 15.0, &beside).ego.phantom_braking.is_some());
+}
+
+#[test]
+fn speed_lost_without_the_brake_is_no_braking() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    // Down and up by 0.5 m/s every second step, as steered wheels do.
+    let wobble = |time: f64| if ((time / 0.2).round() as u32).is_multiple_of(2) { 10.0 } else { 9.5 };
+    let mut states = drive(&network, &way, 5.0, 60, wobble);
+    let unknown = measure(&network, &way, 12.0, &rollout(states.clone(), vec![])).ego;
+    close(unknown.max_deceleration.value, 5.0, 1e-9);
+    assert!(unknown.max_reversals > 10, "without commands every deceleration is braking");
+    states.iter_mut().for_each(|state| state.throttle = 0.1);
+    let steered = measure(&network, &way, 12.0, &rollout(states.clone(), vec![])).ego;
+    assert_eq!((steered.max_deceleration.value, steered.phantom_braking, steered.max_reversals), (0.0, None, 0));
+    states.iter_mut().for_each(|state| state.throttle = -0.1);
+    let braked = measure(&network, &way, 12.0, &rollout(states, vec![])).ego;
+    close(braked.phantom_braking.unwrap().value, 5.0, 1e-9);
+}
+
+#[test]
+fn a_lane_change_cut_short_by_a_contact_is_no_departure() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    // Into the left lane over 3 s, and into the car there after 2 s.
+    let change = |time: f64| -3.5 * (time / 3.0).min(1.0);
+    let ego = drive_at(&network, &way, 40.0, 60, |_| 10.0, change);
+    let beside = drive_at(&network, &way, 40.0, 60, |_| 10.0, |_| -3.5);
+    let metrics = measure(&network, &way, 10.0, &rollout(ego.clone(), vec![beside]));
+    assert!(metrics.contact.is_some_and(|contact| contact.time_s < 2.0));
+    assert_eq!(metrics.ego.max_lane_departure.value, 0.0);
+    // The same to the right, where there is no lane.
+    let off = |time: f64| 3.5 * (time / 3.0).min(1.0);
+    let ego = drive_at(&network, &way, 40.0, 60, |_| 10.0, off);
+    let beside = drive_at(&network, &way, 40.0, 60, |_| 10.0, |_| 3.5);
+    let metrics = measure(&network, &way, 10.0, &rollout(ego, vec![beside]));
+    assert!(metrics.ego.max_lane_departure.value > 0.5);
 }
 
 #[test]

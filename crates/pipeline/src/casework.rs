@@ -2,6 +2,7 @@
 
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
+use crate::simulator::{Simulator, SimulatorKind};
 use crate::store::{read_text, to_compact_json, write_file_whole};
 use recrash_agents::{Brief, Design, Feedback, Problem};
 use recrash_metrics::{faithfulness, findings, measure, series};
@@ -12,7 +13,6 @@ use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::{Diagnostic, Outcome};
 use recrash_roads::Scenario;
-use recrash_sim::Ego;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -51,22 +51,25 @@ impl CaseRun {
 }
 
 /// Runs a scenario and computes everything from its rollout.
+///
+/// # Errors
+/// The simulator failed; the native one cannot.
 pub fn run_scenario(
     scenario: &Scenario,
-    ego: Ego,
+    simulator: &Simulator,
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
-) -> CaseRun {
-    let rollout = recrash_sim::simulate(scenario, ego);
+) -> Result<CaseRun, PipelineError> {
+    let rollout = simulator.run(scenario)?;
     let metrics = measure(scenario, &rollout, &profile.failure);
-    CaseRun {
+    Ok(CaseRun {
         format: "recrash.run/1".into(),
         findings: findings(scenario, &rollout, &metrics, &profile.failure),
         verdict: expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)),
         series: series(&rollout),
         metrics,
         rollout,
-    }
+    })
 }
 
 /// What became of the designs of one scenario.
@@ -106,7 +109,7 @@ pub fn design_case(
     brief: &Brief,
     narrative: &Narrative,
     expectation: &Expectation,
-    ego: Ego,
+    simulator: &Simulator,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
     let mut feedback = Vec::new();
     let mut attempts: Vec<DesignAttempt> = Vec::new();
@@ -120,7 +123,7 @@ pub fn design_case(
                 Some(Problem::NotRunnable { diagnostics }),
             ),
             Ok(Outcome { value: scenario, diagnostics }) => {
-                let run = run_scenario(&scenario, ego, brief.profile, Some(expectation));
+                let run = run_scenario(&scenario, simulator, brief.profile, Some(expectation))?;
                 let failures: Vec<Check> = run.verdict.iter().flat_map(|v| v.failures().cloned()).collect();
                 let problem = (!failures.is_empty())
                     .then(|| Problem::NotFaithful { failures: failures.clone(), metrics: Box::new(run.metrics) });
@@ -153,21 +156,34 @@ pub struct FileRun {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Reads, checks and runs one scenario file. The profile gives the failure criteria, and the ego where none is named.
+/// How one scenario file is run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileRequest<'a> {
+    /// The file.
+    pub scenario: &'a Path,
+    /// Profile with the failure criteria, and the ego where none is named.
+    pub profile: &'a str,
+    /// Ego.
+    pub ego: Option<&'a str>,
+    /// Simulator.
+    pub simulator: SimulatorKind,
+    /// Python interpreter for MetaDrive.
+    pub python: &'a Path,
+    /// Where to write the rollout.
+    pub rollout: Option<&'a Path>,
+}
+
+/// Reads, checks and runs one scenario file.
 ///
 /// # Errors
 /// The file cannot be read, is no scenario, or cannot be run: every problem with its place.
-pub fn simulate_file(
-    path: &Path,
-    ego: Option<&str>,
-    profile: &str,
-    rollout: Option<&Path>,
-) -> Result<FileRun, PipelineError> {
-    let profile = load_profile(profile)?;
-    let ego = parse_ego(ego.unwrap_or(&profile.ego))?;
-    let (scenario, diagnostics) = read_scenario(path)?;
-    let run = run_scenario(&scenario, ego, &profile, None);
-    if let Some(target) = rollout {
+pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
+    let profile = load_profile(request.profile)?;
+    let (scenario, diagnostics) = read_scenario(request.scenario)?;
+    let ego = request.ego.unwrap_or(&profile.ego);
+    let simulator = Simulator::start(request.simulator, ego, request.python, 1)?;
+    let run = run_scenario(&scenario, &simulator, &profile, None)?;
+    if let Some(target) = request.rollout {
         write_file_whole(target, &to_compact_json(&run.rollout)).map_err(|source| PipelineError::Io {
             action: "write",
             path: target.to_owned(),
@@ -190,12 +206,4 @@ pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), Pipelin
     let draft = recrash_roads::read_draft(&text).map_err(bad)?;
     let checked = recrash_roads::check(draft.value).map_err(bad)?;
     Ok((checked.value, draft.diagnostics.into_iter().chain(checked.diagnostics).collect()))
-}
-
-/// The ego of this name.
-///
-/// # Errors
-/// There is none: with the names there are.
-pub fn parse_ego(name: &str) -> Result<Ego, PipelineError> {
-    name.parse().map_err(|e| PipelineError::bad_input(format!("{e}")))
 }

@@ -1,8 +1,9 @@
 //! Exports of a suite or of one scenario file.
 
-use crate::casework::{parse_ego, read_scenario, run_scenario};
+use crate::casework::{read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
+use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::names;
 use crate::store::{Store, write_file_whole};
 use crate::suite::Suite;
@@ -118,7 +119,8 @@ fn files_of(
     };
     let (scenario, _) = read_scenario(&source.path).map_err(told)?;
     let profile = load_profile("paper").map_err(told)?;
-    let rollout = run_scenario(&scenario, parse_ego(&source.ego).map_err(told)?, &profile, None).rollout;
+    let native = Simulator::start(SimulatorKind::Native, &source.ego, Path::new(""), 1).map_err(told)?;
+    let rollout = run_scenario(&scenario, &native, &profile, None).map_err(told)?.rollout;
     let options = ExportOptions { partners_as, ..ExportOptions::new(format) };
     recrash_export::export(&scenario, Some(&rollout), &source.parameters, &options).map_err(|e| e.to_string())
 }

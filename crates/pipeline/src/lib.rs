@@ -7,26 +7,30 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod casework;
-mod drawing;
+mod embedding;
 mod error;
 mod exporting;
 mod profiles;
 mod progress;
 mod scoring;
+mod simulator;
 mod stages;
 mod store;
 mod suite;
 mod summary;
 mod view;
 
-pub use casework::{CaseRun, DesignAttempt, DesignLog, FileRun, read_scenario, run_scenario, simulate_file};
+pub use casework::{
+    CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
+};
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_roads::scenario_schema as schema;
+pub use simulator::{Simulator, SimulatorKind};
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
-pub use suite::{Options, RecordSource, Stage, Suite};
+pub use suite::{Options, RecordSource, Resources, Stage, Suite};
 pub use summary::{CaseSummary, RunSummary, Summary};

@@ -1,12 +1,12 @@
 //! What a point of a search scores, and which points are refused. Described in `docs/models/tuning.md`.
 
 use crate::casework::{CaseRun, run_scenario};
+use crate::simulator::Simulator;
 use recrash_model::metrics::Expectation;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{Role, Rollout, STEP_S};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::{Parameter, Score, apply};
-use recrash_sim::Ego;
 
 /// A least gap before this time says more about the start than about the ego. [s]
 const EARLIEST_MINIMUM_S: f64 = 1.0;
@@ -31,8 +31,8 @@ pub struct Scoring<'a> {
     pub expectation: &'a Expectation,
     /// Failure criteria.
     pub profile: &'a SystemProfile,
-    /// Ego.
-    pub ego: Ego,
+    /// Simulator with the ego in it.
+    pub simulator: &'a Simulator,
     /// Hardest braking of partners as designed, which the narrative asks for. [m/s^2]
     pub designed_braking_mps2: f64,
 }
@@ -44,11 +44,11 @@ impl<'a> Scoring<'a> {
         parameters: &'a [Parameter],
         expectation: &'a Expectation,
         profile: &'a SystemProfile,
-        ego: Ego,
+        simulator: &'a Simulator,
         first: &CaseRun,
     ) -> Self {
         let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
-        Self { draft, parameters, expectation, profile, ego, designed_braking_mps2 }
+        Self { draft, parameters, expectation, profile, simulator, designed_braking_mps2 }
     }
 
     /// Applies the values, checks, runs, measures and judges.
@@ -68,7 +68,10 @@ impl<'a> Scoring<'a> {
             }
             Ok(Ok(checked)) => checked.value,
         };
-        let run = run_scenario(&scenario, self.ego, self.profile, Some(self.expectation));
+        let run = match run_scenario(&scenario, self.simulator, self.profile, Some(self.expectation)) {
+            Ok(run) => run,
+            Err(why) => return refused(format!("not run: {why}")),
+        };
         let refused = self.refusals(&run);
         let mut kinds: Vec<_> = run.findings.iter().map(|f| f.kind).collect();
         kinds.sort_unstable();

@@ -1,12 +1,12 @@
 //! The stages: what each reads, does and writes.
 
-use crate::casework::{CaseRun, DesignLog, design_case, parse_ego, read_scenario, run_scenario};
+use crate::casework::{CaseRun, DesignLog, design_case, read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::progress::{Progress, ProgressEvent};
 use crate::scoring::Scoring;
 use crate::store::{read_bytes, to_compact_json, to_json};
 use crate::suite::{Files, RecordSource, Stage, Suite};
-use crate::{summary, view};
+use crate::{embedding, summary, view};
 use rayon::prelude::*;
 use recrash_agents::{Brief, Paraphrase, Rules, expectation, parameters};
 use recrash_model::metrics::Expectation;
@@ -19,7 +19,6 @@ use recrash_model::{Diagnostic, Outcome, Seed};
 use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText};
 use recrash_search::TuneOptions;
 use recrash_select::SelectOptions;
-use recrash_sim::Ego;
 
 /// Files and folders of a suite.
 pub mod names {
@@ -148,12 +147,13 @@ impl StageWork<'_> {
         Ok(StageReport { done: skipped.len() - there, skipped: there, diagnostics: Vec::new() })
     }
 
-    fn profile_json(&self) -> String {
-        String::from_utf8(to_json(self.suite.profile())).unwrap_or_default()
+    /// Names of the simulator and the ego: what goes into the hash of everything that is run.
+    fn system(&self) -> String {
+        format!("{} {}", self.suite.options().simulator.name(), self.suite.ego())
     }
 
-    fn ego(&self) -> Result<Ego, PipelineError> {
-        parse_ego(self.suite.ego())
+    fn profile_json(&self) -> String {
+        String::from_utf8(to_json(self.suite.profile())).unwrap_or_default()
     }
 }
 
@@ -194,7 +194,10 @@ fn select(work: &StageWork) -> Result<StageReport, PipelineError> {
     let records_hash = suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS)?;
     let profile = work.profile_json();
     let choice = format!("{:?} {} {}", options.strategy, options.budget, options.seed);
-    work.whole(&[records_hash.as_bytes(), profile.as_bytes(), choice.as_bytes()], || {
+    let model = options.model_dir.as_deref().map(embedding::load).transpose()?;
+    let fingerprint = model.as_ref().map_or("lexical", |model| model.fingerprint());
+    let inputs = [records_hash.as_bytes(), profile.as_bytes(), choice.as_bytes(), fingerprint.as_bytes()];
+    work.whole(&inputs, || {
         let records: RecordSet = suite.store().read_json(names::RECORDS)?;
         let select_options = SelectOptions {
             strategy: options.strategy,
@@ -202,8 +205,13 @@ fn select(work: &StageWork) -> Result<StageReport, PipelineError> {
             seed: suite.seed().child("select"),
             ..SelectOptions::default()
         };
-        let outcome = recrash_select::select(&records, suite.profile(), &select_options)
-            .map_err(|e| PipelineError::bad_input(e.to_string()))?;
+        let outcome = match &model {
+            None => recrash_select::select(&records, suite.profile(), &select_options),
+            Some(model) => embedding::embed(model, &records).and_then(|embedding| {
+                recrash_select::select_with(&records, suite.profile(), &select_options, &embedding)
+            }),
+        }
+        .map_err(|e| PipelineError::bad_input(e.to_string()))?;
         Ok(vec![(names::SELECTION.into(), to_json(&outcome.value))])
     })
 }
@@ -294,18 +302,19 @@ fn case_expectation(
 fn design(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
-    let ego = work.ego()?;
+    let simulator = suite.simulator()?;
     let inputs = |cluster: &Cluster| {
         let mut inputs = cases.inputs(cluster);
         inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(&cluster.scenario_id))?);
-        inputs.extend([work.profile_json(), ego.to_string(), suite.options().seed.to_string()]);
+        inputs.extend([work.profile_json(), work.system(), suite.options().seed.to_string()]);
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
         let (narrative, expectation) = case_expectation(suite, &cases, cluster)?;
-        let (draft, log): (ScenarioDraft, DesignLog) = design_case(&Rules, &brief, &narrative, &expectation, ego)?;
+        let (draft, log): (ScenarioDraft, DesignLog) =
+            design_case(&Rules, &brief, &narrative, &expectation, &simulator)?;
         let id = &cluster.scenario_id;
         Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
     })
@@ -319,20 +328,20 @@ fn scenario(suite: &Suite, name: &str) -> Result<recrash_roads::Scenario, Pipeli
 fn simulate(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
-    let ego = work.ego()?;
+    let simulator = suite.simulator()?;
     let inputs = |cluster: &Cluster| {
         let id = &cluster.scenario_id;
         let mut inputs = cases.inputs(cluster);
         inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(id))?);
         inputs.push(case_hash(suite, Stage::Design, cluster, &names::scenario(id))?);
-        inputs.extend([work.profile_json(), ego.to_string()]);
+        inputs.extend([work.profile_json(), work.system()]);
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
         let id = &cluster.scenario_id;
         let (_, expectation) = case_expectation(suite, &cases, cluster)?;
         let checked = scenario(suite, &names::scenario(id))?;
-        let run = run_scenario(&checked, ego, suite.profile(), Some(&expectation));
+        let run = run_scenario(&checked, &simulator, suite.profile(), Some(&expectation))?;
         Ok(vec![(names::first_run(id), to_compact_json(&run))])
     })
 }
@@ -340,7 +349,7 @@ fn simulate(work: &StageWork) -> Result<StageReport, PipelineError> {
 fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
-    let ego = work.ego()?;
+    let simulator = suite.simulator()?;
     let options = TuneOptions {
         searcher: suite.options().searcher.parse().map_err(|e: String| PipelineError::bad_input(e))?,
         budget: suite.options().tune_budget,
@@ -351,7 +360,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(id))?);
         inputs.push(case_hash(suite, Stage::Design, cluster, &names::scenario(id))?);
         inputs.push(case_hash(suite, Stage::Simulate, cluster, &names::first_run(id))?);
-        inputs.extend([work.profile_json(), ego.to_string(), format!("{options:?}"), suite.options().seed.to_string()]);
+        inputs.extend([work.profile_json(), work.system(), format!("{options:?}"), suite.options().seed.to_string()]);
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
@@ -360,7 +369,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         let draft = scenario(suite, &names::scenario(id))?.draft().clone();
         let first: CaseRun = suite.store().read_json(&names::first_run(id))?;
         let parameters = parameters(&draft, &narrative, suite.profile());
-        let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), ego, &first);
+        let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), &simulator, &first);
         let log: TuneLog = recrash_search::tune(
             id,
             &parameters,
@@ -376,7 +385,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
             what: format!("tuned {id} cannot be run"),
             diagnostics,
         })?;
-        let run = run_scenario(&scenario.value, ego, suite.profile(), Some(&expectation));
+        let run = run_scenario(&scenario.value, &simulator, suite.profile(), Some(&expectation))?;
         Ok(vec![
             (names::tuned(id), to_json(&tuned)),
             (names::tune_log(id), to_compact_json(&log)),

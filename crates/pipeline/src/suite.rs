@@ -3,6 +3,7 @@
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
+use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
 use recrash_model::Seed;
@@ -40,6 +41,12 @@ pub struct Options {
     pub budget: usize,
     /// How the picks are chosen.
     pub strategy: Strategy,
+    /// Folder with the files of the embedding model; the lexical embedding where not given.
+    #[serde(default)]
+    pub model_dir: Option<PathBuf>,
+    /// Simulator.
+    #[serde(default)]
+    pub simulator: SimulatorKind,
     /// Ego to run; the profile's where not given.
     pub ego: Option<String>,
     /// Points the search of each scenario may score.
@@ -57,6 +64,8 @@ impl Default for Options {
             profile: "paper".into(),
             budget: 20,
             strategy: Strategy::Stratified,
+            model_dir: None,
+            simulator: SimulatorKind::Native,
             ego: None,
             tune_budget: 160,
             searcher: "cma".into(),
@@ -80,7 +89,10 @@ impl Options {
         };
         option("profile", self.profile.clone(), default.profile);
         option("budget", self.budget.to_string(), default.budget.to_string());
-        option("strategy", strategy_name(self.strategy).into(), strategy_name(default.strategy).into());
+        option("strategy", strategy_name(self.strategy), strategy_name(default.strategy));
+        let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
+        option("model-dir", model_dir.unwrap_or_default(), String::new());
+        option("sim", self.simulator.name().into(), default.simulator.name().into());
         option("ego", self.ego.clone().unwrap_or_default(), String::new());
         option("tune-budget", self.tune_budget.to_string(), default.tune_budget.to_string());
         option("searcher", self.searcher.clone(), default.searcher);
@@ -165,6 +177,22 @@ pub struct Suite {
     state: Mutex<State>,
     options: Options,
     threads: rayon::ThreadPool,
+    python: PathBuf,
+}
+
+/// What a run may use of the machine. No byte of the results depends on it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Resources {
+    /// Worker threads; as many as there are cores where not given.
+    pub threads: Option<usize>,
+    /// Python interpreter for MetaDrive.
+    pub python: PathBuf,
+}
+
+impl Default for Resources {
+    fn default() -> Self {
+        Self { threads: None, python: "python3".into() }
+    }
 }
 
 impl Suite {
@@ -179,12 +207,12 @@ impl Suite {
         Ok(Some(read_state(&Store::create(dir, write_file_whole)?)?.options))
     }
 
-    /// Opens the suite in a folder, or makes one. `threads`: as many as there are cores where not given.
+    /// Opens the suite in a folder, or makes one.
     ///
     /// # Errors
     /// The folder cannot be used, holds something else, or the options name no profile.
-    pub fn open(dir: &Path, options: Options, threads: Option<usize>) -> Result<Self, PipelineError> {
-        Self::open_with(dir, options, threads, write_file_whole)
+    pub fn open(dir: &Path, options: Options, resources: Resources) -> Result<Self, PipelineError> {
+        Self::open_with(dir, options, resources, write_file_whole)
     }
 
     /// As [`Suite::open`], with another way of writing files.
@@ -194,7 +222,7 @@ impl Suite {
     pub fn open_with(
         dir: &Path,
         options: Options,
-        threads: Option<usize>,
+        resources: Resources,
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
         let profile = load_profile(&options.profile)?;
@@ -208,7 +236,7 @@ impl Suite {
         };
         store.remove_leftovers()?;
         let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.unwrap_or(0))
+            .num_threads(resources.threads.unwrap_or(0))
             .build()
             .map_err(|e| PipelineError::Threads(e.to_string()))?;
         let state = State {
@@ -217,7 +245,8 @@ impl Suite {
             options: options.clone(),
             units,
         };
-        let suite = Self { store, profile, state: Mutex::new(state), options, threads };
+        let python = resources.python;
+        let suite = Self { store, profile, state: Mutex::new(state), options, threads, python };
         suite.save(&suite.lock())?;
         Ok(suite)
     }
@@ -248,6 +277,12 @@ impl Suite {
     /// The suite's folder.
     pub fn store(&self) -> &Store {
         &self.store
+    }
+
+    /// The simulator with the ego in it.
+    pub(crate) fn simulator(&self) -> Result<Simulator, PipelineError> {
+        let workers = self.threads.current_num_threads();
+        Simulator::start(self.options.simulator, self.ego(), &self.python, workers)
     }
 
     pub(crate) fn seed(&self) -> Seed {

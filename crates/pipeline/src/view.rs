@@ -1,7 +1,6 @@
 //! The suite as the report sees it.
 
 use crate::casework::CaseRun;
-use crate::drawing::drawing;
 use crate::stages::{Case, names};
 use crate::suite::{RecordSource, Suite};
 use recrash_model::metrics::Verdict;
@@ -22,6 +21,7 @@ pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[
         ego: suite.ego().to_owned(),
         simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
         agents: "rules".into(),
+        seed: options.seed,
         sample: options.records == RecordSource::Sample,
         records: records.clone(),
         selection: selection.clone(),
@@ -41,7 +41,7 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
         cluster: Some(index),
         records: positions.collect(),
         narrative: Some(case.narrative.clone()),
-        drawing: drawing(case.scenario.network()),
+        drawing: case.scenario.network().drawing(),
         before: Some(run_view(suite, &case.scenario, &case.first, &names::scenario(id))),
         after: moved.then(|| run_view(suite, &case.tuned, &case.tuned_run, &names::tuned(id))),
         tune_log: Some(case.tune_log.clone()),

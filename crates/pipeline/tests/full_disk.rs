@@ -1,6 +1,6 @@
 //! A disk that fills up: the run stops with a clear error, what was finished stays, and the next run goes on.
 
-use recrash_pipeline::{NoProgress, Options, PipelineError, Stage, Suite};
+use recrash_pipeline::{NoProgress, Options, PipelineError, Resources, Stage, Suite};
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -24,12 +24,12 @@ fn a_full_disk_stops_the_run_and_the_next_run_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let options = Options { budget: 3, tune_budget: 8, ..Options::default() };
     let fresh = folder.path().join("fresh");
-    run_all(&Suite::open(&fresh, options.clone(), Some(2)).unwrap()).unwrap();
+    run_all(&Suite::open(&fresh, options.clone(), Resources::default()).unwrap()).unwrap();
     let size = std::fs::metadata(fresh.join("1-records.json")).unwrap().len() as i64;
 
     let dir = folder.path().join("suite");
     ROOM.store(size + 60_000, Ordering::SeqCst);
-    let error = Suite::open_with(&dir, options.clone(), Some(2), write_with_room)
+    let error = Suite::open_with(&dir, options.clone(), Resources::default(), write_with_room)
         .and_then(|suite| run_all(&suite))
         .expect_err("there is not enough room");
     assert!(matches!(&error, PipelineError::Io { source, .. } if source.kind() == ErrorKind::StorageFull), "{error}");
@@ -37,7 +37,7 @@ fn a_full_disk_stops_the_run_and_the_next_run_goes_on() {
     assert!(error.to_string().contains("finished work is kept"), "{error}");
     assert!(dir.join("1-records.json").exists() && !dir.join("report.html").exists());
 
-    run_all(&Suite::open(&dir, options, Some(2)).unwrap()).unwrap();
+    run_all(&Suite::open(&dir, options, Resources::default()).unwrap()).unwrap();
     for file in ["suite.json", "summary.json", "report.html", "results.csv", "junit.xml"] {
         assert!(std::fs::read(dir.join(file)).unwrap() == std::fs::read(fresh.join(file)).unwrap(), "{file}");
     }

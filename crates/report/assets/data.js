@@ -31,7 +31,7 @@ const polyline = ([xs, ys]) => {
 };
 
 function readRun(raw) {
-  if (!raw) return null;
+  if (!raw || !raw.actors.length || !raw.actors[0].x.length) return null;
   const actors = raw.actors.map((actor) => ({
     ...actor,
     x: running(actor.x, 1000),

@@ -7,6 +7,8 @@ let currentPage = null;
 
 const replayOf = (section) => {
   if (!one('.stage', section)) return null;
+  const { before, after } = readCase(Number(section.dataset.case));
+  if (!before && !after) return null;
   if (!replays.has(section)) replays.set(section, new Replay(section));
   return replays.get(section);
 };
@@ -59,21 +61,22 @@ function goToCase(step) {
 }
 
 function setUpFacts() {
-  const light = (section, numbers, columns) => {
+  // A fact lights its words, or its columns in the record it names.
+  const light = (section, numbers, columns, record) => {
     const on = (element, yes) => element.classList.toggle('on', yes);
     all('mark', section).forEach((mark) => on(mark, mark.dataset.facts.split(' ').some((number) => numbers.includes(number))));
     all('.facts tr[data-fact]', section).forEach((row) => on(row, numbers.includes(row.dataset.fact)));
-    const first = one('.record', section);
-    if (first) all('tr[data-columns]', first).forEach((row) => on(row, columns.some((column) => row.dataset.columns.includes(column) || column.includes(row.dataset.columns))));
+    const fits = (row) => columns.some((column) => row.dataset.columns.includes(column) || column.includes(row.dataset.columns));
+    all('tr[data-columns]', section).forEach((row) => on(row, row.closest('.record').dataset.record === record && fits(row)));
   };
   for (const section of caseSections) {
     const look = (event) => {
       const row = event.target.closest?.('tr[data-fact]');
       const mark = event.target.closest?.('mark');
-      if (row) light(section, [row.dataset.fact], row.dataset.column ? [row.dataset.column] : []);
+      if (row) light(section, [row.dataset.fact], row.dataset.column ? [row.dataset.column] : [], row.dataset.record);
       else if (mark) light(section, mark.dataset.facts.split(' '), []);
       else light(section, [], []);
-      if (row && event.type === 'focusin') one('mark.on', section)?.scrollIntoView({ block: 'nearest' });
+      if (row && event.type === 'focusin') one('mark.on, .record tr.on', section)?.scrollIntoView({ block: 'nearest' });
     };
     const panel = one('.story', section);
     panel?.addEventListener('pointerover', look);
@@ -111,7 +114,7 @@ function onKey(event) {
     '/': () => {
       location.hash = 'overview';
       go();
-      one('#case-search').focus();
+      one('#case-search')?.focus();
     },
   };
   if (acts[event.key]) {

@@ -221,7 +221,7 @@ function drawContact(pen, x, y, k, options) {
   }
   pen.closePath();
   pen.fillStyle = colours.contact;
-  pen.globalAlpha = 0.9;
+  pen.globalAlpha = 0.8;
   pen.fill();
   pen.globalAlpha = 1;
   pen.strokeStyle = '#b00020';

@@ -2,6 +2,7 @@
 
 function setUpTable() {
   const table = one('#cases');
+  if (!table) return;
   const body = one('tbody', table);
   const rows = all('tr', body);
   const search = one('#case-search');

@@ -37,7 +37,7 @@ pub fn render(suite: &SuiteView) -> String {
             ("ego", suite.ego.clone()),
             ("simulator", suite.simulator.clone()),
             ("agents", suite.agents.clone()),
-            ("seed", suite.selection.seed.to_string()),
+            ("seed", suite.seed.to_string()),
             ("command", suite.command.clone()),
             ("generator", suite.generated_by.clone()),
         ];

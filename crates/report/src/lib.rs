@@ -12,7 +12,8 @@ mod summary;
 mod view;
 mod words;
 
-pub use view::{CaseView, LineKind, RoadDrawing, RoadLine, RunView, SuiteView};
+pub use recrash_roads::{LineKind, RoadDrawing, RoadLine};
+pub use view::{CaseView, RunView, SuiteView};
 
 /// The page. Same view, same bytes; all text of records and models is escaped, and nothing on it can load anything.
 pub fn html(suite: &SuiteView) -> String {

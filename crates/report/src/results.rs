@@ -87,7 +87,7 @@ fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) ->
         suite.profile.name.clone(),
         suite.ego.clone(),
         suite.simulator.clone(),
-        suite.selection.seed.to_string(),
+        suite.seed.to_string(),
     ];
     match run {
         Some(run) => row.extend(measured(run)),

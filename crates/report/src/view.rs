@@ -1,10 +1,9 @@
 //! What the pipeline hands to this crate: one suite, read only. Everything the page shows is computed from it.
 //!
-//! Nothing is said twice: seed, strategy, budget and embedding stand in [`Selection`], limits in [`SystemProfile`],
+//! Nothing is said twice: strategy, budget and embedding stand in [`Selection`], limits in [`SystemProfile`],
 //! files and their hashes in [`RecordSet`].
 
 use recrash_model::Diagnostic;
-use recrash_model::geometry::Vec2;
 use recrash_model::metrics::{Finding, Metrics, Series, Verdict};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
@@ -14,6 +13,7 @@ use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
 use recrash_model::tuning::TuneLog;
+use recrash_roads::RoadDrawing;
 
 /// A whole suite.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +34,8 @@ pub struct SuiteView {
     pub simulator: String,
     /// Agents that wrote narratives and scenarios, such as `rules`.
     pub agents: String,
+    /// Seed of the run, as on the command line; every other seed follows from it.
+    pub seed: u64,
     /// Whether the records are the built-in sample and no real crashes.
     pub sample: bool,
     /// The records, with funnel and files.
@@ -88,37 +90,6 @@ pub struct RunView {
     pub series: Series,
     /// The command that runs this scenario again.
     pub rerun_command: String,
-}
-
-/// A road as lines and areas, in the rollout's coordinates. [m]
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct RoadDrawing {
-    /// Closed areas of asphalt (the last point joins the first); they may overlap.
-    pub surfaces: Vec<Vec<Vec2>>,
-    /// Lines on the road.
-    pub lines: Vec<RoadLine>,
-}
-
-/// One line on the road.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RoadLine {
-    /// How it is painted.
-    pub kind: LineKind,
-    /// Its points.
-    pub points: Vec<Vec2>,
-}
-
-/// How a line is painted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum LineKind {
-    /// The road's outer edge.
-    Edge,
-    /// Between lanes of one direction (dashed white).
-    LaneDivider,
-    /// Between directions (solid yellow).
-    Centre,
-    /// Centre line of a lane inside a junction (a faint guide).
-    Guide,
 }
 
 impl SuiteView {

@@ -68,7 +68,11 @@ pub(crate) fn route_nodes(map: &MapSpec, approach: Approach, turn: Turn) -> Opti
             let mut nodes;
             // Part i of the ring begins behind the entry of arm i and ends at the exit to arm i + 1.
             let (first_part, parts) = if approach == Approach::Ring {
-                nodes = vec![arms.node(2, 1), arms.node(3, 0), arms.node(3, 1)];
+                nodes = vec![arms.node(3, 0), arms.node(3, 1)];
+                // As far back as no node comes twice: MetaDrive knows a place on a route by its node alone.
+                if turn != Turn::Left {
+                    nodes.insert(0, arms.node(2, 1));
+                }
                 (0, exit_number(turn))
             } else {
                 let from = arm_of(approach)?;

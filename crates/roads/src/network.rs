@@ -75,9 +75,9 @@ impl RoadNetwork {
     /// The roads a vehicle takes that comes from `approach` and turns `turn` (seen from itself), from the very
     /// beginning of its arm to the very end of its exit; `None` where the map has no such way.
     ///
-    /// [`Approach::Ring`] begins right after the exit to the left arm, so that it holds half of the circle before the
-    /// ego's entry; it passes that entry and leaves by the exit right behind it ([`Turn::Right`]), the one after that
-    /// ([`Turn::Straight`]) or the third ([`Turn::Left`]).
+    /// [`Approach::Ring`] begins right behind the exit to the left arm ([`Turn::Left`]: a connector later, or it would
+    /// pass a node twice); it passes the ego's entry and leaves by the exit right behind it ([`Turn::Right`]), the one
+    /// after that ([`Turn::Straight`]) or the third ([`Turn::Left`]).
     pub fn route(&self, approach: Approach, turn: Turn) -> Option<Vec<RoadId>> {
         let nodes = crate::blocks::route_nodes(&self.map, approach, turn)?;
         nodes.windows(2).map(|pair| self.road_between(&pair[0], &pair[1])).collect()

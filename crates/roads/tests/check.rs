@@ -312,14 +312,20 @@ fn speeds_are_bounded_by_the_way() {
 }
 
 #[test]
-fn a_pedestrian_can_cross_on_a_cross_street() {
-    let scenario = accepted(&[
-        ("/partners/0/kind", json!("pedestrian")),
-        ("/partners/0/speed_mps", json!(1.4)),
-        ("/partners/0/policy/target_speed_mps", json!(3.0)),
-        ("/partners/0/start/arrival_gap_s", json!(0.0)),
-    ]);
-    assert!(scenario.partners()[0].conflict.is_some());
+fn a_pedestrian_steps_out_beside_the_ego_s_lane() {
+    let walking = |gap: f64| {
+        [
+            ("/partners/0/kind", json!("pedestrian")),
+            ("/partners/0/speed_mps", json!(1.4)),
+            ("/partners/0/policy/target_speed_mps", json!(1.4)),
+            ("/partners/0/start/arrival_gap_s", json!(gap)),
+        ]
+    };
+    // The ego needs 8.125 s; 1.4 m/s * 8.125 s is 11.375 m, well inside the junction.
+    let scenario = accepted(&walking(0.0));
+    let partner = &scenario.partners()[0];
+    assert!((partner.conflict.expect("they cross").s_b - partner.s_m - 11.375).abs() < 1e-9);
+    refused(&walking(-6.5), "scenario.arrival-gap", "partners[0].start.arrival_gap_s");
 }
 
 #[test]

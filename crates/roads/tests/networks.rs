@@ -120,11 +120,29 @@ fn routes_go_by_metadrive_s_node_names() {
     assert_eq!(found(Approach::Left, Turn::Straight), "-1O2_3_ -1O2_2_ 1O3_0_ 1O3_1_ 1O0_0_ 1O0_1_ 1O0_2_ 1O0_3_");
     assert_eq!(found(Approach::Ring, Turn::Right), "1O2_1_ 1O3_0_ 1O3_1_ 1O0_0_ 1O0_1_ 1O0_2_ 1O0_3_");
 
+    assert_eq!(
+        found(Approach::Ring, Turn::Left),
+        "1O3_0_ 1O3_1_ 1O0_0_ 1O0_1_ 1O1_0_ 1O1_1_ 1O2_0_ 1O2_1_ 1O2_2_ 1O2_3_"
+    );
+
     let s = RoadNetwork::build(&straight(2));
     assert_eq!(nodes(&s, Approach::Same, Turn::Straight).as_deref(), Some("> >> >>> 1S0_0_"));
     assert_eq!(nodes(&s, Approach::Opposite, Turn::Straight).as_deref(), Some("-1S0_0_ ->>> ->> ->"));
     let c = RoadNetwork::build(&curve(2, Side::Left));
     assert_eq!(nodes(&c, Approach::Opposite, Turn::Straight).as_deref(), Some("-1C0_1_ -1C0_0_ ->>> ->> ->"));
+}
+
+#[test]
+fn no_way_passes_a_node_twice() {
+    for map in every_map() {
+        let network = RoadNetwork::build(&map);
+        for (approach, turn) in APPROACHES.iter().flat_map(|approach| TURNS.map(|turn| (*approach, turn))) {
+            let Some(text) = nodes(&network, approach, turn) else { continue };
+            let names: Vec<&str> = text.split(' ').collect();
+            let different: std::collections::BTreeSet<_> = names.iter().collect();
+            assert_eq!(names.len(), different.len(), "{text}");
+        }
+    }
 }
 
 #[test]

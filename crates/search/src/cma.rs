@@ -144,9 +144,9 @@ impl Strategy {
             let radius = (math::sq(diagonal) + math::sq(work[k])).sqrt();
             let (c, s) = (radius / diagonal, work[k] / diagonal);
             self.factor[k][k] = radius;
-            for i in k + 1..n {
-                self.factor[i][k] = (self.factor[i][k] + s * work[i]) / c;
-                work[i] = c * work[i] - s * self.factor[i][k];
+            for (row, rest) in self.factor.iter_mut().zip(&mut work).skip(k + 1) {
+                row[k] = (row[k] + s * *rest) / c;
+                *rest = c * *rest - s * row[k];
             }
         }
     }

@@ -3,6 +3,7 @@
 //!
 //!     cargo run -p recrash-sim --example resolve -- SCENARIO.json...
 //!     cargo run -p recrash-sim --example resolve -- --random COUNT SEED
+//!     cargo run -p recrash-sim --example resolve -- --trials
 
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::{ObstacleKind, ScenarioDraft};
@@ -20,6 +21,7 @@ fn main() {
             let (count, seed) = (count.parse().expect("a count"), seed.parse().expect("a seed"));
             (0..).filter_map(|n| common::random_draft(seed, n)).take(count).collect()
         }
+        [flag] if flag == "--trials" => common::trials(),
         files => files
             .iter()
             .map(|file| {

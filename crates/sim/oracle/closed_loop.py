@@ -5,6 +5,9 @@ What the native simulator is held against (docs/models/metadrive-idm.md). Needs 
 
     cargo run -p recrash-sim --example resolve -- SCENARIO.json... > specs.jsonl
     PYTHONHASHSEED=0 python closed_loop.py < specs.jsonl > metadrive.jsonl
+    PYTHONHASHSEED=0 python closed_loop.py --fixture < specs.jsonl > ../tests/fixtures/closed_loop.jsonl
+
+With --fixture each line holds the scenario and one position a second, no more.
 
 The native driver's deliberate differences are made here too: MetaDrive's random overtaking timer starts in the middle
 of its range, and partners follow the lane number they start in (docs/models/policies.md).
@@ -319,6 +322,11 @@ def main():
             result = dict(id=spec["id"], end="error", error=f"{type(error).__name__}: {error}")
         env.engine.clear_objects(SPAWNED, force_destroy=True)
         SPAWNED.clear()
+        if "--fixture" in sys.argv:
+            if result["end"] == "error":
+                continue
+            positions = [[[round(v, 2) for v in pose[:2]] for pose in track[::10]] for track in result.pop("tracks")]
+            result = dict(draft=spec["draft"], **result, positions=positions)
         print(json.dumps(result), flush=True)
     env.close()
 

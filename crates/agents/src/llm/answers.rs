@@ -1,25 +1,19 @@
-//! Where answers come from: a live model, a batch file that somebody else has sent, or the ledger alone.
+//! Where answers come from: a batch file that somebody sends to any provider, or the ledger alone.
 //!
-//! All three are one trait, so prompts, repairs and fallback are one path for every provider and every mode.
+//! Both are one trait, so prompts, repairs and fallback are one path for every provider and every mode.
 
 use crate::llm::question::{Exchange, Question};
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Keeps exchanges. The pipeline keeps them as files.
-pub trait Ledger: Sync {
+pub trait Ledger: Send + Sync {
     /// The exchange of this question, where there was one.
     fn find(&self, hash: &str) -> Option<Exchange>;
-
-    /// Keeps an exchange for good.
-    ///
-    /// # Errors
-    /// What went wrong, in one sentence.
-    fn keep(&self, exchange: &Exchange) -> Result<(), String>;
 }
 
 /// Gives answers.
-pub trait Answers: Sync {
+pub trait Answers: Send + Sync {
     /// The answer to a question.
     ///
     /// # Errors
@@ -41,24 +35,15 @@ pub enum AskError {
         /// What it is for.
         what: String,
     },
-    /// A cap on tokens or money is reached.
-    #[error("{0}")]
-    BudgetSpent(String),
-    /// The provider failed for good.
-    #[error("{0}")]
-    Provider(String),
-    /// The ledger cannot keep the answer.
-    #[error("the ledger cannot keep an answer: {0}")]
-    Ledger(String),
 }
 
 /// Answers from the ledger alone.
-pub struct Replay<'a> {
+pub struct Replay {
     /// The ledger.
-    pub ledger: &'a dyn Ledger,
+    pub ledger: Arc<dyn Ledger>,
 }
 
-impl Answers for Replay<'_> {
+impl Answers for Replay {
     fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
         let hash = question.hash();
         self.ledger.find(&hash).ok_or_else(|| {
@@ -70,24 +55,24 @@ impl Answers for Replay<'_> {
 }
 
 /// Answers from the ledger; what it lacks is put down for a batch.
-pub struct Batch<'a> {
-    ledger: &'a dyn Ledger,
+pub struct Batch {
+    ledger: Arc<dyn Ledger>,
     pending: Mutex<BTreeMap<String, Question>>,
 }
 
-impl<'a> Batch<'a> {
+impl Batch {
     /// With nothing put down yet.
-    pub fn new(ledger: &'a dyn Ledger) -> Self {
+    pub fn new(ledger: Arc<dyn Ledger>) -> Self {
         Self { ledger, pending: Mutex::new(BTreeMap::new()) }
     }
 
     /// What was put down, in the order of hashes.
-    pub fn into_pending(self) -> Vec<Question> {
-        self.pending.into_inner().unwrap_or_else(PoisonError::into_inner).into_values().collect()
+    pub fn pending(&self) -> Vec<Question> {
+        self.pending.lock().unwrap_or_else(PoisonError::into_inner).values().cloned().collect()
     }
 }
 
-impl Answers for Batch<'_> {
+impl Answers for Batch {
     fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
         let hash = question.hash();
         if let Some(exchange) = self.ledger.find(&hash) {

@@ -120,8 +120,6 @@ fn read_response(line: &str, questions: &[Question]) -> Result<Exchange, String>
         answer: answer.ok_or("its response has no text")?,
         input_tokens: body.usage.as_ref().map_or(0, |usage| usage.prompt_tokens),
         output_tokens: body.usage.as_ref().map_or(0, |usage| usage.completion_tokens),
-        latency_ms: 0,
-        retries: 0,
     })
 }
 

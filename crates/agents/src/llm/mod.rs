@@ -4,13 +4,11 @@
 mod answers;
 mod batch;
 mod extract;
-mod live;
 mod prompts;
 mod question;
 
 pub use answers::{Answers, AskError, Batch, Ledger, Replay};
 pub use batch::{read_responses, request_line};
-pub use live::{Live, LiveOptions};
 pub use question::{EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
@@ -20,6 +18,7 @@ use recrash_model::tuning::{Parameter, TunePoint};
 use recrash_model::{Diagnostic, Outcome};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Longest narrative text that is accepted. [characters]
 const MAX_TEXT: usize = 2_000;
@@ -35,6 +34,8 @@ pub struct LanguageModel<'a> {
     pub answers: &'a dyn Answers,
     /// How often an answer that cannot be used goes back.
     pub max_repairs: usize,
+    /// Counts the answers that went back.
+    pub repairs: &'a AtomicUsize,
 }
 
 /// The form of a paraphrase.
@@ -75,6 +76,7 @@ impl LanguageModel<'_> {
             question.turns.push(Turn { speaker: Speaker::Assistant, text: exchange.answer });
             question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(&problems)? });
             question.purpose.attempt += 1;
+            self.repairs.fetch_add(1, Ordering::Relaxed);
         }
         let model = self.model.to_owned();
         Err(AgentError::NoUsableAnswer { model, repairs: self.max_repairs, problem: problems.join("; ") })

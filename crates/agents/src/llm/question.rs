@@ -90,10 +90,6 @@ pub struct Exchange {
     pub input_tokens: u64,
     /// Tokens written by the model.
     pub output_tokens: u64,
-    /// How long the answer took; 0 where it came in a batch. [ms]
-    pub latency_ms: u64,
-    /// How often it was asked again after a passing fault.
-    pub retries: u32,
 }
 
 #[cfg(test)]

@@ -51,10 +51,11 @@ const TRAFFIC: &str = r"(?:oncoming |cross |crossing |stopped |slow |slower |slo
 const FOUR_WHEELS: &str = r"passenger (?:cars?|vehicles?)|sport utility vehicle|suv|crossover|minivan|van|pick-?up(?: truck)?|police (?:car|vehicle|cruiser|suv)|patrol car|emergency vehicle|fire (?:truck|engine)|ambulance|golf cart|cart|rickshaw|station wagon|convertible|limousine|tow truck|delivery (?:truck|van|vehicle)|box truck|semi(?:-?trailer|-?truck)?|tractor(?:[- ]trailer)?|dump truck|garbage truck|tanker(?: truck)?|truck|(?:\w+ )?bus|trailer|sedan|hatchback|coupe|taxi|vehicle (?:2|two)|car (?:2|two)|v2|(?:other|second|another|third[- ]party|opposing|approaching) (?:vehicle|driver|car|party|motorist)|honda|toyota|ford|tesla|chevrolet|chevy|nissan|hyundai|kia|subaru|mazda|volkswagen|bmw|audi|mercedes(?:-benz)?|lexus|jeep|dodge|ram|gmc|cadillac|buick|acura|infiniti|volvo|range rover|driver|motorist|vehicle|car";
 const TWO_WHEELS: &str = r"motorcycl\w+|motorbike|moped|(?:motor )?scooter(?:ist)?|e-?scooter|cyclist|bicyclist|bicycl\w+|e-?bike|bike|skateboard\w*|delivery robot|robot|(?:person|rider|man|woman|individual) (?:on|operating|riding)(?: an?)?(?: electric| motorized)? \w+";
 const WALKING: &str = r"pedestrians?|person|people|child";
+const ANIMAL: &str = r"deer|dog|coyote|horse|cow|animal";
 
 static MENTION: LazyLock<Regex> = LazyLock::new(|| {
     let pattern = format!(
-        r"(?i)\b(?:(?P<nobody>{NOBODY})|(?P<ego>{EGO})|(?P<traffic>{TRAFFIC})|(?P<two>{TWO_WHEELS})|(?P<four>{FOUR_WHEELS})|(?P<walk>{WALKING}))\b"
+        r"(?i)\b(?:(?P<nobody>{NOBODY})|(?P<ego>{EGO})|(?P<traffic>{TRAFFIC})|(?P<two>{TWO_WHEELS})|(?P<four>{FOUR_WHEELS})|(?P<walk>{WALKING})|(?P<animal>{ANIMAL}))\b"
     );
     Regex::new(&pattern).expect("constant pattern")
 });
@@ -100,6 +101,12 @@ impl Cast {
         cast
     }
 
+    /// Whether a mention is of a person or an animal, and the partner is none.
+    fn is_bystander(&self, capture: &regex::Captures) -> bool {
+        capture.name("walk").is_some() && self.kind != Some(PartnerKind::Pedestrian)
+            || capture.name("animal").is_some() && self.kind != Some(PartnerKind::Animal)
+    }
+
     /// Whether a mention names the partner's kind; `None` where it names nobody in particular.
     fn names_kind(&self, capture: &regex::Captures) -> Option<bool> {
         let kind = self.kind?;
@@ -110,8 +117,11 @@ impl Cast {
         if capture.name("walk").is_some() {
             return Some(kind == PartnerKind::Pedestrian);
         }
+        if capture.name("animal").is_some() {
+            return Some(kind == PartnerKind::Animal);
+        }
         let text = capture.name("four")?.as_str().to_lowercase();
-        let on_four_wheels = !two && kind != PartnerKind::Pedestrian;
+        let on_four_wheels = !two && !matches!(kind, PartnerKind::Pedestrian | PartnerKind::Animal);
         let named = match text.as_str() {
             t if t.starts_with("passenger") || t == "sedan" || t == "hatchback" || t == "coupe" => {
                 kind == PartnerKind::PassengerCar
@@ -142,9 +152,7 @@ impl Cast {
                 continue;
             } else if capture.name("ego").is_some() {
                 Actor::Sv
-            } else if capture.name("traffic").is_some() {
-                Actor::Other
-            } else if capture.name("walk").is_some() && self.kind != Some(PartnerKind::Pedestrian) {
+            } else if capture.name("traffic").is_some() || self.is_bystander(&capture) {
                 Actor::Other
             } else {
                 match self.names_kind(&capture) {

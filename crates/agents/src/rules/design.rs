@@ -1,7 +1,7 @@
 //! From a narrative to a scenario: map, lanes, speeds and timing that make the told conflict happen.
 
 use super::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
-use super::retry::{Aim, Plan, plan};
+use super::retry::{Plan, plan};
 use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_way, ground, stagings};
 use super::timing::{Course, Task, Timing, Wanted, best_timings};
 use super::writing::Facts;
@@ -47,7 +47,11 @@ pub fn design(brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Re
             _ => None,
         })
         .unwrap_or((&[], &[]));
-    let plan = plan(feedback, !told.0.is_empty(), staging.conflict == ConflictKind::Sideways);
+    // A move that must show leads into the ego's lane; the others only come close.
+    let moves_over =
+        ground(&narrative.template, &staging) == Ground::Road && narrative.template.cp != Movement::Straight;
+    let side_by_side = staging.conflict == ConflictKind::Sideways && !moves_over;
+    let plan = plan(feedback, !told.0.is_empty(), side_by_side);
     Ok(Stage::new(brief, narrative, staging, plan, told).draft())
 }
 
@@ -112,7 +116,7 @@ impl<'a> Stage<'a> {
         let limit = |speed: f64, movement| {
             let most = most_speed(ground, turn(ground, movement)).min(brief.profile.expresses.max_speed_mps);
             let least = brief.profile.expresses.min_speed_mps.max(LEAST_TOLD_SPEED_MPS).min(most);
-            round_to((speed * plan.speed_factor).clamp(least, most), 0.1)
+            round_to((speed.clamp(least, most) * plan.speed_factor).max(least), 0.1)
         };
         let ego_mps = limit(ego.or(posted).unwrap_or(DEFAULT_SPEED_MPS), narrative.template.sv);
         let partner_mps = limit(partner.or(posted).unwrap_or(ego_mps), narrative.template.cp);
@@ -205,6 +209,10 @@ impl<'a> Stage<'a> {
             ConflictKind::Paths => {
                 partner.start = Start::ArrivalGap { arrival_gap_s: round_to(timing.start, 0.01) };
                 partner.policy = Policy::IdmNominal { target_speed_mps: timing.partner_mps };
+                if self.staging.beside.is_some() && self.narrative.template.work_zone {
+                    // The intelligent driver model would stop for cones that narrow its lane.
+                    partner.policy = holds_speed(timing.partner_mps);
+                }
                 if let Some((start_mps, acceleration)) = self.sets_off() {
                     partner.speed_mps = start_mps;
                     partner.policy = Policy::AccelThenBrake {
@@ -220,15 +228,9 @@ impl<'a> Stage<'a> {
             ConflictKind::Sideways => {
                 partner.start = Start::Offset { delta_s_m: timing.start, delta_t_m: timing.start_t_m };
                 // It holds its speed, whoever and whatever is near: a driver who comes over has not seen.
-                partner.policy = Policy::SuddenBrake {
-                    target_speed: timing.partner_mps,
-                    brake_step: 0,
-                    brake_steps: 0,
-                    speed_kp: None,
-                };
+                partner.policy = holds_speed(timing.partner_mps);
                 partner.lateral = timing.lateral.into_iter().collect();
-                if let (Aim::Pass(_), Some(over)) = (self.plan.aim, timing.lateral) {
-                    // It notices, and goes back.
+                if let Some(over) = timing.lateral.filter(|_| timing.returns) {
                     let start_s = round_to(over.start_s + over.duration_s + 1.0, 0.1);
                     partner.lateral.push(LateralMove { start_s, duration_s: 2.0, to_t_m: 0.0 });
                 }
@@ -361,6 +363,11 @@ impl<'a> Stage<'a> {
             });
         }
     }
+}
+
+/// Holds a speed, whoever and whatever is near.
+fn holds_speed(target_speed: f64) -> Policy {
+    Policy::SuddenBrake { target_speed, brake_step: 0, brake_steps: 0, speed_kp: None }
 }
 
 /// The turn that shows a movement: on a road without junction there is none.

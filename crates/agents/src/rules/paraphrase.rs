@@ -153,7 +153,8 @@ fn stage(relation: Relation, brief: &Brief, ways: &[Staging]) -> Option<Staging>
     let (approach, side) = match relation {
         // On a road without arms and on a circle, whoever comes "from the left" comes from the lane there.
         Relation::From(side) if road == RoadType::TrafficCircle => {
-            let ring = ways.iter().find(|way| way.approach == Approach::Ring && side == Side::Left);
+            let circulating = |way: &&Staging| matches!(way.approach, Approach::Ring | Approach::Left);
+            let ring = ways.iter().find(|way| side == Side::Left && circulating(way));
             return ring.or_else(|| ways.iter().find(|way| way.beside == Some(side))).copied();
         }
         Relation::From(Side::Left) => (Approach::Left, None),

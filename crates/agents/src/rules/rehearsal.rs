@@ -1,7 +1,7 @@
 //! A rehearsal: both follow their lanes as told, and nobody reacts. It shows where and how they would meet, so that a
 //! design can choose lanes and timing that make the told meeting happen. The simulator has the last word.
 
-use recrash_model::geometry::{OrientedBox, Pose};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::record::ContactZone;
@@ -82,6 +82,8 @@ pub struct Meeting {
     pub ego_turned: f64,
     /// How far the partner had turned.
     pub partner_turned: f64,
+    /// Where the ego's nose was along its path. [m]
+    pub ego_nose_m: f64,
     /// How far the partner had moved sideways out of its lane. [m]
     pub partner_shifted_m: f64,
     /// Kind of collision, where it is one that profiles exclude.
@@ -108,10 +110,15 @@ pub fn rehearse(network: &RoadNetwork, ego: &Motion, partner: &Motion, from_s: f
         }
     }
     let (gap_m, time_s) = closest?;
-    // The last moment apart shows where they touch.
-    let moment = if gap_m > 0.0 { time_s } else { (time_s - STEP_S).max(0.0) };
+    let moment = time_s;
     let (a, b) = (ego.outline(network, moment), partner.outline(network, moment));
-    let (on_ego, on_partner, _) = a.nearest_points(&b);
+    let (on_ego, on_partner) = match middle_of_overlap(&a, &b) {
+        Some(middle) => (middle, middle),
+        None => {
+            let (on_ego, on_partner, _) = a.nearest_points(&b);
+            (on_ego, on_partner)
+        }
+    };
     let (ego_zone, partner_zone) = (zone_of(&a, on_ego), zone_of(&b, on_partner));
     let turned = |from: &OrientedBox, to: &OrientedBox| math::atan2(from.axis.cross(to.axis), from.axis.dot(to.axis));
     Some(Meeting {
@@ -121,13 +128,42 @@ pub fn rehearse(network: &RoadNetwork, ego: &Motion, partner: &Motion, from_s: f
         partner_zone,
         ego_turned: turned(&at_start.0, &a),
         partner_turned: turned(&at_start.1, &b),
+        ego_nose_m: ego.start_m + ego.driven(moment) + ego.half_length_m,
         partner_shifted_m: (partner.offset(moment).0 - partner.start_t_m).abs(),
         kind: kind_of(&a, ego_zone, &b, partner_zone),
     })
 }
 
+/// Mean corner of what two boxes share: the one cut along the edges of the other.
+fn middle_of_overlap(a: &OrientedBox, b: &OrientedBox) -> Option<Vec2> {
+    let mut shared: Vec<Vec2> = a.corners().to_vec();
+    let edges = b.corners();
+    for (n, from) in edges.iter().enumerate() {
+        let along = edges[(n + 1) % 4] - *from;
+        // Corners are in anticlockwise order: inside is to the left of every edge.
+        let inside = |point: Vec2| along.cross(point - *from);
+        let mut kept = Vec::new();
+        for (m, point) in shared.iter().enumerate() {
+            let next = shared[(m + 1) % shared.len()];
+            let (here, there) = (inside(*point), inside(next));
+            if here >= 0.0 {
+                kept.push(*point);
+            }
+            if (here >= 0.0) != (there >= 0.0) {
+                kept.push(*point + (next - *point) * (here / (here - there)));
+            }
+        }
+        shared = kept;
+    }
+    if shared.is_empty() {
+        return None;
+    }
+    let sum = shared.iter().fold(Vec2::default(), |sum, point| sum + *point);
+    Some(sum * (1.0 / shared.len() as f64))
+}
+
 /// The zone of a point on a box's edge.
-fn zone_of(outline: &OrientedBox, point: recrash_model::geometry::Vec2) -> ContactZone {
+fn zone_of(outline: &OrientedBox, point: Vec2) -> ContactZone {
     let local = outline.to_local(point);
     let end = local.x.abs() >= outline.half_length * (1.0 - 2.0 * CORNER_SHARE);
     let side = local.y.abs() >= outline.half_width * (1.0 - 2.0 * CORNER_SHARE);
@@ -138,6 +174,10 @@ fn zone_of(outline: &OrientedBox, point: recrash_model::geometry::Vec2) -> Conta
         (true, true, false, false) => ContactZone::RearRight,
         (true, false, true, _) => ContactZone::Front,
         (true, false, false, _) => ContactZone::Rear,
+        // Deep inside, the nearer edge counts.
+        (false, false, front, _) if outline.half_length - local.x.abs() < outline.half_width - local.y.abs() => {
+            if front { ContactZone::Front } else { ContactZone::Rear }
+        }
         (false, _, _, true) => ContactZone::Left,
         (false, _, _, false) => ContactZone::Right,
     }
@@ -163,4 +203,106 @@ fn kind_of(
     }
     let head_on = turn >= math::PI - ALIGNED_RAD && is_front(ego_zone) && is_front(partner_zone) && in_line;
     head_on.then_some(CollisionKind::HeadOn)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use recrash_model::scenario::{Approach, CrossMap, MapSpec, Turn};
+
+    const SPEED: f64 = 10.0;
+
+    fn network() -> RoadNetwork {
+        RoadNetwork::build(&MapSpec::X(CrossMap { lanes: 1, lane_width_m: 3.5, approach_m: 60.0, arm_m: 60.0 }))
+    }
+
+    fn path(network: &RoadNetwork, approach: Approach) -> LanePath {
+        LanePath::new(network, network.route(approach, Turn::Straight).expect("a way straight on"), 0)
+    }
+
+    fn motion(path: &LanePath, start_m: f64) -> Motion<'_> {
+        Motion {
+            path,
+            half_length_m: 2.0,
+            half_width_m: 1.0,
+            start_m,
+            start_mps: SPEED,
+            acceleration_mps2: 2.0,
+            target_mps: SPEED,
+            start_t_m: 0.0,
+            lateral: None,
+        }
+    }
+
+    /// A partner from the left that reaches the crossing point `gap_s` after the ego.
+    fn crossing(gap_s: f64) -> Meeting {
+        let network = network();
+        let (ego, other) = (path(&network, Approach::Same), path(&network, Approach::Left));
+        let conflict = ego.conflict(&other, &network, 2.0, 2.0).expect("they cross");
+        let ego = motion(&ego, conflict.s_a - 30.0);
+        let partner = motion(&other, conflict.s_b - 30.0 - gap_s * SPEED);
+        rehearse(&network, &ego, &partner, 0.0, 6.0).expect("they come near")
+    }
+
+    #[test]
+    fn twenty_metres_a_second_for_two_seconds_are_forty_metres_and_setting_off_takes_longer() {
+        let network = network();
+        let path = path(&network, Approach::Same);
+        let steady = Motion { start_mps: 20.0, target_mps: 20.0, ..motion(&path, 0.0) };
+        assert!((steady.driven(2.0) - 40.0).abs() < 1e-9);
+        // From 0 to 10 m/s at 2 m/s^2: 25 m in 5 s, then 10 m/s.
+        let setting_off = Motion { start_mps: 0.0, ..motion(&path, 0.0) };
+        assert!((setting_off.driven(6.0) - 35.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn at_right_angles_the_later_one_hits_the_side_of_the_earlier_one() {
+        // At 10 m/s a car of 4 m clears the way of one of 2 m in (2 * 2 + 2 * 1) / 10 = 0.6 s.
+        let ego_first = crossing(0.3);
+        assert_eq!((ego_first.gap_m, ego_first.partner_zone), (0.0, ContactZone::Front));
+        assert_eq!(ego_first.ego_zone, ContactZone::Left);
+        let partner_first = crossing(-0.3);
+        assert_eq!((partner_first.ego_zone, partner_first.partner_zone), (ContactZone::Front, ContactZone::Right));
+        assert_eq!(ego_first.kind.or(partner_first.kind), None);
+    }
+
+    #[test]
+    fn who_comes_later_than_the_other_needs_to_clear_the_way_passes() {
+        // 0.4 s of 10 m/s behind the ego's rear, across the diagonal of what is left.
+        let passing = crossing(0.8);
+        assert!(passing.gap_m > 0.3 && passing.gap_m < 2.0, "{passing:?}");
+        assert!(crossing(-0.8).gap_m > 0.3);
+        assert_eq!(crossing(0.0).gap_m, 0.0);
+    }
+
+    #[test]
+    fn in_line_and_front_to_rear_is_a_rear_end_collision() {
+        let network = network();
+        let path = path(&network, Approach::Same);
+        let slow = Motion { start_mps: 5.0, target_mps: 5.0, ..motion(&path, 20.0) };
+        let meeting = rehearse(&network, &motion(&path, 5.0), &slow, 0.0, 6.0).expect("they come near");
+        assert_eq!(meeting.kind, Some(CollisionKind::RearEndByEgo));
+        // 15 m apart, 4 m of cars, 5 m/s faster: 2.2 s.
+        assert!((meeting.time_s - 2.2).abs() <= 0.05 + 1e-9, "{meeting:?}");
+    }
+
+    #[test]
+    fn the_middle_of_an_overlap_is_that_of_the_shared_rectangle() {
+        let at = |x: f64, y: f64| OrientedBox::new(Pose { position: Vec2::new(x, y), heading: 0.0 }, 4.0, 2.0);
+        // Shared: x from 1 to 2, y from 0 to 1.
+        let middle = middle_of_overlap(&at(0.0, 0.0), &at(3.0, 1.0)).expect("they overlap");
+        assert!((middle.x - 1.5).abs() < 1e-9 && (middle.y - 0.5).abs() < 1e-9, "{middle:?}");
+        assert_eq!(middle_of_overlap(&at(0.0, 0.0), &at(9.0, 0.0)), None);
+    }
+
+    #[test]
+    fn a_sideways_move_is_linear() {
+        let network = network();
+        let path = path(&network, Approach::Same);
+        let lateral = Some(LateralMove { start_s: 1.0, duration_s: 2.0, to_t_m: 3.0 });
+        let moving = Motion { lateral, ..motion(&path, 0.0) };
+        assert_eq!(moving.offset(0.5), (0.0, 0.0));
+        assert_eq!(moving.offset(2.0), (1.5, 1.5));
+        assert_eq!(moving.offset(9.0), (3.0, 0.0));
+    }
 }

@@ -58,14 +58,30 @@ use Approach::{Left as FromLeft, Opposite, Right as FromRight};
 use ConflictKind::{Paths, Sideways};
 use Side::{Left, Right};
 
-/// On a circle: into the ring behind or before a partner that is on it, or side by side around it.
-const CIRCLE: &[Staging] = &[
-    crossing(Approach::Ring, &[plan(1, 0, 0), plan(2, 1, 1), plan(2, 0, 0)]),
+/// Parallel lanes: in turning lanes of a junction, or around a circle.
+const SIDE_BY_SIDE: &[Staging] = &[
     beside(Left, Sideways, &[plan(2, 1, 0), plan(3, 2, 1)]),
     beside(Right, Sideways, &[plan(2, 0, 1), plan(3, 1, 2)]),
 ];
-/// On a circle with different exits the two cannot stay side by side.
-const CIRCLE_MERGE: &[Staging] = &[crossing(Approach::Ring, &[plan(1, 0, 0), plan(2, 1, 1), plan(2, 0, 0)])];
+/// On a circle, the same exit: into the ring before or behind a partner that is on it, or side by side around it.
+const CIRCLE_SAME_EXIT: &[Staging] = &[
+    beside(Left, Sideways, &[plan(2, 1, 0), plan(3, 2, 1)]),
+    beside(Right, Sideways, &[plan(2, 0, 1), plan(3, 1, 2)]),
+    crossing(FromLeft, CIRCLE_MERGE),
+];
+/// Who is on the ring from the start is seen to go far around it.
+const CIRCLE_BOTH_LEFT: &[Staging] = &[
+    beside(Left, Sideways, &[plan(2, 1, 0), plan(3, 2, 1)]),
+    beside(Right, Sideways, &[plan(2, 0, 1), plan(3, 1, 2)]),
+    crossing(Approach::Ring, CIRCLE_MERGE),
+    crossing(FromLeft, CIRCLE_MERGE),
+];
+/// Both in one lane of the ring.
+const CIRCLE_MERGE: &[LanePlan] = &[plan(1, 0, 0), plan(2, 1, 1), plan(2, 0, 0)];
+/// The partner leaves before the ego, out of the inner lane across the ego's.
+const CIRCLE_PARTNER_LEAVES_FIRST: &[Staging] = &[beside(Left, Paths, &[plan(2, 1, 0), plan(3, 2, 1)])];
+/// The ego leaves before the partner, out of the inner lane across the partner's.
+const CIRCLE_EGO_LEAVES_FIRST: &[Staging] = &[beside(Right, Paths, &[plan(2, 0, 1), plan(3, 1, 2)])];
 
 /// Both straight: the cross streets meet at right angles in any lanes.
 const STRAIGHT_STRAIGHT: &[Staging] = &[
@@ -108,11 +124,6 @@ const RIGHT_STRAIGHT: &[Staging] = &[
     beside(Right, Paths, &[plan(2, 0, 1), plan(3, 1, 2), plan(3, 0, 1)]),
 ];
 
-const RIGHT_RIGHT: &[Staging] = &[
-    beside(Left, Sideways, &[plan(2, 1, 0), plan(3, 2, 1)]),
-    beside(Right, Sideways, &[plan(2, 0, 1), plan(3, 1, 2)]),
-];
-
 const RIGHT_LEFT: &[Staging] = &[crossing(Opposite, &[plan(2, 1, 1), plan(2, 0, 0), plan(1, 0, 0)])];
 
 /// On a road without junction the partner moves sideways.
@@ -139,8 +150,11 @@ pub fn stagings(template: &Template) -> &'static [Staging] {
     use Movement::{LeftTurn, RightTurn, Straight};
     match (template.road, template.sv, template.cp) {
         (_, sv, cp) if ![sv, cp].iter().all(|movement| Movement::PAPER.contains(movement)) => &[],
-        (RoadType::TrafficCircle, sv, cp) if sv == cp => CIRCLE,
-        (RoadType::TrafficCircle, ..) => CIRCLE_MERGE,
+        (RoadType::TrafficCircle, LeftTurn, LeftTurn) => CIRCLE_BOTH_LEFT,
+        (RoadType::TrafficCircle, RightTurn, RightTurn) => SIDE_BY_SIDE,
+        (RoadType::TrafficCircle, Straight, Straight) => CIRCLE_SAME_EXIT,
+        (RoadType::TrafficCircle, _, RightTurn) | (RoadType::TrafficCircle, LeftTurn, _) => CIRCLE_PARTNER_LEAVES_FIRST,
+        (RoadType::TrafficCircle, ..) => CIRCLE_EGO_LEAVES_FIRST,
         (RoadType::Intersection, Straight, Straight) => STRAIGHT_STRAIGHT,
         (RoadType::Intersection, Straight, LeftTurn) => STRAIGHT_LEFT,
         (RoadType::Intersection, Straight, RightTurn) => STRAIGHT_RIGHT,
@@ -151,7 +165,7 @@ pub fn stagings(template: &Template) -> &'static [Staging] {
         (_, LeftTurn, LeftTurn) => LEFT_LEFT,
         (_, LeftTurn, RightTurn) => LEFT_RIGHT,
         (_, RightTurn, Straight) => RIGHT_STRAIGHT,
-        (_, RightTurn, RightTurn) => RIGHT_RIGHT,
+        (_, RightTurn, RightTurn) => SIDE_BY_SIDE,
         (_, RightTurn, LeftTurn) => RIGHT_LEFT,
         _ => &[],
     }

@@ -85,6 +85,8 @@ pub struct Way {
     pub path: LanePath,
     /// Where the block begins; half way on a road without. [m]
     pub block_m: f64,
+    /// Where the ring of a roundabout begins.
+    ring_m: Option<f64>,
     /// The last part of the block: the connector of a junction, the way out of a circle.
     last_part: Option<(f64, f64)>,
 }
@@ -110,7 +112,9 @@ impl Way {
         let start = |n: usize| path.segments.get(n).map_or(path.length_m, |segment| segment.start_m);
         let block_m = inside.first().map_or(0.5 * path.length_m, |n| start(*n));
         let last_part = inside.last().map(|n| (start(*n), start(*n + 1)));
-        Some(Self { block_m, last_part, path })
+        let ring = (0..path.roads.len()).find(|n| network.road(path.roads[*n]).part == RoadPart::Ring);
+        let ring_m = ring.map(start);
+        Some(Self { block_m, ring_m, last_part, path })
     }
 }
 
@@ -125,6 +129,8 @@ pub struct Timing {
     pub partner_mps: f64,
     /// Its sideways move.
     pub lateral: Option<LateralMove>,
+    /// Whether it goes back to its lane then.
+    pub returns: bool,
     /// How far back on its arm it would start; the ego must start later where this is too far. [m]
     pub partner_start_m: f64,
     /// The lower, the more like what is wanted.
@@ -183,6 +189,7 @@ fn time_paths(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
         start_t_m: 0.0,
         partner_mps: task.partner_mps,
         lateral: None,
+        returns: false,
         partner_start_m: motion(start).start_m,
         score,
     })
@@ -268,7 +275,10 @@ fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
     let (start, score) = choose(task, course, plan, &tries, ahead(0.0), 1.5)?;
     let start = tenths(start);
     let partner_start_m = task.ego_start_m + start;
-    Some(Timing { start, start_t_m, partner_mps, lateral: Some(lateral), partner_start_m, score })
+    // Who does not touch notices, and goes back; unless the move is its movement.
+    let is_its_movement = on_road && turns;
+    let returns = !touch && !is_its_movement;
+    Some(Timing { start, start_t_m, partner_mps, lateral: Some(lateral), returns, partner_start_m, score })
 }
 
 /// The start with the lowest score, and that score. Scores are smoothed over their neighbours, so that the middle of a
@@ -359,10 +369,80 @@ fn unseen_movement(task: &Task, course: &Course, meeting: &Meeting) -> f64 {
         _ => 0.0,
     };
     match task.ground {
-        // Who is in the circle is seen to circle.
-        Ground::Circle => 0.0,
+        // Who is on the ring is seen to circle, which is all of a left turn and the beginning of going straight.
+        Ground::Circle => {
+            let entered_m = meeting.ego_nose_m - course.ego.ring_m.unwrap_or(0.0) - 0.5;
+            let must_leave = task.template.sv == Movement::RightTurn || task.template.cp == Movement::RightTurn;
+            f64::from(u8::from(entered_m < 0.0)) + if must_leave { 0.5 } else { 0.0 }
+        }
         Ground::Junction => turn(task.template.sv, meeting.ego_turned) + turn(task.template.cp, meeting.partner_turned),
         Ground::Road if task.template.cp == Movement::Straight => 0.0,
         Ground::Road => share(meeting.partner_shifted_m, SHIFT_SHOWS_LANES * lane_m),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::limits::most_speed;
+    use super::super::staging::{ground, stagings};
+    use super::*;
+    use recrash_model::scenario::CrossMap;
+    use recrash_model::template::RoadType;
+
+    fn turn(movement: Movement) -> Turn {
+        match movement {
+            Movement::LeftTurn => Turn::Left,
+            Movement::RightTurn => Turn::Right,
+            _ => Turn::Straight,
+        }
+    }
+
+    /// The table of stagings against the road network: wherever paths are said to meet they do, in every lane plan, and
+    /// there is a contact that is neither rear-end nor head-on, and both movements show by then.
+    #[test]
+    fn every_lane_plan_of_the_table_has_a_meeting_worth_staging() {
+        let mut plans = 0;
+        for (sv, cp) in Movement::PAPER.into_iter().flat_map(|sv| Movement::PAPER.map(|cp| (sv, cp))) {
+            let template = Template { road: RoadType::Intersection, sv, cp, work_zone: false };
+            for staging in stagings(&template).iter().filter(|s| s.conflict == ConflictKind::Paths) {
+                for (number, lanes) in staging.lanes.iter().enumerate() {
+                    plans += 1;
+                    let map = CrossMap { lanes: lanes.lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 120.0 };
+                    let partner = (staging.approach, turn(cp), lanes.partner);
+                    let course = Course::new(&MapSpec::X(map), (turn(sv), lanes.ego), partner).expect("both ways");
+                    let ground = ground(&template, staging);
+                    let task = Task {
+                        template: &template,
+                        ground,
+                        conflict: staging.conflict,
+                        towards: 1.0,
+                        kind: PartnerKind::PassengerCar,
+                        ego_start_m: 5.0,
+                        ego_mps: most_speed(ground, turn(sv)).min(8.0),
+                        partner_mps: most_speed(ground, turn(cp)).min(8.0),
+                        sets_off: None,
+                        wanted: Wanted { sv: &[], cp: &[], excluded: &[], partner_first: true },
+                    };
+                    let excluded = [CollisionKind::RearEndByEgo, CollisionKind::RearEndOfEgo, CollisionKind::HeadOn];
+                    let wanted = Wanted { excluded: &excluded, ..task.wanted };
+                    let plan = super::super::retry::plan(&[], true, false);
+                    let timing = time_paths(&Task { wanted, ..task }, &course, &plan);
+                    let timing = timing.unwrap_or_else(|| panic!("{template} {staging:?} {lanes:?}: never meet"));
+                    // The best plan of each way shows both movements fully; the others may leave a little to the tuner.
+                    let most = if number == 0 { 1.0 } else { 0.5 * WRONG };
+                    assert!(timing.score < most, "{template} {staging:?} {lanes:?}: {}", timing.score);
+                }
+            }
+        }
+        assert!(plans > 40, "{plans}");
+    }
+
+    #[test]
+    fn zones_one_step_apart_are_nearly_right_and_others_wrong() {
+        use ContactZone::{Front, FrontLeft, Left, Rear};
+        assert_eq!(zone_steps(&[], Rear), 0.0);
+        assert_eq!(zone_steps(&[Front, Left], Left), 0.0);
+        assert_eq!(zone_steps(&[Front], FrontLeft), 1.0);
+        assert!(zone_steps(&[Front], Rear) > 4.0);
     }
 }

@@ -4,6 +4,8 @@
 //! junction are one-way connecting roads with all their lanes to the right. A roundabout is four ring roads and, before
 //! each, a junction of the exit, the way on and the entry.
 
+#[cfg(test)]
+mod tests;
 mod write;
 
 use recrash_model::geometry::{Pose, Vec2};

@@ -8,7 +8,7 @@ use recrash_model::scenario::Environment;
 /// The environment action.
 pub(super) fn environment_action(environment: &Environment) -> Element {
     let road = Element::new("RoadCondition")
-        .with("frictionScaleFactor", number(friction(environment.surface)))
+        .with("frictionScaleFactor", number(crate::relative_friction(environment.surface)))
         .with("wetness", wetness(environment));
     Element::new("GlobalAction").child(
         Element::new("EnvironmentAction").child(
@@ -24,15 +24,6 @@ pub(super) fn environment_action(environment: &Environment) -> Element {
             ]),
         ),
     )
-}
-
-/// Friction relative to a dry road, as the simulator's (`docs/models/vehicle.md`).
-fn friction(surface: Surface) -> f64 {
-    match surface {
-        Surface::Dry => 1.0,
-        Surface::Wet => 0.7,
-        Surface::SnowIce => 0.3,
-    }
 }
 
 fn wetness(environment: &Environment) -> &'static str {

@@ -12,6 +12,7 @@ mod sweep;
 use crate::opendrive::DriveMap;
 use crate::xml::Element;
 use crate::{ExportError, ExportFile, ExportOptions, PartnersAs};
+pub(crate) use entities::PROPERTY;
 use names::Declarations;
 use recrash_model::rollout::{ActorTrack, Role, Rollout};
 use recrash_model::tuning::Parameter;
@@ -102,6 +103,20 @@ fn header(context: &Context<'_>, description: &str) -> Element {
         .with("date", &context.options.created)
         .with("description", description)
         .with("author", "recrash")
+}
+
+/// The root of the scenario's document, with partners that act.
+pub(crate) fn scenario_element(scenario: &Scenario, parameters: &[Parameter], options: &ExportOptions) -> Element {
+    let draft = scenario.draft();
+    let map = DriveMap::new(scenario.network());
+    let names = Declarations::new(draft, parameters);
+    let context = Context { scenario, map, names, parameters, tracks: Vec::new(), rollout: None, options };
+    document(&context, &crate::title(draft), &format!("{}.xodr", draft.id))
+}
+
+/// Whether an entity is an obstacle.
+pub(crate) fn is_obstacle_name(name: &str) -> bool {
+    name.starts_with("obstacle.")
 }
 
 /// The entity of an obstacle. Partners' ids hold no dot, so that the names never meet.

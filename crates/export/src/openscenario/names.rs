@@ -77,6 +77,15 @@ impl Declarations {
     }
 }
 
+/// Every number of a scenario's JSON that has a name, or would have one if it could be tuned.
+pub(crate) fn numbers_below(document: &Value) -> Vec<Declaration> {
+    let mut list = Vec::new();
+    for part in ["ego", "partners", "obstacles", "duration_s"] {
+        collect(&format!("/{part}"), &document[part], &mut list);
+    }
+    list
+}
+
 /// Numbers that are choices rather than quantities: a lane cannot be swept.
 const CHOICES: [&str; 2] = ["lane", "lane_offset"];
 

@@ -6,6 +6,7 @@ use super::Context;
 use crate::opendrive::LanePlace;
 use crate::xml::{Element, number, rounded};
 use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::math;
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Approach, Start};
 use recrash_model::vehicle::VehicleSpec;
@@ -128,13 +129,11 @@ fn lane_element(place: LanePlace, s: String, offset: String) -> Element {
         .with("offset", offset);
     if place.lane > 0 {
         // Without this a vehicle on a left lane would face the reference line's way.
-        element = element.child(Element::new("Orientation").with("type", "relative").with_number("h", PI_ROUNDED));
+        element =
+            element.child(Element::new("Orientation").with("type", "relative").with_number("h", rounded(math::PI)));
     }
     Element::new("Position").child(element)
 }
-
-/// Half a turn as it is written.
-const PI_ROUNDED: f64 = 3.141_592_654;
 
 /// The place at (s, t) of a path, and how far the road's s goes per metre of the path. `None` outside the road.
 pub(super) fn place_on(context: &Context<'_>, path: &LanePath, s: f64, t: f64) -> Option<(LanePlace, f64)> {

@@ -316,3 +316,44 @@ fn next_speed(policy: &Policy, speed: f64, step: u32, spec: &VehicleSpec) -> f64
     };
     (speed + acceleration * STEP_S).max(0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use recrash_model::record::PartnerKind;
+
+    const CAR: VehicleSpec = VehicleSpec::of(PartnerKind::PassengerCar);
+
+    #[test]
+    fn full_brake_from_ten_metres_per_second_takes_two_thirds_of_a_second() {
+        let policy = Policy::SuddenBrake { target_speed: 10.0, brake_step: 0, brake_steps: 20, speed_kp: None };
+        let curve = nominal_curve(&policy, 10.0, &CAR, 2.0);
+        // 10 / 15.13 = 0.66 s: moving after 0.6 s, standing after 0.7 s.
+        assert!((curve.at(0.6) - (10.0 - 0.6 * 15.13)).abs() < 1e-9);
+        assert!(curve.at(0.7) < 1e-9);
+        assert_eq!(curve.at(2.0), 0.0);
+    }
+
+    #[test]
+    fn throttle_is_a_share_of_the_engines_acceleration() {
+        let policy = Policy::AccelThenBrake {
+            accel_mag: 0.5,
+            accel_steps: 20,
+            cruise_speed: 20.0,
+            brake_step: 200,
+            brake_steps: 1,
+            speed_kp: None,
+        };
+        let curve = nominal_curve(&policy, 8.0, &CAR, 2.0);
+        assert!((curve.at(2.0) - (8.0 + 2.0 * 0.5 * CAR.max_acceleration_mps2)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_straight_piece_has_no_corners_and_a_bend_has_one() {
+        let mut corners = Vec::new();
+        simplify(&[0.0, 1.0, 2.0, 3.0], 0, 3, &mut corners);
+        assert_eq!(corners, [] as [usize; 0]);
+        simplify(&[0.0, 1.0, 2.0, 2.0, 2.0], 0, 4, &mut corners);
+        assert_eq!(corners, [2]);
+    }
+}

@@ -115,8 +115,12 @@ fn declarations(context: &Context<'_>) -> String {
         match tunable {
             Some(p) => {
                 let (low, high) = (number(p.min), number(p.max));
-                let _ =
-                    writeln!(text, "{name} = varied({value}, {low}, {high})    # [{}] {}", p.unit, one_line(&p.reason));
+                let _ = writeln!(
+                    text,
+                    "{name} = varied({value}, {low}, {high})    # [{}] {}",
+                    p.unit,
+                    crate::one_line(&p.reason)
+                );
             }
             None => {
                 let _ = writeln!(text, "{name} = {value}");
@@ -285,11 +289,6 @@ fn constant(name: &str) -> String {
 /// Text that cannot end a documentation string.
 fn doc_text(text: &str) -> String {
     text.replace('\\', "/").replace('"', "'")
-}
-
-/// Text that cannot end a comment.
-fn one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// How far a partner starts to the right of its way. [m]

@@ -13,7 +13,9 @@ use layout::Layout;
 use movement::{degrees, driven};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::math;
-use recrash_model::metrics::{Check, CheckKind, CheckResult, Expectation, Metrics, PartnerMetrics, Verdict};
+use recrash_model::metrics::{
+    Check, CheckKind, CheckResult, CollisionKind, Expectation, Metrics, PartnerMetrics, Verdict,
+};
 use recrash_model::record::ContactZone;
 use recrash_model::rollout::{Role, Rollout};
 use recrash_model::scenario::Approach;
@@ -248,8 +250,9 @@ impl Witness<'_> {
         match self.contact() {
             None => check(CheckKind::ExcludedCollision, expected, "no contact", true),
             Some((geometry, predicted)) => {
-                let how = if predicted { "nearly a" } else { "a" };
-                let observed = format!("{how} {} collision", geometry.kind.label());
+                let article = if geometry.kind == CollisionKind::Angle { "an" } else { "a" };
+                let nearly = if predicted { "nearly " } else { "" };
+                let observed = format!("{nearly}{article} {} collision", geometry.kind.label());
                 check(CheckKind::ExcludedCollision, expected, observed, !excluded.contains(&geometry.kind))
             }
         }

@@ -31,6 +31,10 @@ const U_TURN_DEG: f64 = 150.0;
 /// Shift across the road from which on it is a lane change: the middle of the box has crossed the line. [lane widths]
 const LANE_CHANGE_WIDTHS: f64 = 0.5;
 
+/// Cosine between heading and outward direction from which on a vehicle leaves a circle: exits begin at 0.5, the ring
+/// stays below. (assumed)
+const EXIT_OUTWARD: f64 = 0.6;
+
 /// What a road user did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Driven {
@@ -63,6 +67,8 @@ pub enum DrivenKind {
     UTurn,
     /// Around a circle and not yet out of it, past this many exits.
     Circling(u8),
+    /// Into a circle, but not yet on its ring.
+    Entering,
     /// On a circle's approach, never in the circle.
     NotInCircle,
 }
@@ -153,26 +159,25 @@ fn around_circle(layout: &Layout, network: &RoadNetwork, track: &[OrientedBox]) 
     let on_ring = |outline: &OrientedBox| {
         outline.centre.distance(*centre) <= radius_m + outline.half_length && part_at(outline) == Some(RoadPart::Ring)
     };
-    let Some(joined) = track.iter().position(on_ring) else {
-        return DrivenKind::NotInCircle;
-    };
     let quarter = math::FRAC_PI_2;
-    // The arm it came from: of a vehicle that starts on the ring, the last one it had passed.
-    let arm = if joined == 0 {
-        (bearing(*centre, track[0].centre) / quarter).floor() * quarter
-    } else {
-        (bearing(*centre, track[0].centre) / quarter).round() * quarter
+    let Some(joined) = track.iter().position(on_ring) else {
+        let entered = track.last().is_some_and(|last| part_at(last) == Some(RoadPart::Inner));
+        return if entered { DrivenKind::Entering } else { DrivenKind::NotInCircle };
     };
+    // The arm it came from; of a vehicle that was on the ring from the start, the ego's (west), as in `route`.
+    let arm = if joined == 0 { math::PI } else { (bearing(*centre, track[0].centre) / quarter).round() * quarter };
     let mut around = math::wrap_angle(bearing(*centre, track[joined].centre) - arm);
     for pair in track[joined..].windows(2) {
         around += math::wrap_angle(bearing(*centre, pair[1].centre) - bearing(*centre, pair[0].centre));
     }
     let last = &track[track.len() - 1];
+    let outward = last.centre - *centre;
     let left_again = match part_at(last) {
-        Some(RoadPart::ArmOut | RoadPart::Departure) => true,
-        // An exit leads out, an entry in.
-        Some(RoadPart::Inner) => last.axis.dot(last.centre - *centre) > 0.0,
-        _ => false,
+        // An exit leads out, an entry in; at first they overlap the ring.
+        Some(RoadPart::Inner) => last.axis.dot(outward) > EXIT_OUTWARD * outward.length(),
+        Some(RoadPart::Ring) => false,
+        // On an arm, or beyond the end of one.
+        _ => outward.length() > *radius_m,
     };
     if !left_again {
         return DrivenKind::Circling((around / quarter).floor().clamp(0.0, 4.0) as u8);
@@ -181,8 +186,6 @@ fn around_circle(layout: &Layout, network: &RoadNetwork, track: &[OrientedBox]) 
         i32::MIN..=1 => DrivenKind::Right,
         2 => DrivenKind::Straight,
         3 => DrivenKind::Left,
-        // Nobody saw from where a vehicle came that was on the ring from the start.
-        _ if joined == 0 => DrivenKind::Left,
         _ => DrivenKind::UTurn,
     }
 }
@@ -194,7 +197,10 @@ impl Driven {
         let moved_over = self.kind == DrivenKind::LaneChange && self.on_plain_road;
         let shown = match expected {
             Movement::Straight => {
-                matches!(self.kind, DrivenKind::Straight | DrivenKind::LaneChange | DrivenKind::Circling(0 | 1))
+                matches!(
+                    self.kind,
+                    DrivenKind::Straight | DrivenKind::LaneChange | DrivenKind::Entering | DrivenKind::Circling(0 | 1)
+                )
             }
             // Who drives around a circle turns left until it leaves.
             Movement::LeftTurn => {
@@ -234,6 +240,7 @@ impl Driven {
             DrivenKind::UTurn => format!("turned around ({turned:.0}\u{b0})"),
             DrivenKind::Circling(0) => "drove around the circle, not yet past an exit".to_owned(),
             DrivenKind::Circling(exits) => format!("drove around the circle, past {exits} exit(s)"),
+            DrivenKind::Entering => "entered the circle, not yet on its ring".to_owned(),
             DrivenKind::NotInCircle => "never entered the circle".to_owned(),
         }
     }

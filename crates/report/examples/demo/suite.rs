@@ -401,6 +401,7 @@ pub fn demo() -> SuiteView {
         ego: "metadrive-idm".into(),
         simulator: "demonstration kinematics".into(),
         agents: "rules".into(),
+        seed: 7,
         sample: true,
         cases: cases.collect(),
         records: RecordSet {

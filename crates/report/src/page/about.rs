@@ -37,7 +37,7 @@ fn settings(context: &Context) -> Markup {
             (row("Simulator", html! { (words::clean(&suite.simulator, 80)) }))
             (row("Agents", html! { (words::clean(&suite.agents, 80)) }))
             (row("Selection", html! { (selection.strategy.name()) ", budget " (selection.budget) ", counted by " (selection.weighting.name()) }))
-            (row("Seed", html! { (selection.seed) }))
+            (row("Seed", html! { (suite.seed) span.muted { "; of the selection " (selection.seed) } }))
             (row("Embedding", html! {
                 (words::clean(&selection.embedding.name, 80)) ", " (selection.embedding.source_dimensions) " \u{2192} " (selection.embedding.dimensions) " dimensions, "
                 (fixed(100.0 * selection.embedding.explained_variance, 1).unwrap_or_default()) "\u{a0}% of the variance"

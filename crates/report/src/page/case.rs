@@ -32,7 +32,7 @@ pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
                 }
                 @for (name, label, content) in &tabs {
                     div.tab-panel role="tabpanel" id={ (anchor) "--" (name) } aria-labelledby={ (anchor) "--" (name) "-tab" } tabindex="0" {
-                        h3.only-plain { (label) }
+                        h2.only-plain { (label) }
                         (content)
                     }
                 }

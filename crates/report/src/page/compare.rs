@@ -15,7 +15,7 @@ pub fn checks(case: &CaseView) -> Markup {
         .columns {
             @for (name, run) in &runs {
                 div {
-                    h3 { (words::capital(name)) " " (parts::faithful_chip(Some(run))) }
+                    h2 { (words::capital(name)) " " (parts::faithful_chip(Some(run))) }
                     .table-wrap { table.plain {
                         thead { tr { th scope="col" { "Check" } th scope="col" { "Expected" } th scope="col" { "Observed" } th scope="col" { "Result" } } }
                         tbody { @for check in &run.verdict.checks { (check_row(check)) } }
@@ -87,11 +87,11 @@ pub fn metrics(context: &Context, case: &CaseView) -> Markup {
                 } }
             }
             div {
-                h3 { "Contact zones" }
+                h2 { "Contact zones" }
                 (zones::zones(context, case))
-                h3 { "Findings" }
+                h2 { "Findings" }
                 @for (name, run) in &runs {
-                    h4 { (words::capital(name)) }
+                    h3 { (words::capital(name)) }
                     @if run.findings.is_empty() { p.empty { "None." } }
                     ul.findings-list { @for finding in &run.findings {
                         li { (parts::finding_chip(finding.kind)) " " (words::clean(&finding.sentence, 300)) span.at { " at " } (parts::quantity(Some(finding.time_s), 1, "s", "")) }

@@ -46,7 +46,7 @@ fn by_kind(context: &Context) -> Markup {
     html! {
         table.plain {
             caption.hidden-text { "Number of scenarios with a finding of each kind" }
-            thead { tr { th scope="col" { "Finding" } th scope="col" { "What it means" } th.right scope="col" { "As designed" } th scope="col" {} th.right scope="col" { "After tuning" } th scope="col" {} } }
+            thead { tr { th scope="col" { "Finding" } th scope="col" { "What it means" } th.right scope="col" { "As designed" } td {} th.right scope="col" { "After tuning" } td {} } }
             tbody { @for kind in KINDS {
                 @let before = cases.iter().filter(|case| has(case.before.as_ref(), kind)).count();
                 @let after = cases.iter().filter(|case| has(case.last_run(), kind)).count();

@@ -62,7 +62,7 @@ pub fn render(suite: &SuiteView) -> String {
                 meta http-equiv="Content-Security-Policy" content=(content_security_policy());
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                meta name="generator" content=(suite.generated_by);
+                meta name="generator" content=(words::clean(&suite.generated_by, 80));
                 title { (words::clean(&suite.title, 200)) " \u{b7} recrash report" }
                 link rel="icon" href="data:,";
                 style { (PreEscaped(STYLE)) }

@@ -29,8 +29,7 @@ pub fn section(context: &Context) -> Markup {
             }
             (tiles(context))
             h2 { "Scenarios" }
-            (controls())
-            (table(context))
+            @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls()) (table(context)) }
             .two {
                 div { h3 { "Make this suite again" } (parts::command(&suite.command)) }
                 div {
@@ -38,7 +37,7 @@ pub fn section(context: &Context) -> Markup {
                     p.muted {
                         "Profile " b { (words::clean(&suite.profile.name, 60)) } ", ego " b { (words::clean(&suite.ego, 60)) }
                         ", simulator " b { (words::clean(&suite.simulator, 60)) } ", agents " b { (words::clean(&suite.agents, 60)) }
-                        ", seed " b { (suite.selection.seed) } ". " a href="#about" { "Files, hashes and settings" }
+                        ", seed " b { (suite.seed) } ". " a href="#about" { "Files, hashes and settings" }
                     }
                 }
             }

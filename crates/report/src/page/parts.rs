@@ -9,6 +9,7 @@ use recrash_model::metrics::{CheckResult, FindingKind, Timed};
 
 /// A dash that says why there is no value.
 pub fn missing(why: &str) -> Markup {
+    let why = words::clean(why, 300);
     html! { span.missing title=(why) { "\u{2013}" span.hidden-text { " (" (why) ")" } } }
 }
 

@@ -48,7 +48,7 @@ fn funnel(context: &Context) -> Markup {
     html! {
         table.plain {
             caption.hidden-text { "How many rows remain after each step" }
-            thead { tr { th scope="col" { "Step" } th.right scope="col" { "Remain" } th scope="col" {} th scope="col" { "Taken away" } } }
+            thead { tr { th scope="col" { "Step" } th.right scope="col" { "Remain" } td {} th scope="col" { "Taken away" } } }
             tbody {
                 @for step in steps {
                     tr {
@@ -118,7 +118,7 @@ fn templates(context: &Context) -> Markup {
                 caption.hidden-text { "Observed templates, most frequent first" }
                 thead { tr {
                     @for name in ["#", "Road", "SV (ego)", "CP (partner)", "Work zone"] { th scope="col" { (name) } }
-                    th.right scope="col" { "Records" } th scope="col" {} th.right scope="col" { "Picks" } th scope="col" { "Scenarios" }
+                    th.right scope="col" { "Records" } td {} th.right scope="col" { "Picks" } th scope="col" { "Scenarios" }
                 } }
                 tbody { @for (order, count) in selection.templates.iter().enumerate() {
                     @let t = count.template;

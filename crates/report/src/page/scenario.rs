@@ -68,10 +68,13 @@ fn refusals(log: &TuneLog) -> Markup {
             None => reasons.push((reason, 1)),
         }
     }
+    reasons.sort_by_key(|(_, n)| std::cmp::Reverse(*n));
     html! {
         @if !reasons.is_empty() {
-            h4 { "Why points were refused" }
-            ul.flow { @for (reason, n) in reasons.iter().take(40) { li { (words::clean(reason, 300)) span.muted { " \u{d7}" (n) } } } }
+            details open[reasons.len() <= 6] {
+                summary { "Why points were refused (" (words::count(reasons.len(), "reason")) ")" }
+                ul.flow { @for (reason, n) in reasons.iter().take(40) { li { span.number { (n) "\u{d7} " } (words::clean(reason, 300)) } } }
+            }
         }
     }
 }
@@ -85,7 +88,7 @@ pub fn files(case: &CaseView) -> Markup {
             @for (order, (name, run)) in runs.iter().enumerate() {
                 @let json = serde_json::to_string_pretty(&run.scenario).unwrap_or_default();
                 div {
-                    h3 { (words::capital(name)) }
+                    h2 { (words::capital(name)) }
                     p.muted { "Run it again:" }
                     (parts::command(&run.rerun_command))
                     p.muted.small { "Simulated by " (words::clean(&run.rollout.simulator, 60)) " with " (words::clean(&run.rollout.ego, 60)) "; states " code { (words::clean(&run.rollout.state_hash, 64)) } }

@@ -24,11 +24,11 @@ pub fn story(context: &Context, case: &CaseView) -> Markup {
     html! {
         .columns.story {
             div {
-                h3 { "Narrative of the scenario" }
-                @match &case.narrative { Some(narrative) => (told(narrative)), None => p.empty { "No narrative was written." } }
+                h2 { "Narrative of the scenario" }
+                @match &case.narrative { Some(narrative) => (told(narrative, shown.first().map(|pick| &pick.id))), None => p.empty { "No narrative was written." } }
             }
             div {
-                h3 { "Records" }
+                h2 { "Records" }
                 @if shown.is_empty() { p.empty { "The suite names no record." } }
                 @for (order, record) in shown.iter().enumerate() { (record_panel(record, facts, order == 0)) }
                 @if !others.is_empty() {
@@ -42,7 +42,7 @@ pub fn story(context: &Context, case: &CaseView) -> Markup {
     }
 }
 
-fn told(narrative: &Narrative) -> Markup {
+fn told(narrative: &Narrative, pick: Option<&RecordRef>) -> Markup {
     html! {
         @if let Origin::Alternative { reason } = &narrative.origin {
             p.banner role="note" { (icon::bang()) span { strong { "Alternative. " } "It takes the record's place: " (words::clean(reason, 400)) } }
@@ -52,13 +52,22 @@ fn told(narrative: &Narrative) -> Markup {
         .table-wrap { table.plain.facts {
             caption.hidden-text { "Facts the narrative states" }
             thead { tr { th scope="col" { "Fact" } th scope="col" { "Value" } th scope="col" { "From" } } }
-            tbody { @for (number, fact) in narrative.facts.iter().enumerate() { (fact_row(number, fact)) } }
+            tbody { @for (number, fact) in narrative.facts.iter().enumerate() { (fact_row(number, fact, pick)) } }
         } }
         @if narrative.facts.is_empty() { p.empty { "It states no facts." } }
     }
 }
 
-fn fact_row(number: usize, fact: &Fact) -> Markup {
+/// The record a fact was taken from.
+fn record_of(fact: &Fact) -> Option<&RecordRef> {
+    match &fact.source {
+        FactSource::Column { record, .. } | FactSource::Words { record, .. } => Some(record),
+        FactSource::Assumed { .. } => None,
+    }
+}
+
+fn fact_row(number: usize, fact: &Fact, pick: Option<&RecordRef>) -> Markup {
+    let record = record_of(fact);
     let (name, value) = words::fact(&fact.value);
     let (kind, text) = words::source(&fact.source);
     let column = match &fact.source {
@@ -66,21 +75,33 @@ fn fact_row(number: usize, fact: &Fact) -> Markup {
         _ => None,
     };
     html! {
-        tr tabindex="0" data-fact=(number) data-column=[column] {
+        tr tabindex="0" data-fact=(number) data-column=[column] data-record=[record.map(short_id)] {
             th scope="row" { (name) }
             td { (value) }
-            td { span.tag.{ "from-" (kind) } { (kind) } " " span.source { (text) } }
+            td { span.tag.{ "from-" (kind) } { (kind) } " " span.source { (text) }
+                // Where another record of the cluster is retold, it is named.
+                @if record.is_some() && record != pick { span.at { " in " span.mono { (record.map(short_id).unwrap_or_default()) } } }
+            }
         }
     }
 }
 
-fn record_panel(record: &CrashRecord, facts: &[Fact], open: bool) -> Markup {
-    let id = record.id.to_string();
+fn short_id(record: &RecordRef) -> String {
+    words::clean(&record.to_string(), 60).into_owned()
+}
+
+fn record_panel(record: &CrashRecord, facts: &[Fact], pick: bool) -> Markup {
+    let cited = facts.iter().any(|fact| record_of(fact) == Some(&record.id));
+    let id = short_id(&record.id);
     html! {
-        details.record open[open] {
-            summary { span.mono { (words::clean(&id, 60)) } " " span.muted { (words::clean(&record.entity, 60)) @if open { " \u{2013} the pick" } } }
+        details.record open[pick || cited] data-record=(id) {
+            summary {
+                span.mono { (id) } " " span.muted { (words::clean(&record.entity, 60)) }
+                @if pick { " " span.tag { "pick" } }
+                @if cited && !pick { " " span.tag { "retold" } }
+            }
             (columns(record))
-            h4 { "Narrative as filed" }
+            h3 { "Narrative as filed" }
             @if record.narrative.trim().is_empty() { p.empty { "The narrative is " (words::name(&record.redaction)) "." } }
             @else {
                 blockquote.filed dir="auto" {
@@ -127,10 +148,10 @@ fn columns(record: &CrashRecord) -> Markup {
             table.plain.tight { tbody {
                 (row("SV movement", "SV Pre-Crash Movement", coded_text(words::coded(&record.sv_movement, |m| m.label().to_owned()))))
                 (row("SV speed", "SV Precrash Speed (MPH)", speed(record.sv_speed_mps)))
-                (row("SV contact", "SV Contact Area", zones(&record.sv_zones)))
+                (row("SV contact", "SV Contact Area SV and CP Contact Area", zones(&record.sv_zones)))
                 (row("CP", "Crash With", coded_text(words::coded(&record.partner, |kind| words::name(&kind)))))
                 (row("CP movement", "CP Pre-Crash Movement", coded_text(words::coded(&record.cp_movement, |m| m.label().to_owned()))))
-                (row("CP contact", "CP Contact Area", zones(&record.cp_zones)))
+                (row("CP contact", "CP Contact Area SV and CP Contact Area", zones(&record.cp_zones)))
                 (row("Injury", "Highest Injury Severity Alleged", coded_text(words::coded(&record.severity, |s| words::name(&s)))))
             } }
         }

@@ -49,6 +49,7 @@ const browser = await chromium
 async function open(settings, hash = '') {
   const context = await browser.newContext({ viewport: { width: 1366, height: 768 }, ...settings });
   const page = await context.newPage();
+  page.setDefaultTimeout(10_000);
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && problems.push(`console: ${message.text()}`));
   page.on('pageerror', (error) => problems.push(`script: ${error.message}`));
   page.on('request', (request) => {
@@ -97,7 +98,7 @@ async function checkPage(page) {
 }
 
 async function checkTable(page) {
-  const first = () => page.locator('#cases tbody tr').first().locator('.case-link').textContent();
+  const first = () => page.locator('#cases tbody tr').first().locator('.case-link').getAttribute('href');
   const button = page.locator('#cases .sort').first();
   await button.click();
   await button.click();
@@ -203,7 +204,7 @@ try {
   const page = await open({ colorScheme: 'light' });
   const cases = await checkPage(page);
   if (options.screenshot) await page.screenshot({ path: options.screenshot });
-  await checkTable(page);
+  if (cases > 0) await checkTable(page);
   const anchors = await page.locator('.page.case').evaluateAll((all) => all.map((section) => [section.id, section.querySelectorAll('[data-mode]:not(:disabled)').length]));
   const most = Math.max(0, ...anchors.map(([, modes]) => modes));
   const [running] = anchors.find(([, modes]) => modes > 0 && modes === most) ?? [];

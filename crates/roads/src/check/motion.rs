@@ -47,19 +47,6 @@ pub(super) fn speed_limit(network: &RoadNetwork, way: &LanePath) -> (f64, &'stat
     limit
 }
 
-/// The fastest a kind of road user moves. [m/s]
-fn kind_speed(kind: PartnerKind) -> f64 {
-    // A sprint, a racing cyclist on the flat, a galloping dog: bounds, not typical speeds (assumed).
-    let by_nature = match kind {
-        PartnerKind::Pedestrian => 4.0,
-        PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 15.0,
-        PartnerKind::Animal => 15.0,
-        PartnerKind::FixedObject => 0.0,
-        _ => MAX_SPEED_MPS,
-    };
-    by_nature.min(VehicleSpec::of(kind).max_speed_mps)
-}
-
 /// The ego's speed.
 pub(super) fn ego(draft: &ScenarioDraft, network: &RoadNetwork, ego: &Placement, remarks: &mut Remarks) {
     let (limit, why) = speed_limit(network, &ego.path);
@@ -128,7 +115,7 @@ pub(super) fn script(draft: &ScenarioDraft, partner: &Partner, path: &str, remar
         let hint = "allowed: policy {\"type\": \"stopped\"} without depart_step; or make it an obstacle";
         remarks.error("scenario.kind", format!("{path}.policy"), message, hint);
     } else {
-        let fastest = kind_speed(partner.kind);
+        let fastest = VehicleSpec::of(partner.kind).max_speed_mps;
         let why = "the fastest this kind of road user moves";
         if partner.speed_mps > fastest && !standing {
             let message = format!("speed_mps is {}, too fast for its kind", shown(partner.speed_mps));

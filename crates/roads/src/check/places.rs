@@ -15,6 +15,9 @@ const SPAWN_GAP_M: f64 = 0.5;
 /// Free space between a road user's box and an obstacle at the start, at least. [m]
 const OBSTACLE_SPAWN_GAP_M: f64 = 0.2;
 
+/// Somebody on foot may start this far from where its way meets the ego's: beside the ego's lane. [m]
+const STEP_OUT_M: f64 = 3.0;
+
 /// The longest arm a map may have. [m]
 const LONGEST_ARM_M: f64 = 300.0;
 
@@ -221,7 +224,11 @@ fn timed_start(
         return None;
     }
     let s = conflict.s_b - target * (ego_time + arrival_gap_s);
-    let arm = arm_length(network, way).min(conflict.s_b);
+    let arm = match partner.kind {
+        // People and animals step onto the road anywhere: for them the arm ends right beside the ego's lane.
+        PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist | PartnerKind::Animal => conflict.s_b - STEP_OUT_M,
+        _ => arm_length(network, way).min(conflict.s_b),
+    };
     if (0.0..=arm).contains(&s) {
         return Some(s);
     }

@@ -34,6 +34,11 @@ pub fn cross(lanes: u8) -> MapSpec {
     MapSpec::X(CrossMap { lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 60.0 })
 }
 
+/// X with arms long enough for any start.
+pub fn wide_cross(lanes: u8) -> MapSpec {
+    MapSpec::X(CrossMap { lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 150.0 })
+}
+
 /// T with arms of 60 m.
 pub fn tee(lanes: u8, missing: MissingArm) -> MapSpec {
     MapSpec::T(TeeMap { lanes, lane_width_m: 3.5, approach_m: 60.0, arm_m: 60.0, missing })
@@ -100,6 +105,68 @@ pub fn checked(draft: ScenarioDraft) -> Scenario {
         Ok(outcome) => outcome.value,
         Err(problems) => panic!("{problems:#?}"),
     }
+}
+
+/// Six scenarios of the kinds tried in METADRIVE, section 5.1.
+pub fn trials() -> Vec<ScenarioDraft> {
+    let named = |mut draft: ScenarioDraft, id: &str| {
+        draft.id = id.to_owned();
+        draft
+    };
+
+    let mut crossing = alone(wide_cross(2), Turn::Straight, 1, 8.33, 8.33);
+    crossing.partners.push(steady(Approach::Left, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 0.1 }, 8.0));
+
+    let mut oncoming = alone(wide_cross(2), Turn::Straight, 1, 8.33, 8.33);
+    let mut turning = steady(Approach::Opposite, Turn::Left, Start::ArrivalGap { arrival_gap_s: -0.2 }, 6.0);
+    turning.policy = Policy::AccelThenBrake {
+        accel_mag: 0.3,
+        accel_steps: 10,
+        cruise_speed: 6.5,
+        brake_step: 90,
+        brake_steps: 20,
+        speed_kp: None,
+    };
+    oncoming.partners.push(turning);
+
+    let mut merging = alone(roundabout(2), Turn::Straight, 1, 7.0, 7.0);
+    merging.ego.s_m = 35.0;
+    merging.partners.push(steady(Approach::Ring, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 0.0 }, 6.5));
+
+    let mut sideswipe = alone(straight(3, 200.0), Turn::Straight, 1, 12.0, 12.0);
+    let mut drifting = lead(4.0, 12.0);
+    drifting.lane_offset = -1;
+    drifting.lateral = vec![LateralMove { start_s: 2.0, duration_s: 2.5, to_t_m: 3.5 }];
+    sideswipe.partners.push(drifting);
+    for number in 0..12 {
+        let s_m = 60.0 + 8.0 * f64::from(number);
+        sideswipe.obstacles.push(Obstacle { kind: ObstacleKind::Cone, s_m, t_m: 5.6 });
+    }
+    sideswipe.obstacles.push(Obstacle { kind: ObstacleKind::Barrier, s_m: 160.0, t_m: 4.0 });
+    sideswipe.obstacles.push(Obstacle { kind: ObstacleKind::Warning, s_m: 50.0, t_m: 4.5 });
+
+    let mut same_exit = alone(
+        MapSpec::T(TeeMap { lanes: 2, lane_width_m: 3.5, approach_m: 60.0, arm_m: 150.0, missing: MissingArm::Ahead }),
+        Turn::Right,
+        1,
+        7.0,
+        7.0,
+    );
+    same_exit.partners.push(steady(Approach::Left, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 0.2 }, 7.0));
+
+    let mut curve_lead = alone(curve(2, Side::Left), Turn::Straight, 0, 8.33, 8.33);
+    let mut braking = lead(15.0, 8.0);
+    braking.policy = Policy::SuddenBrake { target_speed: 8.0, brake_step: 60, brake_steps: 30, speed_kp: None };
+    curve_lead.partners.push(braking);
+
+    vec![
+        named(crossing, "trial-x-crossing-from-left"),
+        named(oncoming, "trial-x-left-turn-from-opposite"),
+        named(merging, "trial-o-merge-into-ring"),
+        named(sideswipe, "trial-s-sideswipe-with-cones"),
+        named(same_exit, "trial-t-same-exit"),
+        named(curve_lead, "trial-c-lead-brakes"),
+    ]
 }
 
 /// A random draft over all maps, approaches, policies and obstacles; `None` where the draw is not fit to run.

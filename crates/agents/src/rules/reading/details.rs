@@ -25,7 +25,7 @@ static SECOND_LANE: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?i)\b(?:second|third|2nd|3rd) lane (?:from|to) the (?:left|right)(?:most)?\b"));
 static SIGNAL: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",
+        r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\bon (?:a )?(?P<d>green|red|yellow)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",
     )
 });
 static SPEED: LazyLock<Regex> = LazyLock::new(|| {
@@ -172,7 +172,7 @@ fn signals(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fa
     for sentence in sentences {
         for found in SIGNAL.captures_iter(sentence.text) {
             let whole = found.get(0).expect("group 0");
-            let named = found.name("a").or_else(|| found.name("b")).or_else(|| found.name("c"));
+            let named = ["a", "b", "c", "d"].iter().find_map(|group| found.name(group));
             let signal = match named.map(|m| m.as_str().to_ascii_lowercase()).as_deref() {
                 Some("green") => Signal::Green,
                 Some("yellow" | "amber") => Signal::Yellow,

@@ -1,0 +1,172 @@
+"""
+s-cut-in (Street, SV proceeding straight, CP proceeding straight). Made by recrash from crash records: 90001-1001/1. A van in the lane to the right of the ego drifts into the ego's lane and brakes.
+
+Not carried by Scenic's driving domain, so for information only: {"surface":"wet","lighting":"dark_lighted","weather":"rain"}
+
+Run it:
+  scenic s-cut-in.scenic --2d -S --count 1 --time 200 -m scenic.simulators.newtonian.driving_model
+  netconvert --opendrive-files s-cut-in.xodr -o s-cut-in.net.xml    # once, for MetaDrive
+  scenic s-cut-in.scenic --2d -S --count 1 --time 200 -m scenic.simulators.metadrive.model
+With `-p sweep 1` the parameters below are drawn from their ranges. Newtonian brakes with 6.8 m/s^2 at most,
+and lets vehicles pass through each other. MetaDrive gets no cones: its Scenic interface has none.
+"""
+param map = localPath('s-cut-in.xodr')
+param sumo_map = localPath('s-cut-in.net.xml')
+param render = False
+param real_time = False
+param time_step = 0.1
+param timestep = 0.1
+param sweep = 0
+model scenic.domains.driving.model
+
+import math
+import shapely.geometry
+from scenic.core.distributions import distributionFunction
+
+def varied(value, low, high):
+    return Range(low, high) if globalParameters.sweep else value
+
+EGO_S_M = 20
+EGO_SPEED_MPS = 12
+EGO_TARGET_SPEED_MPS = varied(13, 12, 14)    # [m/s] a test
+PARTNER1_LATERAL1_DURATION_S = 2.5
+PARTNER1_LATERAL1_START_S = 2
+PARTNER1_LATERAL1_TO_T_M = -3.5
+PARTNER1_POLICY_BRAKE_STEP = 60
+PARTNER1_POLICY_BRAKE_STEPS = 8
+PARTNER1_POLICY_TARGET_SPEED = 12
+PARTNER1_SPEED_MPS = 11
+PARTNER1_START_DELTA_S_M = varied(8, 5, 11)    # [m] a test
+PARTNER1_START_DELTA_T_M = 0.2
+DURATION_S = 20
+
+# ---- driving: the same in every file -----------------------------------------------------------------------------
+
+GAIN = 0.3            # throttle per m/s of missing speed, as in recrash
+STEP = 0.1            # [s]
+IN_METADRIVE = 'metadrive' in Car.__module__
+
+def seconds():
+    """Time since the beginning. [s]"""
+    return simulation().currentTime * STEP
+
+@distributionFunction
+def place(way, s, t):
+    """The point s metres along a way and t metres to the right of it."""
+    here, ahead = way.interpolate(max(s - 0.05, 0)), way.interpolate(s + 0.05)
+    length = math.hypot(ahead.x - here.x, ahead.y - here.y)
+    forward = ((ahead.x - here.x) / length, (ahead.y - here.y) / length)
+    point = way.interpolate(max(s, 0))
+    return Vector(point.x + t * forward[1], point.y - t * forward[0])
+
+@distributionFunction
+def direction(way, s):
+    """Where a way leads, as Scenic counts: 0 is north, anticlockwise. [rad]"""
+    here, ahead = way.interpolate(max(s - 0.05, 0)), way.interpolate(s + 0.05)
+    return math.atan2(ahead.y - here.y, ahead.x - here.x) - math.pi / 2
+
+def along(way, car):
+    """How far along its way a car is. [m]"""
+    return way.project(shapely.geometry.Point(car.position.x, car.position.y))
+
+def look_ahead(car):
+    """How far ahead of a car the point lies that it steers for. [m]"""
+    return max(4.0, 0.6 * car.speed)
+
+def lateral(car, start, moves):
+    """Where a car wants to be to the right of its way when it is there: moves are (begin, duration, target). [m]"""
+    now, t = seconds() + look_ahead(car) / max(car.speed, 1.0), start
+    for begin, duration, target in moves:
+        if now >= begin:
+            t += (target - t) * min((now - begin) / duration, 1)
+    return t
+
+def steering(car, way, t):
+    """Pure pursuit: the wheel angle whose circle meets the way a little ahead. (-1 to 1, right positive)"""
+    goal = place(way, min(along(way, car) + look_ahead(car), way.length - 0.1), t)
+    heading = car.heading + math.pi / 2
+    dx, dy = goal.x - car.position.x, goal.y - car.position.y
+    left = -dx * math.sin(heading) + dy * math.cos(heading)
+    curvature = 2 * left / max(dx * dx + dy * dy, 1.0)
+    if IN_METADRIVE:      # wheels turn by up to 40 degrees, 2.469 m wheelbase
+        steer = math.atan(2.469 * curvature) / math.radians(40)
+    else:                 # Newtonian: radius = length / sin(steer * pi / 2)
+        steer = math.asin(max(-1.0, min(1.0, curvature * car.length))) / (math.pi / 2)
+    return max(-1.0, min(1.0, -steer))
+
+def pedals(car, command):
+    """Throttle and brake for a command from -1 (full brake) to 1 (full throttle) in terms of recrash's vehicles."""
+    engine, demand, tyres = car.limits
+    command = max(-1.0, min(1.0, command))
+    acceleration = command * engine if command >= 0 else max(command * demand, -tyres)
+    if acceleration >= 0:
+        return min(acceleration / (2.909 if IN_METADRIVE else 5.6), 1.0), 0.0
+    if not IN_METADRIVE:
+        return 0.0, min(-acceleration / 6.8, 1.0)
+    return 0.0, -acceleration / 27.27 if acceleration > -8.17 else min(0.3 + (-8.17 - acceleration) / 9.94, 1.0)
+
+def drive(car, way, command, t):
+    """The actions of one step: pedals for a command, wheels for a lateral target."""
+    throttle, brake = pedals(car, command)
+    return (SetThrottleAction(throttle), SetBrakeAction(brake), SetSteerAction(steering(car, way, t)))
+
+def hold(car, speed):
+    """The command that holds a speed."""
+    return GAIN * (speed - car.speed)
+
+def follow(car, way, speed):
+    """MetaDrive's gap law: speed in km/h, gaps in m, blind to whatever is not ahead on its own way within 30 m."""
+    command, here = 1 - (car.speed / speed) ** 10, along(way, car)
+    for other in simulation().objects:
+        point = shapely.geometry.Point(other.position.x, other.position.y)
+        gap = way.project(point) - here
+        if other is not car and 0 < gap < 30 and way.distance(point) < 1.75:
+            v, dv = 3.6 * car.speed, 3.6 * (car.speed - getattr(other, 'speed', 0.0))
+            command = min(command, 1 - (car.speed / speed) ** 10 - ((10 + 1.5 * v + v * dv / 4.47) / gap) ** 2)
+    return command
+
+def contact(a, b):
+    """Whether two boxes share a point."""
+    return shapely.geometry.Polygon(a._corners2D).intersects(shapely.geometry.Polygon(b._corners2D))
+
+behavior Follow(way, speed):
+    while True:
+        take drive(self, way, follow(self, way, speed), 0)
+
+behavior Hold(way, speed, start=0, moves=()):
+    while True:
+        take drive(self, way, hold(self, speed), lateral(self, start, moves))
+
+# ---- ways: the centre lines driven on, from the beginning of the arm to the end of the exit [m] ----------------
+
+EGO_WAY = shapely.geometry.LineString([
+    (0, 3.5), (10, 3.5), (60, 3.5), (360, 3.5),])
+PARTNER1_WAY = shapely.geometry.LineString([
+    (0, 0), (10, 0), (60, 0), (360, 0),])
+
+# ---- who does what ------------------------------------------------------------------------------------------------
+
+behavior Partner1():    # "cp1", sudden_brake: holds a speed, brakes fully for a while, holds it again
+    try:
+        while True:
+            take drive(self, PARTNER1_WAY, hold(self, PARTNER1_POLICY_TARGET_SPEED), lateral(self, PARTNER1_START_DELTA_T_M, [(PARTNER1_LATERAL1_START_S, PARTNER1_LATERAL1_DURATION_S, PARTNER1_LATERAL1_TO_T_M)]))
+    interrupt when PARTNER1_POLICY_BRAKE_STEP * STEP <= seconds() + 1e-6 < PARTNER1_POLICY_BRAKE_STEP * STEP + PARTNER1_POLICY_BRAKE_STEPS * STEP:
+        take drive(self, PARTNER1_WAY, -1, lateral(self, PARTNER1_START_DELTA_T_M, [(PARTNER1_LATERAL1_START_S, PARTNER1_LATERAL1_DURATION_S, PARTNER1_LATERAL1_TO_T_M)]))
+
+# The system under test: replace Follow by your own behavior.
+ego = new Car at place(EGO_WAY, EGO_S_M, 0), facing direction(EGO_WAY, EGO_S_M),
+    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13),
+    with speed EGO_SPEED_MPS, with requireVisible False,
+    with behavior Follow(EGO_WAY, EGO_TARGET_SPEED_MPS)
+
+PARTNER1_S = EGO_S_M + PARTNER1_START_DELTA_S_M    # start along its way [m]
+require 0 <= PARTNER1_S <= PARTNER1_WAY.length
+partner1 = new Car at place(PARTNER1_WAY, PARTNER1_S, PARTNER1_START_DELTA_T_M), facing direction(PARTNER1_WAY, PARTNER1_S),
+    with length 5.4, with width 2, with limits (2.909090909, 27.272727273, 15.13),
+    with speed PARTNER1_SPEED_MPS, with requireVisible False,
+    with behavior Partner1()
+
+record (distance from ego to partner1) as "centre distance to partner1"
+terminate when contact(ego, partner1)
+terminate when along(EGO_WAY, ego) > EGO_WAY.length - 5
+terminate after DURATION_S seconds

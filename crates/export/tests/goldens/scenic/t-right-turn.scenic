@@ -1,0 +1,196 @@
+"""
+t-right-turn (Intersection, SV right turn, CP proceeding straight). Made by recrash from crash records: 90004-1004/1, 90005-1005/1. The ego turns right at a three-way intersection while a cyclist goes straight on from the left, and a pickup beside it gives way before turning left.
+
+Not carried by Scenic's driving domain, so for information only: {"surface":"snow_ice","lighting":"daylight","weather":"snow"}
+
+Run it:
+  scenic t-right-turn.scenic --2d -S --count 1 --time 300 -m scenic.simulators.newtonian.driving_model
+  netconvert --opendrive-files t-right-turn.xodr -o t-right-turn.net.xml    # once, for MetaDrive
+  scenic t-right-turn.scenic --2d -S --count 1 --time 300 -m scenic.simulators.metadrive.model
+With `-p sweep 1` the parameters below are drawn from their ranges. Newtonian brakes with 6.8 m/s^2 at most,
+and lets vehicles pass through each other. MetaDrive gets no cones: its Scenic interface has none.
+"""
+param map = localPath('t-right-turn.xodr')
+param sumo_map = localPath('t-right-turn.net.xml')
+param render = False
+param real_time = False
+param time_step = 0.1
+param timestep = 0.1
+param sweep = 0
+model scenic.domains.driving.model
+
+import math
+import shapely.geometry
+from scenic.core.distributions import distributionFunction
+
+def varied(value, low, high):
+    return Range(low, high) if globalParameters.sweep else value
+
+EGO_S_M = 12
+EGO_SPEED_MPS = 6
+EGO_TARGET_SPEED_MPS = varied(7, 6, 8)    # [m/s] a test
+PARTNER1_POLICY_BRAKE_STEP = 200
+PARTNER1_POLICY_BRAKE_STEPS = 5
+PARTNER1_POLICY_TARGET_SPEED = 5.5
+PARTNER1_SPEED_MPS = 5
+PARTNER1_START_ARRIVAL_GAP_S = varied(0.3, -0.2, 0.8)    # [s] a test
+PARTNER2_POLICY_GAP_S = 4
+PARTNER2_POLICY_TARGET_SPEED_MPS = 7
+PARTNER2_SPEED_MPS = 6
+PARTNER2_START_DELTA_S_M = 12
+PARTNER2_START_DELTA_T_M = -0.3
+DURATION_S = 30
+
+# ---- driving: the same in every file -----------------------------------------------------------------------------
+
+GAIN = 0.3            # throttle per m/s of missing speed, as in recrash
+STEP = 0.1            # [s]
+IN_METADRIVE = 'metadrive' in Car.__module__
+
+def seconds():
+    """Time since the beginning. [s]"""
+    return simulation().currentTime * STEP
+
+@distributionFunction
+def place(way, s, t):
+    """The point s metres along a way and t metres to the right of it."""
+    here, ahead = way.interpolate(max(s - 0.05, 0)), way.interpolate(s + 0.05)
+    length = math.hypot(ahead.x - here.x, ahead.y - here.y)
+    forward = ((ahead.x - here.x) / length, (ahead.y - here.y) / length)
+    point = way.interpolate(max(s, 0))
+    return Vector(point.x + t * forward[1], point.y - t * forward[0])
+
+@distributionFunction
+def direction(way, s):
+    """Where a way leads, as Scenic counts: 0 is north, anticlockwise. [rad]"""
+    here, ahead = way.interpolate(max(s - 0.05, 0)), way.interpolate(s + 0.05)
+    return math.atan2(ahead.y - here.y, ahead.x - here.x) - math.pi / 2
+
+def along(way, car):
+    """How far along its way a car is. [m]"""
+    return way.project(shapely.geometry.Point(car.position.x, car.position.y))
+
+def look_ahead(car):
+    """How far ahead of a car the point lies that it steers for. [m]"""
+    return max(4.0, 0.6 * car.speed)
+
+def lateral(car, start, moves):
+    """Where a car wants to be to the right of its way when it is there: moves are (begin, duration, target). [m]"""
+    now, t = seconds() + look_ahead(car) / max(car.speed, 1.0), start
+    for begin, duration, target in moves:
+        if now >= begin:
+            t += (target - t) * min((now - begin) / duration, 1)
+    return t
+
+def steering(car, way, t):
+    """Pure pursuit: the wheel angle whose circle meets the way a little ahead. (-1 to 1, right positive)"""
+    goal = place(way, min(along(way, car) + look_ahead(car), way.length - 0.1), t)
+    heading = car.heading + math.pi / 2
+    dx, dy = goal.x - car.position.x, goal.y - car.position.y
+    left = -dx * math.sin(heading) + dy * math.cos(heading)
+    curvature = 2 * left / max(dx * dx + dy * dy, 1.0)
+    if IN_METADRIVE:      # wheels turn by up to 40 degrees, 2.469 m wheelbase
+        steer = math.atan(2.469 * curvature) / math.radians(40)
+    else:                 # Newtonian: radius = length / sin(steer * pi / 2)
+        steer = math.asin(max(-1.0, min(1.0, curvature * car.length))) / (math.pi / 2)
+    return max(-1.0, min(1.0, -steer))
+
+def pedals(car, command):
+    """Throttle and brake for a command from -1 (full brake) to 1 (full throttle) in terms of recrash's vehicles."""
+    engine, demand, tyres = car.limits
+    command = max(-1.0, min(1.0, command))
+    acceleration = command * engine if command >= 0 else max(command * demand, -tyres)
+    if acceleration >= 0:
+        return min(acceleration / (2.909 if IN_METADRIVE else 5.6), 1.0), 0.0
+    if not IN_METADRIVE:
+        return 0.0, min(-acceleration / 6.8, 1.0)
+    return 0.0, -acceleration / 27.27 if acceleration > -8.17 else min(0.3 + (-8.17 - acceleration) / 9.94, 1.0)
+
+def drive(car, way, command, t):
+    """The actions of one step: pedals for a command, wheels for a lateral target."""
+    throttle, brake = pedals(car, command)
+    return (SetThrottleAction(throttle), SetBrakeAction(brake), SetSteerAction(steering(car, way, t)))
+
+def hold(car, speed):
+    """The command that holds a speed."""
+    return GAIN * (speed - car.speed)
+
+def follow(car, way, speed):
+    """MetaDrive's gap law: speed in km/h, gaps in m, blind to whatever is not ahead on its own way within 30 m."""
+    command, here = 1 - (car.speed / speed) ** 10, along(way, car)
+    for other in simulation().objects:
+        point = shapely.geometry.Point(other.position.x, other.position.y)
+        gap = way.project(point) - here
+        if other is not car and 0 < gap < 30 and way.distance(point) < 1.75:
+            v, dv = 3.6 * car.speed, 3.6 * (car.speed - getattr(other, 'speed', 0.0))
+            command = min(command, 1 - (car.speed / speed) ** 10 - ((10 + 1.5 * v + v * dv / 4.47) / gap) ** 2)
+    return command
+
+def contact(a, b):
+    """Whether two boxes share a point."""
+    return shapely.geometry.Polygon(a._corners2D).intersects(shapely.geometry.Polygon(b._corners2D))
+
+behavior Follow(way, speed):
+    while True:
+        take drive(self, way, follow(self, way, speed), 0)
+
+behavior Hold(way, speed, start=0, moves=()):
+    while True:
+        take drive(self, way, hold(self, speed), lateral(self, start, moves))
+
+# ---- ways: the centre lines driven on, from the beginning of the arm to the end of the exit [m] ----------------
+
+EGO_WAY = shapely.geometry.LineString([
+    (0, 0), (10, 0), (60, 0), (60.98, -0.048), (61.951, -0.192), (62.903, -0.431),
+    (63.827, -0.761), (64.714, -1.181), (65.556, -1.685), (66.344, -2.27), (67.071, -2.929), (67.73, -3.656),
+    (68.315, -4.444), (68.819, -5.286), (69.239, -6.173), (69.569, -7.097), (69.808, -8.049), (69.952, -9.02),
+    (70, -10), (70, -100),])
+PARTNER1_WAY = shapely.geometry.LineString([
+    (70, 110.5), (70, 20.5), (70, -10), (70, -100),])
+PARTNER2_WAY = shapely.geometry.LineString([
+    (0, 3.5), (10, 3.5), (60, 3.5), (60.988, 3.529), (61.974, 3.615), (62.952, 3.758),
+    (63.92, 3.958), (64.876, 4.214), (65.814, 4.525), (66.733, 4.89), (67.63, 5.308), (68.5, 5.778),
+    (69.342, 6.297), (70.152, 6.864), (70.927, 7.477), (71.666, 8.135), (72.365, 8.834), (73.023, 9.573),
+    (73.636, 10.348), (74.203, 11.158), (74.722, 12), (75.192, 12.87), (75.61, 13.767), (75.975, 14.686),
+    (76.286, 15.624), (76.542, 16.58), (76.742, 17.548), (76.885, 18.526), (76.971, 19.512), (77, 20.5),
+    (77, 110.5),])
+
+# ---- who does what ------------------------------------------------------------------------------------------------
+
+behavior Partner1():    # "bike", sudden_brake: holds a speed, brakes fully for a while, holds it again
+    try:
+        while True:
+            take drive(self, PARTNER1_WAY, hold(self, PARTNER1_POLICY_TARGET_SPEED), 0)
+    interrupt when PARTNER1_POLICY_BRAKE_STEP * STEP <= seconds() + 1e-6 < PARTNER1_POLICY_BRAKE_STEP * STEP + PARTNER1_POLICY_BRAKE_STEPS * STEP:
+        take drive(self, PARTNER1_WAY, -1, 0)
+
+behavior Partner2():    # "pickup", yielding: holds a speed, waits while the ego is about to come
+    while True:
+        take drive(self, PARTNER2_WAY, hold(self, PARTNER2_POLICY_TARGET_SPEED_MPS), PARTNER2_START_DELTA_T_M)
+
+# The system under test: replace Follow by your own behavior.
+ego = new Car at place(EGO_WAY, EGO_S_M, 0), facing direction(EGO_WAY, EGO_S_M),
+    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13),
+    with speed EGO_SPEED_MPS, with requireVisible False,
+    with behavior Follow(EGO_WAY, EGO_TARGET_SPEED_MPS)
+
+PARTNER1_S = 115.702404352 - PARTNER1_POLICY_TARGET_SPEED * ((70.704156664 - EGO_S_M) / EGO_TARGET_SPEED_MPS + PARTNER1_START_ARRIVAL_GAP_S)    # start along its way [m]
+require 0 <= PARTNER1_S <= PARTNER1_WAY.length
+partner1 = new Car at place(PARTNER1_WAY, PARTNER1_S, 0), facing direction(PARTNER1_WAY, PARTNER1_S),
+    with length 1.8, with width 0.6, with limits (1, 3.4, 3.4),
+    with speed PARTNER1_SPEED_MPS, with requireVisible False,
+    with behavior Partner1()
+
+PARTNER2_S = EGO_S_M + PARTNER2_START_DELTA_S_M    # start along its way [m]
+require 0 <= PARTNER2_S <= PARTNER2_WAY.length
+partner2 = new Car at place(PARTNER2_WAY, PARTNER2_S, PARTNER2_START_DELTA_T_M), facing direction(PARTNER2_WAY, PARTNER2_S),
+    with length 5.74, with width 2.3, with limits (2.909090909, 27.272727273, 15.13),
+    with speed PARTNER2_SPEED_MPS, with requireVisible False,
+    with behavior Partner2()
+
+record (distance from ego to partner1) as "centre distance to partner1"
+terminate when contact(ego, partner1)
+record (distance from ego to partner2) as "centre distance to partner2"
+terminate when contact(ego, partner2)
+terminate when along(EGO_WAY, ego) > EGO_WAY.length - 5
+terminate after DURATION_S seconds

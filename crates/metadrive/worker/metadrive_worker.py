@@ -1,0 +1,582 @@
+"""A MetaDrive worker: reads one JSON request a line from stdin, answers with one JSON line each.
+
+recrash embeds this file and starts it; nobody has to call it by hand. The first line it writes is
+
+    {"hello": {"python": "3.11.7", "metadrive": "0.4.3", "problem": null}}
+
+then, for every {"id": 1, "run": {...}}, either {"id": 1, "done": {...}} or {"id": 1, "error": "..."}. What a run holds is
+written down in crates/metadrive/src/protocol.rs, how the world is set up in docs/models/metadrive-backend.md.
+"""
+
+import json
+import math
+import os
+import sys
+
+WANTED = "0.4.3"
+SUBSTEPS = 5
+STEP_S = 0.1
+STANDING_MPS = 0.3
+STUCK_STEPS = 200
+
+# Libraries may print what they like: the real stdout is ours alone, theirs goes to stderr.
+ANSWERS = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
+os.dup2(2, 1)
+
+
+def send(message):
+    ANSWERS.write(json.dumps(message, allow_nan=False, separators=(",", ":")) + "\n")
+    ANSWERS.flush()
+
+
+def hello(metadrive=None, kind=None, detail=""):
+    problem = None if kind is None else {"kind": kind, "detail": detail[:500]}
+    python = ".".join(str(part) for part in sys.version_info[:3])
+    send({"hello": {"python": python, "metadrive": metadrive, "problem": problem}})
+
+
+def installed_version():
+    try:
+        from importlib import metadata
+    except ImportError:  # Python 3.7 and older
+        return None
+    for name in ("metadrive-simulator", "metadrive_simulator", "metadrive"):
+        try:
+            return metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return None
+
+
+VERSION = installed_version()
+if VERSION is None:
+    hello(kind="metadrive_missing")
+    sys.exit(0)
+if VERSION != WANTED:
+    hello(VERSION, kind="metadrive_version", detail=VERSION)
+    sys.exit(0)
+try:
+    from metadrive.component.map.pg_map import PGMap
+    from metadrive.component.pg_space import ConstantSpace, ParameterSpace
+    from metadrive.component.pgblock.curve import Curve
+    from metadrive.component.pgblock.first_block import FirstPGBlock
+    from metadrive.component.pgblock.roundabout import Roundabout
+    from metadrive.component.pgblock.std_intersection import StdInterSection
+    from metadrive.component.pgblock.std_t_intersection import StdTInterSection
+    from metadrive.component.pgblock.straight import Straight
+    from metadrive.component.static_object.traffic_object import TrafficBarrier, TrafficCone, TrafficWarning
+    from metadrive.component.vehicle.vehicle_type import StaticDefaultVehicle, vehicle_class_to_type, vehicle_type
+    from metadrive.engine.base_engine import BaseEngine
+    from metadrive.envs.metadrive_env import MetaDriveEnv
+    from metadrive.manager.pg_map_manager import PGMapManager
+    from metadrive.obs.observation_base import DummyObservation
+    from metadrive.policy.idm_policy import FrontBackObjects, IDMPolicy
+except Exception as error:  # whatever it is, it is told in one line
+    hello(VERSION, kind="import_failed", detail="%s: %s" % (type(error).__name__, error))
+    sys.exit(0)
+
+# Pictures only; without it the engine would download its assets.
+BaseEngine.try_pull_asset = staticmethod(lambda *arguments, **options: None)
+
+BLOCKS = {"S": Straight, "C": Curve, "X": StdInterSection, "T": StdTInterSection, "O": Roundabout}
+MISSING_ARM = {"right": 0, "ahead": 1, "left": 2}
+OBSTACLES = {"cone": TrafficCone, "barrier": TrafficBarrier, "warning": TrafficWarning}
+
+
+def block_parameters(spec):
+    kind = spec["type"]
+    if kind == "S":
+        return {"length": spec["length_m"]}
+    if kind == "C":
+        turn = 0 if spec["direction"] == "left" else 1
+        return {"length": spec["length_m"], "radius": spec["radius_m"], "angle": spec["angle_deg"], "dir": turn}
+    if kind == "T":
+        return {"t_type": MISSING_ARM[spec["missing"]], "change_lane_num": 0, "decrease_increase": 0}
+    if kind == "O":
+        return {"exit_radius": spec["exit_radius_m"], "inner_radius": spec["inner_radius_m"], "angle": 60}
+    return {"change_lane_num": 0, "decrease_increase": 0}
+
+
+class ScenarioMap(PGMap):
+    """One block behind the approach, every number fixed."""
+
+    def _generate(self):
+        spec = self._config["scenario"]
+        parent, physics = self.engine.worldNP, self.engine.physics_world
+        first = FirstPGBlock(
+            self.road_network,
+            spec["lane_width_m"],
+            spec["lanes"],
+            parent,
+            physics,
+            length=spec["approach_m"],
+            ignore_intersection_checking=True,
+        )
+        kind = BLOCKS[spec["type"]]
+        if "arm_m" in spec:
+            # The length of the arms is an attribute of the class.
+            kind.EXIT_PART_LENGTH = spec["arm_m"]
+        block = kind(1, first.get_socket(0), self.road_network, random_seed=1, ignore_intersection_checking=True)
+        block.construct_block(parent, physics, extra_config=block_parameters(spec))
+        self.blocks = [first, block]
+        self.road_network.after_init()
+
+
+class ScenarioMapManager(PGMapManager):
+    """Keeps the maps it has built."""
+
+    spec = None
+    built = {}
+
+    def reset(self):
+        key = json.dumps(self.spec, sort_keys=True)
+        if key not in self.built:
+            self.built[key] = self.spawn_object(ScenarioMap, map_config={"scenario": self.spec}, random_seed=None)
+            self.current_map = self.built[key]
+        else:
+            self.load_map(self.built[key])
+
+
+class ScenarioEnv(MetaDriveEnv):
+    def setup_engine(self):
+        super().setup_engine()
+        self.engine.update_manager("map_manager", ScenarioMapManager())
+
+
+class MiddleOfTheRange:
+    """In place of random numbers, so that a run depends on nothing but its scenario."""
+
+    @staticmethod
+    def randint(low, high):
+        return (low + high) // 2
+
+
+class EgoPolicy(IDMPolicy):
+    """MetaDrive's IDM policy at the speed the scenario wants."""
+
+    target_kmh = 30.0
+
+    def __init__(self, vehicle, random_seed):
+        super().__init__(vehicle, random_seed)
+        self.NORMAL_SPEED = self.target_speed = type(self).target_kmh
+        self.overtake_timer = self.LANE_CHANGE_FREQ // 2
+        self.np_random = MiddleOfTheRange()
+
+
+class Place:
+    """Where an actor is on the lanes of its way; it never goes back."""
+
+    def __init__(self, network, way):
+        self.lanes = [network.get_lane((start, end, number)) for start, end, number in way]
+        self.starts = [0.0]
+        for lane in self.lanes:
+            self.starts.append(self.starts[-1] + lane.length)
+        self.segment = 0
+
+    def update(self, position):
+        s, t = self.lanes[self.segment].local_coordinates(position)
+        while s > self.lanes[self.segment].length and self.segment + 1 < len(self.lanes):
+            self.segment += 1
+            s, t = self.lanes[self.segment].local_coordinates(position)
+        self.s, self.t = s, t
+        self.path_s = self.starts[self.segment] + s
+        self.lane = self.lanes[self.segment]
+
+
+class PartnerPolicy(IDMPolicy):
+    """A script along the way, with sideways moves; steering gains are those of the IDM policy."""
+
+    def __init__(self, vehicle, spec):
+        super().__init__(vehicle, 0)
+        self.spec = spec
+        self.script = spec["policy"]
+        self.NORMAL_SPEED = self.target_speed = 3.6 * self.script.get("target_speed_mps", 0.0)
+        self.enable_lane_change = False
+        self.standing_steps = 0
+
+    def lateral_target(self, time):
+        """Offset wanted from the lane's centre, and its rate; a move takes over from wherever the last one is."""
+        offset, moves = self.spec["t_m"], self.spec["lateral"]
+        for position, move in enumerate(moves):
+            if time < move["start_s"]:
+                return offset, 0.0
+            rate = (move["to_t_m"] - offset) / max(move["duration_s"], 1e-3)
+            following = moves[position + 1]["start_s"] if position + 1 < len(moves) else math.inf
+            until = min(following, move["start_s"] + move["duration_s"])
+            if time < until:
+                return offset + rate * (time - move["start_s"]), rate
+            offset += rate * max(until - move["start_s"], 0.0)
+        return offset, 0.0
+
+    def decide(self, world, me):
+        actor = world.actors[me]
+        vehicle, place = actor.vehicle, actor.place
+        wanted, rate = self.lateral_target(world.step * STEP_S)
+        drift = max(-0.5, min(0.5, -rate / max(vehicle.speed, 1.0)))
+        error = place.lane.heading_theta_at(place.s + 1) + drift - vehicle.heading_theta
+        error = math.atan2(math.sin(error), math.cos(error))
+        steering = self.heading_pid.get_result(-error) + self.lateral_pid.get_result(-(place.t - wanted))
+        throttle = -1.0 if actor.halted else self.throttle(world, me)
+        return [steering, throttle]
+
+    def throttle(self, world, me):
+        vehicle, script, kind = world.actors[me].vehicle, self.script, self.script["type"]
+        if kind in ("sudden_brake", "accel_then_brake"):
+            if script["brake_step"] <= world.step < script["brake_step"] + script["brake_steps"]:
+                return -1.0
+            if kind == "accel_then_brake" and world.step < script["accel_steps"]:
+                return script["accel_mag"]
+            wanted = script["target_speed"] if kind == "sudden_brake" else script["cruise_speed"]
+            return script["speed_kp"] * (wanted - vehicle.speed)
+        if kind == "stopped":
+            if script.get("depart_step") is None or world.step < script["depart_step"]:
+                return -1.0
+            return script["speed_kp"] * (script["target_speed_mps"] - vehicle.speed)
+        if kind == "yielding":
+            return self.give_way(world, me)
+        self.target_speed = self.NORMAL_SPEED
+        front, distance = None, 5
+        try:
+            objects = vehicle.lidar.get_surrounding_objects(vehicle)
+            around = FrontBackObjects.get_find_front_back_objs(
+                objects, vehicle.lane, vehicle.position, self.MAX_LONG_DIST
+            )
+            front, distance = around.front_object(), around.front_min_distance()
+        except AttributeError:
+            pass
+        return self.acceleration(front, distance)
+
+    def give_way(self, world, me):
+        """Waits where its way meets another's, see docs/models/policies.md."""
+        wanted, vehicle = self.script["target_speed_mps"], world.actors[me].vehicle
+        self.standing_steps = self.standing_steps + 1 if vehicle.speed < STANDING_MPS else 0
+        s = world.actors[me].place.path_s
+        lines = [
+            crossing["mine"][0] - s
+            for crossing in self.spec["crossings"]
+            if crossing["mine"][0] >= s and self.must_wait(world, me, crossing, s, wanted)
+        ]
+        if lines:
+            wanted = min(wanted, math.sqrt(2.0 * 3.0 * max(min(lines) - 0.5, 0.0)))
+        return -1.0 if wanted < 0.3 else self.script["speed_kp"] * (wanted - vehicle.speed)
+
+    def must_wait(self, world, me, crossing, s, wanted):
+        number, merges = crossing["other"], crossing["merges"]
+        own_from, own_to = crossing["mine"]
+        their_from, their_to = crossing["theirs"]
+        other = world.actors[number]
+        other_s, other_speed = other.place.path_s, other.vehicle.speed
+        if other_s > (their_from + 12.0 if merges else their_to):
+            return False
+        if other_s > their_from:
+            return True
+        own_speed = world.actors[me].vehicle.speed
+        if other_speed < STANDING_MPS:
+            return number < me and own_speed < STANDING_MPS and self.standing_steps < 30
+        speed = max(own_speed, 0.5 * wanted, STANDING_MPS)
+        own_entry = (own_from - s) / speed
+        own_exit = own_entry + 1.0 if merges else (own_to - s) / speed
+        their_entry = (their_from - other_s) / other_speed
+        their_exit = their_entry + 1.0 if merges else (their_to - other_s) / other_speed
+        if their_entry > 12.0 or own_entry > 12.0:
+            return False
+        gap = self.script["gap_s"]
+        return own_exit + gap > their_entry and their_exit + 0.5 * gap > own_entry
+
+    def has_plans(self, step):
+        script, kind = self.script, self.script["type"]
+        if kind == "stopped":
+            depart = script.get("depart_step")
+            return depart is not None and script["target_speed_mps"] > 0 and step <= depart
+        if kind in ("sudden_brake", "accel_then_brake"):
+            speed = script["target_speed"] if kind == "sudden_brake" else script["cruise_speed"]
+            until = max(script["brake_step"] + script["brake_steps"], script.get("accel_steps", 0))
+            return speed > 0 or step < until
+        return False
+
+
+class OpenLoopPolicy:
+    """Given controls, one pair a step; none behind their end."""
+
+    def __init__(self, controls):
+        self.controls = controls
+
+    def decide(self, world, me):
+        return self.controls[world.step] if world.step < len(self.controls) else [0.0, 0.0]
+
+
+class Ego:
+    """The ego's own policy, which MetaDrive made."""
+
+    def __init__(self, policy):
+        self.policy = policy
+
+    def decide(self, world, me):
+        return self.policy.act()
+
+
+class Actor:
+    def __init__(self, vehicle, policy, place, length, width):
+        self.vehicle, self.policy, self.place = vehicle, policy, place
+        self.radius = 0.5 * math.hypot(length, width)
+        self.halted = False
+
+
+CLASSES = {}
+
+
+def vehicle_class(body):
+    """StaticDefaultVehicle with another body, tyres, engine and brakes."""
+    key = json.dumps(body, sort_keys=True)
+    if key not in CLASSES:
+        # Per wheel: force over mass, and brake impulse over mass and physics step (measured, METADRIVE 3.4).
+        mass = StaticDefaultVehicle.MASS
+        space = {
+            "wheel_friction": body["friction"],
+            "max_engine_force": body["acceleration_mps2"] * mass / 4.0,
+            "max_brake_force": body["brake_mps2"] * mass * 0.02 / 4.0,
+            "max_steering": math.degrees(body["wheel_angle_rad"]),
+            "max_speed_km_h": 3.6 * body["speed_mps"],
+        }
+        fields = {
+            "PARAMETER_SPACE": ParameterSpace({name: ConstantSpace(value) for name, value in space.items()}),
+            "DEFAULT_LENGTH": body["length_m"],
+            "DEFAULT_WIDTH": body["width_m"],
+            "FRONT_WHEELBASE": body["front_axle_m"],
+            "REAR_WHEELBASE": body["rear_axle_m"],
+            "LATERAL_TIRE_TO_CENTER": body["half_track_m"],
+        }
+        CLASSES[key] = type("Vehicle%d" % len(CLASSES), (StaticDefaultVehicle,), fields)
+        vehicle_class_to_type[CLASSES[key]] = "static_default"
+    return CLASSES[key]
+
+
+def adjust_inertia(vehicle, body):
+    """A body shorter than its chassis keeps the chassis's inertia, or it would tumble."""
+    if body["length_m"] == body["chassis_length_m"]:
+        return
+    length, width, height = body["chassis_length_m"], body["chassis_width_m"], vehicle.HEIGHT
+    share = vehicle.MASS / 12.0
+    from panda3d.core import Vec3
+
+    # Panda's vehicles face along y.
+    vehicle.body.setInertia(
+        Vec3(
+            share * (length**2 + height**2),
+            share * (width**2 + height**2),
+            share * (length**2 + width**2),
+        )
+    )
+
+
+def spawn_config(spec):
+    start, end, number = spec["way"][0]
+    return {
+        "spawn_lane_index": (start, end, number),
+        "spawn_longitude": spec["s_m"],
+        # Far from its lane's centre MetaDrive would take it for a vehicle of another road; it is moved there later.
+        "spawn_lateral": 0.0,
+        "spawn_velocity": [spec["speed_mps"], 0.0],
+        "spawn_velocity_car_frame": True,
+        "destination": spec["way"][-1][1],
+    }
+
+
+def make_env():
+    return ScenarioEnv(
+        {
+            "use_render": False,
+            "log_level": 50,
+            "num_scenarios": 1,
+            "start_seed": 0,
+            "traffic_density": 0.0,
+            "agent_observation": DummyObservation,
+            "agent_policy": EgoPolicy,
+            "vehicle_config": {"vehicle_model": "static_default", "show_navi_mark": False},
+            "random_spawn_lane_index": False,
+            "show_sidewalk": False,
+            "show_crosswalk": False,
+            # Recycled bodies keep the state of their solver: only new ones give the same bits again.
+            "force_destroy": True,
+            "out_of_road_done": False,
+            "on_continuous_line_done": False,
+            "crash_vehicle_done": False,
+            "crash_object_done": False,
+            "horizon": None,
+        }
+    )
+
+
+class World:
+    """One scenario in the engine."""
+
+    def __init__(self, env, spec):
+        self.env, self.spec, self.step = env, spec, 0
+        self.engine = env.engine
+        self.spawned = []
+        self.events = []
+
+    def set_up(self):
+        env, spec = self.env, self.spec
+        ScenarioMapManager.spec = spec["map"]
+        ego = spec["ego"]
+        EgoPolicy.target_kmh = 3.6 * ego["target_speed_mps"]
+        vehicle_type["static_default"] = vehicle_class(ego["body"])
+        env.config["agent_configs"]["default_agent"].update(spawn_config(ego))
+        env.reset(seed=0)
+        self.engine = env.engine
+        self.network = self.engine.current_map.road_network
+        policy = self.engine.get_policy(env.agent.name)
+        driver = OpenLoopPolicy(ego["controls"]) if ego.get("controls") is not None else Ego(policy)
+        self.actors = [self.introduce(env.agent, driver, ego)]
+        for partner in spec["partners"]:
+            vehicle = self.engine.spawn_object(
+                vehicle_class(partner["body"]),
+                vehicle_config=spawn_config(partner),
+                random_seed=0,
+                auto_fill_random_seed=False,
+            )
+            self.spawned.append(vehicle.id)
+            self.actors.append(self.introduce(vehicle, PartnerPolicy(vehicle, partner), partner))
+        self.obstacles = []
+        for obstacle in spec["obstacles"]:
+            thing = self.engine.spawn_object(
+                OBSTACLES[obstacle["kind"]],
+                lane=self.network.get_lane(tuple(obstacle["lane"])),
+                position=[obstacle["x"], obstacle["y"]],
+                heading_theta=obstacle["heading"],
+                static=True,
+            )
+            self.spawned.append(thing.id)
+            self.obstacles.append((thing, math.hypot(obstacle["length_m"], obstacle["width_m"])))
+
+    def introduce(self, vehicle, policy, spec):
+        adjust_inertia(vehicle, spec["body"])
+        place = Place(self.network, spec["way"])
+        if spec["t_m"] != 0.0:
+            vehicle.set_position(place.lanes[0].position(spec["s_m"], spec["t_m"]))
+        vehicle.after_step()
+        nodes = [spec["way"][0][0]] + [end for _, end, _ in spec["way"]]
+        # A wrong name is no error to MetaDrive: it would end the route early.
+        if list(vehicle.navigation.checkpoints) != nodes:
+            raise RuntimeError("route %s instead of %s" % (vehicle.navigation.checkpoints, nodes))
+        place.update(vehicle.position)
+        return Actor(vehicle, policy, place, spec["body"]["length_m"], spec["body"]["width_m"])
+
+    def state(self, number, action):
+        vehicle = self.actors[number].vehicle
+        x, y = vehicle.position
+        heading = math.atan2(math.sin(vehicle.heading_theta), math.cos(vehicle.heading_theta))
+        return [float(x), float(y), float(heading), float(vehicle.speed), float(action[0]), float(action[1])]
+
+    def run(self):
+        physics = self.engine.physics_world.dynamic_world
+        tracks = [[] for _ in self.actors]
+        touched = set()
+        ego, standing = self.actors[0].vehicle, 0
+        while True:
+            standing = standing + 1 if ego.speed < STANDING_MPS else 0
+            end = self.verdict(touched, standing)
+            actions = [[0.0, 0.0]] * len(self.actors)
+            if end is None:
+                actions = []
+                for number, actor in enumerate(self.actors):
+                    action = actor.policy.decide(self, number)
+                    actions.append([max(-1.0, min(1.0, float(part))) for part in action])
+            for number, track in enumerate(tracks):
+                track.append(self.state(number, actions[number]))
+            if end is not None:
+                return {"end": end, "time_s": self.step * STEP_S, "tracks": tracks, "events": self.events}
+            for actor, action in zip(self.actors, actions):
+                actor.vehicle.before_step(action)
+            near = self.near_pairs()
+            for substep in range(1, SUBSTEPS + 1):
+                self.engine.step_physics_world()
+                self.touch(physics, near, touched, actions, self.step * STEP_S + substep * 0.02)
+            for actor in self.actors:
+                actor.vehicle.after_step()
+                actor.place.update(actor.vehicle.position)
+            self.step += 1
+
+    def near_pairs(self):
+        """Who may touch whom within this step: actors by number, obstacles behind them."""
+        found, count = [], len(self.actors)
+        for a, first in enumerate(self.actors):
+            x, y = first.vehicle.position
+            reach = first.radius + 0.1 * first.vehicle.speed + 1.0
+            for b in range(a + 1, count):
+                second = self.actors[b]
+                u, v = second.vehicle.position
+                if math.hypot(u - x, v - y) < reach + second.radius + 0.1 * second.vehicle.speed:
+                    found.append((a, b))
+            for number, (thing, radius) in enumerate(self.obstacles):
+                u, v = thing.position
+                if math.hypot(u - x, v - y) < reach + radius:
+                    found.append((a, count + number))
+        return found
+
+    def touch(self, physics, near, touched, actions, time):
+        """First contacts at this physics step, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
+        count = len(self.actors)
+        for a, b in near:
+            if (a, b) in touched:
+                continue
+            other = self.actors[b].vehicle if b < count else self.obstacles[b - count][0]
+            if physics.contactTestPair(self.actors[a].vehicle.body, other.body).getNumContacts() == 0:
+                continue
+            touched.add((a, b))
+            event = {"time_s": time, "a": a, "a_state": self.state(a, actions[a])}
+            if b < count:
+                self.actors[a].halted = self.actors[b].halted = True
+                event.update(b=b, b_state=self.state(b, actions[b]))
+            else:
+                event.update(obstacle=b - count)
+            self.events.append(event)
+
+    def verdict(self, touched, standing):
+        ego, count = self.actors[0].vehicle, len(self.actors)
+        finite = all(math.isfinite(part) for n in range(count) for part in self.state(n, [0.0, 0.0]))
+        if not finite:
+            raise RuntimeError("a state is no longer finite")
+        if any(a == 0 and b < count for a, b in touched):
+            return "contact"
+        if self.env._is_arrive_destination(ego):
+            return "arrived"
+        if not ego.on_lane:
+            return "off_road"
+        if standing >= STUCK_STEPS and not self.anybody_moves():
+            return "stuck"
+        if self.step * STEP_S >= self.spec["duration_s"] - 0.5 * STEP_S:
+            return "timeout"
+        return None
+
+    def anybody_moves(self):
+        return any(
+            actor.vehicle.speed >= STANDING_MPS or (not actor.halted and actor.policy.has_plans(self.step))
+            for actor in self.actors[1:]
+        )
+
+    def clear(self):
+        self.engine.clear_objects(self.spawned, force_destroy=True)
+
+
+def main():
+    hello(VERSION)
+    env = make_env()
+    for line in sys.stdin.buffer:
+        request = json.loads(line)
+        world = World(env, request["run"])
+        try:
+            world.set_up()
+            done = world.run()
+            done["maps"] = len(ScenarioMapManager.built)
+            answer = {"id": request["id"], "done": done}
+        except Exception as error:  # told, and the next request goes on
+            answer = {"id": request["id"], "error": ("%s: %s" % (type(error).__name__, error))[:500]}
+        if world.engine is not None:
+            world.clear()
+        send(answer)
+    env.close()
+
+
+main()

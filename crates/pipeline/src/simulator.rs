@@ -1,0 +1,87 @@
+//! The simulators behind one door: the native one, and MetaDrive in Python workers.
+
+use crate::error::PipelineError;
+use recrash_metadrive::{Drive, METADRIVE_VERSION, Metadrive};
+use recrash_model::rollout::Rollout;
+use recrash_roads::Scenario;
+use recrash_sim::Ego;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Which simulator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SimulatorKind {
+    /// Ours.
+    #[default]
+    Native,
+    /// MetaDrive.
+    Metadrive,
+}
+
+impl SimulatorKind {
+    /// Every simulator.
+    pub const ALL: [Self; 2] = [Self::Native, Self::Metadrive];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Native => "native",
+            Self::Metadrive => "metadrive",
+        }
+    }
+}
+
+impl std::str::FromStr for SimulatorKind {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let known = Self::ALL.map(Self::name).join(", ");
+        Self::ALL
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .ok_or_else(|| format!("there is no simulator \"{name}\"; there are: {known}"))
+    }
+}
+
+/// A simulator with the system under test in it.
+pub enum Simulator {
+    /// The native one.
+    Native(Ego),
+    /// MetaDrive, with its own IDM policy as the ego.
+    Metadrive(Box<Metadrive>),
+}
+
+impl Simulator {
+    /// Sets up a simulator. Python workers are started for MetaDrive alone.
+    ///
+    /// # Errors
+    /// There is no such ego, or Python or MetaDrive is missing.
+    pub fn start(kind: SimulatorKind, ego: &str, python: &Path, workers: usize) -> Result<Self, PipelineError> {
+        let native: Ego = ego.parse().map_err(|e| PipelineError::bad_input(format!("{e}")))?;
+        match kind {
+            SimulatorKind::Native => Ok(Self::Native(native)),
+            SimulatorKind::Metadrive if native == Ego::MetadriveIdm => {
+                let options = recrash_metadrive::Options { workers, ..recrash_metadrive::Options::new(python) };
+                let pool = Metadrive::start(options).map_err(|e| PipelineError::bad_input(e.to_string()))?;
+                Ok(Self::Metadrive(Box::new(pool)))
+            }
+            SimulatorKind::Metadrive => Err(PipelineError::bad_input(format!(
+                "MetaDrive {METADRIVE_VERSION} runs its own policy only: choose --ego metadrive-idm, or --sim native for {ego}"
+            ))),
+        }
+    }
+
+    /// Runs a scenario.
+    ///
+    /// # Errors
+    /// MetaDrive failed on it twice. The native simulator cannot fail.
+    pub fn run(&self, scenario: &Scenario) -> Result<Rollout, PipelineError> {
+        match self {
+            Self::Native(ego) => Ok(recrash_sim::simulate(scenario, *ego)),
+            Self::Metadrive(pool) => {
+                pool.simulate(scenario, &Drive::MetadriveIdm).map_err(|e| PipelineError::bad_input(e.to_string()))
+            }
+        }
+    }
+}
