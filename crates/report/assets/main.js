@@ -151,6 +151,10 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   drawThumbs();
   replays.forEach((replay) => replay.draw());
 });
-addEventListener('beforeprint', () => all('.page.current details').forEach((details) => (details.open = true)));
+addEventListener('beforeprint', () => {
+  all('.page.current details').forEach((details) => (details.open = true));
+  replays.get(currentPage)?.act('closest');
+  drawThumbs();
+});
 addEventListener('resize', () => currentPage?.classList.contains('case') && chooseTab(currentPage, chosenTab));
 go();

@@ -132,6 +132,9 @@ class Partner(IDMPolicy):
         super().__init__(vehicle, seed)
         self.spec = spec
         self.step = 0
+        nodes, number = spec["route"], spec["lane"][2]
+        network = vehicle.navigation.map.road_network
+        self.path = [network.get_lane((a, b, number)) for a, b in zip(nodes, nodes[1:])]
         self.NORMAL_SPEED = self.target_speed = 3.6 * spec["policy"].get("target_speed_mps", 8.0)
         self.enable_lane_change = False
 
@@ -151,12 +154,14 @@ class Partner(IDMPolicy):
 
     def act(self, *args, **kwargs):
         vehicle, policy = self.control_object, self.spec["policy"]
-        lanes = vehicle.navigation.current_ref_lanes
         if policy["type"] == "stopped" and self.step < (policy.get("depart_step") or math.inf):
             self.step += 1
             return [0.0, -1.0 if vehicle.speed > 0.5 else -0.1]
-        lane = lanes[min(self.spec["lane"][2], len(lanes) - 1)]
-        s, t = lane.local_coordinates(vehicle.position)
+        s, t = self.path[0].local_coordinates(vehicle.position)
+        while s > self.path[0].length and len(self.path) > 1:
+            del self.path[0]
+            s, t = self.path[0].local_coordinates(vehicle.position)
+        lane = self.path[0]
         target, rate = self.lateral_target()
         drift = max(-0.5, min(0.5, -rate / max(vehicle.speed, 1.0))) if rate else 0.0
         error = lane.heading_theta_at(s + 1) + drift - vehicle.heading_theta
@@ -171,7 +176,7 @@ class Partner(IDMPolicy):
         gain = policy.get("speed_kp") or 0.3
         if kind in ("sudden_brake", "accel_then_brake"):
             if policy["brake_step"] <= self.step < policy["brake_step"] + policy["brake_steps"]:
-                return -1.0
+                return -1.0 if speed > 0.5 else -0.1
             if kind == "accel_then_brake" and self.step < policy["accel_steps"]:
                 return policy["accel_mag"]
             wanted = policy["target_speed"] if kind == "sudden_brake" else policy["cruise_speed"]

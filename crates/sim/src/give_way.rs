@@ -81,6 +81,12 @@ const HORIZON_S: f64 = 12.0;
 /// Where paths merge, the other has gone first when he is this far along the common lane. [m]
 const MERGED_M: f64 = 12.0;
 
+/// Who has come this far past the place to wait goes on; the stretch itself begins a little behind that place. [m]
+const COMMITTED_M: f64 = 1.0;
+
+/// Others may speed up; going first allows for this. [m/s^2]
+const THEIR_ACCELERATION_MPS2: f64 = 1.0;
+
 /// What has to be remembered between decisions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct GiveWay {
@@ -106,10 +112,11 @@ impl GiveWay {
         let mut nearest: Option<f64> = None;
         for crossing in crossings.iter().filter(|crossing| crossing.me == me) {
             let ahead = crossing.mine.from - s;
-            if ahead < 0.0 || !self.must_wait(scene, me, crossing, ahead, s, wanted_mps, manners) {
+            if ahead < -COMMITTED_M || !self.must_wait(scene, me, crossing, ahead, s, wanted_mps, manners) {
                 continue;
             }
-            nearest = Some(nearest.map_or(ahead, |least| least.min(ahead)));
+            let distance = ahead.max(0.0);
+            nearest = Some(nearest.map_or(distance, |least| least.min(distance)));
         }
         nearest
     }
@@ -144,10 +151,14 @@ impl GiveWay {
             return crossing.other < me && scene.actors[me].speed < WAITING_MPS && self.standing_steps < PATIENCE_STEPS;
         }
         let speed = scene.actors[me].speed.max(0.5 * wanted_mps).max(WAITING_MPS);
-        let my_entry = ahead / speed;
+        let my_entry = ahead.max(0.0) / speed;
         let my_exit = if crossing.merges { my_entry + 1.0 } else { (crossing.mine.to - s) / speed };
-        let their_entry = (crossing.theirs.from - other_s) / other.speed;
-        let their_exit = if crossing.merges { their_entry + 1.0 } else { (crossing.theirs.to - other_s) / other.speed };
+        let way = crossing.theirs.from - other_s;
+        // The earliest they can be there: v t + a t^2 / 2 = way.
+        let a = THEIR_ACCELERATION_MPS2;
+        let their_entry = ((other.speed * other.speed + 2.0 * a * way).sqrt() - other.speed) / a;
+        let their_exit =
+            if crossing.merges { way / other.speed + 1.0 } else { (crossing.theirs.to - other_s) / other.speed };
         if their_entry > HORIZON_S || my_entry > HORIZON_S {
             return false;
         }

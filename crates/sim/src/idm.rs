@@ -137,7 +137,7 @@ impl Idm {
         let seen = &scene.actors[me];
         let s = scene.path_s(me);
         let mut limit = f64::INFINITY;
-        for position in seen.place.rest_of_route() {
+        for position in scene.rest_of_path(me) {
             let lane = scene.lanes.lane(scene.route_lanes[position]);
             let distance = (scene.route_starts[position] - s).max(0.0);
             if distance > SIGHT_M {
@@ -191,17 +191,17 @@ fn in_the_way<'a>(scene: &'a Scene<'_>, me: usize) -> impl Iterator<Item = (f64,
 /// Where a point is along an actor's path: distance from its centre, offset to the right, and the way's direction there;
 /// `None` behind it and off its path's length.
 fn along_path(scene: &Scene<'_>, me: usize, point: Vec2) -> Option<(f64, f64, Vec2)> {
-    let seen = &scene.actors[me];
     let here = scene.path_s(me);
-    for position in seen.place.rest_of_route() {
+    let path = scene.rest_of_path(me);
+    for position in path.clone() {
         let start = scene.route_starts[position];
         if start - here > SIGHT_M {
             return None;
         }
         let lane = scene.lanes.lane(scene.route_lanes[position]);
         let (s, t) = lane.local(point);
-        let last = position + 1 == seen.place.route_end();
-        if s < 0.0 && position == seen.place.route_position() {
+        let last = position + 1 == path.end;
+        if s < 0.0 && position == path.start {
             return None;
         }
         if s >= 0.0 && (s <= lane.length_m || last) && t.abs() < lane.reach() {

@@ -287,24 +287,6 @@ impl Navigator {
         routes[(self.route.0 + self.at) as usize]
     }
 
-    /// Position of that road in the world's list.
-    #[inline]
-    pub(crate) fn route_position(&self) -> usize {
-        (self.route.0 + self.at) as usize
-    }
-
-    /// Positions in the world's list of the current road and all that follow.
-    #[inline]
-    pub(crate) fn rest_of_route(&self) -> std::ops::Range<usize> {
-        self.route_position()..self.route_end()
-    }
-
-    /// The position in the world's list behind the route's last road.
-    #[inline]
-    pub(crate) fn route_end(&self) -> usize {
-        self.route.1 as usize
-    }
-
     /// The road after that.
     #[inline]
     pub(crate) fn next_road(&self, routes: &[RoadId]) -> Option<RoadId> {
@@ -365,23 +347,6 @@ impl Navigator {
         self.follow_route(table, routes);
     }
 
-    /// Goes on to the next road where its path has ended, for who drives beside all lanes and is never found on one.
-    pub(crate) fn keep_up(&mut self, table: &LaneTable, routes: &[RoadId], route_lanes: &[LaneIndex], point: Vec2) {
-        let position = self.route_position();
-        let lane = table.lane(route_lanes[position]);
-        if table.lane(self.lane).road == routes[position].0
-            && self.lane == route_lanes[position]
-            && self.s <= lane.length_m
-        {
-            return;
-        }
-        if !self.on_last_road() && lane.local(point).0 > lane.body_end_m + 2.0 * BODY_SAMPLE_M {
-            self.at += 1;
-            self.lane = route_lanes[position + 1];
-            (self.s, self.t) = table.lane(self.lane).local(point);
-        }
-    }
-
     /// Goes on to the road of the route that the lane belongs to, if that lies ahead and has just been entered.
     fn follow_route(&mut self, table: &LaneTable, routes: &[RoadId]) {
         if self.s >= NEXT_ROAD_RANGE_M {
@@ -394,6 +359,32 @@ impl Navigator {
                 self.at = at;
                 return;
             }
+        }
+    }
+}
+
+/// How far a road user has come along the path it was placed on, whatever lane it is on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Progress {
+    /// Position of the path's current lane in the world's list, and the position behind the path's last.
+    pub(crate) at: u32,
+    pub(crate) end: u32,
+    /// Along that lane. [m]
+    pub(crate) s: f64,
+}
+
+impl Progress {
+    /// Goes on to the lane of the path beside this point; never back.
+    #[inline]
+    pub(crate) fn follow(&mut self, table: &LaneTable, path: &[LaneIndex], place: &Navigator, point: Vec2) {
+        loop {
+            let index = path[self.at as usize];
+            let lane = table.lane(index);
+            self.s = if index == place.lane { place.s } else { lane.local(point).0 };
+            if self.s <= lane.length_m || self.at + 1 >= self.end {
+                return;
+            }
+            self.at += 1;
         }
     }
 }

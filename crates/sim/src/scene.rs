@@ -1,6 +1,6 @@
 //! The frozen world of one decision: what every actor sees, and nobody changes while others still decide.
 
-use crate::lanes::{LaneIndex, LaneTable, Navigator};
+use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_roads::RoadId;
 
@@ -15,6 +15,8 @@ pub(crate) struct Seen {
     pub(crate) speed: f64,
     /// Where it is along its route, and on which lane.
     pub(crate) place: Navigator,
+    /// Where it is along the path it was placed on.
+    pub(crate) progress: Progress,
     pub(crate) half_length: f64,
     pub(crate) half_width: f64,
     /// Still in the world: background traffic that drove off the map is not.
@@ -54,19 +56,23 @@ impl Scene<'_> {
         self.lanes.of_road(self.actors[actor].place.road(self.routes))
     }
 
-    /// The lane an actor was placed on, on the road it is now on.
+    /// The lane of an actor's path that it is beside.
     #[inline]
     pub(crate) fn path_lane(&self, actor: usize) -> LaneIndex {
-        self.route_lanes[self.actors[actor].place.route_position()]
+        self.route_lanes[self.actors[actor].progress.at as usize]
     }
 
     /// How far an actor has come along its path. [m]
     #[inline]
     pub(crate) fn path_s(&self, actor: usize) -> f64 {
-        let seen = &self.actors[actor];
-        let position = seen.place.route_position();
-        let lane = self.route_lanes[position];
-        let s = if lane == seen.place.lane { seen.place.s } else { self.lanes.lane(lane).local(seen.pose.position).0 };
-        self.route_starts[position] + s
+        let progress = &self.actors[actor].progress;
+        self.route_starts[progress.at as usize] + progress.s
+    }
+
+    /// Positions in the world's list of the lane an actor is beside and of all that follow on its path.
+    #[inline]
+    pub(crate) fn rest_of_path(&self, actor: usize) -> std::ops::Range<usize> {
+        let progress = &self.actors[actor].progress;
+        progress.at as usize..progress.end as usize
     }
 }

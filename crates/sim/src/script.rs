@@ -117,7 +117,7 @@ impl Script {
         match self.plan {
             Plan::Timed { throttle, throttle_until, speed_mps, brake_from, brake_until, gain } => {
                 if (brake_from..brake_until).contains(&scene.step) {
-                    -1.0
+                    stand(seen.speed)
                 } else if scene.step < throttle_until {
                     throttle
                 } else {

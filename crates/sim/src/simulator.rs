@@ -7,7 +7,7 @@ use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
 use crate::ego::Ego;
 use crate::give_way::{Crossing, HalfSize};
 use crate::idm::Idm;
-use crate::lanes::{LaneIndex, LaneTable, Navigator};
+use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
 use crate::recorder::{CastMember, Recorder};
 use crate::scene::{Scene, Seen, SeenObstacle};
@@ -206,6 +206,7 @@ impl Simulator {
             velocity: Vec2::default(),
             speed: speed_mps,
             place,
+            progress: Progress { at: first + at as u32, end: route.1, s: 0.0 },
             half_length: 0.5 * spec.length_m,
             half_width: 0.5 * spec.width_m,
             present: true,
@@ -260,9 +261,7 @@ impl Simulator {
             seen.speed = body.speed();
             if seen.present {
                 seen.place.localise(&setting.lanes, &setting.routes, body.pose.position, body.pose.heading);
-                if member.role == Role::Partner {
-                    seen.place.keep_up(&setting.lanes, &setting.routes, &setting.route_lanes, body.pose.position);
-                }
+                seen.progress.follow(&setting.lanes, &setting.route_lanes, &seen.place, body.pose.position);
                 // Background traffic that has left the road goes on straight and is out of the game.
                 seen.present = seen.place.on_road || member.role != Role::Traffic;
             }

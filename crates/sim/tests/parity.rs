@@ -65,11 +65,17 @@ fn the_six_trials_go_as_in_metadrive() {
 fn random_scenarios_end_as_in_metadrive() {
     let references = references();
     assert_eq!(references.len(), 50);
-    let (mut contact, mut gap, mut time) = (0, 0, 0);
+    let (mut runs, mut contact, mut gap, mut time) = (0, 0, 0, 0);
     let mut errors = Vec::new();
     let mut simulator = Simulator::new();
     for reference in &references {
-        let scenario = common::checked(reference.draft.clone());
+        // The check may grow stricter after the references were made.
+        let Ok(checked) = recrash_roads::check(reference.draft.clone()) else {
+            println!("{}: no longer fit to run", reference.draft.id);
+            continue;
+        };
+        let scenario = checked.value;
+        runs += 1;
         let mut recorder = SummaryRecorder::new();
         let termination = simulator.run(&scenario, Ego::MetadriveIdm, &mut recorder);
         let touched = reference.end == "contact";
@@ -89,10 +95,13 @@ fn random_scenarios_end_as_in_metadrive() {
         errors.push(ego_error(reference, &simulate(&scenario, Ego::MetadriveIdm)));
     }
     errors.sort_by(f64::total_cmp);
-    println!("of 50: verdict {contact}, gap {gap}, time {time}; ego position {errors:.2?}");
+    println!("of {runs}: verdict {contact}, gap {gap}, time {time}; ego position {errors:.2?}");
+    assert!(runs >= 40, "renew the references: only {runs} can still be run");
     // Issue 3 asks for 95 %, 90 % and 85 %.
-    assert!(contact >= 48, "{contact}");
-    assert!(gap >= 46, "{gap}");
-    assert!(time >= 45, "{time}");
-    assert!(errors[25] < 0.1, "median {}", errors[25]);
+    let share = |count: usize| count as f64 / f64::from(runs);
+    assert!(share(contact) >= 0.96, "{contact} of {runs}");
+    assert!(share(gap) >= 0.92, "{gap} of {runs}");
+    assert!(share(time) >= 0.90, "{time} of {runs}");
+    let median = errors[errors.len() / 2];
+    assert!(median < 0.1, "{median}");
 }

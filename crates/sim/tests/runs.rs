@@ -2,9 +2,8 @@
 
 use proptest::prelude::*;
 use recrash_model::rollout::{Rollout, TerminationKind};
-use recrash_model::scenario::{Approach, Start, Turn};
+use recrash_model::scenario::{Approach, ScenarioDraft, Start, Turn};
 use recrash_sim::{Ego, RolloutRecorder, Simulator, SummaryRecorder, simulate};
-use std::fmt::Write as _;
 
 mod common;
 use common::{alone, checked, random_draft, roundabout, steady, wide_cross};
@@ -121,32 +120,43 @@ fn another_traffic_seed_is_another_traffic() {
     assert_ne!(with_seed(1), with_seed(2));
 }
 
-/// State hashes of 60 scenarios with both egos: equal on every machine, in debug and release builds, for any history of
-/// the simulator. To renew them after a change of the model run with `RECRASH_RENEW_GOLDENS=1`; that run fails.
+#[test]
+fn a_driver_who_looks_touches_far_fewer_than_one_who_does_not() {
+    let contacts = |ego| {
+        let drafts = (0..2000).filter_map(|number| random_draft(21, number)).take(100);
+        drafts.filter(|draft| simulate(&checked(draft.clone()), ego).first_ego_contact().is_some()).count()
+    };
+    let (blind, looking) = (contacts(Ego::MetadriveIdm), contacts(Ego::Idm));
+    assert!(blind >= 10 && 2 * looking <= blind, "{blind} {looking}");
+}
+
+/// State hashes of the scenarios in `closed_loop.jsonl`, every sixth with background traffic, with both egos: equal on
+/// every machine, in debug and release builds, for any history of the simulator. To renew them after a change of the
+/// model run with `RECRASH_RENEW_GOLDENS=1`; that run fails.
 #[test]
 fn state_hashes_are_those_on_file() {
-    let mut drafts = common::trials();
-    drafts.extend((0..2000).filter_map(|number| random_draft(5, number)).take(54));
-    let mut hashes = String::new();
-    for (number, mut draft) in drafts.into_iter().enumerate() {
+    let mut hashes = Vec::new();
+    for (number, line) in include_str!("fixtures/closed_loop.jsonl").lines().enumerate() {
+        let value: serde_json::Value = serde_json::from_str(line).expect("JSON");
+        let mut draft: ScenarioDraft = serde_json::from_value(value["draft"].clone()).expect("a draft");
         if number % 6 == 5 {
             draft.traffic.density = 0.1;
         }
-        let scenario = checked(draft);
+        // The check may grow stricter after the scenarios were drawn.
+        let Ok(scenario) = recrash_roads::check(draft) else { continue };
         for ego in Ego::ALL {
-            let rollout = simulate(&scenario, ego);
-            writeln!(hashes, "{} {ego} {} {}", rollout.scenario_id, rollout.steps(), rollout.state_hash)
-                .expect("a string takes what is written");
+            let rollout = simulate(&scenario.value, ego);
+            hashes.push(format!("{} {ego} {} {}", rollout.scenario_id, rollout.steps(), rollout.state_hash));
         }
     }
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/state_hashes.txt");
     if std::env::var_os("RECRASH_RENEW_GOLDENS").is_some() {
-        std::fs::write(file, &hashes).expect("the golden can be written");
+        std::fs::write(file, hashes.join("\n") + "\n").expect("the golden can be written");
         panic!("the golden has been renewed: look at the difference, then run again without RECRASH_RENEW_GOLDENS");
     }
     let golden = std::fs::read_to_string(file).unwrap_or_default();
-    for (line, expected) in hashes.lines().zip(golden.lines()) {
-        assert_eq!(line, expected);
-    }
-    assert_eq!(hashes.lines().count(), golden.lines().count());
+    let golden: Vec<&str> = golden.lines().collect();
+    assert!(hashes.len() >= 80, "only {} scenarios can still be run", hashes.len());
+    let unknown: Vec<&String> = hashes.iter().filter(|hash| !golden.contains(&hash.as_str())).collect();
+    assert!(unknown.is_empty(), "{} of {} are not on file: {unknown:#?}", unknown.len(), hashes.len());
 }

@@ -129,7 +129,7 @@ fn slow_turns_have_the_radius_of_their_wheel_angle() {
 
 #[test]
 fn steady_radii_are_those_measured_in_metadrive() {
-    // METADRIVE, section 3.5: radius of the centre at (steer, speed).
+    // Radius of the centre at (steer, speed).
     for (steer, speed, radius) in [(0.05, 6.0, 71.8), (0.1, 10.0, 36.3), (0.2, 6.0, 18.0), (0.1, 15.0, 36.7)] {
         let mut drive = Drive::car(speed);
         let mut turned = 0.0;

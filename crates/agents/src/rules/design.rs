@@ -143,7 +143,7 @@ impl<'a> Stage<'a> {
         // The partner must fit on its way: where it would start before it, the ego starts farther on.
         let mut ego_start_m = EGO_START_M;
         let farthest_m = (approach_m - SHORTEST_LEAD_S * self.ego_mps).max(EGO_START_M);
-        let least_m = 0.5 * VehicleSpec::of(self.kind).length_m + 1.0;
+        let least_m = self.least_start_m();
         let mut timed = best_timings(&self.task(ego_start_m), &courses, &self.plan);
         for _ in 0..4 {
             let missing_m = timed.first().map_or(0.0, |(_, timing)| least_m - timing.partner_start_m);
@@ -193,6 +193,11 @@ impl<'a> Stage<'a> {
         }
     }
 
+    /// Nearest to the beginning of its way that the partner may start. [m]
+    fn least_start_m(&self) -> f64 {
+        0.5 * VehicleSpec::of(self.kind).length_m + 1.0
+    }
+
     /// First speed and acceleration of a partner that had stood. [m/s, m/s^2]
     fn sets_off(&self) -> Option<(f64, f64)> {
         let stood = self.staging.conflict == ConflictKind::Paths
@@ -207,7 +212,10 @@ impl<'a> Stage<'a> {
         partner.speed_mps = timing.partner_mps;
         match self.staging.conflict {
             ConflictKind::Paths => {
-                partner.start = Start::ArrivalGap { arrival_gap_s: round_to(timing.start, 0.01) };
+                // Where even the nearest start of the ego leaves too short a way, the partner comes that much earlier.
+                let missing_s =
+                    ((self.least_start_m() - timing.partner_start_m) / timing.partner_mps.max(1.0)).max(0.0);
+                partner.start = Start::ArrivalGap { arrival_gap_s: round_to(timing.start - missing_s, 0.01) };
                 partner.policy = Policy::IdmNominal { target_speed_mps: timing.partner_mps };
                 if self.staging.beside.is_some() && self.narrative.template.work_zone {
                     // The intelligent driver model would stop for cones that narrow its lane.

@@ -23,7 +23,7 @@ pub struct Plan {
     partner: Path,
     partner_kind: PartnerKind,
     drift: bool,
-    brake_m: f64,
+    slow_mps: f64,
     /// Speed of the ego. [m/s]
     pub ego_speed: f64,
     /// Speed of the partner. [m/s]
@@ -80,7 +80,7 @@ impl Plan {
             partner,
             partner_kind: kinds[cluster.number % kinds.len()],
             drift,
-            brake_m: if cluster.number % 4 == 1 { 5.2 } else { 1.4 },
+            slow_mps: if cluster.number % 4 == 1 { 3.0 } else { 0.9 },
             ego_speed: 7.0 + 0.13 * number,
             partner_speed: 8.6 - 0.11 * number,
             designed_gap_s: if cluster.number % 5 == 1 { 0.2 } else { 1.6 + 0.06 * number },
@@ -101,8 +101,9 @@ impl Plan {
         let arrive = 6.0;
         let ego = sample(&self.ego, |time| {
             let s = self.meet.0 + self.ego_speed * (time - arrive);
-            let brake = self.brake_m * math::exp(-math::sq(time - 4.6));
-            (s - brake, 0.0)
+            // It slows from 4.6 s on, by `slow_mps` in all, and would otherwise have been there earlier.
+            let slowed = self.slow_mps / 6.0 * math::ln(1.0 + math::exp(6.0 * (time - 4.6)));
+            (s - slowed + self.slow_mps * (arrive - 4.6), 0.0)
         });
         let partner = sample(&self.partner, |time| {
             let s = self.meet.1 + self.partner_speed * (time - arrive - arrival_gap_s);

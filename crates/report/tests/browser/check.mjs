@@ -1,7 +1,9 @@
 // Opens a report in headless Chromium and checks that it works: nothing is loaded, nothing is logged, the replay plays,
 // time can be moved, tabs and keys work, every scenario opens.
 //
-//   node check.mjs REPORT.html [--screenshot OUT.png] [--chromium PATH]
+//   node check.mjs REPORT.html [--screenshot OUT.png [--at ADDRESS]] [--chromium PATH]
+//
+// ADDRESS is a place on the page, such as case-03-intersection-straight-left~tuning; a replay is shown at its least gap.
 //
 // Exit: 0 all is well; 1 a check failed; 2 it could not be run.
 
@@ -9,7 +11,7 @@ import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-const USAGE = 'usage: node check.mjs REPORT.html [--screenshot OUT.png] [--chromium PATH]';
+const USAGE = 'usage: node check.mjs REPORT.html [--screenshot OUT.png [--at ADDRESS]] [--chromium PATH]';
 const MOST_CASES = 60;
 
 function stop(message) {
@@ -17,11 +19,11 @@ function stop(message) {
   process.exit(2);
 }
 
-const options = { screenshot: null, chromium: process.env.CHROMIUM ?? '/usr/bin/chromium' };
+const options = { screenshot: null, at: 'overview', chromium: process.env.CHROMIUM ?? '/usr/bin/chromium' };
 let report = null;
 for (let i = 2; i < process.argv.length; i++) {
   const argument = process.argv[i];
-  if (argument === '--screenshot' || argument === '--chromium') options[argument.slice(2)] = process.argv[++i] ?? stop(USAGE);
+  if (['--screenshot', '--at', '--chromium'].includes(argument)) options[argument.slice(2)] = process.argv[++i] ?? stop(USAGE);
   else if (report === null && !argument.startsWith('-')) report = argument;
   else stop(USAGE);
 }
@@ -203,7 +205,12 @@ async function checkKeys(page) {
 try {
   const page = await open({ colorScheme: 'light' });
   const cases = await checkPage(page);
-  if (options.screenshot) await page.screenshot({ path: options.screenshot });
+  if (options.screenshot) {
+    const shown = await open({ colorScheme: 'light' }, `#${options.at.replace(/^#/, '')}`);
+    await shown.keyboard.press('m');
+    await shown.waitForTimeout(200);
+    await shown.screenshot({ path: options.screenshot });
+  }
   if (cases > 0) await checkTable(page);
   const anchors = await page.locator('.page.case').evaluateAll((all) => all.map((section) => [section.id, section.querySelectorAll('[data-mode]:not(:disabled)').length]));
   const most = Math.max(0, ...anchors.map(([, modes]) => modes));

@@ -107,7 +107,7 @@ pub fn checked(draft: ScenarioDraft) -> Scenario {
     }
 }
 
-/// Six scenarios of the kinds tried in METADRIVE, section 5.1.
+/// Six scenarios of the kinds that matter: crossing, oncoming turn, merge, sideswipe past cones, same exit, braking lead.
 pub fn trials() -> Vec<ScenarioDraft> {
     let named = |mut draft: ScenarioDraft, id: &str| {
         draft.id = id.to_owned();

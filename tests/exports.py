@@ -1,0 +1,88 @@
+"""What the tests of exports share: the scenarios of the sample suite and one case per map, in every format."""
+
+import json
+import math
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+CASES = ROOT / "crates" / "export" / "tests" / "cases"
+
+
+@dataclass(frozen=True)
+class Export:
+    """One scenario: its file, its rollout, and where its exports are."""
+
+    id: str
+    scenario: dict
+    rollout: dict
+    folder: Path
+
+    def path(self, format_name: str, suffix: str) -> Path:
+        return self.folder / format_name / f"{self.id}{suffix}"
+
+    def partners(self) -> list[dict]:
+        return [actor for actor in self.rollout["actors"] if actor["role"] == "partner"]
+
+    def steps_until_contact(self, actor_id: str) -> int:
+        """Steps of a partner before it first touches anything."""
+        number = [actor["id"] for actor in self.rollout["actors"]].index(actor_id)
+        steps = len(self.rollout["actors"][0]["states"])
+        for event in self.rollout["events"]:
+            kind = event["kind"]
+            if number in (kind.get("a"), kind.get("b"), kind.get("actor")):
+                return min(steps, int(event["time_s"] / 0.1))
+        return steps
+
+
+def make(recrash: str, scenarios: list[Path], folder: Path) -> list[Export]:
+    """Exports scenario files one by one in every format, partners acting and recorded."""
+    found = []
+    for path in scenarios:
+        scenario = json.loads(path.read_text())
+        target = folder / scenario["id"]
+        rollout = target / "rollout.json"
+        target.mkdir(parents=True)
+        run(recrash, "simulate", "--quiet", path, "--rollout", rollout)
+        run(recrash, "export", "--quiet", path, "--to", "openscenario,scenic,metadrive,commonroad", "--to-dir", target)
+        run(recrash, "export", "--quiet", path, "--to", "openscenario", "--as", "trajectory", "--to-dir", target / "recorded")
+        found.append(Export(scenario["id"], scenario, json.loads(rollout.read_text()), target))
+    return found
+
+
+def run(*command: object) -> str:
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    assert done.returncode == 0, f"{command}: {done.stderr}"
+    return done.stdout
+
+
+def lane_lengths(spec: dict) -> list[list[float]]:
+    """Lengths of the lanes of every road outside junctions, from the map's numbers alone (`docs/models/roads.md`)."""
+    lanes, width = spec["lanes"], spec["lane_width_m"]
+    straight = lambda length: [[length] * lanes] * 2
+    roads = [*straight(10.0), *straight(spec["approach_m"] - 10.0)]
+    if spec["type"] == "S":
+        roads += straight(spec["length_m"])
+    elif spec["type"] == "C":
+        side = 1 if spec["direction"] == "right" else -1
+        angle = math.radians(spec["angle_deg"])
+        # Lane n - 1 is the rightmost; the opposite lanes lie behind lane 0.
+        forward = [angle * (spec["radius_m"] + side * (lanes - 1 - k) * width) for k in range(lanes)]
+        backward = [angle * (spec["radius_m"] + side * (lanes + k) * width) for k in range(lanes)]
+        roads += [forward, backward, *straight(spec["length_m"])]
+    elif spec["type"] in "XT":
+        for _ in range(3 if spec["type"] == "X" else 2):
+            roads += straight(spec["arm_m"])
+    else:
+        for _ in range(3):
+            roads += straight(spec["arm_m"])
+        radius = (2 * lanes - 1) * width + spec["inner_radius_m"]
+        roads += [[math.radians(30) * (radius - (lanes - 1 - k) * width) for k in range(lanes)]] * 4
+    return roads
+
+
+def lane_connections(spec: dict) -> int:
+    """Ways from one lane to the next, those through junctions counted once."""
+    ways = {"S": 4, "C": 6, "X": 2 + 12, "T": 2 + 6, "O": 2 + 12}[spec["type"]]
+    return ways * spec["lanes"]

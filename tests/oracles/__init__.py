@@ -1,0 +1,68 @@
+"""Programs that none of us wrote, each in an environment of its own, made when first asked for."""
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+HERE = Path(__file__).resolve().parent
+
+
+def environment(name: str) -> Path:
+    """The folder of programs of the environment of `requirements/NAME.txt`.
+
+    Where it cannot be made the test is skipped by name; with CI set, it fails.
+    """
+    requirements = ROOT / "requirements" / f"{name}.txt"
+    digest = hashlib.sha256(requirements.read_bytes()).hexdigest()[:12]
+    folder = Path(os.environ.get("RECRASH_ORACLES", ROOT / ".oracles")) / f"{name}-{digest}"
+    programs = folder / ("Scripts" if os.name == "nt" else "bin")
+    finished = folder / "finished"
+    if not finished.exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        try:
+            install(folder, programs, requirements)
+            finished.touch()
+        except (OSError, subprocess.CalledProcessError) as error:
+            output = getattr(error, "stderr", "") or ""
+            unavailable(name, f"its environment cannot be made: {error} {output[-300:]}")
+    return programs
+
+
+def install(folder: Path, programs: Path, requirements: Path) -> None:
+    """A fresh environment; uv where it is at hand, else venv and pip."""
+    uv = shutil.which("uv")
+    if uv:
+        call([uv, "venv", "--quiet", "--python", sys.executable, str(folder)])
+        call([uv, "pip", "install", "--quiet", "--python", str(programs / "python"), "-r", str(requirements)])
+    else:
+        call([sys.executable, "-m", "venv", str(folder)])
+        pip = [str(programs / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        call([*pip, "-r", str(requirements)])
+
+
+def call(command: list[str]) -> None:
+    subprocess.run(command, check=True, capture_output=True, text=True, timeout=600)
+
+
+def unavailable(name: str, why: str) -> None:
+    """Skips a test by name; with CI set it fails."""
+    if os.environ.get("CI"):
+        pytest.fail(f"{name}: {why}")
+    pytest.skip(f"skipped: {name} ({why})")
+
+
+def answers(name: str, script: str, *arguments: str) -> list[dict]:
+    """Runs one of the scripts here in an environment; one JSON object per line it prints."""
+    programs = environment(name)
+    command = [str(programs / "python"), str(HERE / script), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    assert done.returncode == 0 and found, f"{script}: {done.stderr[-2000:]}"
+    return found
