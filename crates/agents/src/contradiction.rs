@@ -32,7 +32,7 @@ fn contradiction(fact: &FactValue, template: Template, profile: &SystemProfile) 
             Some("only a traffic circle has a ring".to_owned())
         }
         FactValue::SvSpeed { speed_mps } | FactValue::CpSpeed { speed_mps }
-            if !(0.0..=fastest * 1.5).contains(&speed_mps) =>
+            if !(0.0..=fastest * 2.0).contains(&speed_mps) =>
         {
             Some(format!("a speed of {speed_mps} m/s cannot be expressed; up to {fastest} can"))
         }

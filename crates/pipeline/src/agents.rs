@@ -178,11 +178,7 @@ impl AgentLog {
 ///
 /// # Errors
 /// The answer is still to come, is missing from the ledger, or the rules cannot either.
-pub fn paraphrase(
-    models: Option<&Models>,
-    name: &str,
-    brief: &Brief,
-) -> Result<(Narrative, AgentLog), PipelineError> {
+pub fn paraphrase(models: Option<&Models>, name: &str, brief: &Brief) -> Result<(Narrative, AgentLog), PipelineError> {
     let by_rules = || {
         Rules
             .paraphrase(brief)

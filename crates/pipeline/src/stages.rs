@@ -393,9 +393,8 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         let parameters = parameters(&draft, &narrative, suite.profile());
         let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), &simulator, &first);
         // A faithful contact as designed is what the search looks for, at no distance from the record.
-        let enough = |point: &TunePoint| {
-            point.number == 0 && point.score.refused.is_empty() && first.metrics.contact.is_some()
-        };
+        let enough =
+            |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && first.metrics.contact.is_some();
         let seed = case_seed(suite, cluster).child("tune");
         let search = || recrash_search::tune(id, &parameters, options, seed, |values| scoring.score(values), enough);
         let log: TuneLog = match suite.models().filter(|_| suite.options().cast.tune != RULES) {
