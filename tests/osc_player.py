@@ -186,7 +186,7 @@ class Player:
 
 
 def play(scenario: Path, seconds: float) -> dict[str, list[tuple[float, float]]]:
-    """Positions of every partner's centre each 0.1 s."""
+    """Positions of every partner's centre each 0.1 s, until its road ends."""
     root = ElementTree.parse(scenario).getroot()
     drive_map = DriveMap(scenario.parent / root.find("RoadNetwork/LogicFile").get("filepath"))
     parameters = Parameters(root)
@@ -242,6 +242,8 @@ def act(drive_map, parameters, init, events, to_centre, seconds):
         now = step * STEP_S
         while waiting and waiting[0][0] <= now + 1e-9:
             begin(player, parameters, waiting.pop(0)[1], now)
+        if player.ended:
+            break
         if step % 5 == 0:
             track.append(player.pose())
         player.advance(now)

@@ -36,6 +36,11 @@ def swept(recrash: str, suite: Path, tmp_path_factory: pytest.TempPathFactory) -
     return folder
 
 
+def is_case(export: Export) -> bool:
+    """Whether it is one of the cases, rather than of the suite."""
+    return (CASES / f"{export.id}.json").exists()
+
+
 def test_there_is_a_scenario_for_every_map(exports: list[Export]) -> None:
     assert {export.scenario["map"]["type"] for export in exports} == set(MAPS)
 
@@ -44,7 +49,8 @@ def test_there_is_a_scenario_for_every_map(exports: list[Export]) -> None:
 
 
 def test_asam_checkers_find_nothing(exports: list[Export], swept: Path) -> None:
-    files = [path for export in exports for path in sorted(export.folder.rglob("openscenario/*.x*"))]
+    files = [path for export in exports if is_case(export) for path in sorted(export.folder.glob("openscenario/*.x*"))]
+    files += [path for export in exports for path in sorted(export.folder.glob("recorded/openscenario/*.xosc"))]
     files += sorted((swept / "openscenario").glob("*.x*"))
     found = answers("qc", "qc.py", *map(str, files))
     assert len(found) == len(files)
@@ -86,45 +92,47 @@ def test_netconvert_reads_the_maps_as_they_are(exports: list[Export], tmp_path: 
         assert len(edges) == len(expected), export.id
         assert sum(not c.get("from").startswith(":") for c in root.findall("connection")) == lane_connections(spec), export.id
         widths = {float(lane.get("width", "3.2")) for edge in edges for lane in edge.findall("lane")}
-        assert widths == {pytest.approx(spec["lane_width_m"], abs=0.006)}, export.id
-        # SUMO gives all lanes of an edge one length, their mean, measured along chords.
+        assert all(width == pytest.approx(spec["lane_width_m"], abs=0.006) for width in widths), export.id
+        # SUMO gives all lanes of an edge one length, their mean, measured along chords and cut a little at junctions.
         lengths = sorted(float(edge.find("lane").get("length")) for edge in edges)
         for length, mean in zip(lengths, sorted(sum(lanes) / len(lanes) for lanes in expected)):
-            assert length == pytest.approx(mean, rel=0.012), export.id
+            assert length == pytest.approx(mean, rel=0.012, abs=0.3), export.id
 
 
 def test_partners_played_by_their_actions_are_where_ours_are(exports: list[Export]) -> None:
-    """0.3 m, and 0.5 m while it moves sideways: the format's lane change is a straight line, a vehicle's is not."""
+    """Along the way 0.35 m. Across it an action follows a lane, or a straight line from lane to lane, and a vehicle on
+    tyres does not: most where it is thrown from arc to arc (see `docs/formats/openscenario.md`)."""
     for export in exports:
-        check_played(export, export.path("openscenario", ".xosc"), lambda spec: 0.5 if spec.get("lateral") else 0.3)
+        for spec, along, across in deviations(export, export.path("openscenario", ".xosc")):
+            curves = export.scenario["map"]["type"] == "O" or spec["turn"] != "straight"
+            most = 2.0 if export.scenario["map"]["type"] == "O" else 1.0 if curves else 0.5
+            assert along <= 0.35, f"{export.id} {spec['id']}: {along:.2f} m along its way"
+            assert across <= most, f"{export.id} {spec['id']}: {across:.2f} m across its way"
 
 
 def test_partners_played_by_their_recording_are_where_ours_are(exports: list[Export]) -> None:
     for export in exports:
-        recorded = export.folder / "recorded" / "openscenario" / f"{export.id}.xosc"
-        check_played(export, recorded, lambda spec: 1e-3)
+        for spec, along, across in deviations(export, export.folder / "recorded" / "openscenario" / f"{export.id}.xosc"):
+            assert max(along, across) <= 1e-3, f"{export.id} {spec['id']}"
 
 
-def check_played(export: Export, scenario: Path, bound) -> None:
-    seconds = 0.1 * (len(export.rollout["actors"][0]["states"]) - 1)
-    tracks = play(scenario, seconds)
+def deviations(export: Export, scenario: Path) -> list[tuple[dict, float, float]]:
+    """Per partner how far the played one is from ours until its first contact, along our heading and across it."""
+    tracks = play(scenario, 0.1 * (len(export.rollout["actors"][0]["states"]) - 1))
     assert set(tracks) == {actor["id"] for actor in export.partners()}
+    found = []
     for actor, spec in zip(export.partners(), export.scenario["partners"]):
         steps = export.steps_until_contact(actor["id"])
-        assert steps > 0
-        for step, (point, state) in enumerate(zip(tracks[actor["id"]][:steps], actor["states"])):
-            if leaves_the_map(export, state):
-                break
-            off = math.hypot(point[0] - state["x"], point[1] - state["y"])
-            assert off <= bound(spec), f"{export.id} {actor['id']}: {off:.2f} m at {0.1 * step:.1f} s"
-
-
-def leaves_the_map(export: Export, state: dict) -> bool:
-    """Whether a road user is about to drive off the far end of a road; the format ends it there, the simulator does not."""
-    header = ElementTree.parse(export.path("openscenario", ".xodr")).getroot().find("header")
-    west, east, south, north = (float(header.get(side)) for side in ("west", "east", "south", "north"))
-    margin = export.scenario["map"]["lanes"] * export.scenario["map"]["lane_width_m"] + 8
-    return not (west + margin < state["x"] < east - margin and south + margin < state["y"] < north - margin)
+        along = across = 0.0
+        pairs = list(zip(tracks[actor["id"]][:steps], actor["states"]))
+        assert pairs
+        for point, state in pairs:
+            dx, dy = point[0] - state["x"], point[1] - state["y"]
+            forward = (math.cos(state["heading"]), math.sin(state["heading"]))
+            along = max(along, abs(dx * forward[0] + dy * forward[1]))
+            across = max(across, abs(dy * forward[0] - dx * forward[1]))
+        found.append((spec, along, across))
+    return found
 
 
 def test_esmini_plays_every_file_to_its_end(exports: list[Export], tmp_path: Path) -> None:
@@ -144,15 +152,17 @@ def test_esmini_plays_every_file_to_its_end(exports: list[Export], tmp_path: Pat
 
 
 def test_scenic_compiles_every_file_and_samples_its_ranges(exports: list[Export], swept: Path) -> None:
-    files = [export.path("scenic", ".scenic") for export in exports] + sorted((swept / "scenic").glob("*.scenic"))
+    files = [export.path("scenic", ".scenic") for export in exports if is_case(export)]
+    files += sorted((swept / "scenic").glob("*.scenic"))
     found = answers("scenic", "scenic_run.py", "compile", "1", "sweep=1", *map(str, files))
     assert len(found) == len(files)
     assert [report for report in found if "error" in report] == []
 
 
 def test_scenic_drives_each_map_as_our_simulator_does(exports: list[Export]) -> None:
-    """Newtonian has no tyres and its own brakes; over 5 s, and before any contact, it stays within 0.5 m all the same."""
-    cases = [export for export in exports if (CASES / f"{export.id}.json").exists()]
+    """Newtonian has no tyres and its own brakes; over 5 s, and before any contact, it stays within 0.5 m all the same
+    (0.7 m for a partner that moves sideways)."""
+    cases = [export for export in exports if is_case(export)]
     assert {export.scenario["map"]["type"] for export in cases} == set(MAPS)
     found = answers("scenic", "scenic_run.py", "newtonian", "50", *(str(c.path("scenic", ".scenic")) for c in cases))
     for export, report in zip(cases, found):
@@ -160,11 +170,12 @@ def test_scenic_drives_each_map_as_our_simulator_does(exports: list[Export]) -> 
         actors = export.rollout["actors"][: 1 + len(export.scenario["partners"])]
         steps = min([len(report["trajectory"]), 51] + [export.steps_until_contact(actor["id"]) for actor in actors])
         assert steps > 25, export.id
+        sideways = {spec["id"] for spec in export.scenario["partners"] if spec.get("lateral")}
         for step in range(steps):
             for actor, (x, y) in zip(actors, report["trajectory"][step]):
                 state = actor["states"][step]
                 off = math.hypot(x - state["x"], y - state["y"])
-                assert off <= 0.5, f"{export.id} {actor['id']}: {off:.2f} m at {0.1 * step:.1f} s"
+                assert off <= (0.7 if actor["id"] in sideways else 0.5), f"{export.id} {actor['id']}: {off:.2f} m at {0.1 * step:.1f} s"
 
 
 # ---- CommonRoad ----
@@ -217,7 +228,7 @@ def test_metadrive_script_drives_each_map_as_our_simulator_does(exports: list[Ex
     python = os.environ.get("RECRASH_METADRIVE_PYTHON")
     if not python:
         pytest.skip("skipped: MetaDrive (set RECRASH_METADRIVE_PYTHON to a Python 3.11 with metadrive-simulator 0.4.3)")
-    for export in (export for export in exports if (CASES / f"{export.id}.json").exists()):
+    for export in filter(is_case, exports):
         trace = tmp_path / f"{export.id}.json"
         script = export.folder / "metadrive" / "run_metadrive.py"
         run(python, script, export.path("metadrive", ".metadrive.json"), "--headless", "--trace", trace)

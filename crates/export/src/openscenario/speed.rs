@@ -1,6 +1,7 @@
 //! Policies as speed actions: when each begins, and how the speed goes from there.
 
 use super::Context;
+use super::places::reference_point;
 use crate::xml::{Element, number, rounded};
 use recrash_model::rollout::{EventKind, STEP_S};
 use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
@@ -32,6 +33,12 @@ impl Curve {
         let last = self.0.len() - 1;
         let (a, b) = (self.0[before.min(last)], self.0[(before + 1).min(last)]);
         a + (b - a) * (position - position.floor())
+    }
+
+    /// Every step from one time to another, two at least.
+    fn between(&self, from_s: f64, to_s: f64) -> Vec<f64> {
+        let count = (((to_s - from_s) / STEP_S).round() as usize).max(1);
+        (0..=count).map(|step| self.at(from_s + step as f64 * STEP_S)).collect()
     }
 }
 
@@ -185,17 +192,19 @@ fn longitudinal(action: Element) -> Element {
 /// speed at the start where that has one.
 fn approach(curve: &Curve, from_s: f64, to_s: f64, target: (&str, f64), start: Option<(&str, f64)>) -> Element {
     let (name, target_mps) = target;
-    if (curve.at(from_s) - target_mps).abs() < REACHED_MPS
-        && start.is_none_or(|(_, v)| (v - target_mps).abs() < REACHED_MPS)
+    let reached = |speed: f64| (speed - target_mps).abs() < REACHED_MPS;
+    if start.is_none_or(|(_, speed)| reached(speed)) && curve.between(from_s, to_s).iter().all(|&speed| reached(speed))
     {
         return speed_at_once(name);
     }
     profile(curve, from_s, to_s, |speed| {
-        if (speed - target_mps).abs() < REACHED_MPS {
+        if reached(speed) {
             return name.to_owned();
         }
+        // On the way from one to the other it is a mix of both.
         if let Some((start_name, start_mps)) = start
             && (start_mps - target_mps).abs() > REACHED_MPS
+            && (start_mps.min(target_mps)..=start_mps.max(target_mps)).contains(&speed)
         {
             let share = (speed - start_mps) / (target_mps - start_mps);
             return format!("${{{start_name} * {} + {name} * {}}}", short(1.0 - share), short(share));
@@ -211,8 +220,8 @@ fn short(value: f64) -> String {
 
 /// The curve between two times as a speed profile of straight pieces.
 fn profile(curve: &Curve, from_s: f64, to_s: f64, write: impl Fn(f64) -> String) -> Element {
-    let count = (((to_s - from_s) / STEP_S).round() as usize).max(1);
-    let speeds: Vec<f64> = (0..=count).map(|step| curve.at(from_s + step as f64 * STEP_S)).collect();
+    let speeds = curve.between(from_s, to_s);
+    let count = speeds.len() - 1;
     let mut corners = Vec::new();
     simplify(&speeds, 0, count, &mut corners);
     corners.push(count);
@@ -246,28 +255,44 @@ fn simplify(speeds: &[f64], first: usize, last: usize, corners: &mut Vec<usize>)
     }
 }
 
-/// The partner's speeds in the rollout, up to its first contact.
+/// How fast the partner moved along its way in the rollout, up to its first contact.
+///
+/// Not its speed over ground: a vehicle that sways or cuts a curve is faster than it gets on, and actions know no swaying.
 fn recorded_curve(context: &Context<'_>, position: usize) -> Option<Curve> {
     let rollout = context.rollout?;
     let actor = position + 1;
-    let states = &rollout.actors.get(actor)?.states;
+    let track = rollout.actors.get(actor)?;
     let contact_s = rollout.events.iter().find_map(|event| match event.kind {
         EventKind::Contact { a, b, .. } if a == actor || b == actor => Some(event.time_s),
         EventKind::ObstacleContact { actor: who, .. } if who == actor => Some(event.time_s),
         _ => None,
     });
-    let until = contact_s.map_or(states.len(), |time| (time / STEP_S).floor() as usize + 1).min(states.len());
-    let mut speeds: Vec<f64> = states[..until].iter().map(|state| state.speed).collect();
-    if speeds.len() < 2 {
+    let count = track.states.len();
+    let until = contact_s.map_or(count, |time| (time / STEP_S).floor() as usize + 1).min(count);
+    if until < 3 {
         return None;
     }
+    let path = &context.scenario.partners()[position].path;
+    let mut segment = 0;
+    let places: Vec<f64> = track.states[..until]
+        .iter()
+        .map(|state| {
+            let point = reference_point(track.kind, state.pose()).position;
+            let found = path.project(context.scenario.network(), point, segment);
+            segment = found.segment;
+            found.s
+        })
+        .collect();
+    let mut speeds = vec![track.states[0].speed];
+    speeds.extend(places.windows(3).map(|three| ((three[2] - three[0]) / (2.0 * STEP_S)).max(0.0)));
+    speeds.push(((places[until - 1] - places[until - 2]) / STEP_S).max(0.0));
     // Behind the end of the record it goes on as its policy would.
-    let policy = &context.scenario.draft().partners[position].policy;
-    let spec = VehicleSpec::of(context.scenario.draft().partners[position].kind);
-    let mut speed = speeds[speeds.len() - 1];
-    let steps = (context.scenario.draft().duration_s / STEP_S).ceil() as usize;
-    for step in speeds.len()..=steps {
-        speed = next_speed(policy, speed, u32::try_from(step - 1).unwrap_or(u32::MAX), &spec);
+    let draft = context.scenario.draft();
+    let spec = VehicleSpec::of(track.kind);
+    let mut speed = speeds[until - 1];
+    let steps = (draft.duration_s / STEP_S).ceil() as usize;
+    for step in until..=steps {
+        speed = next_speed(&draft.partners[position].policy, speed, u32::try_from(step - 1).unwrap_or(u32::MAX), &spec);
         speeds.push(speed);
     }
     Some(Curve(speeds))
