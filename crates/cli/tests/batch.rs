@@ -106,9 +106,9 @@ fn good_answers_are_taken_at_once_and_replay_gives_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let model = ScriptedModel::new(folder.path());
     let batch = folder.path().join("batch");
-    // Paraphrase, design, and two rounds of tuning.
+    // Paraphrase, design, and rounds of tuning where the design is no contact yet.
     let stops = run_to_the_end(&model, &batch, str::to_owned);
-    assert!((3..=4).contains(&stops), "{stops}");
+    assert!((2..=4).contains(&stops), "{stops}");
     assert!(outcomes(&batch, "narrated").iter().all(|o| o == "first answer"));
     assert!(outcomes(&batch, "designed").iter().all(|o| o == "first answer"));
 
