@@ -34,7 +34,7 @@ matter; texts with blanks stand in quotes. A value that is not known equals unkn
 Texts:    report incident entity vehicle place narrative file
 Numbers:  year month time_of_day_min posted_speed_mps sv_speed_mps
 Codes:    road sv_movement (sv) cp_movement (cp) partner severity engagement surface lighting weather sv_zones cp_zones
-          redaction edition; a wrong value lists the right ones, and severity has an order
+          redaction edition (a wrong value lists the right ones; severity has an order)
 Yes/no:   work_zone";
 
 /// A filter over records.
