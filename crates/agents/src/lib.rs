@@ -11,10 +11,13 @@
 //! What this crate does **not** do: it simulates nothing, measures nothing and searches nothing. Narratives are untrusted
 //! text: they are matched against patterns, never followed.
 
+mod contradiction;
 mod expectation;
+pub mod llm;
 mod parameters;
 mod rules;
 
+pub use contradiction::narrative_contradictions;
 pub use expectation::expectation;
 pub use parameters::parameters;
 pub use rules::Rules;
@@ -105,4 +108,20 @@ pub enum AgentError {
         /// What the agent can stage.
         known: &'static str,
     },
+    /// A prompt cannot be filled in.
+    #[error("a prompt cannot be filled in: {0}")]
+    Prompt(String),
+    /// The model gave no answer that can be used.
+    #[error("{model} gave no usable answer in {repairs} repairs: {problem}")]
+    NoUsableAnswer {
+        /// Model.
+        model: String,
+        /// How often it was told what was wrong.
+        repairs: usize,
+        /// What was wrong with the last answer.
+        problem: String,
+    },
+    /// The model was not asked, or could not be.
+    #[error(transparent)]
+    Ask(#[from] llm::AskError),
 }

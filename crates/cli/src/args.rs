@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use recrash_model::profile::Dedupe;
 use recrash_model::selection::Strategy;
 use recrash_pipeline::{
-    CrashKind, FILTER_HELP, Format, Options, PublishedEdition, RecordSource, Resources, SimulatorKind,
+    AnswerMode, Cast, CrashKind, FILTER_HELP, Format, Options, PublishedEdition, RecordSource, Resources, SimulatorKind,
 };
 use std::path::PathBuf;
 
@@ -17,7 +17,8 @@ Examples:
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
-Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used";
+Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
+  4 questions wait for a batch";
 
 /// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
 #[derive(Debug, Parser)]
@@ -88,9 +89,25 @@ pub struct SuiteArgs {
     /// How the picks are chosen: stratified, or kmeans as in the paper. [default: stratified]
     #[arg(long, value_name = "NAME", value_parser = strategy)]
     pub strategy: Option<Strategy>,
-    /// Who paraphrases and designs: the built-in rules. [default: rules]
-    #[arg(long, value_name = "NAME", value_parser = ["rules"])]
+    /// Who paraphrases, designs and tunes: rules, or a language model by name (see --llm). [default: rules]
+    #[arg(long, value_name = "rules|MODEL")]
     pub agent: Option<String>,
+    /// Who paraphrases. [default: as --agent]
+    #[arg(long, value_name = "rules|MODEL")]
+    pub paraphrase: Option<String>,
+    /// Who designs. [default: as --agent]
+    #[arg(long, value_name = "rules|MODEL")]
+    pub design: Option<String>,
+    /// Who tunes; rules is the search. [default: as --agent]
+    #[arg(long, value_name = "rules|MODEL")]
+    pub tune: Option<String>,
+    /// Rounds of a model that tunes. [default: 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=50))]
+    pub rounds: Option<u16>,
+    /// How a model is asked: batch writes requests.jsonl in OpenAI's Batch form, stops, and goes on when responses.jsonl
+    /// lies beside it; replay takes answers from the suite's ledger alone.
+    #[arg(long, value_name = "MODE", value_parser = ["batch", "replay"], default_value = "batch")]
+    pub llm: String,
     /// Folder with the files of all-MiniLM-L6-v2, to embed narratives with. [default: a lexical embedding]
     #[arg(long, value_name = "DIR")]
     pub model_dir: Option<PathBuf>,
@@ -218,6 +235,7 @@ impl SuiteArgs {
             budget: self.budget.map_or(base.budget, usize::from),
             strategy: self.strategy.unwrap_or(base.strategy),
             model_dir: self.model_dir.clone().or(base.model_dir),
+            cast: self.cast(base.cast),
             simulator: self.sim.unwrap_or(base.simulator),
             ego: self.ego.clone().or(base.ego),
             tune_budget: self.tune_budget.map_or(base.tune_budget, |n| n as usize),
@@ -228,9 +246,20 @@ impl SuiteArgs {
 }
 
 impl SuiteArgs {
+    fn cast(&self, base: Cast) -> Cast {
+        let role = |own: &Option<String>, base: String| own.clone().or_else(|| self.agent.clone()).unwrap_or(base);
+        Cast {
+            paraphrase: role(&self.paraphrase, base.paraphrase),
+            design: role(&self.design, base.design),
+            tune: role(&self.tune, base.tune),
+            rounds: self.rounds.map_or(base.rounds, usize::from),
+        }
+    }
+
     /// What may be used of the machine.
     pub fn resources(&self) -> Resources {
-        Resources { threads: self.threads.map(usize::from), python: self.python.clone() }
+        let answers = if self.llm == "replay" { AnswerMode::Replay } else { AnswerMode::Batch };
+        Resources { threads: self.threads.map(usize::from), python: self.python.clone(), answers }
     }
 }
 

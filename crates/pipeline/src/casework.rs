@@ -1,5 +1,6 @@
 //! Work on one case: the loop of design, check, rollout and verdict; and one run of one scenario.
 
+use crate::agents::{RULES, unusable};
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::simulator::{Simulator, SimulatorKind};
@@ -10,7 +11,7 @@ use recrash_model::metrics::{Check, Expectation, Finding, Metrics, Series, Verdi
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::Rollout;
-use recrash_model::scenario::ScenarioDraft;
+use recrash_model::scenario::{Author, ScenarioDraft};
 use recrash_model::{Diagnostic, Outcome};
 use recrash_roads::Scenario;
 use serde::{Deserialize, Serialize};
@@ -18,8 +19,8 @@ use std::path::Path;
 
 /// Scenario files larger than this are refused. [bytes]
 const MAX_SCENARIO_FILE: u64 = 1 << 20;
-/// Designs that are tried before the best so far is taken.
-const MAX_DESIGNS: usize = 6;
+/// Designs of the rules that are tried before the best so far is taken.
+pub const MAX_DESIGNS: usize = 6;
 
 /// One run of one scenario, with all that was computed from it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -75,10 +76,16 @@ pub fn run_scenario(
 /// What became of the designs of one scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignLog {
+    /// `rules`, or the model that was asked first.
+    pub asked: String,
+    /// Answers that went back to the model because of their form.
+    pub repairs: usize,
     /// Every try, in order.
     pub attempts: Vec<DesignAttempt>,
     /// Number of the try that was taken, from 0.
     pub taken: usize,
+    /// Designers that did not come to a faithful scenario, and why.
+    pub gave_up: Vec<String>,
 }
 
 /// One try.
@@ -92,6 +99,18 @@ pub struct DesignAttempt {
     pub unfaithful: Option<Vec<Check>>,
 }
 
+impl DesignLog {
+    /// One word for tables: `rules`, `first answer`, `after repair` or `fallback`.
+    pub fn outcome(&self) -> &'static str {
+        match self.attempts.get(self.taken).map(|attempt| &attempt.draft.source.author) {
+            _ if self.asked == RULES => "rules",
+            None | Some(Author::Rules) => "fallback",
+            _ if self.taken == 0 && self.repairs == 0 => "first answer",
+            _ => "after repair",
+        }
+    }
+}
+
 impl DesignAttempt {
     /// The fewer the better: not runnable counts as worse than any unfaithfulness.
     fn faults(&self) -> usize {
@@ -99,27 +118,76 @@ impl DesignAttempt {
     }
 }
 
-/// Designs a scenario: each try is checked, run and judged, and what was wrong goes into the next. The first faithful
-/// one is taken, or the one with the fewest faults.
+/// A designer and how often it may try.
+pub struct Designer<'a> {
+    /// Name: `rules` or a model.
+    pub name: &'a str,
+    /// The agent.
+    pub agent: &'a dyn Design,
+    /// Tries.
+    pub tries: usize,
+}
+
+/// What became of one designer's tries.
+enum Course {
+    /// The last try is faithful.
+    Faithful,
+    /// The tries are used up.
+    UsedUp,
+    /// The agent has no further answer, and why.
+    GaveUp(String),
+}
+
+/// Designs a scenario: each try is checked, run and judged, and what was wrong goes into the next. The designers come in
+/// turn until a try is faithful; else the one with the fewest faults is taken.
 ///
 /// # Errors
-/// The agent gave up, or none of its designs can be run.
+/// An answer is still to come, or none of the designs can be run.
 pub fn design_case(
-    agent: &dyn Design,
+    designers: &[Designer],
     brief: &Brief,
     narrative: &Narrative,
     expectation: &Expectation,
     simulator: &Simulator,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
+    let asked = designers.first().map_or(RULES, |designer| designer.name).to_owned();
+    let mut log = DesignLog { asked, repairs: 0, attempts: Vec::new(), taken: 0, gave_up: Vec::new() };
+    for designer in designers {
+        match design_by(designer, brief, narrative, expectation, simulator, &mut log.attempts)? {
+            Course::Faithful => break,
+            Course::UsedUp => {
+                log.gave_up.push(format!("{}: none of {} tries is faithful", designer.name, designer.tries));
+            }
+            Course::GaveUp(why) => log.gave_up.push(why),
+        }
+    }
+    let best = (0..log.attempts.len()).min_by_key(|&i| log.attempts[i].faults());
+    let Some(taken) = best.filter(|&i| log.attempts[i].unfaithful.is_some()) else {
+        let diagnostics = best.map_or_else(Vec::new, |i| log.attempts.swap_remove(i).diagnostics);
+        let what = format!("design of {}: nothing that can be run; {}", brief.scenario_id, log.gave_up.join("; "));
+        return Err(PipelineError::BadInput { what, diagnostics });
+    };
+    log.taken = taken;
+    Ok((log.attempts[taken].draft.clone(), log))
+}
+
+fn design_by(
+    designer: &Designer,
+    brief: &Brief,
+    narrative: &Narrative,
+    expectation: &Expectation,
+    simulator: &Simulator,
+    attempts: &mut Vec<DesignAttempt>,
+) -> Result<Course, PipelineError> {
     let mut feedback = Vec::new();
-    let mut attempts: Vec<DesignAttempt> = Vec::new();
-    while attempts.len() < MAX_DESIGNS {
-        let draft = agent
-            .design(brief, narrative, &feedback)
-            .map_err(|e| PipelineError::bad_input(format!("design of {}: {e}", brief.scenario_id)))?;
+    for _ in 0..designer.tries {
+        let draft = match designer.agent.design(brief, narrative, &feedback) {
+            Ok(draft) => draft,
+            Err(error) => return unusable(error).map(Course::GaveUp),
+        };
         let (attempt, problem) = match recrash_roads::check(draft.clone()) {
             Err(diagnostics) => (
-                DesignAttempt { draft, diagnostics: diagnostics.clone(), unfaithful: None },
+                DesignAttempt { draft: draft.clone(), diagnostics: diagnostics.clone(), unfaithful: None },
                 Some(Problem::NotRunnable { diagnostics }),
             ),
             Ok(Outcome { value: scenario, diagnostics }) => {
@@ -127,24 +195,16 @@ pub fn design_case(
                 let failures: Vec<Check> = run.verdict.iter().flat_map(|v| v.failures().cloned()).collect();
                 let problem = (!failures.is_empty())
                     .then(|| Problem::NotFaithful { failures: failures.clone(), metrics: Box::new(run.metrics) });
-                (DesignAttempt { draft, diagnostics, unfaithful: Some(failures) }, problem)
+                (DesignAttempt { draft: draft.clone(), diagnostics, unfaithful: Some(failures) }, problem)
             }
         };
-        let draft = attempt.draft.clone();
         attempts.push(attempt);
         match problem {
             Some(problem) => feedback.push(Feedback { draft, problem }),
-            None => break,
+            None => return Ok(Course::Faithful),
         }
     }
-    let taken = (0..attempts.len()).min_by_key(|&i| attempts[i].faults()).unwrap_or(0);
-    if attempts[taken].unfaithful.is_none() {
-        return Err(PipelineError::BadInput {
-            what: format!("design of {}: none of {} designs can be run", brief.scenario_id, attempts.len()),
-            diagnostics: attempts.swap_remove(taken).diagnostics,
-        });
-    }
-    Ok((attempts[taken].draft.clone(), DesignLog { attempts, taken }))
+    Ok(Course::UsedUp)
 }
 
 /// One scenario file, run.

@@ -46,6 +46,20 @@ pub enum PipelineError {
         /// What is wrong with it.
         problem: String,
     },
+    /// A unit of work waits for an answer. Never leaves the pipeline: the stage turns it into the next one.
+    #[error("an answer is still to come")]
+    AnswerPending,
+    /// The run stopped until a batch is answered.
+    #[error(
+        "{count} questions wait in {}; send them as a batch, put the answers beside it as responses.jsonl, and run the \
+         same command again", requests.display()
+    )]
+    WaitingForBatch {
+        /// The batch file.
+        requests: PathBuf,
+        /// Questions in it.
+        count: usize,
+    },
     /// A file could not be downloaded.
     #[error("{0}")]
     Fetch(recrash_fetch::FetchError),
@@ -60,13 +74,14 @@ impl PipelineError {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
     }
 
-    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input.
+    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input, 4 for a batch to be sent.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
             Self::Io { .. } | Self::Fetch(_) | Self::Threads(_) => 1,
             Self::MissingStage { .. } | Self::NotASuite { .. } => 2,
             Self::BadInput { .. } | Self::Damaged { .. } => 3,
+            Self::AnswerPending | Self::WaitingForBatch { .. } => 4,
         }
     }
 }

@@ -6,6 +6,7 @@
 //!
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
+mod agents;
 mod casework;
 mod embedding;
 mod error;
@@ -22,6 +23,7 @@ mod suite;
 mod summary;
 mod view;
 
+pub use agents::{AgentLog, AnswerMode, Cast};
 pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
 };

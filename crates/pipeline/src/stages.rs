@@ -1,6 +1,7 @@
 //! The stages: what each reads, does and writes.
 
-use crate::casework::{CaseRun, DesignLog, design_case, read_scenario, run_scenario};
+use crate::agents::{self, AgentLog, MAX_REPAIRS, RULES};
+use crate::casework::{CaseRun, DesignLog, Designer, MAX_DESIGNS, design_case, read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::progress::{Progress, ProgressEvent};
 use crate::recording::RecordInput;
@@ -9,16 +10,17 @@ use crate::store::{to_compact_json, to_json};
 use crate::suite::{Files, Stage, Suite};
 use crate::{embedding, summary, view};
 use rayon::prelude::*;
-use recrash_agents::{Brief, Paraphrase, Rules, expectation, parameters};
+use recrash_agents::{Brief, Rules, expectation, parameters};
 use recrash_model::metrics::Expectation;
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{CrashRecord, RecordSet};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
-use recrash_model::tuning::TuneLog;
+use recrash_model::tuning::{TuneLog, TunePoint};
 use recrash_model::{Diagnostic, Outcome, Seed};
-use recrash_search::TuneOptions;
+use recrash_search::{Task, TuneOptions};
 use recrash_select::SelectOptions;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Files and folders of a suite.
 pub mod names {
@@ -44,6 +46,10 @@ pub mod names {
     /// Scenario as designed.
     pub fn scenario(id: &str) -> String {
         format!("4-scenarios/{id}.json")
+    }
+    /// Who wrote the narrative.
+    pub fn narrative_log(id: &str) -> String {
+        format!("3-narratives/{id}.agent.json")
     }
     /// How it was designed.
     pub fn design_log(id: &str) -> String {
@@ -139,7 +145,13 @@ impl StageWork<'_> {
                 Ok(skipped)
             })
             .collect();
-        let skipped = results.into_iter().collect::<Result<Vec<bool>, _>>()?;
+        let waits = |result: &Result<bool, PipelineError>| matches!(result, Err(PipelineError::AnswerPending));
+        let waiting = results.iter().any(waits);
+        let skipped = results.into_iter().filter(|r| !waits(r)).collect::<Result<Vec<bool>, _>>()?;
+        if let (true, Some(models)) = (waiting, self.suite.models()) {
+            let (requests, count) = models.write_requests()?;
+            return Err(PipelineError::WaitingForBatch { requests, count });
+        }
         self.progress.event(ProgressEvent::Finished { stage });
         let there = skipped.iter().filter(|&&s| s).count();
         Ok(StageReport { done: skipped.len() - there, skipped: there, diagnostics: Vec::new() })
@@ -245,16 +257,16 @@ fn narrate(work: &StageWork) -> Result<StageReport, PipelineError> {
     let cases = Cases::read(suite)?;
     let inputs = |cluster: &Cluster| {
         let mut inputs = cases.inputs(cluster);
-        inputs.extend([work.profile_json(), suite.options().seed.to_string()]);
+        let cast = suite.options().cast.paraphrase.clone();
+        inputs.extend([work.profile_json(), suite.options().seed.to_string(), cast]);
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
-        let narrative = Rules
-            .paraphrase(&brief)
-            .map_err(|e| PipelineError::bad_input(format!("narrative of {}: {e}", cluster.scenario_id)))?;
-        Ok(vec![(names::narrative(&cluster.scenario_id), to_json(&narrative.value))])
+        let (narrative, log) = agents::paraphrase(suite.models(), &suite.options().cast.paraphrase, &brief)?;
+        let id = &cluster.scenario_id;
+        Ok(vec![(names::narrative(id), to_json(&narrative)), (names::narrative_log(id), to_json(&log))])
     })
 }
 
@@ -290,15 +302,23 @@ fn design(work: &StageWork) -> Result<StageReport, PipelineError> {
     let inputs = |cluster: &Cluster| {
         let mut inputs = cases.inputs(cluster);
         inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(&cluster.scenario_id))?);
-        inputs.extend([work.profile_json(), work.system(), suite.options().seed.to_string()]);
+        let cast = suite.options().cast.design.clone();
+        inputs.extend([work.profile_json(), work.system(), suite.options().seed.to_string(), cast]);
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
         let (narrative, expectation) = case_expectation(suite, &cases, cluster)?;
+        let name = &suite.options().cast.design;
+        let repairs = AtomicUsize::new(0);
+        let model = suite.models().filter(|_| name != RULES).map(|models| models.model(name, &repairs));
+        let by_model = model.as_ref().map(|agent| Designer { name, agent, tries: MAX_REPAIRS + 1 });
+        let by_rules = Designer { name: RULES, agent: &Rules, tries: MAX_DESIGNS };
+        let designers: Vec<Designer> = by_model.into_iter().chain([by_rules]).collect();
         let (draft, log): (ScenarioDraft, DesignLog) =
-            design_case(&Rules, &brief, &narrative, &expectation, &simulator)?;
+            design_case(&designers, &brief, &narrative, &expectation, &simulator)?;
+        let log = DesignLog { repairs: repairs.load(Ordering::Relaxed), ..log };
         let id = &cluster.scenario_id;
         Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
     })
@@ -344,7 +364,9 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(id))?);
         inputs.push(case_hash(suite, Stage::Design, cluster, &names::scenario(id))?);
         inputs.push(case_hash(suite, Stage::Simulate, cluster, &names::first_run(id))?);
-        inputs.extend([work.profile_json(), work.system(), format!("{options:?}"), suite.options().seed.to_string()]);
+        let chosen = suite.options();
+        inputs.extend([work.profile_json(), work.system(), format!("{options:?}"), chosen.seed.to_string()]);
+        inputs.push(format!("{} {}", chosen.cast.tune, chosen.cast.rounds));
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
@@ -354,15 +376,27 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         let first: CaseRun = suite.store().read_json(&names::first_run(id))?;
         let parameters = parameters(&draft, &narrative, suite.profile());
         let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), &simulator, &first);
-        let log: TuneLog = recrash_search::tune(
-            id,
-            &parameters,
-            options,
-            case_seed(suite, cluster).child("tune"),
-            |values| scoring.score(values),
-            // A faithful contact as designed is what the search looks for, at no distance from the record.
-            |point| point.number == 0 && point.score.refused.is_empty() && first.metrics.contact.is_some(),
-        );
+        // A faithful contact as designed is what the search looks for, at no distance from the record.
+        let enough =
+            |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && first.metrics.contact.is_some();
+        let seed = case_seed(suite, cluster).child("tune");
+        let search = || recrash_search::tune(id, &parameters, options, seed, |values| scoring.score(values), enough);
+        let log: TuneLog = match suite.models().filter(|_| suite.options().cast.tune != RULES) {
+            None => search(),
+            Some(models) => {
+                let (name, repairs) = (&suite.options().cast.tune, AtomicUsize::new(0));
+                let model = models.model(name, &repairs);
+                let task = Task { scenario_id: id, parameters: &parameters, seed, searcher: name };
+                let propose = |history: &[TunePoint]| {
+                    model.propose(id, &narrative, &parameters, history).map(|values| (values, "model"))
+                };
+                let points = suite.options().cast.rounds + 1;
+                match recrash_search::tune_with(&task, points, propose, |values| scoring.score(values), enough) {
+                    Ok(log) => log,
+                    Err(error) => agents::unusable(error).map(|_why| search())?,
+                }
+            }
+        };
         let tuned = recrash_model::tuning::apply(&draft, &parameters, &log.points[log.best].values)
             .map_err(|e| PipelineError::bad_input(format!("tuned {id}: {e}")))?;
         let scenario = recrash_roads::check(tuned.clone()).map_err(|diagnostics| PipelineError::BadInput {
@@ -386,6 +420,10 @@ pub struct Case<'a> {
     pub records: Vec<&'a CrashRecord>,
     /// Narrative.
     pub narrative: Narrative,
+    /// Who wrote it.
+    pub narrative_log: AgentLog,
+    /// How the scenario was designed.
+    pub design_log: DesignLog,
     /// Scenario as designed.
     pub scenario: recrash_roads::Scenario,
     /// First run.
@@ -434,6 +472,8 @@ fn read_case<'a>(suite: &Suite, cases: &'a Cases, cluster: &'a Cluster) -> Resul
         cluster,
         records: cases.records_of(cluster),
         narrative: store.read_json(&names::narrative(id))?,
+        narrative_log: store.read_json(&names::narrative_log(id))?,
+        design_log: store.read_json(&names::design_log(id))?,
         scenario: scenario(suite, &names::scenario(id))?,
         first: store.read_json(&names::first_run(id))?,
         tuned: scenario(suite, &names::tuned(id))?,

@@ -1,5 +1,6 @@
 //! The suite on disk: options, stages, and which units of work are done.
 
+use crate::agents::{AnswerMode, Cast, Models};
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
@@ -7,9 +8,9 @@ use crate::recording;
 use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
-use recrash_model::Seed;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::selection::Strategy;
+use recrash_model::{Diagnostic, Seed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -55,6 +56,9 @@ pub struct Options {
     /// Folder with the files of the embedding model; the lexical embedding where not given.
     #[serde(default)]
     pub model_dir: Option<PathBuf>,
+    /// Who plays which role.
+    #[serde(default)]
+    pub cast: Cast,
     /// Simulator.
     #[serde(default)]
     pub simulator: SimulatorKind,
@@ -79,6 +83,7 @@ impl Default for Options {
             budget: 20,
             strategy: Strategy::Stratified,
             model_dir: None,
+            cast: Cast::default(),
             simulator: SimulatorKind::Native,
             ego: None,
             tune_budget: 160,
@@ -110,6 +115,10 @@ impl Options {
         option("strategy", strategy_name(self.strategy), strategy_name(default.strategy));
         let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
         option("model-dir", model_dir.unwrap_or_default(), String::new());
+        option("paraphrase", self.cast.paraphrase.clone(), default.cast.paraphrase);
+        option("design", self.cast.design.clone(), default.cast.design);
+        option("tune", self.cast.tune.clone(), default.cast.tune);
+        option("rounds", self.cast.rounds.to_string(), default.cast.rounds.to_string());
         option("sim", self.simulator.name().into(), default.simulator.name().into());
         option("ego", self.ego.clone().unwrap_or_default(), String::new());
         option("tune-budget", self.tune_budget.to_string(), default.tune_budget.to_string());
@@ -200,6 +209,8 @@ pub struct Suite {
     options: Options,
     threads: rayon::ThreadPool,
     python: PathBuf,
+    models: Option<Models>,
+    remarks: Vec<Diagnostic>,
 }
 
 /// What a run may use of the machine. No byte of the results depends on it.
@@ -209,11 +220,13 @@ pub struct Resources {
     pub threads: Option<usize>,
     /// Python interpreter for MetaDrive.
     pub python: PathBuf,
+    /// Where models' answers come from.
+    pub answers: AnswerMode,
 }
 
 impl Default for Resources {
     fn default() -> Self {
-        Self { threads: None, python: "python3".into() }
+        Self { threads: None, python: "python3".into(), answers: AnswerMode::default() }
     }
 }
 
@@ -269,8 +282,10 @@ impl Suite {
             options: options.clone(),
             units,
         };
+        let opened = options.cast.has_model().then(|| Models::open(&store, resources.answers)).transpose()?;
+        let (models, remarks) = opened.map_or((None, Vec::new()), |(models, remarks)| (Some(models), remarks));
         let python = resources.python;
-        let suite = Self { store, profile, state: Mutex::new(state), options, threads, python };
+        let suite = Self { store, profile, state: Mutex::new(state), options, threads, python, models, remarks };
         suite.save(&suite.lock())?;
         Ok(suite)
     }
@@ -307,6 +322,16 @@ impl Suite {
     pub(crate) fn simulator(&self) -> Result<Simulator, PipelineError> {
         let workers = self.threads.current_num_threads();
         Simulator::start(self.options.simulator, self.ego(), &self.python, workers)
+    }
+
+    /// The models' side; absent where the rules play every role.
+    pub(crate) fn models(&self) -> Option<&Models> {
+        self.models.as_ref()
+    }
+
+    /// What there was to say about the answers of a batch.
+    pub fn remarks(&self) -> &[Diagnostic] {
+        &self.remarks
     }
 
     pub(crate) fn seed(&self) -> Seed {

@@ -52,6 +52,10 @@ pub struct CaseSummary {
     pub id: String,
     /// Template.
     pub template: Template,
+    /// How the narrative came about: `rules`, `first answer`, `after repair` or `fallback`.
+    pub narrated: String,
+    /// How the design came about, in the same words.
+    pub designed: String,
     /// Why the record itself was not used, where it was not.
     pub alternative: Option<String>,
     /// As designed.
@@ -141,6 +145,8 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
             .map(|case| CaseSummary {
                 id: case.cluster.scenario_id.clone(),
                 template: case.cluster.template,
+                narrated: case.narrative_log.outcome().to_owned(),
+                designed: case.design_log.outcome().to_owned(),
                 alternative: match &case.narrative.origin {
                     Origin::Record => None,
                     Origin::Alternative { reason } => Some(reason.clone()),

@@ -20,7 +20,7 @@ pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[
         profile: suite.profile().clone(),
         ego: suite.ego().to_owned(),
         simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
-        agents: "rules".into(),
+        agents: options.cast.describe(),
         seed: options.seed,
         sample: options.records == RecordSource::Sample,
         records: records.clone(),

@@ -74,7 +74,20 @@ trait Optimiser {
     fn tell(&mut self, point: &[f64], objective: f64);
 }
 
-/// Searches for values of `parameters` that make `score(values).objective` small.
+/// What is searched.
+#[derive(Debug, Clone, Copy)]
+pub struct Task<'a> {
+    /// Scenario.
+    pub scenario_id: &'a str,
+    /// What may move.
+    pub parameters: &'a [Parameter],
+    /// Seed.
+    pub seed: Seed,
+    /// Who proposes the points, for the log.
+    pub searcher: &'a str,
+}
+
+/// Searches for values of `parameters` that make `score(values).objective` small, with one of our optimisers.
 ///
 /// Point 0 is the scenario as designed. Refused points are logged and never kept, so the result is at least as good as
 /// the start; where every point is refused, the start is kept. The search ends early at a score that `enough` accepts.
@@ -83,25 +96,49 @@ pub fn tune(
     parameters: &[Parameter],
     options: TuneOptions,
     seed: Seed,
-    mut score: impl FnMut(&[f64]) -> Score,
+    score: impl FnMut(&[f64]) -> Score,
     enough: impl Fn(&TunePoint) -> bool,
 ) -> TuneLog {
     let mut optimiser = options.searcher.optimiser(parameters.len(), options.budget, seed);
-    let mut points: Vec<TunePoint> = Vec::with_capacity(options.budget);
+    let propose = |history: &[TunePoint]| {
+        if let Some(last) = history.last() {
+            let unit: Vec<f64> = parameters.iter().zip(&last.values).map(|(p, &value)| to_unit(p, value)).collect();
+            let objective = if last.score.refused.is_empty() { last.score.objective } else { f64::INFINITY };
+            optimiser.tell(&unit, objective);
+        }
+        let (unit, proposed_by) = optimiser.ask();
+        Ok((parameters.iter().zip(&unit).map(|(p, &u)| from_unit(p, u)).collect(), proposed_by))
+    };
+    let task = Task { scenario_id, parameters, seed, searcher: options.searcher.name() };
+    match tune_with(&task, options.budget, propose, score, enough) {
+        Ok(log) => log,
+        Err(never) => {
+            let never: std::convert::Infallible = never;
+            match never {}
+        }
+    }
+}
+
+/// As [`tune`], with points that somebody else proposes, who sees all points so far.
+///
+/// # Errors
+/// Whatever `propose` fails with.
+pub fn tune_with<E>(
+    task: &Task,
+    budget: usize,
+    mut propose: impl FnMut(&[TunePoint]) -> Result<(Vec<f64>, &'static str), E>,
+    mut score: impl FnMut(&[f64]) -> Score,
+    enough: impl Fn(&TunePoint) -> bool,
+) -> Result<TuneLog, E> {
+    let budget = if task.parameters.is_empty() { 1 } else { budget.max(1) };
+    let mut points: Vec<TunePoint> = Vec::with_capacity(budget);
     let mut best = 0;
-    let budget = if parameters.is_empty() { 1 } else { options.budget.max(1) };
     for number in 0..budget {
-        let (unit, proposed_by) = match number {
-            0 => (parameters.iter().map(|p| to_unit(p, p.start)).collect(), "start"),
-            _ => optimiser.ask(),
-        };
-        let values: Vec<f64> = match number {
-            0 => parameters.iter().map(|p| p.start).collect(),
-            _ => parameters.iter().zip(&unit).map(|(p, &u)| from_unit(p, u)).collect(),
+        let (values, proposed_by) = match number {
+            0 => (task.parameters.iter().map(|p| p.start).collect(), "start"),
+            _ => propose(&points)?,
         };
         let score = score(&values);
-        let objective = if score.refused.is_empty() { score.objective } else { f64::INFINITY };
-        optimiser.tell(&unit, objective);
         let point = TunePoint { number, proposed_by: proposed_by.to_owned(), values, score };
         if is_better(&point, &points, best) {
             best = number;
@@ -112,15 +149,15 @@ pub fn tune(
             break;
         }
     }
-    TuneLog {
+    Ok(TuneLog {
         format: TUNE_FORMAT.to_owned(),
-        scenario_id: scenario_id.to_owned(),
-        searcher: options.searcher.name().to_owned(),
-        seed: seed.0,
-        parameters: parameters.to_vec(),
+        scenario_id: task.scenario_id.to_owned(),
+        searcher: task.searcher.to_owned(),
+        seed: task.seed.0,
+        parameters: task.parameters.to_vec(),
         points,
         best,
-    }
+    })
 }
 
 fn is_better(point: &TunePoint, earlier: &[TunePoint], best: usize) -> bool {

@@ -1,0 +1,84 @@
+//! Where answers come from: a batch file that somebody sends to any provider, or the ledger alone.
+//!
+//! Both are one trait, so prompts, repairs and fallback are one path for every provider and every mode.
+
+use crate::llm::question::{Exchange, Question};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Keeps exchanges. The pipeline keeps them as files.
+pub trait Ledger: Send + Sync {
+    /// The exchange of this question, where there was one.
+    fn find(&self, hash: &str) -> Option<Exchange>;
+}
+
+/// Gives answers.
+pub trait Answers: Send + Sync {
+    /// The answer to a question.
+    ///
+    /// # Errors
+    /// [`AskError`].
+    fn answer(&self, question: &Question) -> Result<Exchange, AskError>;
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum AskError {
+    /// It was put down for the next batch.
+    #[error("the question waits for the next batch")]
+    Pending,
+    /// The ledger does not hold it, and nothing else is asked.
+    #[error("the ledger has no answer to question {hash} ({what}); run once without --llm replay")]
+    NotInLedger {
+        /// Hash of the question.
+        hash: String,
+        /// What it is for.
+        what: String,
+    },
+}
+
+/// Answers from the ledger alone.
+pub struct Replay {
+    /// The ledger.
+    pub ledger: Arc<dyn Ledger>,
+}
+
+impl Answers for Replay {
+    fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
+        let hash = question.hash();
+        self.ledger.find(&hash).ok_or_else(|| {
+            let purpose = &question.purpose;
+            let what = format!("{:?} of {}, attempt {}", purpose.role, purpose.scenario_id, purpose.attempt);
+            AskError::NotInLedger { hash, what: what.to_lowercase() }
+        })
+    }
+}
+
+/// Answers from the ledger; what it lacks is put down for a batch.
+pub struct Batch {
+    ledger: Arc<dyn Ledger>,
+    pending: Mutex<BTreeMap<String, Question>>,
+}
+
+impl Batch {
+    /// With nothing put down yet.
+    pub fn new(ledger: Arc<dyn Ledger>) -> Self {
+        Self { ledger, pending: Mutex::new(BTreeMap::new()) }
+    }
+
+    /// What was put down, in the order of hashes.
+    pub fn pending(&self) -> Vec<Question> {
+        self.pending.lock().unwrap_or_else(PoisonError::into_inner).values().cloned().collect()
+    }
+}
+
+impl Answers for Batch {
+    fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
+        let hash = question.hash();
+        if let Some(exchange) = self.ledger.find(&hash) {
+            return Ok(exchange);
+        }
+        self.pending.lock().unwrap_or_else(PoisonError::into_inner).insert(hash, question.clone());
+        Err(AskError::Pending)
+    }
+}

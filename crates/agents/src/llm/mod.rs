@@ -1,0 +1,233 @@
+//! The roles played by a language model. Whatever it says is checked; what cannot be used goes back to it a bounded number
+//! of times, and then the caller lets the rules take over.
+
+mod answers;
+mod batch;
+mod extract;
+mod prompts;
+mod question;
+
+pub use answers::{Answers, AskError, Batch, Ledger, Replay};
+pub use batch::{read_responses, request_line};
+pub use question::{EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
+
+use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
+use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT, Narrative, Origin};
+use recrash_model::scenario::{Author, SCENARIO_FORMAT, ScenarioDraft, Source};
+use recrash_model::tuning::{Parameter, TunePoint};
+use recrash_model::{Diagnostic, Outcome};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Longest narrative text that is accepted. [characters]
+const MAX_TEXT: usize = 2_000;
+/// Most facts that are accepted.
+const MAX_FACTS: usize = 40;
+
+/// A language model in all three roles.
+#[derive(Clone, Copy)]
+pub struct LanguageModel<'a> {
+    /// Model, such as `gpt-5-mini`.
+    pub model: &'a str,
+    /// Where answers come from.
+    pub answers: &'a dyn Answers,
+    /// How often an answer that cannot be used goes back.
+    pub max_repairs: usize,
+    /// Counts the answers that went back.
+    pub repairs: &'a AtomicUsize,
+}
+
+/// The form of a paraphrase.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct NarrativeAnswer {
+    /// The narrative: 2 to 6 plain sentences.
+    text: String,
+    /// What the text states.
+    facts: Vec<Fact>,
+    /// Why the narrative takes the record's place, where it does; null where it retells the record.
+    replaces_record: Option<String>,
+}
+
+/// The form of a proposal.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct ValuesAnswer {
+    /// One value for each parameter, in their order.
+    values: Vec<f64>,
+}
+
+impl LanguageModel<'_> {
+    /// Asks, and asks again with what is wrong, until `accept` takes the answer or the repairs are used up.
+    fn converse<T>(
+        &self,
+        mut question: Question,
+        accept: impl Fn(&str) -> Result<T, Vec<String>>,
+    ) -> Result<T, AgentError> {
+        let mut problems = Vec::new();
+        for _ in 0..=self.max_repairs {
+            let exchange = self.answers.answer(&question)?;
+            let found = extract::json_object(&exchange.answer).map_err(|why| vec![why]).and_then(&accept);
+            match found {
+                Ok(value) => return Ok(value),
+                Err(why) => problems = why,
+            }
+            question.turns.push(Turn { speaker: Speaker::Assistant, text: exchange.answer });
+            question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(&problems)? });
+            question.purpose.attempt += 1;
+            self.repairs.fetch_add(1, Ordering::Relaxed);
+        }
+        let model = self.model.to_owned();
+        Err(AgentError::NoUsableAnswer { model, repairs: self.max_repairs, problem: problems.join("; ") })
+    }
+
+    fn question(&self, role: Role, scenario_id: &str, text: String, name: &str, schema: serde_json::Value) -> Question {
+        Question {
+            model: self.model.to_owned(),
+            purpose: Purpose { role, scenario_id: scenario_id.to_owned(), attempt: 0 },
+            system: prompts::system(),
+            turns: vec![Turn { speaker: Speaker::User, text }],
+            schema_name: name.to_owned(),
+            schema,
+        }
+    }
+
+    fn paraphrase_question(&self, brief: &Brief) -> Result<Question, AgentError> {
+        let schema = schemars::schema_for!(NarrativeAnswer).to_value();
+        Ok(self.question(Role::Paraphrase, brief.scenario_id, prompts::paraphrase(brief)?, "narrative", schema))
+    }
+
+    fn design_question(&self, brief: &Brief, narrative: &Narrative) -> Result<Question, AgentError> {
+        let schema = recrash_roads::scenario_schema();
+        Ok(self.question(Role::Design, brief.scenario_id, prompts::design(brief, narrative)?, "scenario", schema))
+    }
+
+    /// Proposes the next values of `parameters`, given what was tried.
+    ///
+    /// # Errors
+    /// [`AgentError`], where the model gives no usable answer.
+    pub fn propose(
+        &self,
+        scenario_id: &str,
+        narrative: &Narrative,
+        parameters: &[Parameter],
+        history: &[TunePoint],
+    ) -> Result<Vec<f64>, AgentError> {
+        let text = prompts::tune(scenario_id, narrative, parameters, history)?;
+        let schema = schemars::schema_for!(ValuesAnswer).to_value();
+        let question = self.question(Role::Tune, scenario_id, text, "values", schema);
+        self.converse(question, |json| {
+            let answer: ValuesAnswer = read(json)?;
+            check_values(&answer.values, parameters)?;
+            Ok(answer.values)
+        })
+    }
+}
+
+impl Paraphrase for LanguageModel<'_> {
+    fn paraphrase(&self, brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
+        if brief.records.is_empty() {
+            return Err(AgentError::NoRecord { scenario_id: brief.scenario_id.to_owned() });
+        }
+        let answer = self.converse(self.paraphrase_question(brief)?, |json| {
+            let answer: NarrativeAnswer = read(json)?;
+            let problems = narrative_problems(&answer, brief);
+            if problems.is_empty() { Ok(answer) } else { Err(problems) }
+        })?;
+        let narrative = Narrative {
+            format: NARRATIVE_FORMAT.to_owned(),
+            scenario_id: brief.scenario_id.to_owned(),
+            template: brief.template,
+            records: brief.records.iter().map(|record| record.id.clone()).collect(),
+            text: answer.text,
+            facts: answer.facts,
+            origin: answer.replaces_record.map_or(Origin::Record, |reason| Origin::Alternative { reason }),
+            author: Author::Model(self.model.to_owned()),
+        };
+        Ok(Outcome { value: narrative, diagnostics: Vec::new() })
+    }
+}
+
+impl Design for LanguageModel<'_> {
+    /// Every earlier try is one more turn of the conversation. Forms are repaired here; what the check and the rollout
+    /// say comes back through `feedback`.
+    fn design(&self, brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Result<ScenarioDraft, AgentError> {
+        let mut question = self.design_question(brief, narrative)?;
+        for earlier in feedback {
+            let draft = serde_json::to_string(&earlier.draft).unwrap_or_default();
+            question.turns.push(Turn { speaker: Speaker::Assistant, text: draft });
+            let problems = problem_sentences(&earlier.problem);
+            question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(&problems)? });
+            question.purpose.attempt += 1;
+        }
+        let draft = self.converse(question, |json| match recrash_roads::read_draft(json) {
+            Ok(outcome) => Ok(outcome.value),
+            Err(diagnostics) => Err(sentences(&diagnostics)),
+        })?;
+        // What names files and says where things came from is ours to say, never the model's.
+        Ok(ScenarioDraft {
+            format: SCENARIO_FORMAT.to_owned(),
+            id: brief.scenario_id.to_owned(),
+            source: Source {
+                records: narrative.records.clone(),
+                template: Some(brief.template),
+                narrative: narrative.text.clone(),
+                author: Author::Model(self.model.to_owned()),
+                seed: brief.seed.0,
+            },
+            ..draft
+        })
+    }
+}
+
+fn read<T: for<'de> Deserialize<'de>>(json: &str) -> Result<T, Vec<String>> {
+    serde_json::from_str(json).map_err(|e| vec![format!("the answer does not fit the schema: {e}")])
+}
+
+fn narrative_problems(answer: &NarrativeAnswer, brief: &Brief) -> Vec<String> {
+    let mut problems = Vec::new();
+    let length = answer.text.chars().count();
+    if !(20..=MAX_TEXT).contains(&length) {
+        problems.push(format!("text has {length} characters; 20 to {MAX_TEXT} are allowed"));
+    }
+    if answer.facts.len() > MAX_FACTS {
+        problems.push(format!("there are {} facts; {MAX_FACTS} are allowed", answer.facts.len()));
+    }
+    for (index, fact) in answer.facts.iter().enumerate() {
+        let FactSource::Words { record, words } = &fact.source else { continue };
+        match brief.records.iter().find(|known| known.id == *record) {
+            None => problems.push(format!("facts[{index}].source.record is {record}, which is not among the reports")),
+            Some(known) if words.trim().is_empty() || !known.narrative.contains(words.as_str()) => {
+                problems.push(format!("facts[{index}].source.words do not stand in the narrative of {record}"));
+            }
+            Some(_) => {}
+        }
+    }
+    problems.extend(crate::narrative_contradictions(&answer.facts, brief.template, brief.profile));
+    problems
+}
+
+fn check_values(values: &[f64], parameters: &[Parameter]) -> Result<(), Vec<String>> {
+    if values.len() != parameters.len() {
+        return Err(vec![format!("values has {} numbers; there are {} parameters", values.len(), parameters.len())]);
+    }
+    let outside = values.iter().zip(parameters).filter(|(value, p)| !(p.min..=p.max).contains(*value));
+    let problems: Vec<String> =
+        outside.map(|(value, p)| format!("{} is {value}; {} to {} is allowed", p.pointer, p.min, p.max)).collect();
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+fn problem_sentences(problem: &Problem) -> Vec<String> {
+    match problem {
+        Problem::NotRunnable { diagnostics } => sentences(diagnostics),
+        Problem::NotFaithful { failures, .. } => failures
+            .iter()
+            .map(|c| format!("in the rollout, {} is {}; it must be {}", c.kind.label(), c.observed, c.expected))
+            .collect(),
+    }
+}
+
+fn sentences(diagnostics: &[Diagnostic]) -> Vec<String> {
+    diagnostics.iter().filter(|d| d.is_error()).map(ToString::to_string).collect()
+}
