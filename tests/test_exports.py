@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from exports import CASES, Export, lane_connections, lane_lengths, make, run
-from oracles import answers, environment
+from oracles import answers, ask, environment
 from osc_player import play
 
 MAPS = "SCXTO"
@@ -164,7 +164,25 @@ def test_scenic_drives_each_map_as_our_simulator_does(exports: list[Export]) -> 
     (0.7 m for a partner that moves sideways)."""
     cases = [export for export in exports if is_case(export)]
     assert {export.scenario["map"]["type"] for export in cases} == set(MAPS)
-    found = answers("scenic", "scenic_run.py", "newtonian", "50", *(str(c.path("scenic", ".scenic")) for c in cases))
+    check_driven(cases, answers("scenic", "scenic_run.py", "newtonian", "50", *scenic_files(cases)))
+
+
+def test_scenic_on_metadrive_drives_each_map_as_our_simulator_does(exports: list[Export]) -> None:
+    python = os.environ.get("RECRASH_SCENIC_METADRIVE_PYTHON")
+    if not python:
+        pytest.skip("skipped: Scenic on MetaDrive (set RECRASH_SCENIC_METADRIVE_PYTHON, see docs/formats/scenic.md)")
+    cases = [export for export in exports if is_case(export)]
+    for export in cases:
+        net = export.path("scenic", ".net.xml")
+        run(environment("sumo") / "netconvert", "--opendrive-files", export.path("scenic", ".xodr"), "-o", net)
+    check_driven(cases, ask(python, "scenic_run.py", "metadrive", "50", *scenic_files(cases)))
+
+
+def scenic_files(cases: list[Export]) -> list[str]:
+    return [str(export.path("scenic", ".scenic")) for export in cases]
+
+
+def check_driven(cases: list[Export], found: list[dict]) -> None:
     for export, report in zip(cases, found):
         assert "error" not in report, report
         actors = export.rollout["actors"][: 1 + len(export.scenario["partners"])]
