@@ -95,6 +95,14 @@ fn file_problems(name: &str, text: &str) -> Vec<String> {
                 problems.push(format!("{name}: holds `{pattern}`; {advice}"));
             }
         }
+        let may_speak = ["crates/agents/", "crates/fetch/"].iter().any(|folder| name.starts_with(folder));
+        if !may_speak && !test && name.starts_with("crates/") {
+            for import in ["ureq::", "std::net"] {
+                if text.contains(import) {
+                    problems.push(format!("{name}: uses {import}; only agents and fetch speak to a network"));
+                }
+            }
+        }
         if let Some(stage) = stage_crate(name) {
             for import in ["std::fs", "std::env", "std::thread", "std::time", "std::net", "std::process"] {
                 if !test && !name.contains("/examples/") && !name.contains("/benches/") && text.contains(import) {
@@ -132,6 +140,12 @@ mod tests {
     fn a_stage_that_opens_files_is_told() {
         assert_eq!(file_problems("crates/sim/src/a.rs", "use std::fs::File;").len(), 1);
         assert_eq!(file_problems("crates/pipeline/src/a.rs", "use std::fs::File;").len(), 0);
+    }
+
+    #[test]
+    fn a_crate_that_speaks_to_a_network_is_told() {
+        assert_eq!(file_problems("crates/pipeline/src/a.rs", "use std::net::TcpStream;").len(), 1);
+        assert_eq!(file_problems("crates/fetch/src/a.rs", "ureq::get(url)").len(), 0);
     }
 
     #[test]

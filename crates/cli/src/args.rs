@@ -1,8 +1,11 @@
 //! What may be typed.
 
 use clap::{Args, Parser, Subcommand};
+use recrash_model::profile::Dedupe;
 use recrash_model::selection::Strategy;
-use recrash_pipeline::{Format, Options, RecordSource, Resources, SimulatorKind};
+use recrash_pipeline::{
+    CrashKind, FILTER_HELP, Format, Options, PublishedEdition, RecordSource, Resources, SimulatorKind,
+};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -12,6 +15,7 @@ Examples:
   recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
   recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
+  recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used";
 
@@ -51,6 +55,8 @@ pub enum Command {
     Report(SuiteArgs),
     /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
     Export(ExportArgs),
+    /// Download NHTSA's crash file, whole or not at all, for --records.
+    Fetch(FetchArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -61,9 +67,18 @@ pub struct SuiteArgs {
     /// Folder of the suite; finished work in it is kept.
     #[arg(long, short, value_name = "DIR", default_value = "suite")]
     pub out: PathBuf,
-    /// SGO crash file (CSV); may be given several times. [default: the built-in sample]
+    /// SGO crash file (CSV), or the name of a downloaded one; may be given several times. [default: the built-in sample]
     #[arg(long, value_name = "FILE")]
     pub records: Vec<PathBuf>,
+    /// Mapping file (TOML): the crash files are those of another database.
+    #[arg(long, value_name = "FILE")]
+    pub mapping: Option<PathBuf>,
+    /// Which reports of one incident are merged: none, or incident (one incident, one record). [default: the profile's]
+    #[arg(long, value_name = "NAME", value_parser = dedupe)]
+    pub dedupe: Option<Dedupe>,
+    /// Keep the records of which this is true, such as 'road = intersection and year >= 2024'; --help tells more.
+    #[arg(long = "where", value_name = "EXPR", long_help = FILTER_HELP)]
+    pub filter: Option<String>,
     /// System profile: a built-in name or a TOML file. [default: paper]
     #[arg(long, value_name = "NAME|FILE")]
     pub profile: Option<String>,
@@ -108,9 +123,52 @@ pub struct RecordsArgs {
     /// SGO crash files (CSV), as with --records. [default: the built-in sample]
     #[arg(value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    /// Write the usable records as a CSV table.
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write the usable records as a Parquet table.
+    #[cfg(feature = "parquet")]
+    #[arg(long, value_name = "FILE")]
+    pub parquet: Option<PathBuf>,
+    /// Write every record that could be read into the tables, with why it was lost.
+    #[arg(long)]
+    pub all: bool,
     /// Options of the suite.
     #[command(flatten)]
     pub suite: SuiteArgs,
+}
+
+/// Options of `fetch`.
+#[derive(Debug, Clone, Args)]
+pub struct FetchArgs {
+    /// Reports since June 2025 (current), or from June 2021 to June 2025 (archive).
+    #[arg(long, value_name = "NAME", value_parser = ["current", "archive"], default_value = "current")]
+    pub edition: String,
+    /// Automated driving (ads), driver assistance of level 2 (adas), or other.
+    #[arg(long, value_name = "NAME", value_parser = ["ads", "adas", "other"], default_value = "ads")]
+    pub kind: String,
+    /// Folder to download from. [default: NHTSA's]
+    #[arg(long, value_name = "URL")]
+    pub base_url: Option<String>,
+    /// Folder to keep the file in. [default: recrash in the platform's folder for caches]
+    #[arg(long, value_name = "DIR", env = "RECRASH_CACHE")]
+    pub cache: Option<PathBuf>,
+}
+
+impl FetchArgs {
+    /// Which edition.
+    pub fn published(&self) -> PublishedEdition {
+        if self.edition == "archive" { PublishedEdition::Archive } else { PublishedEdition::Current }
+    }
+
+    /// Which kind.
+    pub fn crash_kind(&self) -> CrashKind {
+        match self.kind.as_str() {
+            "adas" => CrashKind::Adas,
+            "other" => CrashKind::Other,
+            _ => CrashKind::Ads,
+        }
+    }
 }
 
 /// Options of `export`.
@@ -152,6 +210,10 @@ impl SuiteArgs {
     pub fn options(&self, base: Options) -> Options {
         Options {
             records: if self.records.is_empty() { base.records } else { RecordSource::Files(self.records.clone()) },
+            dedupe: self.dedupe.or(base.dedupe),
+            // An empty filter takes a saved one away.
+            filter: self.filter.clone().or(base.filter).filter(|text| !text.trim().is_empty()),
+            mapping: self.mapping.clone().or(base.mapping),
             profile: self.profile.clone().unwrap_or(base.profile),
             budget: self.budget.map_or(base.budget, usize::from),
             strategy: self.strategy.unwrap_or(base.strategy),
@@ -170,6 +232,10 @@ impl SuiteArgs {
     pub fn resources(&self) -> Resources {
         Resources { threads: self.threads.map(usize::from), python: self.python.clone() }
     }
+}
+
+fn dedupe(name: &str) -> Result<Dedupe, String> {
+    serde_json::from_value(serde_json::Value::String(name.to_owned())).map_err(|e| e.to_string())
 }
 
 fn strategy(name: &str) -> Result<Strategy, String> {

@@ -1,14 +1,15 @@
 //! What each subcommand does.
 
-use crate::args::{Cli, Command, ExportArgs, RecordsArgs, SimulateArgs, SuiteArgs};
+use crate::args::{Cli, Command, ExportArgs, FetchArgs, RecordsArgs, SimulateArgs, SuiteArgs};
 use crate::bars::Bars;
 use crate::show;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
 use recrash_pipeline::{
-    ExportRequest, FileRequest, NoProgress, Options, PartnersAs, PipelineError, Progress, Stage, StageReport, Suite,
-    Summary, schema, simulate_file,
+    ExportRequest, FetchLimits, FetchRequest, FileRequest, NoProgress, Options, PartnersAs, PipelineError, Progress,
+    Stage, StageReport, Suite, Summary, TableFormat, TableRows, distributions, schema, simulate_file, write_records,
 };
+use std::path::PathBuf;
 
 /// Runs a subcommand.
 pub fn run(cli: &Cli) -> Result<(), PipelineError> {
@@ -23,6 +24,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Tune(args) => one_stage(args, Stage::Tune, output),
         Command::Report(args) => report(args, output),
         Command::Export(args) => export(args, output),
+        Command::Fetch(args) => fetch(args, output),
         Command::Schema => {
             show::json(&schema());
             Ok(())
@@ -110,8 +112,11 @@ fn records(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
     let suite = open_saved(&suite_args)?;
     let report = suite.run_stage(Stage::Records, &*output.progress())?;
     let records: RecordSet = suite.store().read_json("1-records.json")?;
+    let written = write_tables(args, &suite)?;
+    let distributions = distributions(&records);
     if output.json {
         show::json(&serde_json::json!({
+            "distributions": distributions,
             "files": records.files, "funnel": records.funnel, "usable": records.usable.len(),
             "diagnostics": report.diagnostics,
         }));
@@ -119,6 +124,37 @@ fn records(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
         show::remarks(&report);
         show::files(&records);
         show::funnel(&records.funnel);
+        show::distributions(&distributions);
+        written.iter().for_each(|(path, rows)| show::written(path, *rows));
+    }
+    Ok(())
+}
+
+/// Writes the tables that were asked for; gives each file with its rows.
+fn write_tables(args: &RecordsArgs, suite: &Suite) -> Result<Vec<(PathBuf, usize)>, PipelineError> {
+    let rows = if args.all { TableRows::All } else { TableRows::Usable };
+    let mut wanted = Vec::new();
+    wanted.extend(args.csv.iter().map(|path| (TableFormat::Csv, path)));
+    #[cfg(feature = "parquet")]
+    wanted.extend(args.parquet.iter().map(|path| (TableFormat::Parquet, path)));
+    wanted.into_iter().map(|(format, path)| Ok((path.clone(), write_records(suite, rows, format, path)?))).collect()
+}
+
+fn fetch(args: &FetchArgs, output: Output) -> Result<(), PipelineError> {
+    let request = FetchRequest {
+        edition: args.published(),
+        kind: args.crash_kind(),
+        base_url: args.base_url.clone(),
+        cache: args.cache.clone(),
+    };
+    if output.tables() {
+        show::fetching(&request.url());
+    }
+    let fetched = recrash_pipeline::fetch(&request, &FetchLimits::default())?;
+    if output.json {
+        show::json(&fetched);
+    } else if !output.quiet {
+        show::fetched(&fetched);
     }
     Ok(())
 }

@@ -6,13 +6,17 @@ use owo_colors::OwoColorize;
 use recrash_model::diagnostic::{Diagnostic, Severity};
 use recrash_model::record::{FunnelStep, RecordSet};
 use recrash_model::selection::{Coverage, Selection, StageTables, TemplateCount};
-use recrash_pipeline::{ExportReport, FileRun, PipelineError, RunSummary, Stage, StageReport, Suite, Summary};
+use recrash_pipeline::{
+    Distribution, ExportReport, Fetched, FileRun, PipelineError, RunSummary, Stage, StageReport, Suite, Summary,
+};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 
 /// Remarks of one stage that are shown one by one.
 const REMARKS_SHOWN: usize = 8;
+/// Values of a distribution that are shown.
+const VALUES_SHOWN: usize = 8;
 
 /// Prints a value as JSON.
 pub fn json<T: Serialize>(value: &T) {
@@ -49,6 +53,24 @@ pub fn remarks(report: &StageReport) {
     if serious.len() > REMARKS_SHOWN {
         eprintln!("  ... and {} more, in 1-records.diagnostics.json", serious.len() - REMARKS_SHOWN);
     }
+    for (code, count, first) in notes_by_code(&report.diagnostics) {
+        match count {
+            1 => remark(first),
+            _ => eprintln!("  {} {count} x {code}, the first: {}", "note".dimmed(), first.message),
+        }
+    }
+}
+
+/// Notes, which tell of nothing lost, by their code in order of first appearance: code, how many, the first one.
+fn notes_by_code(diagnostics: &[Diagnostic]) -> Vec<(&str, usize, &Diagnostic)> {
+    let mut groups: Vec<(&str, usize, &Diagnostic)> = Vec::new();
+    for note in diagnostics.iter().filter(|d| d.severity == Severity::Note) {
+        match groups.iter_mut().find(|(code, ..)| *code == note.code) {
+            Some((_, count, _)) => *count += 1,
+            None => groups.push((&note.code, 1, note)),
+        }
+    }
+    groups
 }
 
 /// Prints what is about to be done.
@@ -112,6 +134,43 @@ pub fn funnel(steps: &[FunnelStep]) {
         table.add_row(vec![Cell::new(&step.name), number(step.remaining), Cell::new(lost.join(", "))]);
     }
     println!("{table}");
+}
+
+/// Prints how the records are spread: of all that could be read, and of the usable ones.
+pub fn distributions(all: &[Distribution]) {
+    title("Distributions (records, usable ones behind the stroke)");
+    for distribution in all {
+        let shown: Vec<String> = distribution
+            .values
+            .iter()
+            .take(VALUES_SHOWN)
+            .map(|count| format!("{} {}/{}", count.value, count.records, count.usable))
+            .collect();
+        let more = distribution.values.len().saturating_sub(VALUES_SHOWN);
+        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+        println!("  {:<12} {}{more}", distribution.field, shown.join(", "));
+    }
+}
+
+/// Prints that a table was written.
+pub fn written(path: &Path, rows: usize) {
+    println!("{rows} records in {}", path.display());
+}
+
+/// Prints what is about to be downloaded.
+pub fn fetching(url: &str) {
+    eprintln!("downloading {url}");
+}
+
+/// Prints what was downloaded.
+pub fn fetched(fetched: &Fetched) {
+    let state = if fetched.unchanged { "unchanged" } else { "saved" };
+    println!("{state} {}", fetched.path.display());
+    println!("{} bytes, SHA-256 {}", fetched.bytes, fetched.sha256);
+    let edition = format!("{:?}", fetched.edition).to_lowercase();
+    let modified = fetched.last_modified.as_ref().map(|when| format!(", last modified {when}")).unwrap_or_default();
+    println!("{} rows, {edition} edition{modified}", fetched.rows);
+    println!("use it with: recrash run --records {}", fetched.name);
 }
 
 /// Prints the paper's two tables.

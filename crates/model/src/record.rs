@@ -80,6 +80,8 @@ pub enum Edition {
     Second,
     /// 116 columns: since the third amendment of June 2025.
     Third,
+    /// No SGO file: another database, read through a mapping file.
+    Mapped,
 }
 
 /// Where a record came from.
@@ -376,6 +378,8 @@ pub enum RejectReason {
     EmptyNarrative,
     /// Another version or another entity's report of the same incident is kept instead.
     Merged,
+    /// The user's filter (`--where`) is not true of it.
+    FilteredOut,
     /// A movement the profile cannot express, or none known.
     MovementNotExpressible,
     /// A road type the profile cannot express, or none known.
@@ -393,6 +397,7 @@ impl RejectReason {
             Self::RedactedNarrative => "narrative redacted",
             Self::EmptyNarrative => "narrative empty",
             Self::Merged => "merged into another report of the incident",
+            Self::FilteredOut => "left out by --where",
             Self::MovementNotExpressible => "movement not expressible",
             Self::RoadNotExpressible => "road type not expressible",
             Self::PartnerNotExpressible => "partner kind not expressible",

@@ -4,8 +4,8 @@ use crate::record::PartnerKind;
 
 /// Size and limits of one kind of road user. Sources: `docs/models/vehicle.md`.
 ///
-/// The outline is what others can touch; the chassis is what the physics turns and tilts. Kinds shorter than a car move
-/// on a car's chassis: they differ in outline and limits alone.
+/// The outline is what others can touch; the chassis is what the physics turns and tilts. Two-wheelers and people move on
+/// small chassis of their own, wide enough not to fall over.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VehicleSpec {
     /// Length of the outline. [m]
@@ -65,12 +65,12 @@ impl VehicleSpec {
             // AASHTO's single-unit truck SU-30 (9.1 m, wheelbase 6.1 m) and city bus (12.2 m, wheelbase 7.6 m).
             PartnerKind::HeavyTruck => Self::heavy(9.1, 2.4, 6.1, 1.1, 6.0),
             PartnerKind::Bus => Self::heavy(12.2, 2.6, 7.6, 1.0, 6.0),
-            PartnerKind::Motorcycle => Self { length_m: 2.2, width_m: 0.8, ..Self::light(2.909, 8.0, 80.0 / 3.6) },
-            PartnerKind::Cyclist => Self { length_m: 1.8, width_m: 0.6, ..Self::light(1.0, 3.4, 9.0) },
-            PartnerKind::OtherNonMotorist => Self { length_m: 1.2, width_m: 0.6, ..Self::light(1.0, 3.4, 7.0) },
-            PartnerKind::Pedestrian => Self { length_m: 0.5, width_m: 0.5, ..Self::light(1.5, 3.0, 3.0) },
-            PartnerKind::Animal => Self { length_m: 1.0, width_m: 0.4, ..Self::light(2.909, 5.0, 12.0) },
-            PartnerKind::FixedObject => Self { length_m: 1.0, width_m: 1.0, ..Self::light(0.0, 8.0, 0.0) },
+            PartnerKind::Motorcycle => Self::light([2.2, 0.8], 1.4, [2.909, 8.0], 80.0 / 3.6),
+            PartnerKind::Cyclist => Self::light([1.8, 0.6], 1.1, [1.0, 3.4], 9.0),
+            PartnerKind::OtherNonMotorist => Self::light([1.2, 0.6], 0.9, [1.0, 3.4], 7.0),
+            PartnerKind::Pedestrian => Self::light([0.5, 0.5], 0.5, [1.5, 3.0], 3.0),
+            PartnerKind::Animal => Self::light([1.0, 0.4], 0.5, [2.909, 5.0], 12.0),
+            PartnerKind::FixedObject => Self::light([1.0, 1.0], 0.9, [0.0, 8.0], 0.0),
         }
     }
 
@@ -92,14 +92,27 @@ impl VehicleSpec {
         }
     }
 
-    /// A light road user: a car's chassis with these limits.
-    const fn light(acceleration: f64, deceleration: f64, max_speed_mps: f64) -> Self {
+    /// A light road user: outline, wheelbase, acceleration and deceleration, top speed.
+    const fn light(outline: [f64; 2], wheelbase_m: f64, limits: [f64; 2], max_speed_mps: f64) -> Self {
         Self {
-            max_acceleration_mps2: acceleration,
-            max_deceleration_mps2: deceleration,
-            brake_demand_mps2: deceleration,
+            length_m: outline[0],
+            width_m: outline[1],
+            front_axle_m: 0.5 * wheelbase_m,
+            rear_axle_m: 0.5 * wheelbase_m,
+            half_track_m: 0.4,
+            // As long as the wheelbase, so that yaw follows the steering as quickly as a car's.
+            chassis_length_m: wheelbase_m,
+            chassis_width_m: 0.8,
+            max_acceleration_mps2: limits[0],
+            max_deceleration_mps2: limits[1],
+            brake_demand_mps2: limits[1],
             max_speed_mps,
             ..CAR
         }
+    }
+
+    /// Whether this kind can turn on the spot, almost: it walks, or steps on and off what it rides.
+    pub const fn is_nimble(kind: PartnerKind) -> bool {
+        matches!(kind, PartnerKind::Pedestrian | PartnerKind::Animal | PartnerKind::OtherNonMotorist)
     }
 }

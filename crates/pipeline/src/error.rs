@@ -46,6 +46,9 @@ pub enum PipelineError {
         /// What is wrong with it.
         problem: String,
     },
+    /// A file could not be downloaded.
+    #[error("{0}")]
+    Fetch(recrash_fetch::FetchError),
     /// The threads could not be started.
     #[error("cannot start the worker threads: {0}; try --threads 1")]
     Threads(String),
@@ -61,7 +64,7 @@ impl PipelineError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
-            Self::Io { .. } | Self::Threads(_) => 1,
+            Self::Io { .. } | Self::Fetch(_) | Self::Threads(_) => 1,
             Self::MissingStage { .. } | Self::NotASuite { .. } => 2,
             Self::BadInput { .. } | Self::Damaged { .. } => 3,
         }

@@ -3,9 +3,10 @@
 use crate::casework::{CaseRun, DesignLog, design_case, read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::progress::{Progress, ProgressEvent};
+use crate::recording::RecordInput;
 use crate::scoring::Scoring;
-use crate::store::{read_bytes, to_compact_json, to_json};
-use crate::suite::{Files, RecordSource, Stage, Suite};
+use crate::store::{to_compact_json, to_json};
+use crate::suite::{Files, Stage, Suite};
 use crate::{embedding, summary, view};
 use rayon::prelude::*;
 use recrash_agents::{Brief, Paraphrase, Rules, expectation, parameters};
@@ -16,7 +17,6 @@ use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::tuning::TuneLog;
 use recrash_model::{Diagnostic, Outcome, Seed};
-use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText};
 use recrash_search::TuneOptions;
 use recrash_select::SelectOptions;
 
@@ -67,8 +67,6 @@ pub mod names {
     }
 }
 
-/// Crash files larger than this are refused. [bytes]
-const MAX_CRASH_FILE: u64 = 1 << 30;
 /// Members of a cluster that the agents see beside the pick.
 const MEMBERS_SHOWN: usize = 4;
 
@@ -159,26 +157,12 @@ impl StageWork<'_> {
 
 fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
-    let files: Vec<(String, Vec<u8>)> = match &suite.options().records {
-        RecordSource::Sample => vec![(SAMPLE_NAME.to_owned(), SAMPLE_CSV.as_bytes().to_vec())],
-        RecordSource::Files(paths) => paths
-            .iter()
-            .map(|path| {
-                let name = path.file_name().map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
-                Ok((name.into_owned(), read_bytes(path, MAX_CRASH_FILE)?))
-            })
-            .collect::<Result<_, PipelineError>>()?,
-    };
+    let input = RecordInput::read(suite.options())?;
     let profile = work.profile_json();
-    let mut inputs: Vec<&[u8]> = vec![profile.as_bytes()];
-    for (name, content) in &files {
-        inputs.push(name.as_bytes());
-        inputs.push(content);
-    }
+    let mut inputs = vec![profile.as_bytes()];
+    inputs.extend(input.parts());
     let mut report = work.whole(&inputs, || {
-        let sources: Vec<SourceText> = files.iter().map(|(name, bytes)| SourceText { name, bytes }).collect();
-        let Outcome { value, diagnostics } =
-            recrash_records::ingest(&sources, suite.profile()).map_err(|e| PipelineError::bad_input(e.to_string()))?;
+        let Outcome { value, diagnostics } = input.ingest(suite.profile())?;
         Ok(vec![
             (names::RECORDS.into(), to_compact_json(&value)),
             (names::RECORD_REMARKS.into(), to_json(&diagnostics)),

@@ -3,11 +3,12 @@
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
+use crate::recording;
 use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
 use recrash_model::Seed;
-use recrash_model::profile::SystemProfile;
+use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::selection::Strategy;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -25,7 +26,8 @@ const SUITE_FILE: &str = "suite.json";
 pub enum RecordSource {
     /// The built-in sample.
     Sample,
-    /// SGO files.
+    /// SGO files, or those of another database where there is a mapping. A name that is no file here is looked up among
+    /// the downloaded ones.
     Files(Vec<PathBuf>),
 }
 
@@ -35,6 +37,15 @@ pub enum RecordSource {
 pub struct Options {
     /// Crash records.
     pub records: RecordSource,
+    /// Which reports of one incident are merged; as the profile has it where not given.
+    #[serde(default)]
+    pub dedupe: Option<Dedupe>,
+    /// Keeps the records of which this filter is true.
+    #[serde(default)]
+    pub filter: Option<String>,
+    /// Mapping file: the records are those of another database.
+    #[serde(default)]
+    pub mapping: Option<PathBuf>,
     /// Profile: a built-in name or a path.
     pub profile: String,
     /// Scenarios to make.
@@ -61,6 +72,9 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             records: RecordSource::Sample,
+            dedupe: None,
+            filter: None,
+            mapping: None,
             profile: "paper".into(),
             budget: 20,
             strategy: Strategy::Stratified,
@@ -87,6 +101,10 @@ impl Options {
                 words.push(format!("--{name} {}", quoted(&value)));
             }
         };
+        let mapping = self.mapping.as_ref().map(|file| file.to_string_lossy().into_owned());
+        option("mapping", mapping.unwrap_or_default(), String::new());
+        option("dedupe", self.dedupe.map(dedupe_name).unwrap_or_default(), String::new());
+        option("where", self.filter.clone().unwrap_or_default(), String::new());
         option("profile", self.profile.clone(), default.profile);
         option("budget", self.budget.to_string(), default.budget.to_string());
         option("strategy", strategy_name(self.strategy), strategy_name(default.strategy));
@@ -99,6 +117,10 @@ impl Options {
         option("seed", self.seed.to_string(), default.seed.to_string());
         words.join(" ")
     }
+}
+
+fn dedupe_name(dedupe: Dedupe) -> String {
+    serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 fn strategy_name(strategy: Strategy) -> String {
@@ -225,7 +247,9 @@ impl Suite {
         resources: Resources,
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
-        let profile = load_profile(&options.profile)?;
+        let mut profile = load_profile(&options.profile)?;
+        profile.records.dedupe = options.dedupe.unwrap_or(profile.records.dedupe);
+        recording::read_filter(&options)?;
         let store = Store::create(dir, write_file)?;
         let units = if dir.join(SUITE_FILE).exists() {
             read_state(&store)?.units
@@ -393,10 +417,15 @@ mod tests {
         assert_eq!(Options::default().command(), "recrash run");
         let options = Options {
             records: RecordSource::Files(vec!["my file.csv".into()]),
+            dedupe: Some(Dedupe::Incident),
+            filter: Some("road = street".into()),
             budget: 5,
             strategy: Strategy::Kmeans,
             ..Options::default()
         };
-        assert_eq!(options.command(), "recrash run --records 'my file.csv' --budget 5 --strategy kmeans");
+        assert_eq!(
+            options.command(),
+            "recrash run --records 'my file.csv' --dedupe incident --where 'road = street' --budget 5 --strategy kmeans"
+        );
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::text::header_key;
 use recrash_model::record::{ContactZone, Edition, Weather};
+use std::collections::BTreeSet;
 
 /// The 122 columns of the first edition (June 2021 to mid 2023).
 const FIRST_HEADER: &str = "\
@@ -187,14 +188,15 @@ pub enum NotAHeader {
     Missing { edition: Edition, names: Vec<&'static str> },
 }
 
-/// The columns of an edition, in its order.
+/// The columns of an edition, in its order; none for a mapped file.
 pub fn published_header(edition: Edition) -> impl Iterator<Item = &'static str> {
     let header = match edition {
         Edition::First => FIRST_HEADER,
         Edition::Second => SECOND_HEADER,
         Edition::Third => THIRD_HEADER,
+        Edition::Mapped => "",
     };
-    header.split(',')
+    header.split(',').filter(|name| !name.is_empty())
 }
 
 /// How an edition is called in messages.
@@ -203,6 +205,7 @@ pub fn edition_name(edition: Edition) -> &'static str {
         Edition::First => "first edition (122 columns, 2021 to mid 2023)",
         Edition::Second => "second edition (137 columns, to June 2025)",
         Edition::Third => "third edition (116 columns, since June 2025)",
+        Edition::Mapped => "mapped file",
     }
 }
 
@@ -221,7 +224,10 @@ pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
         return Err(NotAHeader::Unknown);
     }
 
-    let find = |name: &str| keys.iter().position(|key| *key == header_key(name));
+    let find = |name: &str| {
+        let wanted = header_key(name);
+        keys.iter().position(|key| *key == wanted)
+    };
     let description = find("Roadway Description").map(WorkZoneColumn::Description);
     let work_zone = find("Roadway-Work Zone").map(WorkZoneColumn::Flag).or(description);
     let mut missing: Vec<&'static str> = REQUIRED.into_iter().filter(|name| find(name).is_none()).collect();
@@ -286,15 +292,13 @@ pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
         cp_zones: zones("CP"),
     };
 
-    let known_anywhere = |key: &String| {
-        editions.into_iter().any(|edition| published_header(edition).any(|name| header_key(name) == *key))
-    };
+    let published: BTreeSet<String> = editions.into_iter().flat_map(published_header).map(header_key).collect();
     let mut unknown = Vec::new();
     let mut repeated = Vec::new();
     for (position, key) in keys.iter().enumerate() {
         if keys[..position].contains(key) {
             repeated.push(names[position].trim().to_owned());
-        } else if !known_anywhere(key) {
+        } else if !published.contains(key) {
             unknown.push(names[position].trim().to_owned());
         }
     }

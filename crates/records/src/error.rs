@@ -1,5 +1,6 @@
 //! What is wrong with a whole file: which file, what was expected, how to mend it.
 
+use crate::mapping::MappingError;
 use thiserror::Error;
 
 /// A file that cannot be read at all. Single bad rows are no error: they are rejected by row number.
@@ -62,6 +63,9 @@ pub enum IngestError {
         /// The columns that are missing.
         missing: Vec<&'static str>,
     },
+    /// A mapping names a file or a column that is not there.
+    #[error("{0}")]
+    Mapping(MappingError),
     /// There is a header, and nothing below it.
     #[error(
         "{file}: a header ({edition}) and no data row below it; expected one row per crash report (was the download cut?)"

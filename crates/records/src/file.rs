@@ -106,6 +106,60 @@ fn first_header(bytes: &[u8]) -> Result<(u8, Recognised), (String, NotAHeader)> 
     Err(failure.unwrap_or((String::new(), NotAHeader::Unknown)))
 }
 
+/// A table of any header, for mapped files.
+#[derive(Debug)]
+pub struct RawTable {
+    /// First row.
+    pub header: Vec<Vec<u8>>,
+    /// Rows of the header's width, each with its number, counted from 1 without the header.
+    pub rows: Vec<(u64, ByteRecord)>,
+    /// Rows of another shape, and what is wrong with them.
+    pub malformed: Vec<(u64, String)>,
+}
+
+/// Reads a table of any header. The delimiter is the one that makes the most columns of the first line. An unclosed
+/// quote takes the rows below it with it: without knowing the columns there is no telling where one begins.
+pub fn raw_table(source: &SourceText<'_>) -> Result<RawTable, IngestError> {
+    let file = || source.name.to_owned();
+    let bytes = without_byte_order_mark(source.bytes);
+    if bytes.trim_ascii().is_empty() {
+        return Err(IngestError::Empty { file: file() });
+    }
+    if let Some((looks_like, hint)) = other_format(&bytes) {
+        return Err(IngestError::NotText { file: file(), looks_like, hint });
+    }
+    if is_binary(&bytes) {
+        return Err(IngestError::NotText { file: file(), looks_like: "a binary file", hint: "give a CSV file" });
+    }
+    let width = |delimiter: u8| {
+        let mut row = ByteRecord::new();
+        let _ = reader(&bytes, delimiter).read_byte_record(&mut row);
+        row.len()
+    };
+    let delimiter = DELIMITERS.into_iter().rev().max_by_key(|&delimiter| width(delimiter)).unwrap_or(b',');
+    let mut reader = reader(&bytes, delimiter);
+    let mut row = ByteRecord::new();
+    let mut table = RawTable { header: Vec::new(), rows: Vec::new(), malformed: Vec::new() };
+    let mut number = 0;
+    while let Ok(true) = reader.read_byte_record(&mut row) {
+        if table.header.is_empty() {
+            table.header = row.iter().map(<[u8]>::to_vec).collect();
+            continue;
+        }
+        number += 1;
+        if row.len() != table.header.len() {
+            table.malformed.push((number, format!("{} fields instead of {}", row.len(), table.header.len())));
+        } else if row.iter().any(|field| field.len() > LONGEST_FIELD_BYTES) {
+            table.malformed.push((number, format!("a field is longer than {LONGEST_FIELD_BYTES} bytes")));
+        } else if Span::of(&row, reader.position(), &bytes).ends_inside_quotes() {
+            table.malformed.push((number, "the file ends inside a quoted field".to_owned()));
+        } else {
+            table.rows.push((number, row.clone()));
+        }
+    }
+    Ok(table)
+}
+
 fn reader(bytes: &[u8], delimiter: u8) -> csv::Reader<Cursor<&[u8]>> {
     csv::ReaderBuilder::new().has_headers(false).flexible(true).delimiter(delimiter).from_reader(Cursor::new(bytes))
 }

@@ -10,16 +10,27 @@
 mod cells;
 mod codes;
 mod columns;
+mod distribution;
 mod error;
+mod fields;
 mod file;
+mod filter;
 mod funnel;
 mod identity;
+mod mapping;
 mod notes;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod row;
+mod table;
 mod text;
 
 pub use columns::published_header;
+pub use distribution::{Distribution, ValueCount, distributions};
 pub use error::IngestError;
+pub use filter::{FILTER_HELP, Filter, FilterError};
+pub use mapping::{MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, MappingError};
+pub use table::{Column, RecordTable, TableRows, record_table};
 
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason};
@@ -45,11 +56,32 @@ pub struct SourceText<'a> {
     pub bytes: &'a [u8],
 }
 
+/// What may be asked of [`ingest_with`] beyond the profile.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct IngestOptions<'a> {
+    /// Keeps the records of which this is true, of those that remain after merging.
+    pub filter: Option<&'a Filter>,
+    /// The files are those of another database; without it they are SGO files.
+    pub mapping: Option<&'a Mapping>,
+}
+
+/// As [`ingest_with`], of SGO files and without a filter.
+pub fn ingest(files: &[SourceText<'_>], profile: &SystemProfile) -> Result<Outcome<RecordSet>, IngestError> {
+    ingest_with(files, profile, &IngestOptions::default())
+}
+
 /// Reads crash files and filters their records by what the profile can express, in the order of the paper: merge (where
-/// the profile asks for it), readable narratives, expressible movements and roads.
+/// the profile asks for it), the user's filter, readable narratives, expressible movements and roads.
 ///
 /// Bad rows are rejected by row number and the rest goes on; an error means that a whole file is unusable.
-pub fn ingest(files: &[SourceText<'_>], profile: &SystemProfile) -> Result<Outcome<RecordSet>, IngestError> {
+///
+/// # Errors
+/// No file, or one of them cannot be read at all.
+pub fn ingest_with(
+    files: &[SourceText<'_>],
+    profile: &SystemProfile,
+    options: &IngestOptions<'_>,
+) -> Result<Outcome<RecordSet>, IngestError> {
     if files.is_empty() {
         return Err(IngestError::NoFiles);
     }
@@ -58,15 +90,7 @@ pub fn ingest(files: &[SourceText<'_>], profile: &SystemProfile) -> Result<Outco
     let mut file_of_draft: Vec<usize> = Vec::new();
     let mut rejects: Vec<(usize, Reject)> = Vec::new();
     let mut diagnostics = Vec::new();
-    let mut hashes: Vec<String> = Vec::new();
-    for (number, source) in files.iter().enumerate() {
-        let hash = file::sha256(source.bytes);
-        if hashes.contains(&hash) {
-            diagnostics.push(same_file_twice(source.name));
-            continue;
-        }
-        let content = file::read_file(source, &hash)?;
-        hashes.push(hash);
+    for (number, content) in read(files, options, &mut diagnostics)?.into_iter().enumerate() {
         sources.extend(content.sources);
         drafts.extend(content.drafts);
         file_of_draft.resize(drafts.len(), number);
@@ -90,6 +114,12 @@ pub fn ingest(files: &[SourceText<'_>], profile: &SystemProfile) -> Result<Outco
         }
         funnel.push(funnel::tally("one report an incident", &fates, &funnel));
     }
+    if let Some(filter) = options.filter {
+        for (draft, fate) in drafts.iter().zip(fates.iter_mut()).filter(|(_, fate)| fate.is_none()) {
+            *fate = (!filter.keeps(&draft.record)).then_some(RejectReason::FilteredOut);
+        }
+        funnel.push(funnel::tally(&format!("where {}", filter.text()), &fates, &funnel));
+    }
     funnel::run(&drafts, profile, &mut fates, &mut funnel);
 
     for ((draft, fate), number) in drafts.iter().zip(&fates).zip(file_of_draft) {
@@ -103,6 +133,29 @@ pub fn ingest(files: &[SourceText<'_>], profile: &SystemProfile) -> Result<Outco
     assert_eq!(rows, usable.len() + rejects.len(), "every row in is usable or rejected");
     let records = drafts.into_iter().map(|draft| draft.record).collect();
     Ok(Outcome { value: RecordSet { files: sources, records, usable, rejects, funnel }, diagnostics })
+}
+
+/// Every file, read; the same content twice counts once.
+fn read(
+    files: &[SourceText<'_>],
+    options: &IngestOptions<'_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Result<Vec<file::FileContent>, IngestError> {
+    let mut hashes: Vec<String> = Vec::new();
+    let mut different = Vec::new();
+    for source in files {
+        let hash = file::sha256(source.bytes);
+        if hashes.contains(&hash) {
+            diagnostics.push(same_file_twice(source.name));
+        } else {
+            hashes.push(hash);
+            different.push(*source);
+        }
+    }
+    match options.mapping {
+        Some(mapping) => mapping::read_mapped(&different, mapping),
+        None => different.iter().zip(&hashes).map(|(source, hash)| file::read_file(source, hash)).collect(),
+    }
 }
 
 fn same_file_twice(name: &str) -> Diagnostic {

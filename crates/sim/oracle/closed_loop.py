@@ -163,7 +163,8 @@ class Partner(IDMPolicy):
             s, t = self.path[0].local_coordinates(vehicle.position)
         lane = self.path[0]
         target, rate = self.lateral_target()
-        drift = max(-0.5, min(0.5, -rate / max(vehicle.speed, 1.0))) if rate else 0.0
+        drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, 1.0))))
+        drift = max(-0.5, min(0.5, drift))
         error = lane.heading_theta_at(s + 1) + drift - vehicle.heading_theta
         error = (error + math.pi) % (2 * math.pi) - math.pi
         steer = self.heading_pid.get_result(-error) + self.lateral_pid.get_result(-(t - target))

@@ -11,6 +11,7 @@
 //! What this crate does **not** do: it never sees a crash record, opens no file, reads no clock and starts no thread.
 
 mod chassis;
+mod contacts;
 mod ego;
 mod give_way;
 mod idm;
@@ -22,11 +23,11 @@ mod script;
 mod simulator;
 mod steering;
 mod traffic;
+mod world;
 
 pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand, friction_of};
 pub use ego::{Ego, UnknownEgo};
 pub use idm::IdmParameters;
-pub use metadrive_idm::{Lead, SIGHT_M, throttle as metadrive_idm_throttle};
 pub use recorder::{CastMember, Recorder, RolloutRecorder, Summary, SummaryRecorder};
 pub use simulator::Simulator;
 

@@ -5,11 +5,14 @@ use crate::give_way::{Crossing, GiveWay, Manners};
 use crate::metadrive_idm;
 use crate::scene::Scene;
 use crate::steering::LaneKeeper;
+use recrash_model::math;
 use recrash_model::rollout::STEP_S;
 use recrash_model::scenario::{DEFAULT_SPEED_KP, LateralMove, Partner, Policy};
+use recrash_model::vehicle::VehicleSpec;
 
-/// The wanted line may run at no more than this angle to the lane. [rad]
+/// The wanted line may run at no more than this angle to the lane, for vehicles and for who walks. [rad]
 const GREATEST_DRIFT: f64 = 0.5;
+const GREATEST_DRIFT_ON_FOOT: f64 = 1.3;
 
 /// A speed low enough to divide a sideways rate by. [m/s]
 const SLOW_MPS: f64 = 1.0;
@@ -21,6 +24,7 @@ pub(crate) struct Script {
     keeper: LaneKeeper,
     /// Where it started to the right of its lane. [m]
     start_t_m: f64,
+    greatest_drift: f64,
     /// Its sideways moves: a range of the world's list.
     pub(crate) moves: (u32, u32),
     give_way: GiveWay,
@@ -69,7 +73,8 @@ impl Script {
                 Plan::GiveWay { speed_mps: target_speed_mps, manners: Manners { gap_s } }
             }
         };
-        Self { plan, keeper: LaneKeeper::new(), start_t_m, moves, give_way: GiveWay::default() }
+        let greatest_drift = if VehicleSpec::is_nimble(partner.kind) { GREATEST_DRIFT_ON_FOOT } else { GREATEST_DRIFT };
+        Self { plan, keeper: LaneKeeper::new(), start_t_m, greatest_drift, moves, give_way: GiveWay::default() }
     }
 
     /// Whether something in its plan will still change its speed after this step.
@@ -95,11 +100,7 @@ impl Script {
         let seen = &scene.actors[me];
         let moves = &moves[self.moves.0 as usize..self.moves.1 as usize];
         let (t_m, rate_mps) = lateral_target(self.start_t_m, moves, f64::from(scene.step) * STEP_S);
-        let drift = if rate_mps == 0.0 {
-            0.0
-        } else {
-            (-rate_mps / seen.speed.max(SLOW_MPS)).clamp(-GREATEST_DRIFT, GREATEST_DRIFT)
-        };
+        let drift = drift(rate_mps, seen.speed, self.greatest_drift);
         let lane = scene.path_lane(me);
         if let Plan::Wait { until, .. } = self.plan
             && scene.step < until
@@ -113,7 +114,10 @@ impl Script {
 
     fn throttle(&mut self, scene: &Scene<'_>, me: usize, crossings: &[Crossing]) -> f64 {
         let seen = &scene.actors[me];
-        let hold = |speed_mps: f64, gain: f64| gain * (speed_mps - seen.speed);
+        // MetaDrive knows speeds in single precision. Whether somebody who starts at the speed he wants coasts at first
+        // (throttle 0) or rolls freely (a throttle of 1e-8) hangs on that last bit.
+        let speed = f64::from(seen.speed as f32);
+        let hold = |speed_mps: f64, gain: f64| gain * (speed_mps - speed);
         match self.plan {
             Plan::Timed { throttle, throttle_until, speed_mps, brake_from, brake_until, gain } => {
                 if (brake_from..brake_until).contains(&scene.step) {
@@ -149,6 +153,11 @@ pub(crate) fn stand(speed_mps: f64) -> f64 {
 
 /// Deceleration with which a partner stops to give way; assumed, a firm stop. [m/s^2]
 const GIVE_WAY_MPS2: f64 = 3.0;
+
+/// The angle to the lane, positive to the left, at which a partner at this speed moves sideways at this rate. [rad]
+fn drift(rate_mps: f64, speed_mps: f64, greatest: f64) -> f64 {
+    math::asin((-rate_mps / speed_mps.max(SLOW_MPS)).clamp(-1.0, 1.0)).clamp(-greatest, greatest)
+}
 
 /// Where a partner wants to be beside its lane, and how fast that moves, positive to the right. [m, m/s]
 ///

@@ -1,6 +1,6 @@
 //! What drivers do, against what was measured in MetaDrive and what the models promise.
 
-use recrash_model::record::Surface;
+use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{EventKind, Rollout, TerminationKind};
 use recrash_model::scenario::{
     Approach, LateralMove, MapSpec, Obstacle, ObstacleKind, Policy, ScenarioDraft, Start, Turn,
@@ -323,6 +323,26 @@ mod partners {
             near(moved(45), 3.5, 0.7);
             near(moved(100), 3.5, 0.15);
         }
+    }
+
+    #[test]
+    fn a_pedestrian_crosses_the_road() {
+        let mut draft = alone(straight(2, 100.0), Turn::Straight, 1, 8.0, 8.0);
+        let mut walking = lead(60.0, 1.4);
+        walking.kind = PartnerKind::Pedestrian;
+        walking.start = Start::Offset { delta_s_m: 60.0, delta_t_m: 3.0 };
+        walking.policy = Policy::SuddenBrake { target_speed: 1.4, brake_step: 0, brake_steps: 0, speed_kp: None };
+        walking.lateral = vec![LateralMove { start_s: 1.0, duration_s: 5.0, to_t_m: -3.0 }];
+        draft.partners.push(walking);
+        let rollout = run(draft, Ego::Idm);
+        assert!(!touches(&rollout));
+        assert_eq!(rollout.termination.kind, TerminationKind::Arrived);
+        let states = &rollout.actors[1].states;
+        let moved = |step: usize| states[step].y - states[0].y;
+        near(moved(10), 0.0, 0.1);
+        near(moved(60), 6.0, 1.5);
+        near(moved(120), 6.0, 0.7);
+        assert!(states.iter().all(|state| state.speed < 1.6));
     }
 
     #[test]

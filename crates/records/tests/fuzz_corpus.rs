@@ -1,0 +1,30 @@
+//! What the fuzz targets check, once over every file of their corpus: the short run of fuzzing that every build does.
+
+#[path = "../../../fuzz/checks/crash_file.rs"]
+mod crash_file;
+#[path = "../../../fuzz/checks/mapping.rs"]
+mod mapping;
+
+/// Runs a check over a folder of the corpus, and over each file's beginnings, as if it had been cut.
+fn over_corpus(target: &str, check: fn(&[u8])) {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(target);
+    let mut files: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    assert!(files.len() >= 4, "{}: {} files", folder.display(), files.len());
+    for file in files {
+        let bytes = std::fs::read(&file).unwrap();
+        for part in 1..=16 {
+            check(&bytes[..bytes.len() * part / 16]);
+        }
+    }
+}
+
+#[test]
+fn crash_files() {
+    over_corpus("crash_file", crash_file::check);
+}
+
+#[test]
+fn mapping_files() {
+    over_corpus("mapping", mapping::check);
+}
