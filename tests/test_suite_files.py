@@ -11,7 +11,7 @@ def test_results_csv_has_a_row_for_every_run(suite: Path) -> None:
     with open(suite / "results.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     ids = {cluster["scenario_id"] for cluster in json.loads((suite / "2-selection.json").read_text())["clusters"]}
-    assert {row["scenario_id"] for row in rows} == ids
+    assert {row["scenario"] for row in rows} == ids
     assert all(None not in row and None not in row.values() for row in rows), "ragged rows"
 
 
@@ -21,7 +21,7 @@ def test_junit_counts_what_it_holds(suite: Path) -> None:
     for element in suites:
         assert int(element.get("tests", "-1")) == len(element.findall("testcase"))
         assert int(element.get("failures", "-1")) == len(element.findall("testcase/failure"))
-    names = [case.get("name") for element in suites for case in element.findall("testcase")]
+    names = [(element.get("name"), case.get("name")) for element in suites for case in element.findall("testcase")]
     assert len(names) == len(set(names)) > 0
 
 
