@@ -3,7 +3,7 @@
 use super::Context;
 use super::places::place_on;
 use crate::xml::{Element, number, rounded};
-use recrash_model::scenario::Start;
+use recrash_model::scenario::{Partner, Start};
 
 /// One sideways move: when it begins, as an attribute value, and its action.
 pub(super) fn moves(context: &Context<'_>, position: usize) -> Vec<(String, Element)> {
@@ -11,11 +11,7 @@ pub(super) fn moves(context: &Context<'_>, position: usize) -> Vec<(String, Elem
     let partner = &draft.partners[position];
     let placement = &context.scenario.partners()[position];
     let width = draft.map.carriageway().lane_width_m;
-    let start_t = match partner.start {
-        Start::Offset { delta_t_m, .. } => delta_t_m,
-        Start::ArrivalGap { .. } => 0.0,
-    };
-    let mut from = start_t;
+    let mut from = offset_at(partner, 0.0);
     let mut travelled = placement.s_m;
     let mut clock = 0.0;
     let mut list = Vec::new();
@@ -59,6 +55,18 @@ pub(super) fn moves(context: &Context<'_>, position: usize) -> Vec<(String, Elem
         from = step.to_t_m;
     }
     list
+}
+
+/// Where the actions put a partner to the right of its way at a time. [m]
+pub(super) fn offset_at(partner: &Partner, time_s: f64) -> f64 {
+    let mut offset = match partner.start {
+        Start::Offset { delta_t_m, .. } => delta_t_m,
+        Start::ArrivalGap { .. } => 0.0,
+    };
+    for step in partner.lateral.iter().filter(|step| time_s > step.start_s) {
+        offset += (step.to_t_m - offset) * ((time_s - step.start_s) / step.duration_s).min(1.0);
+    }
+    offset
 }
 
 /// A lateral place as lanes to the right of the partner's own, and the rest of it. [m]
