@@ -12,6 +12,7 @@ mod embedding;
 mod error;
 mod exporting;
 mod fetching;
+mod importing;
 mod profiles;
 mod progress;
 mod recording;
@@ -30,6 +31,7 @@ pub use casework::{
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
+pub use importing::{ImportRequest, Imported, SourceFormat, import};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use recording::{TableFormat, write_records};

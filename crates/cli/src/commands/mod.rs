@@ -2,6 +2,7 @@
 
 mod export;
 mod fetch;
+mod import;
 mod records;
 mod run;
 mod schema;
@@ -62,6 +63,8 @@ pub enum Command {
     Report(SuiteArgs),
     /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
     Export(export::ExportArgs),
+    /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
+    Import(import::ImportArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
     /// Print the JSON Schema of scenario files.
@@ -84,6 +87,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Tune(args) => stage::run(args, Stage::Tune, output),
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
+        Command::Import(args) => import::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Schema => schema::run(),
     }

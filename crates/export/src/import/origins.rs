@@ -35,10 +35,9 @@ impl Origins {
                 let path = diagnostic.location.path.clone().unwrap_or_default();
                 let holding = self.list.iter().filter(|origin| holds(&origin.part, &path));
                 let location = match holding.max_by_key(|origin| origin.part.len()) {
-                    Some(origin) => Location {
-                        line: Some(origin.line),
-                        ..Location::at_path(format!("{}: {path}", origin.element))
-                    },
+                    Some(origin) => {
+                        Location { line: Some(origin.line), ..Location::at_path(format!("{}: {path}", origin.element)) }
+                    }
                     None => Location { line: None, ..diagnostic.location },
                 };
                 Diagnostic { location, ..diagnostic }
