@@ -1,14 +1,10 @@
 //! Sideways moves as lane changes with an offset.
 
 use super::Context;
-use super::places::place_on;
+use super::places::{place_on, reference_to_centre};
 use crate::xml::{Element, number, rounded};
-use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Partner, Start};
-
-/// How late a steered vehicle is behind a target that moves sideways, taken out of the actions' starts. Measured on rear
-/// axles in the native simulator: 0.4 s (a car at 5 m/s) to 0.65 s (a heavy truck at 8 m/s). [s]
-const LAG_S: f64 = 0.5;
+use recrash_model::vehicle::VehicleSpec;
 
 /// One sideways move: when it begins, as an attribute value, and its action.
 pub(super) fn moves(context: &Context<'_>, position: usize) -> Vec<(String, Element)> {
@@ -56,7 +52,7 @@ pub(super) fn moves(context: &Context<'_>, position: usize) -> Vec<(String, Elem
                 ]),
             ),
         );
-        let lag = if partner.kind == PartnerKind::Pedestrian { 0.0 } else { LAG_S };
+        let lag = lag_s(partner);
         let start = at("start_s", step.start_s);
         let start = match (start.contains('$'), lag > 0.0) {
             (_, false) => start,
@@ -67,6 +63,18 @@ pub(super) fn moves(context: &Context<'_>, position: usize) -> Vec<(String, Elem
         from = step.to_t_m;
     }
     list
+}
+
+/// How late a steered vehicle follows a target that moves sideways: the time for some metres of way. Fitted to the native
+/// simulator so that centres are nearest, from motorcycle to heavy truck; `docs/formats/openscenario.md` has what is left. [s]
+fn lag_s(partner: &Partner) -> f64 {
+    if reference_to_centre(partner.kind) == 0.0 {
+        return 0.0;
+    }
+    let spec = VehicleSpec::of(partner.kind);
+    let way = 1.6 + 0.25 * (spec.front_axle_m + spec.rear_axle_m);
+    let lag = way / partner.policy.target_speed().max(1.0);
+    (lag.min(1.0) * 100.0).round() / 100.0
 }
 
 /// Where the actions put a partner to the right of its way at a time. [m]
