@@ -5,6 +5,7 @@ mod common;
 use common::{CASES, draft, scenario, straight_on, two_parameters};
 use proptest::prelude::*;
 use recrash_export::{ExportOptions, Format, PartnersAs, export, import};
+use recrash_model::Diagnostic;
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{LateralMove, Policy, ScenarioDraft};
 use recrash_sim::{Ego, simulate};
@@ -34,6 +35,11 @@ fn exported(draft: &ScenarioDraft, partners_as: PartnersAs) -> String {
     String::from_utf8(file.content).unwrap()
 }
 
+/// Remarks on the file, rather than of the check on the scenario in it.
+fn about_the_file(diagnostics: &[Diagnostic]) -> Vec<&Diagnostic> {
+    diagnostics.iter().filter(|diagnostic| diagnostic.code.starts_with("openscenario.")).collect()
+}
+
 #[test]
 fn what_was_written_is_read_back_without_a_remark() {
     for (name, json) in CASES {
@@ -43,6 +49,51 @@ fn what_was_written_is_read_back_without_a_remark() {
             assert_eq!(read.diagnostics, [], "{name} {partners_as:?}");
         }
     }
+}
+
+/// With what a simulator recorded, speeds are written as they were driven; that is no edit.
+#[test]
+fn what_depends_on_a_rollout_is_passed_over() {
+    for (name, json) in CASES {
+        let scenario = scenario(json);
+        let rollout = simulate(&scenario, Ego::Idm);
+        let files = export(&scenario, Some(&rollout), &[], &ExportOptions::new(Format::OpenScenario)).unwrap();
+        let read = import(std::str::from_utf8(&files[1].content).unwrap()).unwrap();
+        assert_eq!(about_the_file(&read.diagnostics), Vec::<&Diagnostic>::new(), "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_run_names_element_and_line() {
+    let text = exported(&draft(CASES[2].1), PartnersAs::Actions);
+    let line_of = |words: &str| text.lines().position(|line| line.contains(words)).unwrap() as u64 + 1;
+    let told = |changed: String| {
+        assert_ne!(changed, text);
+        let location = import(&changed).unwrap_err()[0].location.clone();
+        (location.line.unwrap(), location.path.unwrap_or_default())
+    };
+    let speed = r#"name="partner1SpeedMps" parameterType="double" value=""#;
+    let (line, path) = told(text.replace(speed, &format!("{speed}9")));
+    assert_eq!(line, line_of(speed));
+    assert_eq!(path, "OpenSCENARIO/ParameterDeclarations/partner1SpeedMps: partners[0].speed_mps");
+    let (line, path) = told(text.replace(
+        "&quot;turn&quot;:&quot;straight&quot;,&quot;lane_offset",
+        "&quot;turn&quot;:&quot;up&quot;,&quot;lane_offset",
+    ));
+    assert_eq!(path, "OpenSCENARIO/Entities/ScenarioObject[cp1]: partners[0].turn");
+    assert_eq!(line, line_of("&quot;id&quot;:&quot;cp1&quot;"));
+}
+
+/// A remark each for a thousand foreign parameters would hide what matters.
+#[test]
+fn many_remarks_are_counted() {
+    let text = exported(&draft(CASES[0].1), PartnersAs::Actions);
+    let foreign: String = (0..1000).map(|i| format!("<ParameterDeclaration name=\"x{i}\" value=\"1\"/>")).collect();
+    let read =
+        import(&text.replace("</ParameterDeclarations>", &format!("{foreign}</ParameterDeclarations>"))).unwrap();
+    let remarks = about_the_file(&read.diagnostics);
+    assert_eq!(remarks.len(), 21);
+    assert!(remarks[20].message.starts_with("980 more"), "{}", remarks[20].message);
 }
 
 #[test]
@@ -139,7 +190,7 @@ proptest! {
         prop_assume!(recrash_roads::check(changed.clone()).is_ok());
         let read = import(&exported(&changed, PartnersAs::Actions)).unwrap();
         prop_assert_eq!(read.value.draft(), &changed);
-        prop_assert_eq!(read.diagnostics, vec![]);
+        prop_assert_eq!(about_the_file(&read.diagnostics), Vec::<&Diagnostic>::new());
     }
 
     /// Maps of any measures, and road users anywhere on them: every format is written, and ours is read back. About
@@ -182,7 +233,7 @@ proptest! {
         }
         let read = import(&exported(&changed, PartnersAs::Actions)).unwrap();
         prop_assert_eq!(read.value.draft(), &changed);
-        prop_assert_eq!(read.diagnostics, vec![]);
+        prop_assert_eq!(about_the_file(&read.diagnostics), Vec::<&Diagnostic>::new());
     }
 
     /// A file that was cut or garbled anywhere is read or refused; nothing panics.
