@@ -3,6 +3,7 @@
 import ast
 import json
 import math
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from exports import Export, run
@@ -11,7 +12,10 @@ from oracles import answers, environment
 
 def test_scenic_compiles_every_file_and_samples_its_ranges(exports: list[Export]) -> None:
     files = scenic_files(exports)
-    found = answers("scenic", "scenic_run.py", "compile", "1", "sweep=1", *files)
+    half = len(files) // 2
+    compile_all = lambda some: answers("scenic", "scenic_run.py", "compile", "1", "sweep=1", *some)
+    with ThreadPoolExecutor(2) as threads:
+        found = [report for part in threads.map(compile_all, (files[:half], files[half:])) for report in part]
     assert len(found) == len(files)
     assert [report for report in found if "error" in report] == []
 
@@ -47,7 +51,9 @@ def within(export: Export, trajectory: list, bounds_m: dict[str, float]) -> None
     steps = min([len(trajectory), 51] + [export.steps_until_contact(actor["id"]) for actor in actors])
     assert steps > 25, export
     for step in range(steps):
-        for actor, (x, y, *_) in zip(actors, trajectory[step], strict=True):
+        # Obstacles come behind the road users.
+        assert len(trajectory[step]) >= len(actors), export
+        for actor, (x, y, *_) in zip(actors, trajectory[step]):
             off = math.dist((x, y), (actor["states"][step]["x"], actor["states"][step]["y"]))
             most = bounds_m.get(actor["id"], 0.5)
             assert off <= most, f"{export} {actor['id']}: {off:.2f} m at {0.1 * step:.1f} s"
@@ -63,8 +69,14 @@ def test_metadrive_script_is_python_and_its_scenario_complete(exports: list[Expo
 
 
 def test_metadrive_script_drives_each_map_as_our_simulator_does(cases: list[Export], tmp_path: Path) -> None:
-    for export in cases:
+    python = environment("scenic") / "python"
+
+    def drive(export: Export) -> list:
         trace = tmp_path / f"{export.id}.json"
         script = export.folder / "metadrive" / "run_metadrive.py"
-        run(environment("scenic") / "python", script, export.path("metadrive", ".metadrive.json"), "--headless", "--trace", trace)
-        within(export, json.loads(trace.read_text())["states"], {})
+        run(python, script, export.path("metadrive", ".metadrive.json"), "--headless", "--trace", trace)
+        return json.loads(trace.read_text())["states"]
+
+    with ThreadPoolExecutor(2) as threads:
+        for export, states in zip(cases, threads.map(drive, cases)):
+            within(export, states, {})
