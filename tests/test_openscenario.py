@@ -125,8 +125,12 @@ def deviations(export: Export, scenario: Path) -> list[tuple[dict, float, float]
 # ---- esmini ----
 
 
+#: Their rear axles are so far behind that lane keeping and tyres differ in a bend, see `docs/formats/openscenario.md`.
+LONG = ("bus", "heavy_truck")
+
+
 def test_esmini_plays_every_file_as_our_simulator_does(exports: list[Export], tmp_path: Path) -> None:
-    """With our ego in the slot. A vehicle in esmini keeps its rear axle on the lane in a turn; ours, on tyres, cuts it."""
+    """With our ego in the slot. The page docs/formats/esmini.md is what one run of this test wrote."""
     esmini = find()
     if not esmini:
         pytest.skip("skipped: esmini (set ESMINI_BIN to its binary; no registry has it)")
@@ -138,18 +142,18 @@ def test_esmini_plays_every_file_as_our_simulator_does(exports: list[Export], tm
     (tmp_path / "esmini.md").write_text(table(esmini, rows))
     print(f"table: {tmp_path / 'esmini.md'}")
     for export, acting, recorded in rows:
-        for played in (acting, recorded):
-            assert played.exit_code == 0 and played.errors == [], f"{export}: {played}"
-            assert collides_alike(played), f"{export}: {played}"
-        bends = export.scenario["map"]["type"] == "O" or any(p["turn"] != "straight" for p in export.scenario["partners"])
-        assert acting.off_m <= (0.7 if bends else 0.3), f"{export}: {acting}"
+        bend = export.scenario["map"]["type"] == "O"
+        sweeps = any(p["kind"] in LONG and (bend or p["turn"] != "straight") for p in export.scenario["partners"])
+        assert acting.off_5_s_m <= 0.4 and acting.off_m <= (0.7 if sweeps else 0.5), f"{export}: {acting}"
         assert recorded.off_m <= 0.15, f"{export}: {recorded}"
+        assert sweeps or collides_alike(acting, 0.3), f"{export}: {acting}"
+        assert collides_alike(recorded, 0.1), f"{export}: {recorded}"
 
 
-def collides_alike(played: Played) -> bool:
+def collides_alike(played: Played, within_s: float) -> bool:
     if played.contact_s is None or played.our_contact_s is None:
         return played.contact_s == played.our_contact_s
-    return abs(played.contact_s - played.our_contact_s) <= 0.5
+    return abs(played.contact_s - played.our_contact_s) <= within_s
 
 
 # ---- the logical scenario ----

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from exports import Export
+from osc_player import play
 
 #: Columns of an object in esmini's CSV log, and those that are read.
 COLUMNS, TO_CENTRE, X, Y, HEADING = 31, 5, 11, 12, 24
@@ -20,7 +21,8 @@ class Played:
 
     exit_code: int
     errors: list[str]
-    #: The greatest distance of a partner's centre from ours until its first contact, and its first 5 s alone. [m]
+    #: The greatest distance of a partner's centre from ours until first contact or the end of its road; in all, and in the
+    #: first 5 s. [m]
     off_m: float
     off_5_s_m: float
     #: First contact of the ego, there and here. [s]
@@ -51,8 +53,13 @@ def play_with_our_ego(esmini: str, export: Export, scenario: Path, folder: Path)
     contacts = re.findall(r"\[([\d.]+)\] \[warn\] Collision between (.*) and (.*)", text)
     theirs = [float(time) for time, a, b in contacts if "ego" in (a, b) and "obstacle." not in a + b]
     ours = [event["time_s"] for event in export.rollout["events"] if 0 in (event["kind"].get("a"), event["kind"].get("b"))]
-    tracks = read_states(states)
-    off = [distance for actor in export.partners() for distance in distances(export, actor, tracks)]
+    until_s = min(theirs[0] if theirs else math.inf, 0.1 * (len(export.rollout["actors"][0]["states"]) - 1))
+    tracks, until_road_ends = read_states(states), play(scenario, until_s)
+    off = [
+        distance
+        for actor in export.partners()
+        for distance in distances(export, actor, tracks[actor["id"]], len(until_road_ends[actor["id"]]))
+    ]
     return Played(
         done.returncode,
         [line for line in text.splitlines() if "[error]" in line],
@@ -103,10 +110,9 @@ def read_states(path: Path) -> dict[str, dict[int, tuple[float, float]]]:
     return tracks
 
 
-def distances(export: Export, actor: dict, tracks: dict) -> list[tuple[float, float]]:
-    """Time and distance from ours, at each step until contact that both have."""
-    track = tracks[actor["id"]]
-    steps = range(export.steps_until_contact(actor["id"]))
+def distances(export: Export, actor: dict, track: dict, most_steps: int) -> list[tuple[float, float]]:
+    """Time and distance from ours, at each step until contact or the end of its road."""
+    steps = range(min(export.steps_until_contact(actor["id"]), most_steps))
     found = [
         (0.1 * step, math.dist(track[10 * step], (state["x"], state["y"])))
         for step, state in zip(steps, actor["states"])
@@ -119,15 +125,18 @@ def distances(export: Export, actor: dict, tracks: dict) -> list[tuple[float, fl
 def table(esmini: str, rows: list[tuple[Export, Played, Played]]) -> str:
     """The results as a page for the docs."""
     lines = [
-        f"esmini {version(esmini)}, `--fixed_timestep 0.01 --collision`; distances are between centres, until first contact.",
+        f"Played by esmini {version(esmini)} with `--fixed_timestep 0.01 --collision`. Distances are between centres, until first "
+        "contact or the end of the road. No file made it end with another exit code than 0, or write a line with `[error]`.",
         "",
-        "| suite | scenario | map | acting, 5 s [m] | acting, all [m] | recorded [m] | contact [s] | in esmini [s] | errors |",
+        "| suite | scenario | partners | acting, first 5 s [m] | acting [m] | recorded [m] | contact [s] | esmini, acting [s] | esmini, recorded [s] |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
     time = lambda value: "-" if value is None else f"{value:.2f}"
     for export, acting, recorded in rows:
+        assert acting.errors == recorded.errors == [] and acting.exit_code == recorded.exit_code == 0, export
+        kinds = ", ".join(f"{p['kind'].replace('_', ' ')}, {p['turn']}" for p in export.scenario["partners"])
         lines.append(
-            f"| {export.suite} | {export.id} | {export.scenario['map']['type']} | {acting.off_5_s_m:.2f} | {acting.off_m:.2f} "
-            f"| {recorded.off_m:.2f} | {time(acting.our_contact_s)} | {time(acting.contact_s)} | {len(acting.errors) + len(recorded.errors)} |"
+            f"| {export.suite} | {export.id} | {kinds} | {acting.off_5_s_m:.2f} | {acting.off_m:.2f} | {recorded.off_m:.2f} "
+            f"| {time(acting.our_contact_s)} | {time(acting.contact_s)} | {time(recorded.contact_s)} |"
         )
     return "\n".join(lines) + "\n"
