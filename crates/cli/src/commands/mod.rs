@@ -1,8 +1,11 @@
 //! The subcommands: one file each, with what may be typed, what is done and what is shown.
 
+mod bench;
+mod bench_embed;
 mod export;
 mod fetch;
 mod import;
+mod model;
 mod records;
 mod run;
 mod schema;
@@ -50,7 +53,7 @@ pub enum Command {
     /// Stage 1: read crash files, and show what of them can be used.
     Records(records::RecordsArgs),
     /// Stage 2: choose a few records that stand for all.
-    Select(SuiteArgs),
+    Select(select::SelectArgs),
     /// Stage 3: paraphrase the narratives of the picks.
     Narrate(SuiteArgs),
     /// Stage 4: design a scenario for each narrative, checked by running it.
@@ -67,6 +70,10 @@ pub enum Command {
     Import(import::ImportArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
+    /// Get or find the files of the embedding model all-MiniLM-L6-v2.
+    Model(model::ModelArgs),
+    /// Measure speeds on this machine.
+    Bench(bench::BenchArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -89,6 +96,8 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
+        Command::Model(args) => model::run(args, output),
+        Command::Bench(args) => bench::run(args, output),
         Command::Schema => schema::run(),
     }
 }
