@@ -10,6 +10,7 @@ mod agents;
 mod casework;
 mod embedding;
 mod error;
+mod evaluation;
 mod exporting;
 mod fetching;
 mod profiles;
@@ -28,6 +29,7 @@ pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
 };
 pub use error::PipelineError;
+pub use evaluation::{Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate};
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use profiles::{PROFILE_NAMES, load_profile};

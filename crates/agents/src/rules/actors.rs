@@ -200,6 +200,21 @@ impl Mentions {
         self.list.iter().any(|m| m.actor == actor)
     }
 
+    /// Where this actor is mentioned. [bytes]
+    pub fn starts(&self, actor: Actor) -> impl Iterator<Item = usize> + '_ {
+        self.list.iter().filter(move |m| m.actor == actor).map(|m| m.at.start)
+    }
+
+    /// Where the mentions of this actor end. [bytes]
+    pub fn ends(&self, actor: Actor) -> impl Iterator<Item = usize> + '_ {
+        self.list.iter().filter(move |m| m.actor == actor).map(|m| m.at.end)
+    }
+
+    /// Whether a phrase at this place can be about a meeting of the two: both are mentioned, or one of them is.
+    pub fn meets_at(&self, place: usize) -> bool {
+        matches!(self.subject_at(place), Some(Actor::Sv | Actor::Cp))
+    }
+
     /// Whom a cue at this place is about: the last subject before it, else the last mention before it, else the first
     /// after it.
     pub fn subject_at(&self, place: usize) -> Option<Actor> {

@@ -1,7 +1,12 @@
 //! What one record states: its columns and its narrative, as facts with their sources.
 
+mod account;
 mod approach;
 mod details;
+mod movement;
+mod zones;
+
+pub use account::account;
 
 pub use approach::{Relation, relation_from_zones};
 
@@ -58,19 +63,26 @@ static STRAIGHT: LazyLock<Regex> = LazyLock::new(|| {
 
 /// Reads a record.
 pub fn read(record: &CrashRecord) -> Reading<'_> {
+    reading_of(record, &read_sentences(record))
+}
+
+/// The sentences that tell about the crash, each with whom it mentions.
+fn read_sentences(record: &CrashRecord) -> Vec<Sentence<'_>> {
     let texts = telling_sentences(&record.narrative);
     let cast = Cast::new(record, &texts);
-    let sentences: Vec<Sentence> =
-        texts.into_iter().map(|text| Sentence { text, mentions: cast.mentions(text) }).collect();
-    let relation = approach::relation(record, &sentences);
+    texts.into_iter().map(|text| Sentence { text, mentions: cast.mentions(text) }).collect()
+}
+
+fn reading_of<'a>(record: &'a CrashRecord, sentences: &[Sentence<'a>]) -> Reading<'a> {
+    let relation = approach::relation(record, sentences);
     let partner_named = sentences.iter().any(|sentence| sentence.mentions.includes(Actor::Cp));
     let meets = partner_named && sentences.iter().any(|sentence| MEETING.is_match(sentence.text));
-    let collision = collision(record, &sentences, relation.as_ref().map(|(relation, _)| *relation));
+    let collision = collision(record, sentences, relation.as_ref().map(|(relation, _)| *relation));
     Reading {
         record,
         tells: meets || relation.is_some(),
-        contradiction: contradiction(record, &sentences),
-        facts: facts(record, &sentences, relation.as_ref().map(|(relation, _)| *relation)),
+        contradiction: contradiction(record, sentences),
+        facts: facts(record, sentences, relation.as_ref().map(|(relation, _)| *relation)),
         relation,
         collision,
     }
@@ -211,27 +223,29 @@ fn collision(
     }
 }
 
-/// A turn the narrative tells of, where the column says otherwise and no words bear the column out.
-fn contradiction(record: &CrashRecord, sentences: &[Sentence]) -> Option<String> {
-    let told = |actor: Actor| {
-        let (mut left, mut right, mut straight) = (false, false, false);
-        for sentence in sentences {
-            for found in TURN.captures_iter(sentence.text) {
-                let at = found.get(0).expect("group 0").start();
-                if sentence.mentions.subject_at(at) == Some(actor) {
-                    let side = found.name("a").or_else(|| found.name("b")).map_or("", |m| m.as_str());
-                    left |= side.eq_ignore_ascii_case("left");
-                    right |= side.eq_ignore_ascii_case("right");
-                }
-            }
-            for found in STRAIGHT.find_iter(sentence.text) {
-                straight |= sentence.mentions.subject_at(found.start()) == Some(actor);
+/// Whether a left turn, a right turn and going straight are told of an actor.
+fn told_turns(sentences: &[Sentence], actor: Actor) -> (bool, bool, bool) {
+    let (mut left, mut right, mut straight) = (false, false, false);
+    for sentence in sentences {
+        for found in TURN.captures_iter(sentence.text) {
+            let at = found.get(0).expect("group 0").start();
+            if sentence.mentions.subject_at(at) == Some(actor) {
+                let side = found.name("a").or_else(|| found.name("b")).map_or("", |m| m.as_str());
+                left |= side.eq_ignore_ascii_case("left");
+                right |= side.eq_ignore_ascii_case("right");
             }
         }
-        (left, right, straight)
-    };
+        for found in STRAIGHT.find_iter(sentence.text) {
+            straight |= sentence.mentions.subject_at(found.start()) == Some(actor);
+        }
+    }
+    (left, right, straight)
+}
+
+/// A turn the narrative tells of, where the column says otherwise and no words bear the column out.
+fn contradiction(record: &CrashRecord, sentences: &[Sentence]) -> Option<String> {
     let against = |actor: Actor, movement: Option<Movement>| {
-        let (left, right, straight) = told(actor);
+        let (left, right, straight) = told_turns(sentences, actor);
         match movement? {
             Movement::Straight if !straight && left != right => Some(if left { "left" } else { "right" }),
             Movement::LeftTurn if right && !left => Some("right"),
