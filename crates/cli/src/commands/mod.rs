@@ -1,5 +1,6 @@
 //! The subcommands: one file each, with what may be typed, what is done and what is shown.
 
+mod eval;
 mod export;
 mod fetch;
 mod records;
@@ -62,6 +63,8 @@ pub enum Command {
     Report(SuiteArgs),
     /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
     Export(export::ExportArgs),
+    /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
+    Eval(eval::EvalArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
     /// Print the JSON Schema of scenario files.
@@ -84,6 +87,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Tune(args) => stage::run(args, Stage::Tune, output),
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
+        Command::Eval(args) => eval::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Schema => schema::run(),
     }
