@@ -22,7 +22,7 @@ static LANE: LazyLock<Regex> = LazyLock::new(|| {
     )
 });
 static SECOND_LANE: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:second|third|2nd|3rd) lane (?:from|to) the (?:left|right)(?:most)?\b"));
+    LazyLock::new(|| pattern(r"(?i)\b(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?(?: lane)?\b"));
 static SIGNAL: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
         r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\bon (?:a )?(?P<d>green|red|yellow)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",

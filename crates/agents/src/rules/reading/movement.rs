@@ -32,6 +32,11 @@ static STATE: LazyLock<Regex> = LazyLock::new(|| {
 static STANDING_BEFORE: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?i)\b(?:stationary|stopped|parked|standing|motionless)(?: \w+)?\s*$"));
 
+/// The beginning of a sentence that goes back.
+static BEFORE: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(r"(?i)^(?:prior to|before|at the time of|moments? before|just before|immediately before|leading up to)\b")
+});
+
 /// What makes a meeting's subject the one that was met.
 static PASSIVE_BEFORE: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?i)\b(?:was|were|been|being|got|is)(?: \w+ly)? $"));
@@ -80,7 +85,7 @@ pub(super) fn movement(
     }
     let (left, right, straight) = told_turns(sentences, actor);
     match column {
-        Some(Straight) | None if !straight && left != right => Some(if left { LeftTurn } else { RightTurn }),
+        Some(Straight | Passing) | None if !straight && left != right => Some(if left { LeftTurn } else { RightTurn }),
         Some(column) => Some(column),
         None if straight => Some(Straight),
         None => None,
@@ -89,8 +94,13 @@ pub(super) fn movement(
 
 fn story(sentences: &[Sentence], actor: Actor) -> Story {
     let mut story = Story::default();
+    let mut met = false;
     for sentence in sentences {
-        let meeting = MEETING.find_iter(sentence.text).find(|found| sentence.mentions.meets_at(found.start()));
+        // After the meeting, only what goes back before it.
+        if met && !BEFORE.is_match(sentence.text) {
+            continue;
+        }
+        let meeting = MEETING.find_iter(sentence.text).find(|found| tells_meeting(sentence, found)).filter(|_| !met);
         let until = meeting.map_or(sentence.text.len(), |found| found.start());
         for found in STATE.captures_iter(sentence.text) {
             let whole = found.get(0).expect("group 0");
@@ -117,22 +127,31 @@ fn story(sentences: &[Sentence], actor: Actor) -> Story {
         if sentence.mentions.starts(actor).any(|at| STANDING_BEFORE.is_match(&sentence.text[..at])) {
             story.last = Some(State::Stood);
         }
-        break;
+        met = true;
     }
     story
+}
+
+/// Whether a word of meeting tells of this one: not "a rear-end collision", which sums up.
+fn tells_meeting(sentence: &Sentence, found: &regex::Match) -> bool {
+    let after = sentence.text[found.end()..].trim_start();
+    let sums_up = ["collision", "crash", "accident"].iter().any(|noun| after.starts_with(noun));
+    !sums_up && sentence.mentions.meets_at(found.start())
 }
 
 /// Whether the narrative says that one passed the other, before or when they met.
 fn passes(sentences: &[Sentence], actor: Actor, other: Actor) -> bool {
     for sentence in sentences {
         let found = PASSING.find_iter(sentence.text).any(|found| {
-            sentence.mentions.subject_at(found.start()) == Some(actor)
-                && sentence.mentions.object_after(found.end()) == Some(other)
+            let passes_by = sentence.mentions.subject_at(found.start()) == Some(actor)
+                && sentence.mentions.object_after(found.end()) == Some(other);
+            // "a passing truck"
+            passes_by || (found.as_str() == "passing" && sentence.mentions.starts(actor).any(|at| at == found.end() + 1))
         });
         if found {
             return true;
         }
-        if MEETING.find_iter(sentence.text).any(|found| sentence.mentions.meets_at(found.start())) {
+        if MEETING.find_iter(sentence.text).any(|found| tells_meeting(sentence, &found)) {
             return false;
         }
     }

@@ -1,32 +1,47 @@
-//! Where each was touched, in the narrative's words.
+//! Where each was touched: the columns, put right by the narrative's words.
 
 use super::super::actors::Actor;
 use super::{MEETING, Sentence};
 use recrash_model::record::ContactZone;
-use regex::Regex;
+use regex::{Captures, Regex};
 use std::sync::LazyLock;
 
-/// A part of a vehicle: end, side, and what makes it a part. The driver sits on the left.
-const PART: &str = r"(?:(?P<end>front|rear|back)[- ]?)?(?:(?P<side>left|right|driver'?s?|passenger'?s?)(?:[- ]hand)?[- ]?)?(?:(?P<late>front|rear|back)[- ]?)?(?:side|corner|bumper|fender|door|mirror|quarter panel|panel|wheel|tire|headlight|taillight|tail light|hatch|trunk|hood|window|end|portion|wheel well|sensor pod|sensor|of)?";
+/// An end, a side, or both, in either order. The driver sits on the left.
+const PLACE: &str = r"(?:(?P<end>front|rear|back)[- ]?)?(?:(?P<side>left|right|driver(?:'s|s)?|passenger(?:'s|s)?)(?:[- ]hand)?[- ]?)?(?:(?P<late>front|rear|back)[- ]?)?";
+/// What may be touched there.
+const PART: &str = r"(?P<part>sides?|corner|bumper|fender|doors?|(?:side )?mirror|(?:quarter )?panel|wheel|tire|head ?light|tail ?light|hatch|trunk|hood|window|end|portion|quarter|sensor pod|sensor|area|fascia)";
 
-/// `the front passenger side of the ...`: whose it is follows.
-static PART_OF: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(&format!(r"(?i)\bthe {PART}(?: (?:side|corner|bumper|fender|door|end|panel|mirror|portion|window|wheel))* ?(?:of|on) ?"))
-        .expect("constant pattern")
-});
-/// `...'s rear bumper`, `its left side`: whose it is stands before.
-static PART_AFTER: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(&format!(r"(?i)^(?:'s|s'|’s)? ?{PART}(?: (?:side|corner|bumper|fender|door|end|panel|mirror|window|wheel))*\b"))
-        .expect("constant pattern")
-});
+fn pattern(text: &str) -> Regex {
+    Regex::new(text).expect("constant pattern")
+}
 
-/// The zones told of an actor in the sentence where the two meet; empty where none is told.
-pub(super) fn told(sentences: &[Sentence], actor: Actor) -> Vec<ContactZone> {
+/// `the front passenger side of the ...`, `the rear of the ...`: whose it is follows.
+static PART_OF: LazyLock<Regex> =
+    LazyLock::new(|| pattern(&format!(r"(?i)\b(?:the|its) {PLACE}(?:{PART} ?)*(?:of|on|to|behind) ?")));
+/// `...'s rear bumper`: whose it is stands before.
+static PART_AFTER: LazyLock<Regex> = LazyLock::new(|| pattern(&format!(r"(?i)^(?:'s|s'|\u{{2019}}s|s) {PLACE}{PART}?")));
+
+/// The zones of an actor: `column`, unless the narrative names another place or a narrower one.
+pub(super) fn zones(sentences: &[Sentence], actor: Actor, column: &[ContactZone]) -> Vec<ContactZone> {
+    let told = told(sentences, actor);
+    if told.is_empty() || told.iter().all(|zone| says_no_less(column, *zone)) { column.to_vec() } else { told }
+}
+
+/// Whether the column says at least as much as "rear" or "left side" do.
+fn says_no_less(column: &[ContactZone], told: ContactZone) -> bool {
+    use ContactZone::{Front, FrontLeft, FrontRight, Left, Rear, RearLeft, RearRight, Right};
+    match told {
+        Left => column.iter().any(|zone| matches!(zone, Left | FrontLeft | RearLeft)),
+        Right => column.iter().any(|zone| matches!(zone, Right | FrontRight | RearRight)),
+        Front | Rear => column.contains(&told),
+        _ => false,
+    }
+}
+
+/// The zones told of an actor in the first sentence of a meeting that tells any.
+fn told(sentences: &[Sentence], actor: Actor) -> Vec<ContactZone> {
     let mut zones = Vec::new();
-    for sentence in sentences {
-        if !MEETING.is_match(sentence.text) {
-            continue;
-        }
+    for sentence in sentences.iter().filter(|sentence| MEETING.is_match(sentence.text)) {
         for found in PART_OF.captures_iter(sentence.text) {
             let end = found.get(0).expect("group 0").end();
             if sentence.mentions.object_after(end) == Some(actor) {
@@ -34,10 +49,7 @@ pub(super) fn told(sentences: &[Sentence], actor: Actor) -> Vec<ContactZone> {
             }
         }
         for at in sentence.mentions.ends(actor) {
-            let rest = &sentence.text[at..];
-            if rest.starts_with("'s ") || rest.starts_with("’s ") {
-                zones.extend(PART_AFTER.captures(rest).as_ref().and_then(zone));
-            }
+            zones.extend(PART_AFTER.captures(&sentence.text[at..]).as_ref().and_then(zone));
         }
         if !zones.is_empty() {
             break;
@@ -48,18 +60,25 @@ pub(super) fn told(sentences: &[Sentence], actor: Actor) -> Vec<ContactZone> {
     zones
 }
 
-fn zone(found: &regex::Captures) -> Option<ContactZone> {
+fn zone(found: &Captures) -> Option<ContactZone> {
     use ContactZone::{Front, FrontLeft, FrontRight, Left, Rear, RearLeft, RearRight, Right};
     let word = |group: &str| found.name(group).map(|text| text.as_str().to_ascii_lowercase());
+    let part = word("part").unwrap_or_default();
     let front = word("end").or_else(|| word("late")).map(|end| end == "front");
     let left = word("side").map(|side| side.starts_with("left") || side.starts_with("driver"));
     Some(match (front, left) {
+        // Which corner is not told.
+        (Some(_), None) if part == "corner" => return None,
         (Some(true), None) => Front,
+        (Some(false), None) => Rear,
+        // A door is in the side, whichever it is.
+        (_, Some(left)) if part.starts_with("door") => if left { Left } else { Right },
         (Some(true), Some(true)) => FrontLeft,
         (Some(true), Some(false)) => FrontRight,
-        (Some(false), None) => Rear,
         (Some(false), Some(true)) => RearLeft,
         (Some(false), Some(false)) => RearRight,
+        // "To the left of" is no part of anybody.
+        (None, _) if part.is_empty() => return None,
         (None, Some(true)) => Left,
         (None, Some(false)) => Right,
         (None, None) => return None,
