@@ -13,8 +13,7 @@ pub fn account_of(narrative: &Narrative, profile: &SystemProfile) -> Account {
     let mut account = Account { road: Some(narrative.template.road.into()), ..Account::default() };
     if let Origin::Alternative { reason } = &narrative.origin {
         let reason = plain(reason);
-        account.collision =
-            profile.excludes.collisions.iter().copied().find(|kind| names_kind(&reason, *kind));
+        account.collision = profile.excludes.collisions.iter().copied().find(|kind| names_kind(&reason, *kind));
         account.excluded = Some(account.collision.is_some());
         return account;
     }

@@ -4,7 +4,9 @@ use crate::output::{self, Output, number, table, title};
 use anstream::{eprintln, println};
 use clap::Args;
 use comfy_table::Cell;
-use recrash_pipeline::{AnswerMode, Evaluation, EvaluationRequest, FieldScore, Half, HalfScore, PipelineError, evaluate};
+use recrash_pipeline::{
+    AnswerMode, Evaluation, EvaluationRequest, FieldScore, Half, HalfScore, PipelineError, evaluate,
+};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

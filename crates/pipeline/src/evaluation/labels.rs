@@ -10,8 +10,21 @@ use sha2::{Digest, Sha256};
 
 /// The header of a label file.
 pub const COLUMNS: [&str; 15] = [
-    "half", "report", "version", "file", "entity", "road", "sv_movement", "cp_movement", "approach", "order", "sv_zones",
-    "cp_zones", "collision", "excluded", "note",
+    "half",
+    "report",
+    "version",
+    "file",
+    "entity",
+    "road",
+    "sv_movement",
+    "cp_movement",
+    "approach",
+    "order",
+    "sv_zones",
+    "cp_zones",
+    "collision",
+    "excluded",
+    "note",
 ];
 
 /// Which half of the records a label belongs to.
@@ -178,7 +191,8 @@ mod tests {
     use super::*;
     use recrash_model::template::Movement;
 
-    const ROW: &str = "dev,1-1,1,a.csv,Acme,intersection,straight,left_turn,opposite,cp,front;front_left,right,angle,no,";
+    const ROW: &str =
+        "dev,1-1,1,a.csv,Acme,intersection,straight,left_turn,opposite,cp,front;front_left,right,angle,no,";
 
     /// A report id of the developed half.
     fn dev_id() -> String {

@@ -31,12 +31,22 @@ pub fn account(record: &CrashRecord, profile: &SystemProfile) -> Account {
         if sv_zones.is_empty() {
             sv_zones.push(sv);
         }
-        if cp_zones.is_empty() && record.partner.known().is_some_and(|kind| !matches!(kind, PartnerKind::Cyclist | PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist | PartnerKind::Animal)) {
+        if cp_zones.is_empty()
+            && record.partner.known().is_some_and(|kind| {
+                !matches!(
+                    kind,
+                    PartnerKind::Cyclist
+                        | PartnerKind::Pedestrian
+                        | PartnerKind::OtherNonMotorist
+                        | PartnerKind::Animal
+                )
+            })
+        {
             cp_zones.push(cp);
         }
     }
     let mut account = Account {
-        road: road::road(record, &sentences),
+        road: road::road(record, &sentences, relation),
         sv_movement: movement::movement(&sentences, Actor::Sv, record.sv_movement.known(), relation),
         cp_movement: movement::movement(&sentences, Actor::Cp, record.cp_movement.known(), relation),
         approach: None,
@@ -74,7 +84,9 @@ fn told_approach(record: &CrashRecord, relation: Option<Relation>) -> Option<App
 
 /// What kind of collision, movements and contact areas make likely where nobody says from where the partner came.
 fn likely_approach(record: &CrashRecord, account: &Account) -> Option<Approach> {
-    use Movement::{Backing, ChangingLanes, EnteringTraffic, LaneDeparture, Merging, Parked, Passing, Stopped, Straight};
+    use Movement::{
+        Backing, ChangingLanes, EnteringTraffic, LaneDeparture, Merging, Parked, Passing, Stopped, Straight,
+    };
     match account.collision {
         Some(CollisionKind::RearEndByEgo | CollisionKind::RearEndOfEgo) => return Some(Approach::Same),
         Some(CollisionKind::HeadOn) => return Some(Approach::Opposite),
@@ -89,7 +101,8 @@ fn likely_approach(record: &CrashRecord, account: &Account) -> Option<Approach> 
     if account.road == Some(RoadGroup::Highway) || account.cp_movement == Some(Stopped) {
         return Some(Approach::Same);
     }
-    let ends = (only(sv, is_rear) && !cp.iter().any(|zone| is_rear(*zone))) || (only(sv, is_front) && only(cp, is_rear));
+    let ends =
+        (only(sv, is_rear) && !cp.iter().any(|zone| is_rear(*zone))) || (only(sv, is_front) && only(cp, is_rear));
     if ends {
         return Some(Approach::Same);
     }

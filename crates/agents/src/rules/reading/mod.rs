@@ -60,7 +60,7 @@ static TURN: LazyLock<Regex> = LazyLock::new(|| {
 });
 
 static STRAIGHT: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection").expect("constant pattern")
+    Regex::new(r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection|\bthrough traffic|\bwith the flow of traffic|\bright of way").expect("constant pattern")
 });
 
 /// Reads a record.
@@ -142,7 +142,6 @@ pub fn is_front(zone: ContactZone) -> bool {
 pub fn is_rear(zone: ContactZone) -> bool {
     matches!(zone, ContactZone::Rear | ContactZone::RearLeft | ContactZone::RearRight)
 }
-
 
 /// Whether there are zones and all of them are of this sort.
 pub fn only(zones: &[ContactZone], sort: fn(ContactZone) -> bool) -> bool {

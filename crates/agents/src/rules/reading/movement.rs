@@ -42,7 +42,9 @@ static PASSIVE_BEFORE: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?i)\b(?:was|were|been|being|got|is)(?: \w+ly)? $"));
 
 static PASSING: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:(?:attempt\w* to|tried to|trying to|began to) (?:pass|overtake|go around)|pass(?:ed|ing)(?: by)?|overtook|overtaking|went around|drove around|maneuver\w* around)\b")
+    pattern(
+        r"(?i)\b(?:(?:attempt\w* to|tried to|trying to|began to) (?:pass|overtake|go around)|pass(?:ed|ing)(?: by)?|overtook|overtaking|went around|drove around|maneuver\w* around)\b",
+    )
 });
 /// A state of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,13 +85,19 @@ pub(super) fn movement(
         (None, Some(State::Stood)) if stands => return Some(Stopped),
         _ => {}
     }
-    let (left, right, straight) = told_turns(sentences, actor);
+    let (left, right, straight) = told_turns(before_they_met(sentences), actor);
     match column {
         Some(Straight | Passing) | None if !straight && left != right => Some(if left { LeftTurn } else { RightTurn }),
         Some(column) => Some(column),
         None if straight => Some(Straight),
         None => None,
     }
+}
+
+/// The sentences up to the first that tells the meeting.
+fn before_they_met<'s, 't>(sentences: &'s [Sentence<'t>]) -> &'s [Sentence<'t>] {
+    let meets = |sentence: &Sentence| MEETING.find_iter(sentence.text).any(|found| tells_meeting(sentence, &found));
+    &sentences[..sentences.iter().position(meets).map_or(sentences.len(), |met| met + 1)]
 }
 
 fn story(sentences: &[Sentence], actor: Actor) -> Story {
@@ -141,19 +149,13 @@ fn tells_meeting(sentence: &Sentence, found: &regex::Match) -> bool {
 
 /// Whether the narrative says that one passed the other, before or when they met.
 fn passes(sentences: &[Sentence], actor: Actor, other: Actor) -> bool {
-    for sentence in sentences {
-        let found = PASSING.find_iter(sentence.text).any(|found| {
+    before_they_met(sentences).iter().any(|sentence| {
+        PASSING.find_iter(sentence.text).any(|found| {
             let passes_by = sentence.mentions.subject_at(found.start()) == Some(actor)
                 && sentence.mentions.object_after(found.end()) == Some(other);
             // "a passing truck"
-            passes_by || (found.as_str() == "passing" && sentence.mentions.starts(actor).any(|at| at == found.end() + 1))
-        });
-        if found {
-            return true;
-        }
-        if MEETING.find_iter(sentence.text).any(|found| tells_meeting(sentence, &found)) {
-            return false;
-        }
-    }
-    false
+            passes_by
+                || (found.as_str() == "passing" && sentence.mentions.starts(actor).any(|at| at == found.end() + 1))
+        })
+    })
 }

@@ -19,29 +19,21 @@ fn pattern(text: &str) -> Regex {
 static PART_OF: LazyLock<Regex> =
     LazyLock::new(|| pattern(&format!(r"(?i)\b(?:the|its) {PLACE}(?:{PART} ?)*(?:of|on|to|behind) ?")));
 /// `...'s rear bumper`: whose it is stands before.
-static PART_AFTER: LazyLock<Regex> = LazyLock::new(|| pattern(&format!(r"(?i)^(?:'s|s'|\u{{2019}}s|s) {PLACE}{PART}?")));
+static PART_AFTER: LazyLock<Regex> =
+    LazyLock::new(|| pattern(&format!(r"(?i)^(?:'s|s'|\u{{2019}}s|s) {PLACE}{PART}?")));
 
-/// The zones of an actor: `column`, unless the narrative names another place or a narrower one.
+/// The zones of an actor: those the narrative names, else `column`.
 pub(super) fn zones(sentences: &[Sentence], actor: Actor, column: &[ContactZone]) -> Vec<ContactZone> {
     let told = told(sentences, actor);
-    if told.is_empty() || told.iter().all(|zone| says_no_less(column, *zone)) { column.to_vec() } else { told }
+    if told.is_empty() { column.to_vec() } else { told }
 }
 
-/// Whether the column says at least as much as "rear" or "left side" do.
-fn says_no_less(column: &[ContactZone], told: ContactZone) -> bool {
-    use ContactZone::{Front, FrontLeft, FrontRight, Left, Rear, RearLeft, RearRight, Right};
-    match told {
-        Left => column.iter().any(|zone| matches!(zone, Left | FrontLeft | RearLeft)),
-        Right => column.iter().any(|zone| matches!(zone, Right | FrontRight | RearRight)),
-        Front | Rear => column.contains(&told),
-        _ => false,
-    }
-}
-
-/// The zones told of an actor in the first sentence of a meeting that tells any.
+/// The zones told of an actor in the first sentence of a meeting that tells any. What two others did to each other is
+/// none of theirs.
 fn told(sentences: &[Sentence], actor: Actor) -> Vec<ContactZone> {
     let mut zones = Vec::new();
-    for sentence in sentences.iter().filter(|sentence| MEETING.is_match(sentence.text)) {
+    let meets = |sentence: &&Sentence| sentence.mentions.includes(Actor::Sv) && MEETING.is_match(sentence.text);
+    for sentence in sentences.iter().filter(meets) {
         for found in PART_OF.captures_iter(sentence.text) {
             let end = found.get(0).expect("group 0").end();
             if sentence.mentions.object_after(end) == Some(actor) {
@@ -72,13 +64,19 @@ fn zone(found: &Captures) -> Option<ContactZone> {
         (Some(true), None) => Front,
         (Some(false), None) => Rear,
         // A door is in the side, whichever it is.
-        (_, Some(left)) if part.starts_with("door") => if left { Left } else { Right },
+        (_, Some(left)) if part.starts_with("door") => {
+            if left {
+                Left
+            } else {
+                Right
+            }
+        }
         (Some(true), Some(true)) => FrontLeft,
         (Some(true), Some(false)) => FrontRight,
         (Some(false), Some(true)) => RearLeft,
         (Some(false), Some(false)) => RearRight,
-        // "To the left of" is no part of anybody.
-        (None, _) if part.is_empty() => return None,
+        // "To the left of" is no part of anybody, and of a fender the end is not told.
+        (None, _) if part.is_empty() || ["fender", "wheel", "tire"].contains(&part.as_str()) => return None,
         (None, Some(true)) => Left,
         (None, Some(false)) => Right,
         (None, None) => return None,
