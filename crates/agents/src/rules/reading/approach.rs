@@ -183,7 +183,8 @@ fn side_from_zones(record: &CrashRecord) -> Option<Side> {
 
 /// A partner that turns off, told in another lane than the ego: it drove beside it.
 fn by_told_lanes(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
-    let turns = record.cp_movement.known().is_some_and(|movement| movement != Movement::Straight);
+    let (left, right, _) = super::told_turns(sentences, Actor::Cp);
+    let turns = left || right || record.cp_movement.known().is_some_and(|movement| movement != Movement::Straight);
     let side = side_from_lanes(sentences).filter(|_| turns)?;
     let (_, text) = details::told_lanes(sentences).1?;
     Some((Relation::Beside(Some(side)), words(record, text)))

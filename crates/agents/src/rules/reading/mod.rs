@@ -152,6 +152,10 @@ static REAR_END: LazyLock<Regex> =
     LazyLock::new(|| Regex::new(r"(?i)\brear[- ]?end(?:ed|ing|s)?\b").expect("constant pattern"));
 static REAR_ENDED_BY: LazyLock<Regex> =
     LazyLock::new(|| Regex::new(r"(?i)^rear[- ]?ended(?: \w+)? by\b").expect("constant pattern"));
+static STRUCK_FROM_BEHIND: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(r"(?i)\b(?:struck|hit|impacted|contacted|bumped) (?:from|in|on|at)(?: the| its)? (?:behind|rear|back)\b")
+        .expect("constant pattern")
+});
 static HEAD_ON: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"(?i)\bhead[- ]on\b").expect("constant pattern"));
 static HIT_REAR_OF: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(r"(?i)\b(?:contact\w*|struck|hit|collided|impacted|bumped)\b(?: with)?(?: into)? (?:the )?(?:rear|back)(?:[- ]end| bumper)?(?: bumper)?(?: of)?")
@@ -179,6 +183,16 @@ fn collision(
                 _ => CollisionKind::RearEndOfEgo,
             };
             return Some((kind, words(record, found.as_str())));
+        }
+        if let Some(found) = STRUCK_FROM_BEHIND.find(sentence.text) {
+            let kind = match sentence.mentions.subject_at(found.start()) {
+                Some(Actor::Sv) => Some(CollisionKind::RearEndOfEgo),
+                Some(Actor::Cp) if !crosses && !beside => Some(CollisionKind::RearEndByEgo),
+                _ => None,
+            };
+            if let Some(kind) = kind {
+                return Some((kind, words(record, found.as_str())));
+            }
         }
         if let Some(found) = HIT_REAR_OF.find(sentence.text).filter(|_| !crosses && !beside) {
             let object = sentence.mentions.object_after(found.end());

@@ -105,10 +105,11 @@ fn story(sentences: &[Sentence], actor: Actor) -> Story {
     let mut met = false;
     for sentence in sentences {
         // After the meeting, only what goes back before it.
-        if met && !BEFORE.is_match(sentence.text) {
+        met &= !BEFORE.is_match(sentence.text);
+        if met {
             continue;
         }
-        let meeting = MEETING.find_iter(sentence.text).find(|found| tells_meeting(sentence, found)).filter(|_| !met);
+        let meeting = MEETING.find_iter(sentence.text).find(|found| tells_meeting(sentence, found));
         let until = meeting.map_or(sentence.text.len(), |found| found.start());
         for found in STATE.captures_iter(sentence.text) {
             let whole = found.get(0).expect("group 0");

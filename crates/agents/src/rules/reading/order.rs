@@ -30,7 +30,10 @@ pub(super) fn first(met: &Met) -> Option<FirstMover> {
         (_, Some(CollisionKind::RearEndOfEgo)) => return Some(FirstMover::Sv),
         (_, Some(CollisionKind::RearEndByEgo)) => return Some(FirstMover::Cp),
         (Some(Relation::Behind), _) if only(sv, is_rear) => return Some(FirstMover::Sv),
-        (Some(Relation::Beside(_)), _) => return Some(FirstMover::Both),
+        // Who turns off across the other's way cannot be beside it then.
+        (Some(Relation::Beside(_)), _) if !turns(met.movements.0) && !turns(met.movements.1) => {
+            return Some(FirstMover::Both);
+        }
         _ => {}
     }
     let flank = |zones: &[ContactZone]| zones.iter().any(|zone| is_flank(*zone));
@@ -41,8 +44,13 @@ pub(super) fn first(met: &Met) -> Option<FirstMover> {
         // Of those who are not asked for their contact areas the ego's tell.
         (true, _) if cp.is_empty() => Some(FirstMover::Cp),
         (false, _) if cp.is_empty() && flank(sv) => Some(FirstMover::Sv),
+        _ if matches!(met.relation, Some(Relation::Beside(_))) => Some(FirstMover::Both),
         _ => None,
     }
+}
+
+fn turns(movement: Option<Movement>) -> bool {
+    matches!(movement, Some(Movement::LeftTurn | Movement::RightTurn))
 }
 
 fn is_flank(zone: ContactZone) -> bool {

@@ -17,8 +17,7 @@ static IN_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
     )
 });
 /// Where one crosses the other's way, that there is a junction is enough.
-static JUNCTION: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:intersection|(?:red|green|yellow) (?:traffic )?(?:light|signal)|stop sign)\b"));
+static JUNCTION: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bintersection\b"));
 static GARAGE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bparking (?:garage|structure)\b"));
 
 /// The kind of road of a record, given from where the partner came.
