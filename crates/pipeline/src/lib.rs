@@ -12,6 +12,7 @@ mod casework;
 mod embed_bench;
 mod embedding;
 mod error;
+mod evaluation;
 mod exporting;
 mod failures;
 mod fetching;
@@ -36,6 +37,7 @@ pub use casework::{
 pub use embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use embedding::EmbeddingKind;
 pub use error::PipelineError;
+pub use evaluation::{Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate};
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
