@@ -196,6 +196,6 @@ fn hex(bytes: &[u8]) -> String {
     })
 }
 
-fn io(action: &'static str, path: &Path, source: std::io::Error) -> PipelineError {
+pub(crate) fn io(action: &'static str, path: &Path, source: std::io::Error) -> PipelineError {
     PipelineError::Io { action, path: path.to_owned(), source }
 }

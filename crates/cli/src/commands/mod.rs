@@ -3,6 +3,7 @@
 mod eval;
 mod export;
 mod fetch;
+mod import;
 mod records;
 mod run;
 mod schema;
@@ -65,6 +66,8 @@ pub enum Command {
     Export(export::ExportArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
+    /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
+    Import(import::ImportArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
     /// Print the JSON Schema of scenario files.
@@ -88,6 +91,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Eval(args) => eval::run(args, output),
+        Command::Import(args) => import::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Schema => schema::run(),
     }
