@@ -11,6 +11,7 @@ mod casework;
 mod embedding;
 mod error;
 mod exporting;
+mod failures;
 mod fetching;
 mod profiles;
 mod progress;
@@ -29,6 +30,7 @@ pub use casework::{
 };
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
+pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
