@@ -71,10 +71,6 @@ pub enum Command {
     Import(import::ImportArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
-    /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
-    Eval(eval::EvalArgs),
-    /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
-    Import(import::ImportArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
     /// Get or find the files of the embedding model all-MiniLM-L6-v2.
@@ -103,8 +99,6 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
         Command::Eval(args) => eval::run(args, output),
-        Command::Eval(args) => eval::run(args, output),
-        Command::Import(args) => import::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Model(args) => model::run(args, output),
         Command::Bench(args) => bench::run(args, output),
