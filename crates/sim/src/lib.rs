@@ -22,7 +22,6 @@ mod scene;
 mod script;
 mod simulator;
 mod steering;
-mod traffic;
 mod world;
 
 pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand, friction_of};
