@@ -64,12 +64,4 @@ pub enum MetadriveError {
         /// The second time.
         second: WorkerFault,
     },
-    /// The scenario holds something this backend does not have.
-    #[error("scenario `{scenario}` cannot run on MetaDrive: {what}")]
-    Unsupported {
-        /// The scenario's id.
-        scenario: String,
-        /// What.
-        what: String,
-    },
 }
