@@ -1,19 +1,19 @@
 //! The `recrash` command: reads what was typed, runs the pipeline, shows what came of it.
 
-mod args;
 mod bars;
 mod commands;
-mod show;
+mod options;
+mod output;
 
 use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = args::Cli::parse();
+    let cli = commands::Cli::parse();
     match commands::run(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            show::error(&error);
+            output::error(&error);
             ExitCode::from(error.exit_code())
         }
     }

@@ -1,66 +1,12 @@
-//! What may be typed.
+//! Options that several commands share.
 
-use clap::{Args, Parser, Subcommand};
+use clap::Args;
 use recrash_model::profile::Dedupe;
 use recrash_model::selection::Strategy;
 use recrash_pipeline::{
-    AnswerMode, Cast, CrashKind, FILTER_HELP, Format, Options, PublishedEdition, RecordSource, Resources, SimulatorKind,
+    AnswerMode, Cast, FILTER_HELP, Options, PipelineError, RecordSource, Resources, SimulatorKind, Suite,
 };
 use std::path::PathBuf;
-
-const EXAMPLES: &str = "\
-Examples:
-  recrash run                                            the built-in sample, everything else by default, into suite/
-  recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
-  recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
-  recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
-  recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
-  recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
-
-Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
-  4 questions wait for a batch";
-
-/// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
-#[derive(Debug, Parser)]
-#[command(name = "recrash", version, about, after_help = EXAMPLES, max_term_width = 110)]
-pub struct Cli {
-    /// What to do.
-    #[command(subcommand)]
-    pub command: Command,
-    /// Print results as JSON on standard output.
-    #[arg(long, global = true)]
-    pub json: bool,
-    /// Print errors only.
-    #[arg(long, short, global = true)]
-    pub quiet: bool,
-}
-
-/// What to do.
-#[derive(Debug, Subcommand)]
-pub enum Command {
-    /// Do everything: read, select, narrate, design, simulate, tune, report.
-    Run(SuiteArgs),
-    /// Stage 1: read crash files, and show what of them can be used.
-    Records(RecordsArgs),
-    /// Stage 2: choose a few records that stand for all.
-    Select(SuiteArgs),
-    /// Stage 3: paraphrase the narratives of the picks.
-    Narrate(SuiteArgs),
-    /// Stage 4: design a scenario for each narrative, checked by running it.
-    Design(SuiteArgs),
-    /// Stage 5: run the scenarios of a suite; or run one scenario file and show its metrics.
-    Simulate(SimulateArgs),
-    /// Stage 6: search each scenario's parameters for the nearest failure that is still true to the record.
-    Tune(SuiteArgs),
-    /// Stage 7: write report.html, junit.xml and results.csv.
-    Report(SuiteArgs),
-    /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
-    Export(ExportArgs),
-    /// Download NHTSA's crash file, whole or not at all, for --records.
-    Fetch(FetchArgs),
-    /// Print the JSON Schema of scenario files.
-    Schema,
-}
 
 /// Options of a suite. A stage on its own takes what is not given from the suite it works on.
 #[derive(Debug, Clone, Default, Args)]
@@ -134,95 +80,23 @@ pub struct SuiteArgs {
     pub threads: Option<u16>,
 }
 
-/// Options of `records`.
-#[derive(Debug, Clone, Args)]
-pub struct RecordsArgs {
-    /// SGO crash files (CSV), as with --records. [default: the built-in sample]
-    #[arg(value_name = "FILE")]
-    pub files: Vec<PathBuf>,
-    /// Write the usable records as a CSV table.
-    #[arg(long, value_name = "FILE")]
-    pub csv: Option<PathBuf>,
-    /// Write the usable records as a Parquet table.
-    #[cfg(feature = "parquet")]
-    #[arg(long, value_name = "FILE")]
-    pub parquet: Option<PathBuf>,
-    /// Write every record that could be read into the tables, with why it was lost.
-    #[arg(long)]
-    pub all: bool,
-    /// Options of the suite.
-    #[command(flatten)]
-    pub suite: SuiteArgs,
-}
-
-/// Options of `fetch`.
-#[derive(Debug, Clone, Args)]
-pub struct FetchArgs {
-    /// Reports since June 2025 (current), or from June 2021 to June 2025 (archive).
-    #[arg(long, value_name = "NAME", value_parser = ["current", "archive"], default_value = "current")]
-    pub edition: String,
-    /// Automated driving (ads), driver assistance of level 2 (adas), or other.
-    #[arg(long, value_name = "NAME", value_parser = ["ads", "adas", "other"], default_value = "ads")]
-    pub kind: String,
-    /// Folder to download from. [default: NHTSA's]
-    #[arg(long, value_name = "URL")]
-    pub base_url: Option<String>,
-    /// Folder to keep the file in. [default: recrash in the platform's folder for caches]
-    #[arg(long, value_name = "DIR", env = "RECRASH_CACHE")]
-    pub cache: Option<PathBuf>,
-}
-
-impl FetchArgs {
-    /// Which edition.
-    pub fn published(&self) -> PublishedEdition {
-        if self.edition == "archive" { PublishedEdition::Archive } else { PublishedEdition::Current }
-    }
-
-    /// Which kind.
-    pub fn crash_kind(&self) -> CrashKind {
-        match self.kind.as_str() {
-            "adas" => CrashKind::Adas,
-            "other" => CrashKind::Other,
-            _ => CrashKind::Ads,
-        }
-    }
-}
-
-/// Options of `export`.
-#[derive(Debug, Clone, Args)]
-pub struct ExportArgs {
-    /// Folder of a suite, or a scenario file (JSON).
-    #[arg(value_name = "SUITE|SCENARIO")]
-    pub source: PathBuf,
-    /// Formats, separated by commas: openscenario (with OpenDRIVE), scenic, metadrive, commonroad.
-    #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
-    pub to: Vec<Format>,
-    /// How partners move: by their policies as actions, or on the trajectory that was recorded.
-    #[arg(long = "as", value_name = "HOW", value_parser = ["actions", "trajectory"], default_value = "actions")]
-    pub partners_as: String,
-    /// Target folder; each format gets a folder in it. [default: exports, in the suite or beside the file]
-    #[arg(long, value_name = "DIR")]
-    pub to_dir: Option<PathBuf>,
-    /// Overwrite files that are there already.
-    #[arg(long)]
-    pub force: bool,
-}
-
-/// Options of `simulate`.
-#[derive(Debug, Clone, Args)]
-pub struct SimulateArgs {
-    /// One scenario file (JSON); without it, the scenarios of the suite are run.
-    #[arg(value_name = "SCENARIO")]
-    pub scenario: Option<PathBuf>,
-    /// Where to write the rollout of the one scenario (JSON).
-    #[arg(long, value_name = "FILE", requires = "scenario")]
-    pub rollout: Option<PathBuf>,
-    /// Options of the suite.
-    #[command(flatten)]
-    pub suite: SuiteArgs,
-}
-
 impl SuiteArgs {
+    /// The suite a stage works on, with what was typed over `base`.
+    ///
+    /// # Errors
+    /// The folder cannot be used, or an option names what there is not.
+    pub fn open(&self, base: Options) -> Result<Suite, PipelineError> {
+        Suite::open(&self.out, self.options(base), self.resources())
+    }
+
+    /// The suite a stage works on, with what was typed over what is saved there.
+    ///
+    /// # Errors
+    /// As [`SuiteArgs::open`].
+    pub fn open_saved(&self) -> Result<Suite, PipelineError> {
+        self.open(Suite::saved_options(&self.out)?.unwrap_or_default())
+    }
+
     /// What was typed, over `base`.
     pub fn options(&self, base: Options) -> Options {
         Options {
@@ -243,9 +117,7 @@ impl SuiteArgs {
             seed: self.seed.unwrap_or(base.seed),
         }
     }
-}
 
-impl SuiteArgs {
     fn cast(&self, base: Cast) -> Cast {
         let role = |own: &Option<String>, base: String| own.clone().or_else(|| self.agent.clone()).unwrap_or(base);
         Cast {
@@ -274,12 +146,6 @@ fn strategy(name: &str) -> Result<Strategy, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_command_line_is_consistent() {
-        Cli::command().debug_assert();
-    }
 
     #[test]
     fn what_is_typed_wins_over_what_was_saved() {

@@ -1,0 +1,110 @@
+//! `recrash run` and `recrash report`: everything, and what came of it in tables.
+
+use super::records::funnel;
+use super::select::{coverage, tables};
+use crate::options::SuiteArgs;
+use crate::output::{self, Output, table, title};
+use anstream::{eprintln, println};
+use comfy_table::Cell;
+use owo_colors::OwoColorize;
+use recrash_pipeline::{Options, PipelineError, RunSummary, Stage, Suite, Summary};
+use std::path::Path;
+
+/// Runs every stage.
+///
+/// # Errors
+/// The first stage's that stops.
+pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
+    let suite = args.open(Options::default())?;
+    if output.tables() {
+        heading(&suite);
+    }
+    let progress = output.progress();
+    for stage in Stage::ALL {
+        let report = suite.run_stage(stage, &*progress)?;
+        if output.tables() {
+            output::remarks(&report);
+        }
+    }
+    finish(&suite, output)
+}
+
+/// Writes the report of a suite.
+///
+/// # Errors
+/// A stage before it is not done.
+pub fn report(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
+    let suite = args.open_saved()?;
+    suite.run_stage(Stage::Report, &*output.progress())?;
+    finish(&suite, output)
+}
+
+fn finish(suite: &Suite, output: Output) -> Result<(), PipelineError> {
+    let summary: Summary = suite.store().read_json("summary.json")?;
+    if output.json {
+        output::json(&summary);
+    } else if !output.quiet {
+        show(&summary, suite.store().dir());
+    }
+    Ok(())
+}
+
+/// Prints what is about to be done.
+fn heading(suite: &Suite) {
+    let options = suite.options();
+    eprintln!(
+        "{} {}: profile {}, ego {}, budget {}, seed {} -> {}",
+        "recrash".bold(),
+        env!("CARGO_PKG_VERSION"),
+        suite.profile().name,
+        suite.ego(),
+        options.budget,
+        options.seed,
+        suite.store().dir().display()
+    );
+}
+
+fn gap(run: &RunSummary) -> String {
+    match (&run.contact, run.min_gap_m) {
+        (Some(kind), _) => format!("contact: {kind}"),
+        (None, Some(gap)) if gap < 0.01 => "< 0.01 m".into(),
+        (None, Some(gap)) => format!("{gap:.2} m"),
+        (None, None) => "-".into(),
+    }
+}
+
+/// Prints a whole run in tables.
+fn show(summary: &Summary, dir: &Path) {
+    funnel(&summary.funnel);
+    tables(&summary.tables);
+    coverage(&summary.coverage, &summary.templates);
+    title("Scenarios (least box gap to the partner, as designed and as tuned)");
+    let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "findings"]);
+    for case in &summary.cases {
+        let verdict = if case.tuned.faithful { "faithful" } else { "NOT FAITHFUL" };
+        rows.add_row(vec![
+            Cell::new(&case.id),
+            Cell::new(if case.alternative.is_some() { "alternative" } else { "record" }),
+            Cell::new(gap(&case.first)),
+            Cell::new(gap(&case.tuned)),
+            Cell::new(verdict),
+            Cell::new(case.tuned.findings.join(", ")),
+        ]);
+    }
+    println!("{rows}");
+    for case in summary.cases.iter().filter(|case| !case.tuned.faithful) {
+        println!("  {} {}: {}", "not faithful:".yellow(), case.id, case.tuned.unfaithful.join("; "));
+    }
+    let total = summary.cases.len();
+    let (first, tuned) = summary.failed();
+    println!(
+        "\n{} {total} scenarios run; {} faithful; {} fails {first} as designed and {tuned} after tuning",
+        "result:".bold(),
+        summary.faithful(),
+        summary.ego,
+    );
+    if summary.sample {
+        println!("records: the built-in sample, invented; give real crash files with --records FILE");
+    }
+    println!("report: {}", dir.join("report.html").display());
+}

@@ -1,0 +1,95 @@
+//! `recrash simulate`: the scenarios of a suite, or one scenario file with its metrics.
+
+use super::stage;
+use crate::options::SuiteArgs;
+use crate::output::{self, Output, number, table};
+use anstream::println;
+use clap::Args;
+use comfy_table::Cell;
+use owo_colors::OwoColorize;
+use recrash_pipeline::{FileRequest, FileRun, Options, PipelineError, Stage, simulate_file};
+use std::path::PathBuf;
+
+/// Options of `simulate`.
+#[derive(Debug, Clone, Args)]
+pub struct SimulateArgs {
+    /// One scenario file (JSON); without it, the scenarios of the suite are run.
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: Option<PathBuf>,
+    /// Where to write the rollout of the one scenario (JSON).
+    #[arg(long, value_name = "FILE", requires = "scenario")]
+    pub rollout: Option<PathBuf>,
+    /// Options of the suite.
+    #[command(flatten)]
+    pub suite: SuiteArgs,
+}
+
+/// Runs the scenarios.
+///
+/// # Errors
+/// The scenario cannot be run, or a file cannot be read or written.
+pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
+    let Some(scenario) = &args.scenario else {
+        return stage::run(&args.suite, Stage::Simulate, output);
+    };
+    let defaults = Options::default();
+    let profile = args.suite.profile.as_deref().unwrap_or(&defaults.profile);
+    let result = simulate_file(&FileRequest {
+        scenario,
+        profile,
+        ego: args.suite.ego.as_deref(),
+        simulator: args.suite.sim.unwrap_or_default(),
+        python: &args.suite.python,
+        rollout: args.rollout.as_deref(),
+    })?;
+    if output.json {
+        output::json(&result.run);
+    } else if !output.quiet {
+        show(&result);
+    }
+    Ok(())
+}
+
+/// Prints one run of one scenario file.
+fn show(result: &FileRun) {
+    let run = &result.run;
+    result.diagnostics.iter().for_each(output::remark);
+    println!(
+        "{} under {}: {:?} after {:.1} s",
+        run.rollout.scenario_id.bold(),
+        run.rollout.ego,
+        run.metrics.termination,
+        run.metrics.duration_s
+    );
+    let mut rows = table(&["with", "min gap", "at", "centres", "TTC", "PET", "DRAC", "headway"]);
+    let timed = |value: Option<f64>, unit: &str| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.2} {unit}"));
+    for partner in &run.metrics.partners {
+        rows.add_row(vec![
+            Cell::new(&partner.id),
+            number(format!("{:.2} m", partner.min_gap.value)),
+            number(format!("{:.1} s", partner.min_gap.time_s)),
+            number(format!("{:.2} m", partner.min_centre_distance.value)),
+            number(timed(partner.min_ttc.map(|t| t.value), "s")),
+            number(timed(partner.pet.map(|t| t.value), "s")),
+            number(timed(partner.max_drac.map(|t| t.value), "m/s2")),
+            number(timed(partner.min_headway.map(|t| t.value), "s")),
+        ]);
+    }
+    println!("{rows}");
+    if let Some(contact) = &run.metrics.contact {
+        println!(
+            "contact at {:.2} s with {}: {}, {} of the ego on {} of the partner, {:.1} m/s relative",
+            contact.time_s,
+            contact.id,
+            contact.kind.label(),
+            contact.ego_zone.label(),
+            contact.other_zone.label(),
+            contact.relative_speed_mps
+        );
+    }
+    for finding in &run.findings {
+        let mark = if finding.kind.is_failure() { "FAIL".red().to_string() } else { "odd ".yellow().to_string() };
+        println!("  {mark} {}", finding.sentence);
+    }
+    println!("state hash {}", run.rollout.state_hash);
+}

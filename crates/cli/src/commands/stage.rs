@@ -1,0 +1,23 @@
+//! The commands that run one stage of a suite and nothing more.
+
+use crate::options::SuiteArgs;
+use crate::output::{self, Output};
+use anstream::println;
+use recrash_pipeline::{PipelineError, Stage};
+
+/// Runs one stage of a suite.
+///
+/// # Errors
+/// The stage's.
+pub fn run(args: &SuiteArgs, stage: Stage, output: Output) -> Result<(), PipelineError> {
+    let suite = args.open_saved()?;
+    let report = suite.run_stage(stage, &*output.progress())?;
+    if output.json {
+        output::json(&serde_json::json!({ "stage": stage.name(), "done": report.done, "skipped": report.skipped }));
+    } else if !output.quiet {
+        output::remarks(&report);
+        let dir = suite.store().dir().display();
+        println!("{}: {} done, {} there already, in {dir}", stage.name(), report.done, report.skipped);
+    }
+    Ok(())
+}
