@@ -22,7 +22,8 @@ use serde_json::Value;
 pub enum Drive {
     /// MetaDrive's own IDM policy, at the scenario's target speed.
     MetadriveIdm,
-    /// Given controls, steering and throttle per step of 0.1 s, both -1 to 1; none behind their end.
+    /// Given controls, steering and throttle per step of 0.1 s, both -1 to 1; none behind their end. Only a contact or
+    /// time ends such a run: it may leave the road.
     OpenLoop(Vec<[f64; 2]>),
 }
 

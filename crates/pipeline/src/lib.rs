@@ -12,6 +12,7 @@ mod embedding;
 mod error;
 mod exporting;
 mod fetching;
+mod parity;
 mod profiles;
 mod progress;
 mod recording;
@@ -30,6 +31,10 @@ pub use casework::{
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
+pub use parity::{
+    Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
+    ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
+};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use recording::{TableFormat, write_records};

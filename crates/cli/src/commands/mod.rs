@@ -2,6 +2,7 @@
 
 mod export;
 mod fetch;
+mod parity;
 mod records;
 mod run;
 mod schema;
@@ -24,7 +25,7 @@ Examples:
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
-  4 questions wait for a batch";
+  4 questions wait for a batch; 5 a share or speed that is asked for was missed";
 
 /// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
 #[derive(Debug, Parser)]
@@ -64,6 +65,8 @@ pub enum Command {
     Export(export::ExportArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
+    /// Run the same scenarios on both simulators, and tell how far they agree.
+    Parity(parity::ParityArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -85,6 +88,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
+        Command::Parity(args) => parity::run(args, output),
         Command::Schema => schema::run(),
     }
 }
