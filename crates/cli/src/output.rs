@@ -67,7 +67,9 @@ pub fn remarks(report: &StageReport) {
     let serious: Vec<_> = report.diagnostics.iter().filter(|d| d.severity > Severity::Note).collect();
     serious.iter().take(REMARKS_SHOWN).for_each(|d| remark(d));
     if serious.len() > REMARKS_SHOWN {
-        eprintln!("  ... and {} more, in 1-records.diagnostics.json", serious.len() - REMARKS_SHOWN);
+        let of_records = serious.iter().all(|d| d.code.starts_with("records."));
+        let place = if of_records { ", in 1-records.diagnostics.json" } else { "" };
+        eprintln!("  ... and {} more{place}", serious.len() - REMARKS_SHOWN);
     }
     for (code, count, first) in notes_by_code(&report.diagnostics) {
         match count {

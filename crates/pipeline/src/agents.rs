@@ -180,10 +180,7 @@ impl AgentLog {
 /// The answer is still to come, is missing from the ledger, or the rules cannot either.
 pub fn paraphrase(models: Option<&Models>, name: &str, brief: &Brief) -> Result<(Narrative, AgentLog), PipelineError> {
     let by_rules = || {
-        Rules
-            .paraphrase(brief)
-            .map(|outcome| outcome.value)
-            .map_err(|e| PipelineError::bad_input(format!("narrative of {}: {e}", brief.scenario_id)))
+        Rules.paraphrase(brief).map(|outcome| outcome.value).map_err(|e| PipelineError::scenario(brief.scenario_id, e))
     };
     let Some(models) = models.filter(|_| name != RULES) else {
         return Ok((by_rules()?, AgentLog::rules()));

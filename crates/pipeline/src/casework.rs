@@ -172,9 +172,10 @@ pub fn design_case(
     }
     let best = (0..log.attempts.len()).min_by_key(|&i| log.attempts[i].faults());
     let Some(taken) = best.filter(|&i| log.attempts[i].unfaithful.is_some()) else {
-        let diagnostics = best.map_or_else(Vec::new, |i| log.attempts.swap_remove(i).diagnostics);
-        let what = format!("design of {}: nothing that can be run; {}", brief.scenario_id, log.gave_up.join("; "));
-        return Err(PipelineError::BadInput { what, diagnostics });
+        let mut why = vec!["no design can be run".to_owned()];
+        why.extend(log.gave_up);
+        why.extend(best.iter().flat_map(|&i| &log.attempts[i].diagnostics).map(ToString::to_string));
+        return Err(PipelineError::scenario(brief.scenario_id, why.join("; ")));
     };
     log.taken = taken;
     Ok((log.attempts[taken].draft.clone(), log))

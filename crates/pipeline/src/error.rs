@@ -24,6 +24,14 @@ pub enum PipelineError {
         /// Every single problem.
         diagnostics: Vec<Diagnostic>,
     },
+    /// One scenario cannot be made or run; a stage keeps why, and goes on with the others.
+    #[error("{id}: {why}")]
+    Scenario {
+        /// Which one.
+        id: String,
+        /// Why.
+        why: String,
+    },
     /// A stage needs an earlier one.
     #[error("{}: there is no finished stage \"{missing}\" in it; run `recrash {missing} --out {}` first", dir.display(), dir.display())]
     MissingStage {
@@ -80,6 +88,11 @@ impl PipelineError {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
     }
 
+/// What one scenario failed of.
+    pub fn scenario(id: &str, why: impl ToString) -> Self {
+        Self::Scenario { id: id.to_owned(), why: why.to_string() }
+    }
+
     /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input, 4 for a batch to be sent,
     /// 5 for results that miss what is asked for.
     pub fn exit_code(&self) -> u8 {
@@ -87,7 +100,7 @@ impl PipelineError {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
             Self::Io { .. } | Self::Fetch(_) | Self::Threads(_) => 1,
             Self::MissingStage { .. } | Self::NotASuite { .. } => 2,
-            Self::BadInput { .. } | Self::Damaged { .. } => 3,
+            Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } => 4,
             Self::Missed { .. } => 5,
         }

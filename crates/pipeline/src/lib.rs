@@ -11,6 +11,7 @@ mod casework;
 mod embedding;
 mod error;
 mod exporting;
+mod failures;
 mod fetching;
 mod parity;
 mod profiles;
@@ -30,6 +31,7 @@ pub use casework::{
 };
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
+pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,

@@ -3,12 +3,13 @@
 use crate::agents::{self, AgentLog, MAX_REPAIRS, RULES};
 use crate::casework::{CaseRun, DesignLog, Designer, MAX_DESIGNS, design_case, read_scenario, run_scenario};
 use crate::error::PipelineError;
+use crate::failures::Failure;
 use crate::progress::{Progress, ProgressEvent};
 use crate::recording::RecordInput;
 use crate::scoring::Scoring;
 use crate::store::{to_compact_json, to_json};
 use crate::suite::{Files, Stage, Suite};
-use crate::{embedding, summary, view};
+use crate::{embedding, failures, summary, view};
 use rayon::prelude::*;
 use recrash_agents::{Brief, Rules, expectation, parameters};
 use recrash_model::metrics::Expectation;
@@ -24,6 +25,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Files and folders of a suite.
 pub mod names {
+    use crate::suite::Stage;
+
     /// Records.
     pub const RECORDS: &str = "1-records.json";
     /// Remarks on the records.
@@ -39,6 +42,19 @@ pub mod names {
     /// Everything a person is told at the end.
     pub const SUMMARY: &str = "summary.json";
 
+    /// Ending of files that say why a scenario went no further.
+    pub const FAILURE: &str = ".failed.json";
+
+    /// Why a scenario went no further than this stage.
+    pub fn failure(stage: Stage, id: &str) -> String {
+        let folder = match stage {
+            Stage::Design => "4-scenarios",
+            Stage::Simulate => "5-rollouts",
+            Stage::Tune => "6-tuned",
+            _ => "3-narratives",
+        };
+        format!("{folder}/{id}{FAILURE}")
+    }
     /// Narrative of a scenario.
     pub fn narrative(id: &str) -> String {
         format!("3-narratives/{id}.json")
@@ -122,7 +138,8 @@ impl StageWork<'_> {
         Ok(StageReport { done: usize::from(!skipped), skipped: usize::from(skipped), diagnostics: Vec::new() })
     }
 
-    /// A stage of one unit per cluster, in parallel. `inputs` gives the hashes of what goes into a unit.
+    /// A stage of one unit per cluster, in parallel, without those that failed before. `inputs` gives the hashes of what
+    /// goes into a unit.
     fn per_case(
         &self,
         selection: &Selection,
@@ -131,17 +148,20 @@ impl StageWork<'_> {
     ) -> Result<StageReport, PipelineError> {
         let stage = self.stage.name();
         let unit_name = |cluster: &Cluster| format!("{stage}/{}", cluster.scenario_id);
-        let names: Vec<String> = selection.clusters.iter().map(unit_name).collect();
+        let whole = |cluster: &&Cluster| failures::before(self.suite, &cluster.scenario_id, self.stage).is_none();
+        let clusters: Vec<&Cluster> = selection.clusters.iter().filter(whole).collect();
+        let names: Vec<String> = clusters.iter().map(|cluster| unit_name(cluster)).collect();
         self.suite.keep_only(self.stage, &names)?;
         self.progress.event(ProgressEvent::Started { stage, units: names.len() });
-        let results: Vec<Result<bool, PipelineError>> = selection
-            .clusters
+        let results: Vec<Result<bool, PipelineError>> = clusters
             .par_iter()
-            .map(|cluster| {
+            .map(|&cluster| {
                 let inputs = inputs(cluster)?;
                 let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
-                let skipped = self.suite.unit(&unit_name(cluster), &inputs, || work(cluster))?;
-                self.progress.event(ProgressEvent::Advanced { stage, unit: &cluster.scenario_id, skipped });
+                let id = &cluster.scenario_id;
+                let work = || failures::keep(self.stage, id, work(cluster));
+                let skipped = self.suite.unit(&unit_name(cluster), &inputs, work)?;
+                self.progress.event(ProgressEvent::Advanced { stage, unit: id, skipped });
                 Ok(skipped)
             })
             .collect();
@@ -154,7 +174,12 @@ impl StageWork<'_> {
         }
         self.progress.event(ProgressEvent::Finished { stage });
         let there = skipped.iter().filter(|&&s| s).count();
-        Ok(StageReport { done: skipped.len() - there, skipped: there, diagnostics: Vec::new() })
+        let failed = |cluster: &&Cluster| {
+            let id = &cluster.scenario_id;
+            failures::at(self.suite, id, self.stage).map(|failure| failures::remark(id, &failure))
+        };
+        let diagnostics = clusters.iter().filter_map(failed).collect();
+        Ok(StageReport { done: skipped.len() - there, skipped: there, diagnostics })
     }
 
     /// Names of the simulator and the ego: what goes into the hash of everything that is run.
@@ -412,28 +437,30 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
     })
 }
 
-/// One case with everything that was made of it.
+/// One case with everything that was made of it, as far as it went.
 pub struct Case<'a> {
     /// Cluster and pick.
     pub cluster: &'a Cluster,
     /// The pick first, then a few members of its cluster.
     pub records: Vec<&'a CrashRecord>,
-    /// Narrative.
-    pub narrative: Narrative,
-    /// Who wrote it.
-    pub narrative_log: AgentLog,
+    /// Narrative, and who wrote it.
+    pub narrative: Option<(Narrative, AgentLog)>,
     /// How the scenario was designed.
-    pub design_log: DesignLog,
-    /// Scenario as designed.
+    pub design: Option<DesignLog>,
+    /// As designed.
+    pub first: Option<Ran>,
+    /// As tuned, with the log of the search.
+    pub tuned: Option<(Ran, TuneLog)>,
+    /// Why it went no further, where it did not.
+    pub failure: Option<Failure>,
+}
+
+/// A scenario and its run.
+pub struct Ran {
+    /// What was run.
     pub scenario: recrash_roads::Scenario,
-    /// First run.
-    pub first: CaseRun,
-    /// Tuned scenario.
-    pub tuned: recrash_roads::Scenario,
-    /// Run of the tuned scenario.
-    pub tuned_run: CaseRun,
-    /// Log of the search.
-    pub tune_log: TuneLog,
+    /// What came of it.
+    pub run: CaseRun,
 }
 
 fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
@@ -443,11 +470,20 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
     inputs.push(suite.output_hash(Stage::Select, Stage::Select.name(), names::SELECTION)?);
     for cluster in &cases.selection.clusters {
         let id = &cluster.scenario_id;
-        inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(id))?);
-        inputs.push(case_hash(suite, Stage::Design, cluster, &names::scenario(id))?);
-        inputs.push(case_hash(suite, Stage::Simulate, cluster, &names::first_run(id))?);
-        for file in [names::tuned(id), names::tune_log(id), names::tuned_run(id)] {
-            inputs.push(case_hash(suite, Stage::Tune, cluster, &file)?);
+        let made = [
+            (Stage::Narrate, vec![names::narrative(id)]),
+            (Stage::Design, vec![names::scenario(id)]),
+            (Stage::Simulate, vec![names::first_run(id)]),
+            (Stage::Tune, vec![names::tuned(id), names::tune_log(id), names::tuned_run(id)]),
+        ];
+        for (stage, files) in made {
+            if let Some(failure) = failures::at(suite, id, stage) {
+                inputs.push(failure.to_string());
+                break;
+            }
+            for file in files {
+                inputs.push(case_hash(suite, stage, cluster, &file)?);
+            }
         }
     }
     let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
@@ -455,7 +491,8 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
         let read = |cluster| -> Result<Case, PipelineError> { read_case(suite, &cases, cluster) };
         let all: Vec<Case> = cases.selection.clusters.iter().map(read).collect::<Result<_, _>>()?;
         let summary = summary::summarise(suite, &cases.records, &cases.selection, &all);
-        let view = view::view(suite, &cases.records, &cases.selection, &all);
+        let remarks = suite.store().read_json(names::RECORD_REMARKS)?;
+        let view = view::view(suite, &cases.records, &cases.selection, &all, remarks);
         Ok(vec![
             (names::SUMMARY.into(), to_json(&summary)),
             (names::REPORT.into(), recrash_report::html(&view).into_bytes()),
@@ -468,16 +505,19 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
 fn read_case<'a>(suite: &Suite, cases: &'a Cases, cluster: &'a Cluster) -> Result<Case<'a>, PipelineError> {
     let id = &cluster.scenario_id;
     let store = suite.store();
-    Ok(Case {
-        cluster,
-        records: cases.records_of(cluster),
-        narrative: store.read_json(&names::narrative(id))?,
-        narrative_log: store.read_json(&names::narrative_log(id))?,
-        design_log: store.read_json(&names::design_log(id))?,
-        scenario: scenario(suite, &names::scenario(id))?,
-        first: store.read_json(&names::first_run(id))?,
-        tuned: scenario(suite, &names::tuned(id))?,
-        tuned_run: store.read_json(&names::tuned_run(id))?,
-        tune_log: store.read_json(&names::tune_log(id))?,
-    })
+    let failure = failures::before(suite, id, Stage::Report);
+    let made = |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
+    let narrative = made(Stage::Narrate)
+        .then(|| Ok((store.read_json(&names::narrative(id))?, store.read_json(&names::narrative_log(id))?)))
+        .transpose()?;
+    let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
+    let first = made(Stage::Simulate).then(|| ran(suite, &names::scenario(id), &names::first_run(id))).transpose()?;
+    let tuned = made(Stage::Tune)
+        .then(|| Ok((ran(suite, &names::tuned(id), &names::tuned_run(id))?, store.read_json(&names::tune_log(id))?)))
+        .transpose()?;
+    Ok(Case { cluster, records: cases.records_of(cluster), narrative, design, first, tuned, failure })
+}
+
+fn ran(suite: &Suite, file: &str, run: &str) -> Result<Ran, PipelineError> {
+    Ok(Ran { scenario: scenario(suite, file)?, run: suite.store().read_json(run)? })
 }

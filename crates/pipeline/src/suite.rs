@@ -6,6 +6,7 @@ use crate::profiles::load_profile;
 use crate::progress::Progress;
 use crate::recording;
 use crate::simulator::{Simulator, SimulatorKind};
+use crate::stages::names::FAILURE;
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
 use recrash_model::profile::{Dedupe, SystemProfile};
@@ -339,7 +340,7 @@ impl Suite {
     }
 
     /// Does a unit of work, unless it is done: the same inputs gave files that are still there. Gives whether it was
-    /// skipped.
+    /// skipped. A failure is tried again.
     pub(crate) fn unit(
         &self,
         name: &str,
@@ -350,6 +351,7 @@ impl Suite {
         let before = self.lock().units.get(name).cloned();
         if let Some(unit) = &before
             && unit.inputs == inputs
+            && !unit.outputs.keys().any(|file| file.ends_with(FAILURE))
             && unit.outputs.iter().all(|(file, hash)| self.store.hash(file).as_ref() == Some(hash))
         {
             return Ok(true);

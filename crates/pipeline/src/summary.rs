@@ -1,6 +1,7 @@
 //! What a person is told at the end of a run.
 
 use crate::casework::CaseRun;
+use crate::failures::Failure;
 use crate::stages::Case;
 use crate::suite::{RecordSource, Suite};
 use recrash_model::metrics::CheckResult;
@@ -53,15 +54,17 @@ pub struct CaseSummary {
     /// Template.
     pub template: Template,
     /// How the narrative came about: `rules`, `first answer`, `after repair` or `fallback`.
-    pub narrated: String,
+    pub narrated: Option<String>,
     /// How the design came about, in the same words.
-    pub designed: String,
+    pub designed: Option<String>,
     /// Why the record itself was not used, where it was not.
     pub alternative: Option<String>,
     /// As designed.
-    pub first: RunSummary,
+    pub first: Option<RunSummary>,
     /// As tuned.
-    pub tuned: RunSummary,
+    pub tuned: Option<RunSummary>,
+    /// Why it went no further, where it did not.
+    pub failure: Option<Failure>,
     /// Points the search scored.
     pub points: usize,
 }
@@ -113,13 +116,20 @@ impl RunSummary {
 impl Summary {
     /// Scenarios whose tuned run is faithful.
     pub fn faithful(&self) -> usize {
-        self.cases.iter().filter(|case| case.tuned.faithful).count()
+        self.cases.iter().filter(|case| case.tuned.as_ref().is_some_and(|run| run.faithful)).count()
+    }
+
+    /// Scenarios that went all the way.
+    pub fn run(&self) -> usize {
+        self.cases.iter().filter(|case| case.tuned.is_some()).count()
     }
 
     /// Scenarios the ego fails, as designed and as tuned.
     pub fn failed(&self) -> (usize, usize) {
-        let count = |failed: fn(&CaseSummary) -> bool| self.cases.iter().filter(|case| failed(case)).count();
-        (count(|case| case.first.failed), count(|case| case.tuned.failed))
+        let count = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
+            self.cases.iter().filter(|case| run(case).as_ref().is_some_and(|run| run.failed)).count()
+        };
+        (count(|case| &case.first), count(|case| &case.tuned))
     }
 }
 
@@ -131,7 +141,7 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
         sample: suite.options().records == RecordSource::Sample,
         profile: suite.profile().name.clone(),
         ego: suite.ego().to_owned(),
-        simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
+        simulator: simulator_name(cases),
         rows: records.files.iter().map(|file| file.rows).sum(),
         funnel: records.funnel.clone(),
         usable: records.usable.len(),
@@ -145,16 +155,22 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
             .map(|case| CaseSummary {
                 id: case.cluster.scenario_id.clone(),
                 template: case.cluster.template,
-                narrated: case.narrative_log.outcome().to_owned(),
-                designed: case.design_log.outcome().to_owned(),
-                alternative: match &case.narrative.origin {
+                narrated: case.narrative.as_ref().map(|(_, log)| log.outcome().to_owned()),
+                designed: case.design.as_ref().map(|log| log.outcome().to_owned()),
+                alternative: case.narrative.as_ref().and_then(|(narrative, _)| match &narrative.origin {
                     Origin::Record => None,
                     Origin::Alternative { reason } => Some(reason.clone()),
-                },
-                first: RunSummary::new(&case.first),
-                tuned: RunSummary::new(&case.tuned_run),
-                points: case.tune_log.points.len(),
+                }),
+                first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
+                tuned: case.tuned.as_ref().map(|(ran, _)| RunSummary::new(&ran.run)),
+                failure: case.failure.clone(),
+                points: case.tuned.as_ref().map_or(0, |(_, log)| log.points.len()),
             })
             .collect(),
     }
+}
+
+/// The simulator that ran the scenarios, with its version.
+pub fn simulator_name(cases: &[Case]) -> String {
+    cases.iter().find_map(|case| case.first.as_ref()).map_or_else(String::new, |ran| ran.run.rollout.simulator.clone())
 }
