@@ -65,3 +65,10 @@ pub enum MetadriveError {
         second: WorkerFault,
     },
 }
+
+impl MetadriveError {
+    /// Whether it can be mended by installing MetaDrive: Python runs, and the package is not there.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::NotReady { reason: NotReady::Missing { .. } })
+    }
+}

@@ -7,7 +7,9 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod agents;
+mod bench_sim;
 mod casework;
+mod doctor;
 mod embedding;
 mod error;
 mod exporting;
@@ -29,6 +31,8 @@ pub use agents::{AgentLog, AnswerMode, Cast};
 pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
 };
+pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
+pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use failures::Failure;

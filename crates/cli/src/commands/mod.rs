@@ -1,5 +1,8 @@
 //! The subcommands: one file each, with what may be typed, what is done and what is shown.
 
+mod bench;
+mod bench_sim;
+mod doctor;
 mod export;
 mod fetch;
 mod parity;
@@ -67,6 +70,10 @@ pub enum Command {
     Fetch(fetch::FetchArgs),
     /// Run the same scenarios on both simulators, and tell how far they agree.
     Parity(parity::ParityArgs),
+    /// Tell what is installed of all that can be used, and how to get the rest.
+    Doctor(doctor::DoctorArgs),
+    /// Measure speeds on this machine.
+    Bench(bench::BenchArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -89,6 +96,8 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Export(args) => export::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Parity(args) => parity::run(args, output),
+        Command::Doctor(args) => doctor::run(args, output),
+        Command::Bench(args) => bench::run(args, output),
         Command::Schema => schema::run(),
     }
 }
