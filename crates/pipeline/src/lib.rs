@@ -12,6 +12,7 @@ mod embedding;
 mod error;
 mod exporting;
 mod fetching;
+mod models;
 mod profiles;
 mod progress;
 mod recording;
@@ -23,16 +24,18 @@ mod suite;
 mod summary;
 mod view;
 
-pub use agents::{AgentLog, AnswerMode, Cast};
+pub use agents::{AgentLog, Cast};
 pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
 };
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
+pub use models::{AnswerMode, ModelAccess};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use recording::{TableFormat, write_records};
+pub use recrash_agents::llm::{Caps, Spent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
@@ -41,4 +44,4 @@ pub use simulator::{Simulator, SimulatorKind};
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
-pub use summary::{CaseSummary, RunSummary, Summary};
+pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};

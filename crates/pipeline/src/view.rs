@@ -1,8 +1,11 @@
 //! The suite as the report sees it.
 
+use crate::agents::Cast;
 use crate::casework::CaseRun;
 use crate::stages::{Case, names};
 use crate::suite::{RecordSource, Suite};
+use crate::summary;
+use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::metrics::Verdict;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
@@ -20,14 +23,37 @@ pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[
         profile: suite.profile().clone(),
         ego: suite.ego().to_owned(),
         simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
-        agents: options.cast.describe(),
+        agents: agents(&options.cast, cases),
         seed: options.seed,
         sample: options.records == RecordSource::Sample,
         records: records.clone(),
         selection: selection.clone(),
         cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
-        diagnostics: Vec::new(),
+        diagnostics: fallbacks(&options.cast, cases),
     }
+}
+
+/// Who played the roles, and how many answers of models were accepted.
+fn agents(cast: &Cast, cases: &[Case]) -> String {
+    let models = summary::models(cast, cases);
+    if models.is_empty() {
+        return cast.describe();
+    }
+    let roles: Vec<String> = models.iter().map(|m| format!("{} {}: {}", m.role, m.model, m.describe())).collect();
+    roles.join("; ")
+}
+
+/// A remark for each scenario in which the rules took over from a model.
+fn fallbacks(cast: &Cast, cases: &[Case]) -> Vec<Diagnostic> {
+    let models = summary::models(cast, cases);
+    let remarks = models.iter().flat_map(|model| {
+        model.reasons.iter().map(|reason| {
+            let message = format!("{}: the rules took over from {}: {}", reason.id, model.model, reason.why);
+            let code = format!("model.{}", model.role);
+            Diagnostic::new(Severity::Warning, &code, Location::default(), message)
+        })
+    });
+    remarks.collect()
 }
 
 fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseView {
