@@ -11,6 +11,7 @@ mod casework;
 mod embedding;
 mod error;
 mod exporting;
+mod external;
 mod failures;
 mod fetching;
 mod profiles;
@@ -30,6 +31,7 @@ pub use casework::{
 };
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};
+pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
 pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use profiles::{PROFILE_NAMES, load_profile};

@@ -2,6 +2,7 @@
 
 use crate::agents::{AnswerMode, Cast, Models};
 use crate::error::PipelineError;
+use crate::external::Patience;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
 use crate::recording;
@@ -210,6 +211,7 @@ pub struct Suite {
     options: Options,
     threads: rayon::ThreadPool,
     python: PathBuf,
+    patience: Patience,
     models: Option<Models>,
     remarks: Vec<Diagnostic>,
 }
@@ -221,13 +223,15 @@ pub struct Resources {
     pub threads: Option<usize>,
     /// Python interpreter for MetaDrive.
     pub python: PathBuf,
+    /// How long answers of an external ego are waited for.
+    pub patience: Patience,
     /// Where models' answers come from.
     pub answers: AnswerMode,
 }
 
 impl Default for Resources {
     fn default() -> Self {
-        Self { threads: None, python: "python3".into(), answers: AnswerMode::default() }
+        Self { threads: None, python: "python3".into(), patience: Patience::default(), answers: AnswerMode::default() }
     }
 }
 
@@ -285,8 +289,9 @@ impl Suite {
         };
         let opened = options.cast.has_model().then(|| Models::open(&store, resources.answers)).transpose()?;
         let (models, remarks) = opened.map_or((None, Vec::new()), |(models, remarks)| (Some(models), remarks));
-        let python = resources.python;
-        let suite = Self { store, profile, state: Mutex::new(state), options, threads, python, models, remarks };
+        let Resources { python, patience, .. } = resources;
+        let suite =
+            Self { store, profile, state: Mutex::new(state), options, threads, python, patience, models, remarks };
         suite.save(&suite.lock())?;
         Ok(suite)
     }
@@ -322,7 +327,7 @@ impl Suite {
     /// The simulator with the ego in it.
     pub(crate) fn simulator(&self) -> Result<Simulator, PipelineError> {
         let workers = self.threads.current_num_threads();
-        Simulator::start(self.options.simulator, self.ego(), &self.python, workers)
+        Simulator::start(self.options.simulator, self.ego(), &self.python, workers, self.patience)
     }
 
     /// The models' side; absent where the rules play every role.
