@@ -68,6 +68,12 @@ pub enum PipelineError {
         /// Questions in it.
         count: usize,
     },
+    /// The work is done and its results are written, but they miss what is asked for.
+    #[error("missed: {what}")]
+    Missed {
+        /// What.
+        what: String,
+    },
     /// A file could not be downloaded.
     #[error("{0}")]
     Fetch(recrash_fetch::FetchError),
@@ -100,7 +106,8 @@ impl PipelineError {
         Self::Scenario { id: id.to_owned(), why: why.to_string() }
     }
 
-    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input, 4 for a batch to be sent.
+    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input, 4 for a batch to be sent,
+    /// 5 for results that miss what is asked for.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
@@ -108,6 +115,7 @@ impl PipelineError {
             Self::MissingStage { .. } | Self::NotASuite { .. } => 2,
             Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } => 4,
+            Self::Missed { .. } => 5,
         }
     }
 }

@@ -7,8 +7,10 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod agents;
+mod bench_sim;
 mod caches;
 mod casework;
+mod doctor;
 mod embed_bench;
 mod embedding;
 mod error;
@@ -18,6 +20,7 @@ mod external;
 mod failures;
 mod fetching;
 mod importing;
+mod parity;
 mod profiles;
 mod progress;
 mod recording;
@@ -32,9 +35,11 @@ mod view;
 mod weights;
 
 pub use agents::{AgentLog, AnswerMode, Cast};
+pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
 };
+pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use embedding::EmbeddingKind;
 pub use error::PipelineError;
@@ -44,6 +49,10 @@ pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patien
 pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use importing::{ImportRequest, Imported, SourceFormat, import};
+pub use parity::{
+    Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
+    ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
+};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use recording::{TableFormat, read_records, write_records};

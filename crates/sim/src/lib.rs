@@ -27,7 +27,6 @@ mod script;
 mod simulator;
 mod steering;
 mod swerve;
-mod traffic;
 mod world;
 
 pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand, friction_of};

@@ -11,13 +11,12 @@ use crate::recorder::CastMember;
 use crate::reference::{Attention, Reference};
 use crate::scene::{Seen, SeenObstacle};
 use crate::script::Script;
-use crate::traffic;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{ActorState, Role};
 use recrash_model::scenario::{LateralMove, Policy};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::{LanePath, RoadId, Scenario};
+use recrash_roads::{LanePath, RoadId, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement};
 
 /// Everything about one run; kept from run to run for its memory.
 #[derive(Debug, Default)]
@@ -131,9 +130,9 @@ impl World {
             self.cast(Role::Partner, placement.kind, &placement.path, placement.s_m, at, surface, driver);
         }
 
-        let spawns = traffic::place(scenario);
+        let spawns = recrash_roads::background_traffic(scenario);
         for spawn in &spawns {
-            let driver = Driver::MetadriveIdm(MetadriveIdm::new(traffic::TRAFFIC_SPEED_MPS));
+            let driver = Driver::MetadriveIdm(MetadriveIdm::new(TRAFFIC_SPEED_MPS));
             self.cast(Role::Traffic, spawn.kind, &spawn.path, 0.0, (spawn.pose, 0.0), surface, driver);
         }
         self.find_crossings(scenario, ego, &spawns);
@@ -192,7 +191,7 @@ impl World {
     }
 
     /// Finds where the paths of those who give way meet other paths.
-    fn find_crossings(&mut self, scenario: &Scenario, ego: Option<Ego>, spawns: &[traffic::Spawn]) {
+    fn find_crossings(&mut self, scenario: &Scenario, ego: Option<Ego>, spawns: &[TrafficPlacement]) {
         let partners = scenario.partners().len();
         let path = |actor: usize| match actor {
             0 => &scenario.ego().path,

@@ -2,11 +2,14 @@
 
 mod bench;
 mod bench_embed;
+mod bench_sim;
+mod doctor;
 mod eval;
 mod export;
 mod fetch;
 mod import;
 mod model;
+mod parity;
 mod records;
 mod run;
 mod schema;
@@ -29,7 +32,7 @@ Examples:
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
-  4 questions wait for a batch";
+  4 questions wait for a batch; 5 a share or speed that is asked for was missed";
 
 /// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
 #[derive(Debug, Parser)]
@@ -75,6 +78,10 @@ pub enum Command {
     Fetch(fetch::FetchArgs),
     /// Get or find the files of the embedding model all-MiniLM-L6-v2.
     Model(model::ModelArgs),
+    /// Run the same scenarios on both simulators, and tell how far they agree.
+    Parity(parity::ParityArgs),
+    /// Tell what is installed of all that can be used, and how to get the rest.
+    Doctor(doctor::DoctorArgs),
     /// Measure speeds on this machine.
     Bench(bench::BenchArgs),
     /// Print the JSON Schema of scenario files.
@@ -101,6 +108,8 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Eval(args) => eval::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Model(args) => model::run(args, output),
+        Command::Parity(args) => parity::run(args, output),
+        Command::Doctor(args) => doctor::run(args, output),
         Command::Bench(args) => bench::run(args, output),
         Command::Schema => schema::run(),
     }
