@@ -61,16 +61,25 @@ pub fn run_scenario(
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
 ) -> Result<CaseRun, PipelineError> {
-    let rollout = simulator.run(scenario)?;
+    Ok(judge(scenario, simulator.run(scenario)?, profile, expectation))
+}
+
+/// Computes everything from a rollout of a scenario, whichever simulator it comes from.
+pub(crate) fn judge(
+    scenario: &Scenario,
+    rollout: Rollout,
+    profile: &SystemProfile,
+    expectation: Option<&Expectation>,
+) -> CaseRun {
     let metrics = measure(scenario, &rollout, &profile.failure);
-    Ok(CaseRun {
+    CaseRun {
         format: "recrash.run/1".into(),
         findings: findings(scenario, &rollout, &metrics, &profile.failure),
         verdict: expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)),
         series: series(&rollout),
         metrics,
         rollout,
-    })
+    }
 }
 
 /// What became of the designs of one scenario.
