@@ -12,14 +12,14 @@ use crate::suite::{Files, Stage, Suite};
 use crate::{failures, selecting, summary, view};
 use rayon::prelude::*;
 use recrash_agents::llm::{TuneBrief, prompts_version};
-use recrash_agents::{Brief, Rules, expectation, parameters};
+use recrash_agents::{Brief, Rules, expectation, narrative_contradictions, parameters};
 use recrash_model::metrics::Expectation;
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{CrashRecord, RecordSet};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::tuning::{TuneLog, TunePoint};
-use recrash_model::{Diagnostic, Outcome, Seed};
+use recrash_model::{Diagnostic, Location, Outcome, Seed, Severity};
 use recrash_search::{Task, TuneOptions};
 use std::cell::Cell;
 
@@ -327,6 +327,7 @@ fn design(work: &StageWork) -> Result<StageReport, PipelineError> {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
         let (narrative, expectation) = case_expectation(suite, &cases, cluster)?;
+        refuse_contradictions(&narrative, &brief)?;
         let cast = &suite.options().cast;
         let (name, repairs) = (&cast.design, Cell::new(0));
         let model = suite.models().filter(|_| name != RULES).map(|models| models.model(name, cast, &repairs));
@@ -338,6 +339,19 @@ fn design(work: &StageWork) -> Result<StageReport, PipelineError> {
         let log = DesignLog { repairs: repairs.get(), ..log };
         let id = &cluster.scenario_id;
         Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
+    })
+}
+
+/// Nothing runs for a narrative that contradicts its template: agents mend theirs, so that such a one was edited by hand.
+fn refuse_contradictions(narrative: &Narrative, brief: &Brief) -> Result<(), PipelineError> {
+    let contradictions = narrative_contradictions(&narrative.facts, brief.template, brief.profile);
+    if contradictions.is_empty() {
+        return Ok(());
+    }
+    let told = |message| Diagnostic::new(Severity::Error, "narrative.contradiction", Location::default(), message);
+    Err(PipelineError::BadInput {
+        what: format!("the narrative of {} contradicts its template; mend it, or remove its file", brief.scenario_id),
+        diagnostics: contradictions.into_iter().map(told).collect(),
     })
 }
 
