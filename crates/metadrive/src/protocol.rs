@@ -2,8 +2,8 @@
 //!
 //! A run is told with every place resolved to a lane and a position on it, so that MetaDrive decides nothing.
 
-use crate::worker::NotReady;
 use crate::METADRIVE_VERSION;
+use crate::worker::NotReady;
 use recrash_model::record::Surface;
 use recrash_model::rollout::{
     ActorState, ActorTrack, EGO_ID, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, Termination, TerminationKind,
@@ -214,16 +214,17 @@ pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> RunSpec {
     if let Drive::OpenLoop(controls) = drive {
         ego.controls = Some(controls.clone());
     }
-    let partners = draft.partners.iter().zip(scenario.partners()).enumerate().map(|(position, (partner, placement))| {
-        let number = position + 1;
-        let mut spec = actor(number, placement.t_m, placement.speed_mps, partner.policy.target_speed());
-        spec.policy = Some(policy_value(&partner.policy));
-        spec.lateral.clone_from(&partner.lateral);
-        if matches!(partner.policy, Policy::Yielding { .. }) {
-            spec.crossings = crossings(scenario.network(), &ways, number);
-        }
-        spec
-    });
+    let partners =
+        draft.partners.iter().zip(scenario.partners()).enumerate().map(|(position, (partner, placement))| {
+            let number = position + 1;
+            let mut spec = actor(number, placement.t_m, placement.speed_mps, partner.policy.target_speed());
+            spec.policy = Some(policy_value(&partner.policy));
+            spec.lateral.clone_from(&partner.lateral);
+            if matches!(partner.policy, Policy::Yielding { .. }) {
+                spec.crossings = crossings(scenario.network(), &ways, number);
+            }
+            spec
+        });
     let first_traffic = draft.partners.len() + 1;
     let obstacles = scenario.obstacles().iter().map(|obstacle| {
         let lane = scenario.network().lane(obstacle.lane);
@@ -342,7 +343,8 @@ fn crossings(network: &RoadNetwork, ways: &[Way<'_>], me: usize) -> Vec<Crossing
         let other_size = VehicleSpec::of(way.kind);
         let meets = own.path.conflict(way.path, network, size.width_m, other_size.width_m);
         let Some(conflict) = meets else { continue };
-        let angle = own.path.pose(network, conflict.s_a, 0.0).heading - way.path.pose(network, conflict.s_b, 0.0).heading;
+        let angle =
+            own.path.pose(network, conflict.s_a, 0.0).heading - way.path.pose(network, conflict.s_b, 0.0).heading;
         let mine = stretch(conflict.s_a - own.begins_m(), &size, &other_size, angle, &conflict);
         let theirs = stretch(conflict.s_b - way.begins_m(), &other_size, &size, angle, &conflict);
         found.push(CrossingSpec { other, mine, theirs, merges: conflict.merges });
@@ -369,7 +371,8 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, spec: &RunSpec, done: 
     if !fits {
         return None;
     }
-    let actors: Vec<ActorTrack> = spec.cast.iter().zip(&done.tracks).map(|(member, states)| track(member, states)).collect();
+    let actors: Vec<ActorTrack> =
+        spec.cast.iter().zip(&done.tracks).map(|(member, states)| track(member, states)).collect();
     let events = done.events.iter().map(|each| event(each, actors.len(), scenario.obstacles().len()));
     Some(Rollout {
         format: ROLLOUT_FORMAT.to_owned(),

@@ -88,7 +88,14 @@ pub fn doctor(request: &DoctorRequest) -> Vec<DoctorItem> {
     all.push(minilm(request.model_dir.as_deref()));
     all.push(esmini());
     all.push(package(&request.python, runs, "Scenic", "scenic", "exports in Scenic", "scenic==3.1.1"));
-    all.push(package(&request.python, runs, "CommonRoad", "commonroad-io", "exports in CommonRoad", "commonroad-io==2026.1"));
+    all.push(package(
+        &request.python,
+        runs,
+        "CommonRoad",
+        "commonroad-io",
+        "exports in CommonRoad",
+        "commonroad-io==2026.1",
+    ));
     all.push(chromium());
     all
 }
@@ -163,10 +170,8 @@ fn chromium() -> DoctorItem {
         |path| vec![PathBuf::from(path)],
     );
     let found = places.iter().find_map(|program| ask(program, &["--version"]).ok());
-    found.map_or_else(
-        || DoctorItem::missing(name, needed_for, remedy),
-        |text| DoctorItem::ready(name, needed_for, text),
-    )
+    found
+        .map_or_else(|| DoctorItem::missing(name, needed_for, remedy), |text| DoctorItem::ready(name, needed_for, text))
 }
 
 /// Why a program said nothing that can be used.

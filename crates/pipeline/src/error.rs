@@ -88,7 +88,7 @@ impl PipelineError {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
     }
 
-/// What one scenario failed of.
+    /// What one scenario failed of.
     pub fn scenario(id: &str, why: impl ToString) -> Self {
         Self::Scenario { id: id.to_owned(), why: why.to_string() }
     }

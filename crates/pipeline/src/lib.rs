@@ -28,10 +28,10 @@ mod summary;
 mod view;
 
 pub use agents::{AgentLog, AnswerMode, Cast};
+pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
 };
-pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use error::PipelineError;
 pub use exporting::{ExportReport, ExportRequest, export};

@@ -69,7 +69,13 @@ fn show(bench: &SimBench) {
     let mut rows = table(&["", "measured", "asked for", ""]);
     for (what, figure, wanted, passed) in bench.asked() {
         let shown = |value: f64| if value > 1e4 { format!("{value:.0}") } else { format!("{value:.2}") };
-        let verdict = if figure.is_none() { "not measured" } else if passed { "reached" } else { "missed" };
+        let verdict = if figure.is_none() {
+            "not measured"
+        } else if passed {
+            "reached"
+        } else {
+            "missed"
+        };
         rows.add_row(vec![
             Cell::new(what),
             number(figure.map_or_else(|| "-".to_owned(), shown)),

@@ -5,7 +5,9 @@ use anstream::println;
 use clap::Args;
 use comfy_table::Cell;
 use owo_colors::OwoColorize;
-use recrash_pipeline::{OpenLoop, OpenLoopRequest, Parity, ParityRequest, ParitySource, PipelineError, open_loop, parity};
+use recrash_pipeline::{
+    OpenLoop, OpenLoopRequest, Parity, ParityRequest, ParitySource, PipelineError, open_loop, parity,
+};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\

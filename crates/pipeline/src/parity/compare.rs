@@ -76,7 +76,12 @@ impl PairOutcome {
 
 impl Pair {
     /// Compares two runs of a scenario.
-    pub(super) fn of(name: String, draft: &ScenarioDraft, native: &CaseRun, metadrive: Result<&CaseRun, String>) -> Self {
+    pub(super) fn of(
+        name: String,
+        draft: &ScenarioDraft,
+        native: &CaseRun,
+        metadrive: Result<&CaseRun, String>,
+    ) -> Self {
         let apart = |role: Role| {
             metadrive.as_ref().map_or_else(|_| Vec::new(), |run| apart(&native.rollout, &run.rollout, role))
         };

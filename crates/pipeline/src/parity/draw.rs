@@ -70,8 +70,13 @@ fn random_draft(rng: &mut Rng, number: usize) -> ScenarioDraft {
     };
     let target_speed_mps = rng.range(4.0, fastest);
     let speed_mps = if rng.uniform() < 0.7 { target_speed_mps } else { rng.range(0.0, target_speed_mps) };
-    let ego =
-        EgoSpec { turn, lane: rng.below(usize::from(lanes)) as u8, s_m: rng.range(5.0, 20.0), speed_mps, target_speed_mps };
+    let ego = EgoSpec {
+        turn,
+        lane: rng.below(usize::from(lanes)) as u8,
+        s_m: rng.range(5.0, 20.0),
+        speed_mps,
+        target_speed_mps,
+    };
     let partners = 1 + usize::from(rng.uniform() < 0.3);
     let partners = (0..partners)
         .map(|position| {
@@ -139,8 +144,7 @@ fn random_map(rng: &mut Rng, which: usize) -> MapSpec {
 
 fn random_partner(rng: &mut Rng, position: usize, policy: usize, fastest: f64) -> Partner {
     let kind = if rng.uniform() < CARS { PartnerKind::PassengerCar } else { one_of(rng, &OTHER_KINDS) };
-    let approach =
-        one_of(rng, &[Approach::Same, Approach::Opposite, Approach::Left, Approach::Right, Approach::Ring]);
+    let approach = one_of(rng, &[Approach::Same, Approach::Opposite, Approach::Left, Approach::Right, Approach::Ring]);
     let start = if approach != Approach::Same && rng.uniform() < 0.75 {
         Start::ArrivalGap { arrival_gap_s: rng.range(-2.0, 2.0) }
     } else {

@@ -153,7 +153,10 @@ pub fn parity(request: &ParityRequest, progress: &dyn Progress) -> Result<Parity
     };
     store.write("parity.json", &to_json(&parity))?;
     store.write("parity.csv", parity.csv().as_bytes())?;
-    store.write("parity.html", recrash_report::pairs_html(&page(&parity, &scenarios, &ours, &theirs, &profile)).as_bytes())?;
+    store.write(
+        "parity.html",
+        recrash_report::pairs_html(&page(&parity, &scenarios, &ours, &theirs, &profile)).as_bytes(),
+    )?;
     for &position in &parity.worst {
         let named = &scenarios[position];
         store.write(&format!("worst/{}.json", file_name(&named.name)), &to_json(named.scenario.draft()))?;
@@ -201,9 +204,8 @@ fn scenarios(source: &ParitySource) -> Result<(Vec<Named>, SystemProfile), Pipel
 
 fn of_suite(dir: &Path) -> Result<(Vec<Named>, SystemProfile), PipelineError> {
     let options = if dir.is_dir() { Suite::saved_options(dir)? } else { None };
-    let options = options.ok_or_else(|| {
-        PipelineError::bad_input(format!("{} is not a suite: it holds no suite.json", dir.display()))
-    })?;
+    let options = options
+        .ok_or_else(|| PipelineError::bad_input(format!("{} is not a suite: it holds no suite.json", dir.display())))?;
     let profile = load_profile(&options.profile)?;
     let ego = options.ego.as_ref().unwrap_or(&profile.ego);
     if *ego != Ego::MetadriveIdm.name() {

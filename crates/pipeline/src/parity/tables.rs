@@ -89,7 +89,18 @@ impl Parity {
         by("with", &|pair| pair.extras.iter().map(|extra| (*extra).to_owned()).collect());
         ParityTable {
             caption: "Agreement, by map and by the first partner's policy and kind",
-            header: vec!["", "pairs", "verdict", "least gap", "its time", "arrival", "median gap diff.", "failed", "confirmed", "errors"],
+            header: vec![
+                "",
+                "pairs",
+                "verdict",
+                "least gap",
+                "its time",
+                "arrival",
+                "median gap diff.",
+                "failed",
+                "confirmed",
+                "errors",
+            ],
             rows,
         }
     }
@@ -180,7 +191,8 @@ impl Parity {
             cells.extend(outcome_cells(Some(&pair.native)));
             cells.extend(outcome_cells(pair.metadrive.as_ref()));
             cells.extend(
-                [pair.same_verdict(), pair.same_gap(), pair.same_time(), pair.same_arrival()].map(|same| same.to_string()),
+                [pair.same_verdict(), pair.same_gap(), pair.same_time(), pair.same_arrival()]
+                    .map(|same| same.to_string()),
             );
             cells.push(pair.ego_apart_m.get(3).map(|metres| format!("{metres:.3}")).unwrap_or_default());
             cells.push(pair.error.clone().unwrap_or_default());

@@ -72,11 +72,8 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
 
 /// Replay and plots of one or two runs, which the scripts fill: their names, and which of them there are.
 pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]) -> Markup {
-    let modes = [
-        ("before", first, is_first),
-        ("after", second, is_second),
-        ("both", "Side by side", is_first && is_second),
-    ];
+    let modes =
+        [("before", first, is_first), ("after", second, is_second), ("both", "Side by side", is_first && is_second)];
     html! {
         noscript { p.banner { "The replay and the plots need scripts. Every number is in the tables below." } }
         .stage {
