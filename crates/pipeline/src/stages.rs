@@ -9,7 +9,7 @@ use crate::recording::RecordInput;
 use crate::scoring::Scoring;
 use crate::store::{to_compact_json, to_json};
 use crate::suite::{Files, Stage, Suite};
-use crate::{embedding, failures, summary, view};
+use crate::{failures, selecting, summary, view};
 use rayon::prelude::*;
 use recrash_agents::{Brief, Rules, expectation, parameters};
 use recrash_model::metrics::Expectation;
@@ -20,7 +20,6 @@ use recrash_model::selection::{Cluster, Selection};
 use recrash_model::tuning::{TuneLog, TunePoint};
 use recrash_model::{Diagnostic, Outcome, Seed};
 use recrash_search::{Task, TuneOptions};
-use recrash_select::SelectOptions;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Files and folders of a suite.
@@ -33,6 +32,12 @@ pub mod names {
     pub const RECORD_REMARKS: &str = "1-records.diagnostics.json";
     /// Selection.
     pub const SELECTION: &str = "2-selection.json";
+    /// Remarks on the selection.
+    pub const SELECTION_REMARKS: &str = "2-selection.diagnostics.json";
+    /// How the selection depends on seed, strategy and budget.
+    pub const SELECTION_STUDY: &str = "2-selection.study.json";
+    /// Rows of the embedding model, by content.
+    pub const EMBEDDING: &str = "2-embedding.json";
     /// The page.
     pub const REPORT: &str = "report.html";
     /// For continuous integration.
@@ -108,7 +113,7 @@ pub fn run(suite: &Suite, stage: Stage, progress: &dyn Progress) -> Result<Stage
     let work = StageWork { suite, stage, progress };
     match stage {
         Stage::Records => records(&work),
-        Stage::Select => select(&work),
+        Stage::Select => selecting::run(&work),
         Stage::Narrate => narrate(&work),
         Stage::Design => design(&work),
         Stage::Simulate => simulate(&work),
@@ -117,15 +122,17 @@ pub fn run(suite: &Suite, stage: Stage, progress: &dyn Progress) -> Result<Stage
     }
 }
 
-struct StageWork<'a> {
-    suite: &'a Suite,
+/// A stage at work.
+pub struct StageWork<'a> {
+    /// Where.
+    pub suite: &'a Suite,
     stage: Stage,
     progress: &'a dyn Progress,
 }
 
 impl StageWork<'_> {
     /// A stage of one unit.
-    fn whole(
+    pub(crate) fn whole(
         &self,
         inputs: &[&[u8]],
         work: impl FnOnce() -> Result<Files, PipelineError>,
@@ -207,34 +214,6 @@ fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     })?;
     report.diagnostics = suite.store().read_json(names::RECORD_REMARKS)?;
     Ok(report)
-}
-
-fn select(work: &StageWork) -> Result<StageReport, PipelineError> {
-    let suite = work.suite;
-    let options = suite.options();
-    let records_hash = suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS)?;
-    let profile = work.profile_json();
-    let choice = format!("{:?} {} {}", options.strategy, options.budget, options.seed);
-    let model = options.model_dir.as_deref().map(embedding::load).transpose()?;
-    let fingerprint = model.as_ref().map_or("lexical", |model| model.fingerprint());
-    let inputs = [records_hash.as_bytes(), profile.as_bytes(), choice.as_bytes(), fingerprint.as_bytes()];
-    work.whole(&inputs, || {
-        let records: RecordSet = suite.store().read_json(names::RECORDS)?;
-        let select_options = SelectOptions {
-            strategy: options.strategy,
-            budget: options.budget,
-            seed: suite.seed().child("select"),
-            ..SelectOptions::default()
-        };
-        let outcome = match &model {
-            None => recrash_select::select(&records, suite.profile(), &select_options),
-            Some(model) => embedding::embed(model, &records).and_then(|embedding| {
-                recrash_select::select_with(&records, suite.profile(), &select_options, &embedding)
-            }),
-        }
-        .map_err(|e| PipelineError::bad_input(e.to_string()))?;
-        Ok(vec![(names::SELECTION.into(), to_json(&outcome.value))])
-    })
 }
 
 /// What the stages after selection share.

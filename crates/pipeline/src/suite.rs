@@ -1,6 +1,7 @@
 //! The suite on disk: options, stages, and which units of work are done.
 
 use crate::agents::{AnswerMode, Cast, Models};
+use crate::embedding::EmbeddingKind;
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
@@ -10,8 +11,9 @@ use crate::stages::names::FAILURE;
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
 use recrash_model::profile::{Dedupe, SystemProfile};
-use recrash_model::selection::Strategy;
+use recrash_model::selection::{Strategy, Weighting};
 use recrash_model::{Diagnostic, Seed};
+use recrash_select::SelectOptions;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,7 +36,7 @@ pub enum RecordSource {
 }
 
 /// What the user chose. Everything that can change a byte of the results, and nothing else.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Options {
     /// Crash records.
@@ -54,7 +56,22 @@ pub struct Options {
     pub budget: usize,
     /// How the picks are chosen.
     pub strategy: Strategy,
-    /// Folder with the files of the embedding model; the lexical embedding where not given.
+    /// How much one record counts in sharing out the picks.
+    #[serde(default)]
+    pub weighting: Weighting,
+    /// Weight of a template against a narrative: the length of its one-hot vector in the clustering space.
+    #[serde(default = "default_template_weight")]
+    pub template_weight: f64,
+    /// Principal components of the embedding that enter the clustering space.
+    #[serde(default = "default_dimensions")]
+    pub dimensions: usize,
+    /// Runs of k-means, of which the best is kept.
+    #[serde(default = "default_restarts")]
+    pub restarts: usize,
+    /// Which embedding of the narratives.
+    #[serde(default)]
+    pub embedding: EmbeddingKind,
+    /// Folder with the files of the embedding model; looked for where not given.
     #[serde(default)]
     pub model_dir: Option<PathBuf>,
     /// Who plays which role.
@@ -73,6 +90,18 @@ pub struct Options {
     pub seed: u64,
 }
 
+fn default_template_weight() -> f64 {
+    SelectOptions::default().template_weight
+}
+
+fn default_dimensions() -> usize {
+    SelectOptions::default().dimensions
+}
+
+fn default_restarts() -> usize {
+    SelectOptions::default().restarts
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {
@@ -83,6 +112,11 @@ impl Default for Options {
             profile: "paper".into(),
             budget: 20,
             strategy: Strategy::Stratified,
+            weighting: Weighting::default(),
+            template_weight: default_template_weight(),
+            dimensions: default_dimensions(),
+            restarts: default_restarts(),
+            embedding: EmbeddingKind::default(),
             model_dir: None,
             cast: Cast::default(),
             simulator: SimulatorKind::Native,
@@ -113,7 +147,12 @@ impl Options {
         option("where", self.filter.clone().unwrap_or_default(), String::new());
         option("profile", self.profile.clone(), default.profile);
         option("budget", self.budget.to_string(), default.budget.to_string());
-        option("strategy", strategy_name(self.strategy), strategy_name(default.strategy));
+        option("strategy", self.strategy.name().into(), default.strategy.name().into());
+        option("weighting", self.weighting.name().into(), default.weighting.name().into());
+        option("template-weight", self.template_weight.to_string(), default.template_weight.to_string());
+        option("dimensions", self.dimensions.to_string(), default.dimensions.to_string());
+        option("restarts", self.restarts.to_string(), default.restarts.to_string());
+        option("embedding", self.embedding.name().into(), default.embedding.name().into());
         let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
         option("model-dir", model_dir.unwrap_or_default(), String::new());
         option("paraphrase", self.cast.paraphrase.clone(), default.cast.paraphrase);
@@ -127,14 +166,20 @@ impl Options {
         option("seed", self.seed.to_string(), default.seed.to_string());
         words.join(" ")
     }
+
+    /// The profile, with what the options change in it.
+    ///
+    /// # Errors
+    /// There is no such profile, or the file is none.
+    pub(crate) fn system_profile(&self) -> Result<SystemProfile, PipelineError> {
+        let mut profile = load_profile(&self.profile)?;
+        profile.records.dedupe = self.dedupe.unwrap_or(profile.records.dedupe);
+        Ok(profile)
+    }
 }
 
 fn dedupe_name(dedupe: Dedupe) -> String {
     serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
-fn strategy_name(strategy: Strategy) -> String {
-    serde_json::to_value(strategy).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 fn quoted(word: &str) -> String {
@@ -261,8 +306,7 @@ impl Suite {
         resources: Resources,
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
-        let mut profile = load_profile(&options.profile)?;
-        profile.records.dedupe = options.dedupe.unwrap_or(profile.records.dedupe);
+        let profile = options.system_profile()?;
         recording::read_filter(&options)?;
         let store = Store::create(dir, write_file)?;
         let units = if dir.join(SUITE_FILE).exists() {
@@ -296,7 +340,17 @@ impl Suite {
     /// # Errors
     /// A stage before is missing, the input is bad, or a file cannot be read or written. Finished units stay.
     pub fn run_stage(&self, stage: Stage, progress: &dyn Progress) -> Result<StageReport, PipelineError> {
-        self.threads.install(|| stages::run(self, stage, progress))
+        self.in_pool(|| stages::run(self, stage, progress))
+    }
+
+    /// Does something on the suite's threads.
+    pub(crate) fn in_pool<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.threads.install(work)
+    }
+
+    /// Python interpreter for what needs one.
+    pub(crate) fn python(&self) -> &Path {
+        &self.python
     }
 
     /// The profile.

@@ -80,7 +80,7 @@ impl Parity {
             values.dedup();
             for value in values {
                 let pairs: Vec<&Pair> = self.pairs.iter().filter(|pair| of(pair).contains(&value)).collect();
-                rows.push(group(&format!("{name} {value}").trim_start().to_owned(), &pairs));
+                rows.push(group(format!("{name} {value}").trim_start(), &pairs));
             }
         };
         by("map", &|pair| vec![pair.map.to_string()]);
