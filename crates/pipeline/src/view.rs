@@ -1,13 +1,13 @@
 //! The suite as the report sees it.
 
 use crate::stages::{Case, Ran, names};
-use crate::suite::{RecordSource, Suite};
+use crate::suite::{RecordSource, Suite, quoted};
 use crate::summary::simulator_name;
 use recrash_model::Diagnostic;
 use recrash_model::metrics::Verdict;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
-use recrash_report::{CaseView, RunView, SuiteView};
+use recrash_report::{CaseView, RunTrace, RunView, SuiteView};
 
 /// Puts together what the report shows.
 pub fn view(
@@ -50,6 +50,12 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
         drawing: case.first.as_ref().map(|ran| ran.scenario.network().drawing()).unwrap_or_default(),
         before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
         after: moved.map(|(ran, _)| run_view(suite, ran, &names::tuned(id))),
+        triage: case.triage.clone(),
+        reference: case.reference.as_ref().map(|run| RunTrace {
+            rollout: run.rollout.clone(),
+            series: run.series.clone(),
+            min_gap: run.metrics.min_gap,
+        }),
         tune_log: case.tuned.as_ref().map(|(_, log)| log.clone()),
         refused: case.failure.as_ref().map(ToString::to_string),
     }
@@ -63,6 +69,6 @@ fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
         findings: run.findings.clone(),
         verdict: run.verdict.clone().unwrap_or(Verdict { checks: Vec::new() }),
         series: run.series.clone(),
-        rerun_command: format!("recrash simulate {file} --ego {}", suite.ego()),
+        rerun_command: format!("recrash simulate {file} --ego {}", quoted(suite.ego())),
     }
 }
