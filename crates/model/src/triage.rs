@@ -11,7 +11,7 @@ pub const TRIAGE_FORMAT: &str = "recrash.triage/1";
 /// The ego that stands for a competent and careful driver.
 pub const REFERENCE_EGO: &str = "reference";
 
-/// What a failure is worth. Defined in `docs/models/triage.md`.
+/// What a failure of the system under test is worth. Defined in `docs/models/triage.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FailureClass {
@@ -57,6 +57,8 @@ pub struct EgoOutcome {
     pub ego: String,
     /// Whether it failed, by the profile's criteria.
     pub failed: bool,
+    /// Whether it avoids the failure: where the system under test crashes, it does not; else it does not fail at all.
+    pub avoids: bool,
     /// Kinds of its findings, each once, failures first.
     pub findings: Vec<FindingKind>,
     /// Its least box gap to a scripted partner. [m]
@@ -79,52 +81,62 @@ pub struct Triage {
 }
 
 impl Triage {
-    /// The triage of a scenario that the system under test fails.
-    pub fn new(others: Vec<EgoOutcome>) -> Self {
-        let avoided = |outcome: &EgoOutcome| !outcome.failed;
-        let class = if !others.is_empty() && others.iter().all(avoided) {
+    /// The triage of a scenario that the system under test fails with findings of these kinds.
+    pub fn new(system: &[FindingKind], mut others: Vec<EgoOutcome>) -> Self {
+        let crashes = |kinds: &[FindingKind]| kinds.iter().any(|kind| kind.is_crash());
+        for other in &mut others {
+            other.avoids = if crashes(system) { !crashes(&other.findings) } else { !other.failed };
+        }
+        let class = if !others.is_empty() && others.iter().all(|other| other.avoids) {
             FailureClass::Quirk
-        } else if others.iter().any(|outcome| outcome.ego == REFERENCE_EGO && avoided(outcome)) {
+        } else if others.iter().any(|other| other.ego == REFERENCE_EGO && other.avoids) {
             FailureClass::Avoidable
-        } else if others.iter().any(avoided) {
+        } else if others.iter().any(|other| other.avoids) {
             FailureClass::BeyondReference
         } else {
             FailureClass::Unavoidable
         };
         Self { format: TRIAGE_FORMAT.to_owned(), class, others }
     }
-
-    /// Names of the egos that avoid it.
-    pub fn avoided_by(&self) -> impl Iterator<Item = &str> {
-        self.others.iter().filter(|outcome| !outcome.failed).map(|outcome| outcome.ego.as_str())
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use FindingKind::{Contact, HardBraking, NearMiss};
 
-    fn class(others: &[(&str, bool)]) -> FailureClass {
-        let outcome = |&(ego, failed): &(&str, bool)| EgoOutcome {
+    fn class(system: FindingKind, others: &[(&str, FindingKind)]) -> FailureClass {
+        let outcome = |&(ego, finding): &(&str, FindingKind)| EgoOutcome {
             ego: ego.to_owned(),
-            failed,
-            findings: Vec::new(),
+            failed: finding.is_failure(),
+            avoids: false,
+            findings: vec![finding],
             min_gap: None,
             termination: TerminationKind::Arrived,
             state_hash: String::new(),
         };
-        Triage::new(others.iter().map(outcome).collect()).class
+        Triage::new(&[system], others.iter().map(outcome).collect()).class
     }
 
     #[test]
     fn classes_are_those_of_the_page() {
-        assert_eq!(class(&[("idm", false), ("reference", false)]), FailureClass::Quirk);
-        assert_eq!(class(&[("idm", true), ("reference", false)]), FailureClass::Avoidable);
-        assert_eq!(class(&[("idm", false), ("reference", true)]), FailureClass::BeyondReference);
-        assert_eq!(class(&[("idm", true), ("reference", true)]), FailureClass::Unavoidable);
-        assert_eq!(class(&[("metadrive-idm", true), ("idm", false), ("reference", false)]), FailureClass::Avoidable);
-        // The reference itself under test.
-        assert_eq!(class(&[("metadrive-idm", true), ("idm", false)]), FailureClass::BeyondReference);
-        assert_eq!(class(&[]), FailureClass::Unavoidable);
+        let of = |idm, reference| class(Contact, &[("idm", idm), ("reference", reference)]);
+        assert_eq!(of(HardBraking, HardBraking), FailureClass::Quirk);
+        assert_eq!(of(Contact, HardBraking), FailureClass::Avoidable);
+        assert_eq!(of(HardBraking, Contact), FailureClass::BeyondReference);
+        assert_eq!(of(Contact, Contact), FailureClass::Unavoidable);
+        assert_eq!(class(Contact, &[]), FailureClass::Unavoidable);
+    }
+
+    #[test]
+    fn who_only_comes_near_avoids_a_crash_but_not_a_near_miss() {
+        let others = [("idm", NearMiss), ("reference", NearMiss)];
+        assert_eq!(class(Contact, &others), FailureClass::Quirk);
+        assert_eq!(class(NearMiss, &others), FailureClass::Unavoidable);
+    }
+
+    #[test]
+    fn the_reference_itself_may_be_under_test() {
+        assert_eq!(class(Contact, &[("metadrive-idm", Contact), ("idm", NearMiss)]), FailureClass::BeyondReference);
     }
 }

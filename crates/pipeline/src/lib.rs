@@ -68,7 +68,7 @@ pub use simulator::{Simulator, SimulatorKind};
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
+pub use summary::{CaseSummary, RunSummary, Summary};
 #[cfg(feature = "parquet")]
 pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
-pub use summary::{CaseSummary, RunSummary, Summary};
 pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

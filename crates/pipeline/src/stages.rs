@@ -426,7 +426,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
             (names::tuned_run(id), to_compact_json(&run)),
         ];
         if run.failed() {
-            let (triage, reference) = triage(&scenario.value, suite.ego(), suite.profile())?;
+            let (triage, reference) = triage(&scenario.value, suite.ego(), &run.findings, suite.profile())?;
             files.push((names::triage(id), to_json(&triage)));
             files.extend(reference.map(|run| (names::reference_run(id), to_compact_json(&run))));
         }

@@ -181,8 +181,7 @@ impl Sweep {
             .num_threads(self.threads.unwrap_or(0))
             .build()
             .map_err(|e| PipelineError::Threads(e.to_string()))?;
-        let simulator =
-            Simulator::start(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
+        let simulator = Simulator::start(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
         let failed = |source| PipelineError::Io { action: "write", path: out.to_owned(), source };
         // Written under another name, which a killed run leaves and the next one overwrites.
         let name = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -341,10 +340,10 @@ impl Sweep {
     }
 
     fn empty_summary(&self) -> SweepSummary {
-        let scenarios = self.bases.iter().map(|base| SweptScenario {
-            id: base.draft.id.clone(),
-            parameters: base.parameters.clone(),
-        });
+        let scenarios = self
+            .bases
+            .iter()
+            .map(|base| SweptScenario { id: base.draft.id.clone(), parameters: base.parameters.clone() });
         SweepSummary {
             format: "recrash.sweep/1".to_owned(),
             rollouts: 0,
@@ -438,7 +437,8 @@ fn scenario_files(source: &Path) -> Result<Vec<PathBuf>, PipelineError> {
     let mut files: Vec<PathBuf> = entries.filter_map(Result::ok).map(|entry| entry.path()).collect();
     // Beside ID.json lie ID.search.json, ID.run.json and others.
     files.retain(|file| {
-        file.extension().is_some_and(|e| e == "json") && file.file_stem().is_some_and(|stem| !stem.to_string_lossy().contains('.'))
+        file.extension().is_some_and(|e| e == "json")
+            && file.file_stem().is_some_and(|stem| !stem.to_string_lossy().contains('.'))
     });
     files.sort();
     if files.is_empty() { Err(none()) } else { Ok(files) }

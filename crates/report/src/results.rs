@@ -106,11 +106,12 @@ fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) ->
     row
 }
 
-/// How the others fared, such as `idm: 3.20 m; reference: fails, 0.00 m`.
+/// How the others fared, such as `idm avoids it, 3.20 m; reference does not, 0.00 m`.
 pub fn other_egos(triage: &Triage) -> String {
     let told = triage.others.iter().map(|other| {
-        let gap = other.min_gap.and_then(|gap| fixed(gap.value, 2)).map_or("no gap".to_owned(), |gap| format!("{gap} m"));
-        format!("{}: {}{gap}", other.ego, if other.failed { "fails, " } else { "" })
+        let gap =
+            other.min_gap.and_then(|gap| fixed(gap.value, 2)).map_or("no gap".to_owned(), |gap| format!("{gap} m"));
+        format!("{} {}, {gap}", other.ego, if other.avoids { "avoids it" } else { "does not" })
     });
     told.collect::<Vec<_>>().join("; ")
 }

@@ -7,9 +7,9 @@ use recrash_model::metrics::*;
 use recrash_model::narrative::*;
 use recrash_model::profile::*;
 use recrash_model::record::*;
+use recrash_model::rollout::TerminationKind;
 use recrash_model::scenario::*;
 use recrash_model::selection::*;
-use recrash_model::rollout::TerminationKind;
 use recrash_model::template::*;
 use recrash_model::triage::{EgoOutcome, Triage};
 use recrash_model::tuning::*;
@@ -364,12 +364,13 @@ fn triage(number: usize, careful: &RunView) -> Triage {
     let outcome = |ego: &str, failed: bool| EgoOutcome {
         ego: ego.to_owned(),
         failed,
+        avoids: !failed,
         findings: if failed { vec![FindingKind::Contact] } else { Vec::new() },
         min_gap: if failed { Some(Timed { value: 0.0, time_s: 4.2 }) } else { careful.metrics.min_gap },
         termination: if failed { TerminationKind::Contact } else { TerminationKind::Arrived },
         state_hash: careful.rollout.state_hash.clone(),
     };
-    Triage::new(vec![outcome("idm", number % 4 >= 2), outcome("reference", number % 2 == 1)])
+    Triage::new(&[FindingKind::Contact], vec![outcome("idm", number % 4 >= 2), outcome("reference", number % 2 == 1)])
 }
 
 /// The suite.

@@ -24,7 +24,7 @@ pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
             @if let Some(why) = &case.refused {
                 p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
             }
-            @if case.last_run().is_some() { 
+            @if case.last_run().is_some() {
                 (stage(["As designed", "Tuned"], [case.before.is_some(), case.after.is_some()], case.reference.is_some()))
                 (numbers(case))
              }
@@ -78,8 +78,11 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
 /// Replay and plots of one or two runs, which the scripts fill: their names, which of them there are, and whether the
 /// reference driver's run is there to be seen beside the last.
 pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2], reference: bool) -> Markup {
-    let mut modes =
-        vec![("before", first, is_first), ("after", second, is_second), ("both", "Side by side", is_first && is_second)];
+    let mut modes = vec![
+        ("before", first, is_first),
+        ("after", second, is_second),
+        ("both", "Side by side", is_first && is_second),
+    ];
     if reference {
         modes.push(("reference", "Beside the reference driver", true));
     }

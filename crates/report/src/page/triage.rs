@@ -46,21 +46,29 @@ pub fn of_case(context: &Context, case: &CaseView) -> Markup {
         p { (parts::class_chip(triage.class)) " " (words::capital(triage.class.meaning())) "." }
         .table-wrap { table.plain {
             caption.hidden-text { "Every ego on this scenario" }
-            thead { tr { th scope="col" { "Ego" } th scope="col" { "Result" } th scope="col" { "Least gap" } th scope="col" { "Ended by" } th scope="col" { "Findings" } } }
+            thead { tr { th scope="col" { "Ego" } th scope="col" { "Avoids it" } th scope="col" { "Result" } th scope="col" { "Least gap" } th scope="col" { "Ended by" } th scope="col" { "Findings" } } }
             tbody {
-                (row(html! { b { (words::clean(&context.suite.ego, 60)) } " (under test)" }, last.failed(), last.metrics.min_gap, last.metrics.termination, &kinds))
+                (row(html! { b { (words::clean(&context.suite.ego, 60)) } " (under test)" }, false, last.failed(), last.metrics.min_gap, last.metrics.termination, &kinds))
                 @for other in &triage.others {
-                    (row(html! { (words::clean(&other.ego, 60)) }, other.failed, other.min_gap, other.termination, &other.findings))
+                    (row(html! { (words::clean(&other.ego, 60)) }, other.avoids, other.failed, other.min_gap, other.termination, &other.findings))
                 }
             }
         } }
     }
 }
 
-fn row(ego: Markup, failed: bool, gap: Option<Timed>, ended: TerminationKind, findings: &[FindingKind]) -> Markup {
+fn row(
+    ego: Markup,
+    avoids: bool,
+    failed: bool,
+    gap: Option<Timed>,
+    ended: TerminationKind,
+    findings: &[FindingKind],
+) -> Markup {
     html! {
         tr {
             th scope="row" { (ego) }
+            td { @if avoids { "yes" } @else { "no" } }
             td { (parts::result_chip(if failed { Result::Failed } else { Result::Passed })) }
             td { (parts::timed(gap, 2, "m", "no scripted partner took part")) }
             td { (words::name(&ended)) }
