@@ -19,7 +19,7 @@ use recrash_model::record::{CrashRecord, RecordSet};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::tuning::{TuneLog, TunePoint};
-use recrash_model::{Diagnostic, Location, Outcome, Seed, Severity};
+use recrash_model::{Diagnostic, Outcome, Seed};
 use recrash_search::{Task, TuneOptions};
 use std::cell::Cell;
 
@@ -348,11 +348,11 @@ fn refuse_contradictions(narrative: &Narrative, brief: &Brief) -> Result<(), Pip
     if contradictions.is_empty() {
         return Ok(());
     }
-    let told = |message| Diagnostic::new(Severity::Error, "narrative.contradiction", Location::default(), message);
-    Err(PipelineError::BadInput {
-        what: format!("the narrative of {} contradicts its template; mend it, or remove its file", brief.scenario_id),
-        diagnostics: contradictions.into_iter().map(told).collect(),
-    })
+    let why = contradictions.join("; ");
+    Err(PipelineError::scenario(
+        brief.scenario_id,
+        format!("the narrative contradicts its template ({why}); mend it, or remove its file"),
+    ))
 }
 
 /// Reads and checks a scenario file of the suite.
