@@ -10,6 +10,7 @@ use recrash_model::narrative::Origin;
 use recrash_model::record::{FunnelStep, RecordSet};
 use recrash_model::selection::{Coverage, EmbeddingInfo, Selection, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
+use recrash_model::triage::{FailureClass, Triage};
 use serde::{Deserialize, Serialize};
 
 /// A whole run in numbers (`summary.json`, and `recrash run --json`).
@@ -116,6 +117,9 @@ pub struct CaseSummary {
     pub first: Option<RunSummary>,
     /// As tuned.
     pub tuned: Option<RunSummary>,
+    /// What the failure of the tuned run is worth, and how the other egos fare there; absent where it does not fail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triage: Option<Triage>,
     /// Why it went no further, where it did not.
     pub failure: Option<Failure>,
     /// Points the search scored.
@@ -177,6 +181,14 @@ impl Summary {
         self.cases.iter().filter(|case| case.tuned.is_some()).count()
     }
 
+    /// Failures of each class, after tuning; classes without any are left out.
+    pub fn failure_classes(&self) -> Vec<(FailureClass, usize)> {
+        let classes = self.cases.iter().filter_map(|case| case.triage.as_ref()).map(|triage| triage.class);
+        let classes: Vec<FailureClass> = classes.collect();
+        let count = |class| classes.iter().filter(|&&other| other == class).count();
+        FailureClass::ALL.into_iter().map(|class| (class, count(class))).filter(|(_, count)| *count > 0).collect()
+    }
+
     /// Scenarios the ego fails, as designed and as tuned.
     pub fn failed(&self) -> (usize, usize) {
         let count = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
@@ -218,6 +230,7 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
                 }),
                 first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
                 tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
+                triage: case.triage.clone(),
                 failure: case.failure.clone(),
                 points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
             })
