@@ -3,8 +3,10 @@
 mod common;
 
 use common::{checked, crossing};
-use recrash_metadrive::{Drive, Metadrive, MetadriveError, Options, inspect};
-use recrash_model::rollout::{EventKind, Rollout, TerminationKind};
+use recrash_metadrive::{Drive, Metadrive, Options, inspect};
+use recrash_model::record::PartnerKind;
+use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
+use recrash_roads::background_traffic;
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -169,12 +171,114 @@ fn a_barrier_across_the_lane_is_touched_by_a_blind_ego() {
 }
 
 #[test]
-fn background_traffic_is_refused() {
-    let Some(metadrive) = start("background_traffic_is_refused") else { return };
+fn background_traffic_starts_where_it_is_placed_and_drives_when_the_ego_comes() {
+    let Some(metadrive) = start("background_traffic_starts_where_it_is_placed") else { return };
     let mut draft = crossing();
-    draft["traffic"] = json!({"density": 0.1, "seed": 1});
-    let result = metadrive.simulate(&checked(&draft), &Drive::MetadriveIdm);
-    assert!(matches!(result, Err(MetadriveError::Unsupported { .. })), "{result:?}");
+    draft["map"]["arm_m"] = json!(40.0);
+    draft["partners"] = json!([]);
+    draft["traffic"] = json!({"density": 0.4, "seed": 1});
+    draft["duration_s"] = json!(14.0);
+    let scenario = checked(&draft);
+    let placed = background_traffic(&scenario);
+    assert!(placed.len() > 3, "{}", placed.len());
+    let rollout = metadrive.simulate(&scenario, &Drive::MetadriveIdm).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(rollout.actors.len(), 1 + placed.len());
+    let mut gone = 0;
+    for (track, placement) in rollout.actors[1..].iter().zip(&placed) {
+        assert_eq!((track.role, track.kind), (Role::Traffic, placement.kind));
+        assert!(track.states[0].position().distance(placement.pose.position) < 0.01, "{}", track.id);
+        // The entrance is 10 m long and the ego begins at 5 m with 8 m/s.
+        assert!(track.states[5].speed < 0.1, "{} moves at {} m/s", track.id, track.states[5].speed);
+        assert!(track.states.windows(2).all(|pair| pair[0].position().distance(pair[1].position()) < 1.2));
+        gone += usize::from(track.states[track.states.len() - 1].x < -3.0);
+    }
+    let fastest = rollout.actors[1..].iter().flat_map(|track| &track.states).map(|state| state.speed);
+    assert!(fastest.fold(0.0, f64::max) > 5.0);
+    assert!(rollout.termination.kind == TerminationKind::Contact || gone > 0, "{gone} have left the map");
+}
+
+#[test]
+fn every_kind_of_road_user_drives_walks_or_stands() {
+    let Some(metadrive) = start("every_kind_of_road_user_drives_walks_or_stands") else { return };
+    let kinds = [
+        PartnerKind::PassengerCar,
+        PartnerKind::Suv,
+        PartnerKind::Van,
+        PartnerKind::PickupTruck,
+        PartnerKind::HeavyTruck,
+        PartnerKind::Bus,
+        PartnerKind::Motorcycle,
+        PartnerKind::Cyclist,
+        PartnerKind::Pedestrian,
+        PartnerKind::OtherNonMotorist,
+        PartnerKind::FirstResponder,
+        PartnerKind::Animal,
+        PartnerKind::FixedObject,
+    ];
+    for kind in kinds {
+        let mut draft = crossing();
+        let fixed = kind == PartnerKind::FixedObject;
+        let speed = if fixed { 0.0 } else { 2.0 };
+        draft["duration_s"] = json!(3.0);
+        draft["partners"][0]["kind"] = serde_json::to_value(kind).expect("a word");
+        draft["partners"][0]["approach"] = json!("same");
+        draft["partners"][0]["start"] = json!({"delta_s_m": 45.0});
+        draft["partners"][0]["speed_mps"] = json!(speed);
+        draft["partners"][0]["policy"] = if fixed {
+            json!({"type": "stopped"})
+        } else {
+            json!({"type": "sudden_brake", "target_speed": 2.0, "brake_step": 20, "brake_steps": 100})
+        };
+        let rollout = metadrive
+            .simulate(&checked(&draft), &Drive::MetadriveIdm)
+            .unwrap_or_else(|error| panic!("{kind:?}: {error}"));
+        let states = &rollout.actors[1].states;
+        let (first, last) = (states[0], states[states.len() - 1]);
+        // Two seconds at 2 m/s, then a stop of about a metre; below 0.5 m/s the brake is light.
+        let way = last.x - first.x;
+        let wanted = if fixed { -0.1..0.1 } else { 3.7..5.2 };
+        assert!(wanted.contains(&way), "{kind:?} went {way} m");
+        assert!((last.y - first.y).abs() < 0.1 && last.speed < 0.5, "{kind:?}: {last:?}");
+    }
+}
+
+/// A run of two minutes whose worker is killed while it is at it.
+#[cfg(unix)]
+#[test]
+fn a_worker_killed_during_a_run_is_replaced_and_the_result_is_the_same() {
+    use std::os::unix::fs::PermissionsExt;
+    let Some(options) = options("a_worker_killed_during_a_run_is_replaced") else { return };
+    let mut draft = crossing();
+    draft["map"] = json!({"type": "S", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 600.0});
+    draft["ego"]["speed_mps"] = json!(5.0);
+    draft["ego"]["target_speed_mps"] = json!(5.0);
+    draft["partners"] = json!([]);
+    draft["duration_s"] = json!(120.0);
+    let scenario = checked(&draft);
+
+    // In place of Python: notes its process and becomes Python.
+    let folder = tempfile::tempdir().expect("a folder");
+    let (aside, wrapper, pids) =
+        (folder.path().join("aside"), folder.path().join("python"), folder.path().join("pids"));
+    let text = format!("#!/bin/sh\necho $$ >> '{}'\nexec '{}' \"$@\"\n", pids.display(), options.python.display());
+    std::fs::write(&aside, text).expect("a writable folder");
+    std::fs::set_permissions(&aside, std::fs::Permissions::from_mode(0o755)).expect("its owner's");
+    std::fs::rename(&aside, &wrapper).expect("the same folder");
+    let metadrive = Metadrive::start(Options::new(wrapper)).unwrap_or_else(|error| panic!("{error}"));
+    let workers = || std::fs::read_to_string(&pids).expect("a worker has started");
+    let first = workers().trim().to_owned();
+    let killed = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_millis(300));
+            let status = std::process::Command::new("kill").args(["-9", &first]).status().expect("a shell has kill");
+            assert!(status.success(), "the worker had ended already");
+        });
+        metadrive.simulate(&scenario, &Drive::MetadriveIdm).unwrap_or_else(|error| panic!("{error}"))
+    });
+    assert_eq!(workers().lines().count(), 2, "a second worker was started");
+    let again = metadrive.simulate(&scenario, &Drive::MetadriveIdm).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(killed.state_hash, again.state_hash);
+    assert_eq!(workers().lines().count(), 2);
 }
 
 #[test]

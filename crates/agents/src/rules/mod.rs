@@ -12,14 +12,32 @@ mod text;
 mod timing;
 mod writing;
 
+/// What of the rules tells how a narrative is staged.
+pub(crate) mod staged {
+    pub(crate) use super::design::{staging_of, turn};
+    pub(crate) use super::paraphrase::offset_side;
+    pub(crate) use super::staging::{Ground, ground};
+    pub(crate) use super::writing::Facts;
+}
+
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;
+use recrash_model::account::Account;
 use recrash_model::narrative::Narrative;
+use recrash_model::profile::SystemProfile;
+use recrash_model::record::CrashRecord;
 use recrash_model::scenario::ScenarioDraft;
 
 /// The built-in rules. See `docs/models/rules.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rules;
+
+impl Rules {
+    /// What the rules say happened in a record, whether or not it can be retold: for judging them by labels.
+    pub fn account(&self, record: &CrashRecord, profile: &SystemProfile) -> Account {
+        reading::account(record, profile)
+    }
+}
 
 impl Paraphrase for Rules {
     fn paraphrase(&self, brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {

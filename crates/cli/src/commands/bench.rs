@@ -1,6 +1,7 @@
 //! `recrash bench`: speeds, measured on the machine at hand.
 
 use super::bench_embed;
+use super::bench_sim;
 use crate::output::Output;
 use clap::{Args, Subcommand};
 use recrash_pipeline::PipelineError;
@@ -18,6 +19,8 @@ pub struct BenchArgs {
 pub enum What {
     /// MiniLM embeddings, beside sentence-transformers.
     Embed(bench_embed::BenchEmbedArgs),
+    /// The native simulator, beside MetaDrive.
+    Sim(bench_sim::BenchSimArgs),
 }
 
 /// Measures.
@@ -27,5 +30,6 @@ pub enum What {
 pub fn run(args: &BenchArgs, output: Output) -> Result<(), PipelineError> {
     match &args.what {
         What::Embed(args) => bench_embed::run(args, output),
+        What::Sim(args) => bench_sim::run(args, output),
     }
 }

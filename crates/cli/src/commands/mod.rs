@@ -2,10 +2,14 @@
 
 mod bench;
 mod bench_embed;
+mod bench_sim;
+mod doctor;
+mod eval;
 mod export;
 mod fetch;
 mod import;
 mod model;
+mod parity;
 mod records;
 mod run;
 mod schema;
@@ -28,7 +32,8 @@ Examples:
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
-  4 questions wait for a batch";
+  4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached;
+  5 a share or speed that is asked for was missed; 130 interrupted";
 
 /// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
 #[derive(Debug, Parser)]
@@ -68,10 +73,16 @@ pub enum Command {
     Export(export::ExportArgs),
     /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
     Import(import::ImportArgs),
+    /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
+    Eval(eval::EvalArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
     /// Get or find the files of the embedding model all-MiniLM-L6-v2.
     Model(model::ModelArgs),
+    /// Run the same scenarios on both simulators, and tell how far they agree.
+    Parity(parity::ParityArgs),
+    /// Tell what is installed of all that can be used, and how to get the rest.
+    Doctor(doctor::DoctorArgs),
     /// Measure speeds on this machine.
     Bench(bench::BenchArgs),
     /// Print the JSON Schema of scenario files.
@@ -95,8 +106,11 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
+        Command::Eval(args) => eval::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Model(args) => model::run(args, output),
+        Command::Parity(args) => parity::run(args, output),
+        Command::Doctor(args) => doctor::run(args, output),
         Command::Bench(args) => bench::run(args, output),
         Command::Schema => schema::run(),
     }
