@@ -226,9 +226,9 @@ impl StageWork<'_> {
 fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let input = RecordInput::read(suite.options())?;
-    let profile = work.profile_json();
-    let mut inputs = vec![profile.as_bytes()];
+    let mut inputs = vec![work.profile_json()];
     inputs.extend(input.parts());
+    let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
     let mut report = work.whole(&inputs, || {
         let Outcome { value, diagnostics } = input.ingest(suite.profile())?;
         Ok(vec![
