@@ -21,7 +21,7 @@ def environment(name: str) -> Path:
     """
     requirements = ROOT / "requirements" / f"{name}.txt"
     digest = hashlib.sha256(requirements.read_bytes()).hexdigest()[:12]
-    folder = Path(os.environ.get("RECRASH_ORACLES", ROOT / ".oracles")) / f"{name}-{digest}"
+    folder = Path(os.environ.get("RECRASH_ORACLES", ROOT / "target" / "oracles")) / f"{name}-{digest}"
     programs = folder / ("Scripts" if os.name == "nt" else "bin")
     finished = folder / "finished"
     if not finished.exists():
@@ -60,8 +60,12 @@ def unavailable(name: str, why: str) -> None:
 
 def answers(name: str, script: str, *arguments: str) -> list[dict]:
     """Runs one of the scripts here in an environment; one JSON object per line it prints."""
-    programs = environment(name)
-    command = [str(programs / "python"), str(HERE / script), *arguments]
+    return ask(environment(name) / "python", script, *arguments)
+
+
+def ask(python: str | Path, script: str, *arguments: str) -> list[dict]:
+    """The same with a Python of the caller's."""
+    command = [str(python), str(HERE / script), *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
     assert done.returncode == 0 and found, f"{script}: {done.stderr[-2000:]}"

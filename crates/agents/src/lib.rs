@@ -11,12 +11,14 @@
 //! What this crate does **not** do: it simulates nothing, measures nothing and searches nothing. Narratives are untrusted
 //! text: they are matched against patterns, never followed.
 
+mod account;
 mod contradiction;
 mod expectation;
 pub mod llm;
 mod parameters;
 mod rules;
 
+pub use account::account_of;
 pub use contradiction::narrative_contradictions;
 pub use expectation::expectation;
 pub use parameters::parameters;

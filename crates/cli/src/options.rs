@@ -3,16 +3,15 @@
 use crate::model_options::ModelArgs;
 use clap::Args;
 use recrash_model::profile::Dedupe;
-use recrash_model::selection::Strategy;
-use recrash_pipeline::{FILTER_HELP, Options, PipelineError, RecordSource, Resources, SimulatorKind, Suite};
+use recrash_model::selection::{Strategy, Weighting};
+use recrash_pipeline::{
+    EmbeddingKind, FILTER_HELP, Options, PipelineError, RecordSource, Resources, SimulatorKind, Suite,
+};
 use std::path::PathBuf;
 
-/// Options of a suite. A stage on its own takes what is not given from the suite it works on.
+/// Where crash records come from.
 #[derive(Debug, Clone, Default, Args)]
-pub struct SuiteArgs {
-    /// Folder of the suite; finished work in it is kept.
-    #[arg(long, short, value_name = "DIR", default_value = "suite")]
-    pub out: PathBuf,
+pub struct SourceArgs {
     /// SGO crash file (CSV), or the name of a downloaded one; may be given several times. [default: the built-in sample]
     #[arg(long, value_name = "FILE")]
     pub records: Vec<PathBuf>,
@@ -25,18 +24,56 @@ pub struct SuiteArgs {
     /// Keep the records of which this is true, such as 'road = intersection and year >= 2024'; --help tells more.
     #[arg(long = "where", value_name = "EXPR", long_help = FILTER_HELP)]
     pub filter: Option<String>,
-    /// System profile: a built-in name or a TOML file. [default: paper]
-    #[arg(long, value_name = "NAME|FILE")]
-    pub profile: Option<String>,
+}
+
+/// How records are chosen.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Selection")]
+pub struct ChoiceArgs {
     /// Scenarios to make. [default: 20]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=2000))]
     pub budget: Option<u16>,
-    /// How the picks are chosen: stratified, or kmeans as in the paper. [default: stratified]
+    /// How the picks are chosen: stratified (every template first), kmeans (the paper's), k-center (no record far from
+    /// its pick) or facility-location (near on average). [default: stratified]
     #[arg(long, value_name = "NAME", value_parser = strategy)]
     pub strategy: Option<Strategy>,
-    /// Folder with the files of all-MiniLM-L6-v2, to embed narratives with. [default: a lexical embedding]
+    /// How much a record counts: frequency (each one), severity (by the worst injury) or template (each kind of crash
+    /// the same). [default: frequency]
+    #[arg(long, value_name = "NAME", value_parser = weighting)]
+    pub weighting: Option<Weighting>,
+    /// Weight of the template against the narrative in the clusters; stratified needs none. [default: 1, as in the paper]
+    #[arg(long, value_name = "X")]
+    pub template_weight: Option<f64>,
+    /// Principal components of the narratives' embedding that count. [default: 6, as in the paper]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub dimensions: Option<u16>,
+    /// Runs of k-means, of which the best is kept. [default: 20]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub restarts: Option<u16>,
+    /// Embedding of the narratives: auto (MiniLM where its files are on this machine, see recrash model), lexical or
+    /// minilm. [default: auto]
+    #[arg(long, value_name = "NAME", value_parser = embedding, env = "RECRASH_EMBEDDING")]
+    pub embedding: Option<EmbeddingKind>,
+    /// Folder with the files of all-MiniLM-L6-v2. [default: looked for]
     #[arg(long, value_name = "DIR")]
     pub model_dir: Option<PathBuf>,
+}
+
+/// Options of a suite. A stage on its own takes what is not given from the suite it works on.
+#[derive(Debug, Clone, Default, Args)]
+pub struct SuiteArgs {
+    /// Folder of the suite; finished work in it is kept.
+    #[arg(long, short, value_name = "DIR", default_value = "suite")]
+    pub out: PathBuf,
+    /// Where crash records come from.
+    #[command(flatten)]
+    pub source: SourceArgs,
+    /// System profile: a built-in name or a TOML file. [default: paper]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub profile: Option<String>,
+    /// How records are chosen.
+    #[command(flatten)]
+    pub choice: ChoiceArgs,
     /// Simulator: native, or metadrive (needs Python with metadrive-simulator 0.4.3). [default: native]
     #[arg(long, value_name = "NAME")]
     pub sim: Option<SimulatorKind>,
@@ -63,6 +100,42 @@ pub struct SuiteArgs {
     pub models: ModelArgs,
 }
 
+impl SourceArgs {
+    /// What was typed, over `base`.
+    pub fn over(&self, base: Options) -> Options {
+        Options {
+            records: if self.records.is_empty() { base.records } else { RecordSource::Files(self.records.clone()) },
+            dedupe: self.dedupe.or(base.dedupe),
+            // An empty filter takes a saved one away.
+            filter: self.filter.clone().or(base.filter).filter(|text| !text.trim().is_empty()),
+            mapping: self.mapping.clone().or(base.mapping),
+            ..base
+        }
+    }
+
+    /// Whether anything was typed.
+    pub fn is_given(&self) -> bool {
+        !self.records.is_empty() || self.dedupe.is_some() || self.filter.is_some() || self.mapping.is_some()
+    }
+}
+
+impl ChoiceArgs {
+    /// What was typed, over `base`.
+    pub fn over(&self, base: Options) -> Options {
+        Options {
+            budget: self.budget.map_or(base.budget, usize::from),
+            strategy: self.strategy.unwrap_or(base.strategy),
+            weighting: self.weighting.unwrap_or(base.weighting),
+            template_weight: self.template_weight.unwrap_or(base.template_weight),
+            dimensions: self.dimensions.map_or(base.dimensions, usize::from),
+            restarts: self.restarts.map_or(base.restarts, usize::from),
+            embedding: self.embedding.unwrap_or(base.embedding),
+            model_dir: self.model_dir.clone().or(base.model_dir),
+            ..base
+        }
+    }
+}
+
 impl SuiteArgs {
     /// The suite a stage works on, with what was typed over `base`.
     ///
@@ -82,29 +155,23 @@ impl SuiteArgs {
 
     /// What was typed, over `base`.
     pub fn options(&self, base: Options) -> Options {
+        let base = self.choice.over(self.source.over(base));
         Options {
-            records: if self.records.is_empty() { base.records } else { RecordSource::Files(self.records.clone()) },
-            dedupe: self.dedupe.or(base.dedupe),
-            // An empty filter takes a saved one away.
-            filter: self.filter.clone().or(base.filter).filter(|text| !text.trim().is_empty()),
-            mapping: self.mapping.clone().or(base.mapping),
             profile: self.profile.clone().unwrap_or(base.profile),
-            budget: self.budget.map_or(base.budget, usize::from),
-            strategy: self.strategy.unwrap_or(base.strategy),
-            model_dir: self.model_dir.clone().or(base.model_dir),
             cast: self.models.cast(base.cast),
             simulator: self.sim.unwrap_or(base.simulator),
             ego: self.ego.clone().or(base.ego),
             tune_budget: self.tune_budget.map_or(base.tune_budget, |n| n as usize),
             searcher: self.searcher.clone().unwrap_or(base.searcher),
             seed: self.seed.unwrap_or(base.seed),
+            ..base
         }
     }
 
     /// What may be used of the machine.
     pub fn resources(&self) -> Resources {
         let (threads, python) = (self.threads.map(usize::from), self.python.clone());
-        Resources { threads, python, models: self.models.access() }
+        Resources { threads, python, models: self.models.access.access() }
     }
 }
 
@@ -113,7 +180,21 @@ fn dedupe(name: &str) -> Result<Dedupe, String> {
 }
 
 fn strategy(name: &str) -> Result<Strategy, String> {
-    serde_json::from_value(serde_json::Value::String(name.to_owned())).map_err(|e| e.to_string())
+    one_of(&Strategy::ALL, Strategy::name, name)
+}
+
+fn weighting(name: &str) -> Result<Weighting, String> {
+    one_of(&Weighting::ALL, Weighting::name, name)
+}
+
+fn embedding(name: &str) -> Result<EmbeddingKind, String> {
+    one_of(&EmbeddingKind::ALL, EmbeddingKind::name, name)
+}
+
+/// The value of this name; else the names there are.
+fn one_of<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, name: &str) -> Result<T, String> {
+    let names = || all.iter().map(|&value| name_of(value)).collect::<Vec<_>>().join(", ");
+    all.iter().copied().find(|&value| name_of(value) == name).ok_or_else(|| format!("there are: {}", names()))
 }
 
 #[cfg(test)]
@@ -122,10 +203,11 @@ mod tests {
 
     #[test]
     fn what_is_typed_wins_over_what_was_saved() {
-        let saved = Options { budget: 7, seed: 9, ..Options::default() };
-        let typed = SuiteArgs { seed: Some(3), ..SuiteArgs::default() };
+        let saved = Options { budget: 7, seed: 9, dimensions: 4, ..Options::default() };
+        let choice = ChoiceArgs { dimensions: Some(5), ..ChoiceArgs::default() };
+        let typed = SuiteArgs { seed: Some(3), choice, ..SuiteArgs::default() };
         let options = typed.options(saved);
-        assert_eq!((options.budget, options.seed), (7, 3));
+        assert_eq!((options.budget, options.seed, options.dimensions), (7, 3, 5));
     }
 
     #[test]

@@ -84,14 +84,19 @@ pub fn remark(diagnostic: &Diagnostic) {
     }
 }
 
-/// Prints the remarks of a stage, warnings and errors one by one.
+/// Prints the remarks of a stage.
 pub fn remarks(report: &StageReport) {
-    let serious: Vec<_> = report.diagnostics.iter().filter(|d| d.severity > Severity::Note).collect();
+    remark_list(&report.diagnostics, "in the files of the suite");
+}
+
+/// Prints remarks, warnings and errors one by one, as far as there is room, and where to find the rest.
+pub fn remark_list(diagnostics: &[Diagnostic], the_rest: &str) {
+    let serious: Vec<_> = diagnostics.iter().filter(|d| d.severity > Severity::Note).collect();
     serious.iter().take(REMARKS_SHOWN).for_each(|d| remark(d));
     if serious.len() > REMARKS_SHOWN {
-        eprintln!("  ... and {} more, in 1-records.diagnostics.json", serious.len() - REMARKS_SHOWN);
+        eprintln!("  ... and {} more, {the_rest}", serious.len() - REMARKS_SHOWN);
     }
-    for (code, count, first) in notes_by_code(&report.diagnostics) {
+    for (code, count, first) in notes_by_code(diagnostics) {
         match count {
             1 => remark(first),
             _ => eprintln!("  {} {count} x {code}, the first: {}", "note".dimmed(), first.message),

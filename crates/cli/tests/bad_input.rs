@@ -245,3 +245,48 @@ fn a_damaged_suite_file_is_named() {
     assert_eq!(code, BAD_INPUT, "{shown}");
     assert_says(&shown, &["suite.json", "remove the file"]);
 }
+
+/// A profile whose templates go beyond what the rules can stage.
+fn wide_profile() -> String {
+    let paper = include_str!("../../../profiles/paper.toml");
+    paper.replace("sv_movements = [", "sv_movements = [\"stopped\", ")
+}
+
+#[test]
+fn a_scenario_nobody_can_design_is_named_and_the_others_are_run() {
+    let case = Case::new();
+    let profile = case.file("wide.toml", wide_profile());
+    let (out, profile) = (case.out(), profile.to_str().unwrap().to_owned());
+    let out = out.to_str().unwrap();
+    let run = || {
+        let (code, shown) = case.run(&["run", "--quiet", "--budget", "30", "--profile", &profile, "--out", out]);
+        assert_eq!(code, 0, "{shown}");
+        std::fs::read_to_string(case.out().join("summary.json")).unwrap()
+    };
+    let first = run();
+    let summary: serde_json::Value = serde_json::from_str(&first).unwrap();
+    let cases = summary["cases"].as_array().unwrap();
+    let (failed, whole): (Vec<_>, Vec<_>) = cases.iter().partition(|case| !case["failure"].is_null());
+    assert!(!failed.is_empty() && whole.len() >= 14, "{} failed, {} whole", failed.len(), whole.len());
+    for case in failed {
+        assert_eq!((&case["failure"]["stage"], &case["first"]), (&"narrate".into(), &serde_json::Value::Null));
+        assert!(case["failure"]["why"].as_str().unwrap().starts_with("the rules cannot stage"), "{case}");
+    }
+    let results = std::fs::read_to_string(case.out().join("results.csv")).unwrap();
+    assert_eq!(results.lines().filter(|line| line.contains(",not run,")).count(), cases.len() - whole.len());
+    let junit = std::fs::read_to_string(case.out().join("junit.xml")).unwrap();
+    assert!(junit.contains("the rules cannot stage"), "{junit}");
+    assert_eq!(run(), first, "the second run tries again, and comes to the same");
+}
+
+#[test]
+fn a_run_without_any_scenario_is_an_error() {
+    let case = Case::new();
+    let profile = case.file("wide.toml", wide_profile());
+    let filter = ["--where", "sv_movement = stopped"];
+    let (profile, out) = (profile.to_str().unwrap().to_owned(), case.out());
+    let (code, shown) =
+        case.run(&[&["run", "-q", "--profile", &profile, "--out", out.to_str().unwrap()], &filter[..]].concat());
+    assert_eq!(code, BAD_INPUT, "{shown}");
+    assert_says(&shown, &["no scenario could be run", "the rules cannot stage"]);
+}

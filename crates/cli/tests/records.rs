@@ -2,44 +2,11 @@
 
 mod common;
 
-use common::recrash;
+use common::Place;
 use recrash_records::SAMPLE_CSV;
 use std::io::{Read, Write};
 use std::net::TcpListener;
-use std::path::{Path, PathBuf};
-
-struct Place {
-    folder: tempfile::TempDir,
-}
-
-impl Place {
-    fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap() }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    /// Runs a command in the folder; gives exit code, standard output and standard error.
-    fn run(&self, arguments: &[&str]) -> (i32, String, String) {
-        let mut command = recrash(arguments);
-        command.current_dir(self.folder.path()).env("RECRASH_CACHE", self.path("cache"));
-        for name in ["http_proxy", "HTTP_PROXY", "all_proxy", "ALL_PROXY"] {
-            command.env_remove(name);
-        }
-        let output = command.output().unwrap();
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-    }
-
-    fn records(&self, extra: &[&str]) -> serde_json::Value {
-        let arguments: Vec<&str> = ["records", "--json"].iter().chain(extra).copied().collect();
-        let (code, shown, error) = self.run(&arguments);
-        assert_eq!(code, 0, "{error}");
-        serde_json::from_str(&shown).unwrap()
-    }
-}
+use std::path::Path;
 
 #[test]
 fn the_funnel_and_the_distributions_are_shown_on_a_screen() {
@@ -51,6 +18,40 @@ fn the_funnel_and_the_distributions_are_shown_on_a_screen() {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }
     assert!(shown.lines().count() + remarks.lines().count() < 50, "{shown}{remarks}");
+}
+
+#[test]
+fn nothing_is_written_but_what_was_asked_for() {
+    let place = Place::new();
+    place.records(&[]);
+    assert_eq!(files_of(place.folder()), [] as [&str; 0]);
+    place.records(&["--csv", "a.csv", "--out", "s"]);
+    assert_eq!(files_of(place.folder()), ["a.csv", "s"]);
+    assert_eq!(files_of(&place.path("s")), ["1-records.diagnostics.json", "1-records.json", "suite.json"]);
+}
+
+#[test]
+fn the_counts_are_shown_to_add_up() {
+    let place = Place::new();
+    let header = SAMPLE_CSV.lines().next().unwrap();
+    std::fs::write(place.path("cut.csv"), format!("{SAMPLE_CSV}90-1,1,\"It was")).unwrap();
+    std::fs::write(place.path("long.csv"), format!("{SAMPLE_CSV}90-1,1{}\n", ",".repeat(141))).unwrap();
+    std::fs::write(place.path("twice.csv"), format!("{SAMPLE_CSV}{header}\n90-1,1,short\n")).unwrap();
+    for (file, told) in [
+        ("cut.csv", "row 371, line 494: the file ends inside a quoted field"),
+        ("long.csv", "row 371, line 494: too many fields: 143 instead of 137"),
+        ("twice.csv", "row 371, line 495: too few fields: 3 instead of 137"),
+    ] {
+        let (code, shown, remarks) = place.run(&["records", file]);
+        assert_eq!(code, 0, "{remarks}");
+        assert!(shown.contains("371 rows = 235 usable + 136 rejected + 0 merged"), "{shown}");
+        assert!(remarks.contains(told), "{told}:\n{remarks}");
+    }
+    let (_, shown, _) = place.run(&["records", "--dedupe", "incident"]);
+    let line = shown.lines().find(|line| line.contains(" merged")).unwrap();
+    let sum = shown.lines().find(|line| line.contains(" rows = ")).unwrap();
+    let merged: String = line.chars().skip_while(|c| !c.is_ascii_digit()).collect();
+    assert!(merged.contains("merged into another") && !sum.contains("+ 0 merged"), "{shown}");
 }
 
 #[test]
@@ -81,13 +82,15 @@ fn a_parquet_table_is_one() {
 fn a_filter_narrows_the_records_and_stays_with_the_suite() {
     let place = Place::new();
     let all = place.records(&[])["usable"].as_u64().unwrap();
-    let some = place.records(&["--where", "road = highway or severity >= moderate"])["usable"].as_u64().unwrap();
+    let filter = ["--where", "road = highway or severity >= moderate", "--out", "s"];
+    let some = place.records(&filter)["usable"].as_u64().unwrap();
     assert!(0 < some && some < all, "{some} of {all}");
-    let saved = place.records(&[]);
+    let saved = place.records(&["--out", "s"]);
     assert_eq!(saved["usable"].as_u64(), Some(some));
     let steps: Vec<&str> = saved["funnel"].as_array().unwrap().iter().filter_map(|s| s["name"].as_str()).collect();
     assert!(steps.contains(&"where road = highway or severity >= moderate"), "{steps:?}");
-    assert_eq!(place.records(&["--where", ""])["usable"].as_u64(), Some(all));
+    assert_eq!(place.records(&["--out", "s", "--where", ""])["usable"].as_u64(), Some(all));
+    assert_eq!(place.records(&[])["usable"].as_u64(), Some(all), "without --out no suite is looked at");
 
     let (code, _, error) = place.run(&["records", "--where", "raod = highway"]);
     assert_eq!(code, 3, "{error}");
@@ -168,7 +171,7 @@ fn a_crash_file_is_downloaded_and_then_found_by_its_name() {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }
     assert_eq!(place.records(&["--records", "sgo-ads-archive.csv"])["usable"].as_u64(), Some(235));
-    assert_eq!(place.records(&["sgo-ads-archive", "--out", "other"])["usable"].as_u64(), Some(235));
+    assert_eq!(place.records(&["sgo-ads-archive"])["usable"].as_u64(), Some(235));
 
     let (base, served) = serve(SAMPLE_CSV.as_bytes(), SAMPLE_CSV.len());
     let (_, shown, _) = place.run(&["fetch", "--edition", "archive", "--base-url", &base]);

@@ -11,6 +11,8 @@ pub(crate) struct Element {
     pub children: Vec<Element>,
     /// Text between the tags; an element has text or children, never both.
     pub text: String,
+    /// Line it begins on, counted from 1; 0 where it was not read from a file.
+    pub line: u64,
 }
 
 impl Element {
@@ -123,33 +125,36 @@ fn new_line(writer: &mut Writer<Vec<u8>>, depth: usize) -> std::io::Result<()> {
 /// Elements inside one another that are read; our own files have 16.
 const MOST_DEPTH: usize = 64;
 
-/// Elements that are read in all. A recorded partner takes three per step.
-const MOST_ELEMENTS: usize = 1 << 20;
+/// Elements that are read in all. A recorded partner takes three per step, and a scenario has 1200 steps at most.
+const MOST_ELEMENTS: usize = 1 << 18;
+
+/// Attributes of one element that are read; our own have 9.
+const MOST_ATTRIBUTES: usize = 64;
 
 /// Reads a document.
 ///
 /// # Errors
 /// The line, and what is wrong there.
 pub(crate) fn parse(text: &str) -> Result<Element, (u64, String)> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut reader = Reader::from_str(text);
-    let line = |reader: &Reader<&[u8]>| {
-        let until = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX).min(text.len());
-        text.as_bytes()[..until].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1
-    };
+    let mut lines = Lines { text: text.as_bytes(), counted: 0, line: 1 };
     let mut open: Vec<Element> = Vec::new();
     let mut root = None;
     let mut count = 0_usize;
     loop {
-        let event = reader.read_event().map_err(|error| (line(&reader), format!("not well-formed XML: {error}")))?;
+        // What comes next begins here.
+        let line = lines.at(reader.buffer_position());
+        let event = reader.read_event().map_err(|error| (line, format!("not well-formed XML: {error}")))?;
         let finished = match event {
             Event::Start(start) => {
-                open.push(element(&start).map_err(|message| (line(&reader), message))?);
+                open.push(element(&start, line)?);
                 count += 1;
                 None
             }
             Event::Empty(start) => {
                 count += 1;
-                Some(element(&start).map_err(|message| (line(&reader), message))?)
+                Some(element(&start, line)?)
             }
             Event::End(_) => open.pop(),
             Event::Text(text) => {
@@ -159,37 +164,59 @@ pub(crate) fn parse(text: &str) -> Result<Element, (u64, String)> {
                 }
                 None
             }
-            Event::DocType(_) => return Err((line(&reader), "a document type is not read".to_owned())),
+            Event::DocType(_) => return Err((line, "a document type is not read".to_owned())),
             Event::Eof => break,
             Event::CData(_) | Event::Comment(_) | Event::Decl(_) | Event::PI(_) | Event::GeneralRef(_) => None,
         };
         if count > MOST_ELEMENTS || open.len() > MOST_DEPTH {
             let message = format!("more than {MOST_ELEMENTS} elements, or {MOST_DEPTH} inside one another");
-            return Err((line(&reader), message));
+            return Err((line, message));
         }
         if let Some(finished) = finished {
             match open.last_mut() {
                 Some(outer) => outer.children.push(finished),
                 None if root.is_none() => root = Some(finished),
-                None => return Err((line(&reader), "a second root element".to_owned())),
+                None => return Err((line, "a second root element".to_owned())),
             }
         }
     }
-    match (root, open.is_empty()) {
-        (Some(root), true) => Ok(root),
-        _ => Err((line(&reader), "the file ends before its root element does".to_owned())),
+    match (root, open.last()) {
+        (Some(root), None) => Ok(root),
+        (_, Some(open)) => Err((open.line, format!("<{}> is never closed; is the file complete?", open.name))),
+        (None, None) => Err((lines.at(text.len() as u64), "there is no XML element in it".to_owned())),
     }
 }
 
-fn element(start: &BytesStart<'_>) -> Result<Element, String> {
-    let mut element = Element::new(start.name().as_ref());
+/// Counts lines once, from the beginning to the end.
+struct Lines<'a> {
+    text: &'a [u8],
+    counted: usize,
+    line: u64,
+}
+
+impl Lines<'_> {
+    /// The line of a byte behind those asked for before.
+    fn at(&mut self, position: u64) -> u64 {
+        let until = usize::try_from(position).unwrap_or(usize::MAX).min(self.text.len());
+        let new = self.text.get(self.counted..until).unwrap_or_default();
+        self.line += new.iter().filter(|&&byte| byte == b'\n').count() as u64;
+        self.counted = self.counted.max(until);
+        self.line
+    }
+}
+
+fn element(start: &BytesStart<'_>, line: u64) -> Result<Element, (u64, String)> {
+    let mut element = Element { line, ..Element::new(start.name().as_ref()) };
     for attribute in start.attributes() {
-        let attribute = attribute.map_err(|error| format!("not well-formed XML: {error}"))?;
+        let attribute = attribute.map_err(|error| (line, format!("not well-formed XML: {error}")))?;
         let name = attribute.key.as_ref().to_owned();
         let value = attribute
             .normalized_value(XmlVersion::Explicit1_0)
-            .map_err(|error| format!("attribute {name}: {error}"))?;
+            .map_err(|error| (line, format!("attribute {name}: {error}")))?;
         element.attributes.push((name, value.into_owned()));
+        if element.attributes.len() > MOST_ATTRIBUTES {
+            return Err((line, format!("<{}> has more than {MOST_ATTRIBUTES} attributes", element.name)));
+        }
     }
     Ok(element)
 }

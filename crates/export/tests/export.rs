@@ -100,3 +100,17 @@ fn every_point_of_the_sweep_is_in_range_and_the_first_is_the_scenario() {
         }
     }
 }
+
+#[test]
+fn friction_is_the_simulators() {
+    use recrash_model::record::Surface;
+    for surface in [Surface::Dry, Surface::Wet, Surface::SnowIce] {
+        let mut draft = common::draft(CASES[2].1);
+        draft.environment.surface = surface;
+        let scenario = recrash_roads::check(draft).unwrap().value;
+        let files = export(&scenario, None, &[], &ExportOptions::new(Format::OpenScenario)).unwrap();
+        let text = String::from_utf8(files[1].content.clone()).unwrap();
+        let written = format!("frictionScaleFactor=\"{}\"", recrash_sim::friction_of(surface));
+        assert!(text.contains(&written), "{surface:?}: no {written}");
+    }
+}

@@ -64,12 +64,11 @@ pub enum MetadriveError {
         /// The second time.
         second: WorkerFault,
     },
-    /// The scenario holds something this backend does not have.
-    #[error("scenario `{scenario}` cannot run on MetaDrive: {what}")]
-    Unsupported {
-        /// The scenario's id.
-        scenario: String,
-        /// What.
-        what: String,
-    },
+}
+
+impl MetadriveError {
+    /// Whether it can be mended by installing MetaDrive: Python runs, and the package is not there.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::NotReady { reason: NotReady::Missing { .. } })
+    }
 }

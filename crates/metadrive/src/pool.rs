@@ -79,9 +79,9 @@ impl Metadrive {
     /// Runs one scenario, waiting for a free worker first.
     ///
     /// # Errors
-    /// When it failed on two workers, or holds something MetaDrive does not have.
+    /// When it failed on two workers, or no new worker can be started.
     pub fn simulate(&self, scenario: &Scenario, drive: &Drive) -> Result<Rollout, MetadriveError> {
-        let spec = run_spec(scenario, drive)?;
+        let spec = run_spec(scenario, drive);
         let first = match self.attempt(scenario, drive, &spec)? {
             Ok(rollout) => return Ok(rollout),
             Err(fault) => fault,
@@ -138,7 +138,7 @@ impl Metadrive {
             None => slot.worker.insert(Worker::start(&self.options.python, self.options.start_patience)?),
         };
         let result = worker.run(spec, self.options.run_patience).and_then(|done| {
-            rollout(scenario, drive, done)
+            rollout(scenario, drive, spec, done)
                 .ok_or_else(|| WorkerFault::Rubbish { beginning: "an answer to another scenario".to_owned() })
         });
         if result.is_err() || worker.maps >= MOST_MAPS {

@@ -2,8 +2,8 @@
 //!
 //! A run is told with every place resolved to a lane and a position on it, so that MetaDrive decides nothing.
 
+use crate::METADRIVE_VERSION;
 use crate::worker::NotReady;
-use crate::{METADRIVE_VERSION, MetadriveError};
 use recrash_model::record::Surface;
 use recrash_model::rollout::{
     ActorState, ActorTrack, EGO_ID, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, Termination, TerminationKind,
@@ -11,7 +11,9 @@ use recrash_model::rollout::{
 use recrash_model::scenario::{DEFAULT_SPEED_KP, LateralMove, MapSpec, ObstacleKind, Policy, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{math, record::PartnerKind};
-use recrash_roads::{Conflict, Placement, Scenario};
+use recrash_roads::{
+    Conflict, LanePath, RoadNetwork, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -20,7 +22,8 @@ use serde_json::Value;
 pub enum Drive {
     /// MetaDrive's own IDM policy, at the scenario's target speed.
     MetadriveIdm,
-    /// Given controls, steering and throttle per step of 0.1 s, both -1 to 1; none behind their end.
+    /// Given controls, steering and throttle per step of 0.1 s, both -1 to 1; none behind their end. Only a contact or
+    /// time ends such a run: it may leave the road.
     OpenLoop(Vec<[f64; 2]>),
 }
 
@@ -46,8 +49,21 @@ pub(crate) struct RunSpec {
     map: MapSpec,
     ego: ActorSpec,
     partners: Vec<ActorSpec>,
+    /// Background traffic, numbered after the partners.
+    traffic: Vec<ActorSpec>,
     obstacles: Vec<ObstacleSpec>,
     duration_s: f64,
+    /// Every road user, in the order of the tracks that come back.
+    #[serde(skip)]
+    cast: Vec<Member>,
+}
+
+/// Who a track belongs to.
+#[derive(Debug, Clone, PartialEq)]
+struct Member {
+    id: String,
+    role: Role,
+    kind: PartnerKind,
 }
 
 /// A road user.
@@ -66,6 +82,8 @@ struct ActorSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     policy: Option<Value>,
     lateral: Vec<LateralMove>,
+    /// The wanted line may run at no more than this angle to the lane. [rad]
+    greatest_drift_rad: f64,
     crossings: Vec<CrossingSpec>,
 }
 
@@ -185,27 +203,29 @@ fn friction(surface: Surface) -> f64 {
 }
 
 /// A scenario as a worker takes it.
-pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> Result<RunSpec, MetadriveError> {
+pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> RunSpec {
     let draft = scenario.draft();
-    if draft.traffic.density >= 0.01 {
-        let what = format!("background traffic (density {}) is not built there yet", draft.traffic.density);
-        return Err(MetadriveError::Unsupported { scenario: draft.id.clone(), what });
-    }
-    let surface = draft.environment.surface;
-    let mut ego = actor(scenario, scenario.ego(), draft.ego.target_speed_mps, surface);
+    let traffic = background_traffic(scenario);
+    let ways = ways(scenario, &traffic);
+    let actor = |number: usize, t_m: f64, speed_mps: f64, target_speed_mps: f64| {
+        actor(scenario, &ways[number], t_m, speed_mps, target_speed_mps)
+    };
+    let mut ego = actor(0, scenario.ego().t_m, scenario.ego().speed_mps, draft.ego.target_speed_mps);
     if let Drive::OpenLoop(controls) = drive {
         ego.controls = Some(controls.clone());
     }
     let partners =
         draft.partners.iter().zip(scenario.partners()).enumerate().map(|(position, (partner, placement))| {
-            let mut spec = actor(scenario, placement, partner.policy.target_speed(), surface);
+            let number = position + 1;
+            let mut spec = actor(number, placement.t_m, placement.speed_mps, partner.policy.target_speed());
             spec.policy = Some(policy_value(&partner.policy));
             spec.lateral.clone_from(&partner.lateral);
             if matches!(partner.policy, Policy::Yielding { .. }) {
-                spec.crossings = crossings(scenario, position + 1);
+                spec.crossings = crossings(scenario.network(), &ways, number);
             }
             spec
         });
+    let first_traffic = draft.partners.len() + 1;
     let obstacles = scenario.obstacles().iter().map(|obstacle| {
         let lane = scenario.network().lane(obstacle.lane);
         let road = scenario.network().road(lane.road);
@@ -220,13 +240,53 @@ pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> Result<RunSpec, Me
             width_m: placed.width_m,
         }
     });
-    Ok(RunSpec {
+    RunSpec {
         map: draft.map.clone(),
         partners: partners.collect(),
+        traffic: (first_traffic..ways.len()).map(|number| actor(number, 0.0, 0.0, TRAFFIC_SPEED_MPS)).collect(),
         ego,
         obstacles: obstacles.collect(),
         duration_s: draft.duration_s,
-    })
+        cast: cast(draft, &ways),
+    }
+}
+
+/// What a road user is and where its lanes lead: the ego, the partners, background traffic.
+struct Way<'a> {
+    kind: PartnerKind,
+    path: &'a LanePath,
+    s_m: f64,
+}
+
+impl Way<'_> {
+    /// Position of the lane it starts on in its path.
+    fn first(&self) -> usize {
+        self.path.segment_at(self.s_m)
+    }
+
+    /// Where on the path the way of the worker begins: at the beginning of the lane it starts on. [m]
+    fn begins_m(&self) -> f64 {
+        self.path.segments[self.first()].start_m
+    }
+}
+
+fn ways<'a>(scenario: &'a Scenario, traffic: &'a [TrafficPlacement]) -> Vec<Way<'a>> {
+    let placed = std::iter::once(scenario.ego()).chain(scenario.partners());
+    let placed = placed.map(|placement| Way { kind: placement.kind, path: &placement.path, s_m: placement.s_m });
+    placed.chain(traffic.iter().map(|each| Way { kind: each.kind, path: &each.path, s_m: each.s_m })).collect()
+}
+
+fn cast(draft: &ScenarioDraft, ways: &[Way<'_>]) -> Vec<Member> {
+    let partners = draft.partners.len();
+    let member = |(number, way): (usize, &Way<'_>)| {
+        let (id, role) = match number {
+            0 => (EGO_ID.to_owned(), Role::Ego),
+            _ if number <= partners => (draft.partners[number - 1].id.clone(), Role::Partner),
+            _ => (format!("traffic{}", number - partners), Role::Traffic),
+        };
+        Member { id, role, kind: way.kind }
+    };
+    ways.iter().enumerate().map(member).collect()
 }
 
 /// The policy with every default written out.
@@ -238,20 +298,19 @@ fn policy_value(policy: &Policy) -> Value {
     value
 }
 
-fn actor(scenario: &Scenario, placement: &Placement, target_speed_mps: f64, surface: Surface) -> ActorSpec {
+fn actor(scenario: &Scenario, way: &Way<'_>, t_m: f64, speed_mps: f64, target_speed_mps: f64) -> ActorSpec {
     let network = scenario.network();
-    let first = placement.path.segment_at(placement.s_m);
-    let way = placement.path.segments[first..].iter().map(|segment| {
+    let lanes = way.path.segments[way.first()..].iter().map(|segment| {
         let lane = network.lane(segment.lane);
         let road = network.road(lane.road);
         (road.from.clone(), road.to.clone(), lane.index)
     });
-    let size = VehicleSpec::of(placement.kind);
+    let size = VehicleSpec::of(way.kind);
     ActorSpec {
-        way: way.collect(),
-        s_m: placement.s_m - placement.path.segments[first].start_m,
-        t_m: placement.t_m,
-        speed_mps: placement.speed_mps,
+        way: lanes.collect(),
+        s_m: way.s_m - way.begins_m(),
+        t_m,
+        speed_mps,
         target_speed_mps,
         body: BodySpec {
             length_m: size.length_m,
@@ -265,31 +324,29 @@ fn actor(scenario: &Scenario, placement: &Placement, target_speed_mps: f64, surf
             brake_mps2: size.brake_demand_mps2,
             speed_mps: size.max_speed_mps,
             wheel_angle_rad: size.max_wheel_angle_rad,
-            friction: friction(surface),
+            friction: friction(scenario.draft().environment.surface),
         },
         controls: None,
         policy: None,
         lateral: Vec::new(),
+        greatest_drift_rad: if VehicleSpec::is_nimble(way.kind) { 1.3 } else { 0.5 },
         crossings: Vec::new(),
     }
 }
 
-/// Where the way of an actor (0 is the ego) meets the others', see `docs/models/policies.md`.
-fn crossings(scenario: &Scenario, me: usize) -> Vec<CrossingSpec> {
-    let placements: Vec<&Placement> = std::iter::once(scenario.ego()).chain(scenario.partners()).collect();
-    let begins = |placement: &Placement| placement.path.segments[placement.path.segment_at(placement.s_m)].start_m;
-    let own = placements[me];
+/// Where the way of an actor meets the others', see `docs/models/policies.md`.
+fn crossings(network: &RoadNetwork, ways: &[Way<'_>], me: usize) -> Vec<CrossingSpec> {
+    let own = &ways[me];
     let size = VehicleSpec::of(own.kind);
     let mut found = Vec::new();
-    for (other, placement) in placements.iter().enumerate().filter(|(other, _)| *other != me) {
-        let other_size = VehicleSpec::of(placement.kind);
-        let network = scenario.network();
-        let meets = own.path.conflict(&placement.path, network, size.width_m, other_size.width_m);
+    for (other, way) in ways.iter().enumerate().filter(|(other, _)| *other != me) {
+        let other_size = VehicleSpec::of(way.kind);
+        let meets = own.path.conflict(way.path, network, size.width_m, other_size.width_m);
         let Some(conflict) = meets else { continue };
         let angle =
-            own.path.pose(network, conflict.s_a, 0.0).heading - placement.path.pose(network, conflict.s_b, 0.0).heading;
-        let mine = stretch(conflict.s_a - begins(own), &size, &other_size, angle, &conflict);
-        let theirs = stretch(conflict.s_b - begins(placement), &other_size, &size, angle, &conflict);
+            own.path.pose(network, conflict.s_a, 0.0).heading - way.path.pose(network, conflict.s_b, 0.0).heading;
+        let mine = stretch(conflict.s_a - own.begins_m(), &size, &other_size, angle, &conflict);
+        let theirs = stretch(conflict.s_b - way.begins_m(), &other_size, &size, angle, &conflict);
         found.push(CrossingSpec { other, mine, theirs, merges: conflict.merges });
     }
     found
@@ -305,10 +362,9 @@ fn stretch(s: f64, mine: &VehicleSpec, theirs: &VehicleSpec, angle: f64, conflic
 }
 
 /// A finished run as a rollout; `None` where the answer does not fit the scenario.
-pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, done: Done) -> Option<Rollout> {
-    let draft = scenario.draft();
+pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, spec: &RunSpec, done: Done) -> Option<Rollout> {
     let steps = done.tracks.first()?.len();
-    let fits = done.tracks.len() == draft.partners.len() + 1
+    let fits = done.tracks.len() == spec.cast.len()
         && steps > 0
         && done.tracks.iter().all(|track| track.len() == steps)
         && done.time_s.is_finite();
@@ -316,11 +372,11 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, done: Done) -> Option<
         return None;
     }
     let actors: Vec<ActorTrack> =
-        done.tracks.iter().enumerate().map(|(number, states)| track(scenario, draft, number, states)).collect();
+        spec.cast.iter().zip(&done.tracks).map(|(member, states)| track(member, states)).collect();
     let events = done.events.iter().map(|each| event(each, actors.len(), scenario.obstacles().len()));
     Some(Rollout {
         format: ROLLOUT_FORMAT.to_owned(),
-        scenario_id: draft.id.clone(),
+        scenario_id: scenario.draft().id.clone(),
         simulator: format!("MetaDrive {METADRIVE_VERSION}"),
         ego: drive.name().to_owned(),
         events: events.collect::<Option<_>>()?,
@@ -331,14 +387,12 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, done: Done) -> Option<
     })
 }
 
-fn track(scenario: &Scenario, draft: &ScenarioDraft, number: usize, states: &[[f64; 6]]) -> ActorTrack {
-    let partner = number.checked_sub(1);
-    let kind = partner.map_or(PartnerKind::PassengerCar, |partner| scenario.partners()[partner].kind);
-    let size = VehicleSpec::of(kind);
+fn track(member: &Member, states: &[[f64; 6]]) -> ActorTrack {
+    let size = VehicleSpec::of(member.kind);
     ActorTrack {
-        id: partner.map_or_else(|| EGO_ID.to_owned(), |partner| draft.partners[partner].id.clone()),
-        role: if partner.is_some() { Role::Partner } else { Role::Ego },
-        kind,
+        id: member.id.clone(),
+        role: member.role,
+        kind: member.kind,
         length_m: size.length_m,
         width_m: size.width_m,
         states: states.iter().map(state).collect(),

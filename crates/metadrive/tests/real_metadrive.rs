@@ -3,8 +3,10 @@
 mod common;
 
 use common::{checked, crossing};
-use recrash_metadrive::{Drive, Metadrive, MetadriveError, Options, inspect};
-use recrash_model::rollout::{EventKind, Rollout, TerminationKind};
+use recrash_metadrive::{Drive, Metadrive, Options, inspect};
+use recrash_model::record::PartnerKind;
+use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
+use recrash_roads::background_traffic;
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -169,12 +171,75 @@ fn a_barrier_across_the_lane_is_touched_by_a_blind_ego() {
 }
 
 #[test]
-fn background_traffic_is_refused() {
-    let Some(metadrive) = start("background_traffic_is_refused") else { return };
+fn background_traffic_starts_where_it_is_placed_and_drives_when_the_ego_comes() {
+    let Some(metadrive) = start("background_traffic_starts_where_it_is_placed") else { return };
     let mut draft = crossing();
-    draft["traffic"] = json!({"density": 0.1, "seed": 1});
-    let result = metadrive.simulate(&checked(&draft), &Drive::MetadriveIdm);
-    assert!(matches!(result, Err(MetadriveError::Unsupported { .. })), "{result:?}");
+    draft["map"]["arm_m"] = json!(40.0);
+    draft["partners"] = json!([]);
+    draft["traffic"] = json!({"density": 0.4, "seed": 1});
+    draft["duration_s"] = json!(14.0);
+    let scenario = checked(&draft);
+    let placed = background_traffic(&scenario);
+    assert!(placed.len() > 3, "{}", placed.len());
+    let rollout = metadrive.simulate(&scenario, &Drive::MetadriveIdm).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(rollout.actors.len(), 1 + placed.len());
+    let mut gone = 0;
+    for (track, placement) in rollout.actors[1..].iter().zip(&placed) {
+        assert_eq!((track.role, track.kind), (Role::Traffic, placement.kind));
+        assert!(track.states[0].position().distance(placement.pose.position) < 0.01, "{}", track.id);
+        // The entrance is 10 m long and the ego begins at 5 m with 8 m/s.
+        assert!(track.states[5].speed < 0.1, "{} moves at {} m/s", track.id, track.states[5].speed);
+        assert!(track.states.windows(2).all(|pair| pair[0].position().distance(pair[1].position()) < 1.2));
+        gone += usize::from(track.states[track.states.len() - 1].x < -3.0);
+    }
+    let fastest = rollout.actors[1..].iter().flat_map(|track| &track.states).map(|state| state.speed);
+    assert!(fastest.fold(0.0, f64::max) > 5.0);
+    assert!(rollout.termination.kind == TerminationKind::Contact || gone > 0, "{gone} have left the map");
+}
+
+#[test]
+fn every_kind_of_road_user_drives_walks_or_stands() {
+    let Some(metadrive) = start("every_kind_of_road_user_drives_walks_or_stands") else { return };
+    let kinds = [
+        PartnerKind::PassengerCar,
+        PartnerKind::Suv,
+        PartnerKind::Van,
+        PartnerKind::PickupTruck,
+        PartnerKind::HeavyTruck,
+        PartnerKind::Bus,
+        PartnerKind::Motorcycle,
+        PartnerKind::Cyclist,
+        PartnerKind::Pedestrian,
+        PartnerKind::OtherNonMotorist,
+        PartnerKind::FirstResponder,
+        PartnerKind::Animal,
+        PartnerKind::FixedObject,
+    ];
+    for kind in kinds {
+        let mut draft = crossing();
+        let fixed = kind == PartnerKind::FixedObject;
+        let speed = if fixed { 0.0 } else { 2.0 };
+        draft["duration_s"] = json!(3.0);
+        draft["partners"][0]["kind"] = serde_json::to_value(kind).expect("a word");
+        draft["partners"][0]["approach"] = json!("same");
+        draft["partners"][0]["start"] = json!({"delta_s_m": 45.0});
+        draft["partners"][0]["speed_mps"] = json!(speed);
+        draft["partners"][0]["policy"] = if fixed {
+            json!({"type": "stopped"})
+        } else {
+            json!({"type": "sudden_brake", "target_speed": 2.0, "brake_step": 20, "brake_steps": 100})
+        };
+        let rollout = metadrive
+            .simulate(&checked(&draft), &Drive::MetadriveIdm)
+            .unwrap_or_else(|error| panic!("{kind:?}: {error}"));
+        let states = &rollout.actors[1].states;
+        let (first, last) = (states[0], states[states.len() - 1]);
+        // Two seconds at 2 m/s, then a stop of about a metre; below 0.5 m/s the brake is light.
+        let way = last.x - first.x;
+        let wanted = if fixed { -0.1..0.1 } else { 3.7..5.2 };
+        assert!(wanted.contains(&way), "{kind:?} went {way} m");
+        assert!((last.y - first.y).abs() < 0.1 && last.speed < 0.5, "{kind:?}: {last:?}");
+    }
 }
 
 #[test]

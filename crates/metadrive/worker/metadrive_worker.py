@@ -18,6 +18,13 @@ SUBSTEPS = 5
 STEP_S = 0.1
 STANDING_MPS = 0.3
 STUCK_STEPS = 200
+# Giving way, see docs/models/idm.md and policies.md.
+PATIENCE_STEPS = 30
+HORIZON_S = 12.0
+MERGED_M = 12.0
+COMMITTED_M = 1.0
+THEIR_ACCELERATION_MPS2 = 1.0
+GIVE_WAY_MPS2 = 3.0
 
 # Libraries may print what they like: the real stdout is ours alone, theirs goes to stderr.
 ANSWERS = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
@@ -64,6 +71,7 @@ try:
     from metadrive.component.pgblock.std_intersection import StdInterSection
     from metadrive.component.pgblock.std_t_intersection import StdTInterSection
     from metadrive.component.pgblock.straight import Straight
+    from metadrive.component.road_network.node_road_network import NodeRoadNetwork
     from metadrive.component.static_object.traffic_object import TrafficBarrier, TrafficCone, TrafficWarning
     from metadrive.component.vehicle.vehicle_type import StaticDefaultVehicle, vehicle_class_to_type, vehicle_type
     from metadrive.engine.base_engine import BaseEngine
@@ -71,6 +79,7 @@ try:
     from metadrive.manager.pg_map_manager import PGMapManager
     from metadrive.obs.observation_base import DummyObservation
     from metadrive.policy.idm_policy import FrontBackObjects, IDMPolicy
+    from panda3d.core import LVector3, Vec3
 except Exception as error:  # whatever it is, it is told in one line
     hello(VERSION, kind="import_failed", detail="%s: %s" % (type(error).__name__, error))
     sys.exit(0)
@@ -78,7 +87,18 @@ except Exception as error:  # whatever it is, it is told in one line
 # Pictures only; without it the engine would download its assets.
 BaseEngine.try_pull_asset = staticmethod(lambda *arguments, **options: None)
 
+
+class Route:
+    """The nodes of whoever is placed next: MetaDrive would take the shortest way, which may not be the scenario's."""
+
+    nodes = []
+
+
+NodeRoadNetwork.shortest_path = lambda self, start, goal: list(Route.nodes)
+
 BLOCKS = {"S": Straight, "C": Curve, "X": StdInterSection, "T": StdTInterSection, "O": Roundabout}
+# The node at which the entrance of the ego's road begins.
+ENTRANCE = FirstPGBlock.NODE_1
 MISSING_ARM = {"right": 0, "ahead": 1, "left": 2}
 OBSTACLES = {"cone": TrafficCone, "barrier": TrafficBarrier, "warning": TrafficWarning}
 
@@ -151,16 +171,36 @@ class MiddleOfTheRange:
         return (low + high) // 2
 
 
-class EgoPolicy(IDMPolicy):
-    """MetaDrive's IDM policy at the speed the scenario wants."""
+def stand(speed):
+    """Throttle that brakes to a stand and holds it: under a full brake MetaDrive's vehicles creep backwards."""
+    return -1.0 if speed > 0.5 else -0.1
 
-    target_kmh = 30.0
+
+class FreePolicy(IDMPolicy):
+    """MetaDrive's IDM policy at the speed somebody wants: the ego's and that of background traffic."""
+
+    target_mps = 30.0 / 3.6
 
     def __init__(self, vehicle, random_seed):
         super().__init__(vehicle, random_seed)
-        self.NORMAL_SPEED = self.target_speed = type(self).target_kmh
+        self.NORMAL_SPEED = self.target_speed = 3.6 * type(self).target_mps
         self.overtake_timer = self.LANE_CHANGE_FREQ // 2
         self.np_random = MiddleOfTheRange()
+
+    def decide(self, world, me):
+        steering, throttle = self.act()
+        actor = world.actors[me]
+        return [steering, stand(actor.vehicle.speed) if actor.halted else throttle]
+
+    def has_plans(self, step):
+        return False
+
+
+class TrafficPolicy(FreePolicy):
+    """Stands until the ego has left the entrance of its road."""
+
+    def decide(self, world, me):
+        return super().decide(world, me) if world.released else [0.0, 0.0]
 
 
 class Place:
@@ -211,26 +251,33 @@ class PartnerPolicy(IDMPolicy):
     def decide(self, world, me):
         actor = world.actors[me]
         vehicle, place = actor.vehicle, actor.place
+        if self.waits(world.step):
+            # The controllers begin when it sets off.
+            return [0.0, stand(vehicle.speed)]
         wanted, rate = self.lateral_target(world.step * STEP_S)
-        drift = max(-0.5, min(0.5, -rate / max(vehicle.speed, 1.0)))
+        drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, 1.0))))
+        greatest = self.spec["greatest_drift_rad"]
+        drift = max(-greatest, min(greatest, drift))
         error = place.lane.heading_theta_at(place.s + 1) + drift - vehicle.heading_theta
         error = math.atan2(math.sin(error), math.cos(error))
         steering = self.heading_pid.get_result(-error) + self.lateral_pid.get_result(-(place.t - wanted))
-        throttle = -1.0 if actor.halted else self.throttle(world, me)
+        throttle = stand(vehicle.speed) if actor.halted else self.throttle(world, me)
         return [steering, throttle]
+
+    def waits(self, step):
+        depart = self.script.get("depart_step")
+        return self.script["type"] == "stopped" and (depart is None or step < depart)
 
     def throttle(self, world, me):
         vehicle, script, kind = world.actors[me].vehicle, self.script, self.script["type"]
         if kind in ("sudden_brake", "accel_then_brake"):
             if script["brake_step"] <= world.step < script["brake_step"] + script["brake_steps"]:
-                return -1.0
+                return stand(vehicle.speed)
             if kind == "accel_then_brake" and world.step < script["accel_steps"]:
                 return script["accel_mag"]
             wanted = script["target_speed"] if kind == "sudden_brake" else script["cruise_speed"]
             return script["speed_kp"] * (wanted - vehicle.speed)
         if kind == "stopped":
-            if script.get("depart_step") is None or world.step < script["depart_step"]:
-                return -1.0
             return script["speed_kp"] * (script["target_speed_mps"] - vehicle.speed)
         if kind == "yielding":
             return self.give_way(world, me)
@@ -251,34 +298,40 @@ class PartnerPolicy(IDMPolicy):
         wanted, vehicle = self.script["target_speed_mps"], world.actors[me].vehicle
         self.standing_steps = self.standing_steps + 1 if vehicle.speed < STANDING_MPS else 0
         s = world.actors[me].place.path_s
-        lines = [
-            crossing["mine"][0] - s
-            for crossing in self.spec["crossings"]
-            if crossing["mine"][0] >= s and self.must_wait(world, me, crossing, s, wanted)
-        ]
+        lines = []
+        for crossing in self.spec["crossings"]:
+            ahead = crossing["mine"][0] - s
+            # A little past the line it goes on, whatever comes.
+            if ahead >= -COMMITTED_M and self.must_wait(world, me, crossing, ahead, s, wanted):
+                lines.append(max(ahead, 0.0))
         if lines:
-            wanted = min(wanted, math.sqrt(2.0 * 3.0 * max(min(lines) - 0.5, 0.0)))
-        return -1.0 if wanted < 0.3 else self.script["speed_kp"] * (wanted - vehicle.speed)
+            wanted = min(wanted, math.sqrt(2.0 * GIVE_WAY_MPS2 * max(min(lines) - 0.5, 0.0)))
+        return stand(vehicle.speed) if wanted < 0.3 else self.script["speed_kp"] * (wanted - vehicle.speed)
 
-    def must_wait(self, world, me, crossing, s, wanted):
+    def must_wait(self, world, me, crossing, ahead, s, wanted):
         number, merges = crossing["other"], crossing["merges"]
-        own_from, own_to = crossing["mine"]
+        own_to = crossing["mine"][1]
         their_from, their_to = crossing["theirs"]
         other = world.actors[number]
+        if other.gone:
+            return False
         other_s, other_speed = other.place.path_s, other.vehicle.speed
-        if other_s > (their_from + 12.0 if merges else their_to):
+        if other_s > (their_from + MERGED_M if merges else their_to):
             return False
         if other_s > their_from:
             return True
         own_speed = world.actors[me].vehicle.speed
         if other_speed < STANDING_MPS:
-            return number < me and own_speed < STANDING_MPS and self.standing_steps < 30
+            return number < me and own_speed < STANDING_MPS and self.standing_steps < PATIENCE_STEPS
         speed = max(own_speed, 0.5 * wanted, STANDING_MPS)
-        own_entry = (own_from - s) / speed
+        own_entry = max(ahead, 0.0) / speed
         own_exit = own_entry + 1.0 if merges else (own_to - s) / speed
-        their_entry = (their_from - other_s) / other_speed
-        their_exit = their_entry + 1.0 if merges else (their_to - other_s) / other_speed
-        if their_entry > 12.0 or own_entry > 12.0:
+        way = their_from - other_s
+        # The earliest they can be there.
+        a = THEIR_ACCELERATION_MPS2
+        their_entry = (math.sqrt(other_speed * other_speed + 2.0 * a * way) - other_speed) / a
+        their_exit = way / other_speed + 1.0 if merges else (their_to - other_s) / other_speed
+        if their_entry > HORIZON_S or own_entry > HORIZON_S:
             return False
         gap = self.script["gap_s"]
         return own_exit + gap > their_entry and their_exit + 0.5 * gap > own_entry
@@ -305,21 +358,29 @@ class OpenLoopPolicy:
         return self.controls[world.step] if world.step < len(self.controls) else [0.0, 0.0]
 
 
-class Ego:
-    """The ego's own policy, which MetaDrive made."""
-
-    def __init__(self, policy):
-        self.policy = policy
-
-    def decide(self, world, me):
-        return self.policy.act()
-
-
 class Actor:
-    def __init__(self, vehicle, policy, place, length, width):
+    def __init__(self, vehicle, policy, place, spec):
         self.vehicle, self.policy, self.place = vehicle, policy, place
-        self.radius = 0.5 * math.hypot(length, width)
+        self.radius = 0.5 * math.hypot(spec["body"]["length_m"], spec["body"]["width_m"])
         self.halted = False
+        # Background traffic that has driven off the map: its last state, going straight on.
+        self.gone = None
+
+    def state(self):
+        """Position, heading and speed."""
+        if self.gone is not None:
+            return self.gone
+        x, y = self.vehicle.position
+        heading = math.atan2(math.sin(self.vehicle.heading_theta), math.cos(self.vehicle.heading_theta))
+        return [float(x), float(y), float(heading), float(self.vehicle.speed)]
+
+    def leave(self):
+        self.gone = self.state()
+
+    def go_on(self):
+        x, y, heading, speed = self.gone
+        way = speed * STEP_S
+        self.gone = [x + way * math.cos(heading), y + way * math.sin(heading), heading, speed]
 
 
 CLASSES = {}
@@ -357,8 +418,6 @@ def adjust_inertia(vehicle, body):
         return
     length, width, height = body["chassis_length_m"], body["chassis_width_m"], vehicle.HEIGHT
     share = vehicle.MASS / 12.0
-    from panda3d.core import Vec3
-
     # Panda's vehicles face along y.
     vehicle.body.setInertia(
         Vec3(
@@ -369,8 +428,13 @@ def adjust_inertia(vehicle, body):
     )
 
 
+def nodes_of(spec):
+    return [spec["way"][0][0]] + [end for _, end, _ in spec["way"]]
+
+
 def spawn_config(spec):
     start, end, number = spec["way"][0]
+    Route.nodes = nodes_of(spec)
     return {
         "spawn_lane_index": (start, end, number),
         "spawn_longitude": spec["s_m"],
@@ -391,7 +455,7 @@ def make_env():
             "start_seed": 0,
             "traffic_density": 0.0,
             "agent_observation": DummyObservation,
-            "agent_policy": EgoPolicy,
+            "agent_policy": FreePolicy,
             "vehicle_config": {"vehicle_model": "static_default", "show_navi_mark": False},
             "random_spawn_lane_index": False,
             "show_sidewalk": False,
@@ -415,29 +479,29 @@ class World:
         self.engine = env.engine
         self.spawned = []
         self.events = []
+        self.released = False
 
     def set_up(self):
         env, spec = self.env, self.spec
         ScenarioMapManager.spec = spec["map"]
         ego = spec["ego"]
-        EgoPolicy.target_kmh = 3.6 * ego["target_speed_mps"]
+        FreePolicy.target_mps = ego["target_speed_mps"]
         vehicle_type["static_default"] = vehicle_class(ego["body"])
         env.config["agent_configs"]["default_agent"].update(spawn_config(ego))
         env.reset(seed=0)
         self.engine = env.engine
         self.network = self.engine.current_map.road_network
         policy = self.engine.get_policy(env.agent.name)
-        driver = OpenLoopPolicy(ego["controls"]) if ego.get("controls") is not None else Ego(policy)
+        driver = OpenLoopPolicy(ego["controls"]) if ego.get("controls") is not None else policy
         self.actors = [self.introduce(env.agent, driver, ego)]
         for partner in spec["partners"]:
-            vehicle = self.engine.spawn_object(
-                vehicle_class(partner["body"]),
-                vehicle_config=spawn_config(partner),
-                random_seed=0,
-                auto_fill_random_seed=False,
-            )
-            self.spawned.append(vehicle.id)
+            vehicle = self.spawn(partner)
             self.actors.append(self.introduce(vehicle, PartnerPolicy(vehicle, partner), partner))
+        for other in spec["traffic"]:
+            vehicle = self.spawn(other)
+            TrafficPolicy.target_mps = other["target_speed_mps"]
+            self.actors.append(self.introduce(vehicle, TrafficPolicy(vehicle, 0), other))
+        self.first_traffic = 1 + len(spec["partners"])
         self.obstacles = []
         for obstacle in spec["obstacles"]:
             thing = self.engine.spawn_object(
@@ -450,24 +514,30 @@ class World:
             self.spawned.append(thing.id)
             self.obstacles.append((thing, math.hypot(obstacle["length_m"], obstacle["width_m"])))
 
+    def spawn(self, spec):
+        vehicle = self.engine.spawn_object(
+            vehicle_class(spec["body"]),
+            vehicle_config=spawn_config(spec),
+            random_seed=0,
+            auto_fill_random_seed=False,
+        )
+        self.spawned.append(vehicle.id)
+        return vehicle
+
     def introduce(self, vehicle, policy, spec):
         adjust_inertia(vehicle, spec["body"])
         place = Place(self.network, spec["way"])
         if spec["t_m"] != 0.0:
             vehicle.set_position(place.lanes[0].position(spec["s_m"], spec["t_m"]))
         vehicle.after_step()
-        nodes = [spec["way"][0][0]] + [end for _, end, _ in spec["way"]]
-        # A wrong name is no error to MetaDrive: it would end the route early.
-        if list(vehicle.navigation.checkpoints) != nodes:
-            raise RuntimeError("route %s instead of %s" % (vehicle.navigation.checkpoints, nodes))
+        # A start that MetaDrive takes for one on another road is no error to it.
+        if list(vehicle.navigation.checkpoints) != nodes_of(spec):
+            raise RuntimeError("route %s instead of %s" % (vehicle.navigation.checkpoints, nodes_of(spec)))
         place.update(vehicle.position)
-        return Actor(vehicle, policy, place, spec["body"]["length_m"], spec["body"]["width_m"])
+        return Actor(vehicle, policy, place, spec)
 
     def state(self, number, action):
-        vehicle = self.actors[number].vehicle
-        x, y = vehicle.position
-        heading = math.atan2(math.sin(vehicle.heading_theta), math.cos(vehicle.heading_theta))
-        return [float(x), float(y), float(heading), float(vehicle.speed), float(action[0]), float(action[1])]
+        return self.actors[number].state() + [float(action[0]), float(action[1])]
 
     def run(self):
         physics = self.engine.physics_world.dynamic_world
@@ -475,37 +545,59 @@ class World:
         touched = set()
         ego, standing = self.actors[0].vehicle, 0
         while True:
+            self.released = self.released or ego.navigation.current_road.start_node != ENTRANCE
             standing = standing + 1 if ego.speed < STANDING_MPS else 0
             end = self.verdict(touched, standing)
             actions = [[0.0, 0.0]] * len(self.actors)
             if end is None:
                 actions = []
                 for number, actor in enumerate(self.actors):
-                    action = actor.policy.decide(self, number)
+                    action = [0.0, 0.0] if actor.gone else actor.policy.decide(self, number)
                     actions.append([max(-1.0, min(1.0, float(part))) for part in action])
             for number, track in enumerate(tracks):
                 track.append(self.state(number, actions[number]))
             if end is not None:
                 return {"end": end, "time_s": self.step * STEP_S, "tracks": tracks, "events": self.events}
+            present = [actor for actor in self.actors if actor.gone is None]
             for actor, action in zip(self.actors, actions):
-                actor.vehicle.before_step(action)
+                if actor.gone is None:
+                    actor.vehicle.before_step(action)
             near = self.near_pairs()
             for substep in range(1, SUBSTEPS + 1):
                 self.engine.step_physics_world()
                 self.touch(physics, near, touched, actions, self.step * STEP_S + substep * 0.02)
+            for thing, _ in self.obstacles:
+                # One that was hit keeps its place but gets a velocity, which the IDM would believe.
+                thing.body.setLinearVelocity(LVector3(0, 0, 0))
             for actor in self.actors:
+                if actor.gone is not None:
+                    actor.go_on()
+            for actor in present:
                 actor.vehicle.after_step()
                 actor.place.update(actor.vehicle.position)
+            self.remove_who_left()
             self.step += 1
+
+    def remove_who_left(self):
+        """Background traffic that is on no lane any more is unseen and untouchable from then on."""
+        for actor in self.actors[self.first_traffic :]:
+            if actor.gone is None and not actor.vehicle.on_lane:
+                actor.leave()
+                self.spawned.remove(actor.vehicle.id)
+                self.engine.clear_objects([actor.vehicle.id], force_destroy=True)
 
     def near_pairs(self):
         """Who may touch whom within this step: actors by number, obstacles behind them."""
         found, count = [], len(self.actors)
         for a, first in enumerate(self.actors):
+            if first.gone:
+                continue
             x, y = first.vehicle.position
             reach = first.radius + 0.1 * first.vehicle.speed + 1.0
             for b in range(a + 1, count):
                 second = self.actors[b]
+                if second.gone:
+                    continue
                 u, v = second.vehicle.position
                 if math.hypot(u - x, v - y) < reach + second.radius + 0.1 * second.vehicle.speed:
                     found.append((a, b))
@@ -540,12 +632,14 @@ class World:
             raise RuntimeError("a state is no longer finite")
         if any(a == 0 and b < count for a, b in touched):
             return "contact"
-        if self.env._is_arrive_destination(ego):
-            return "arrived"
-        if not ego.on_lane:
-            return "off_road"
-        if standing >= STUCK_STEPS and not self.anybody_moves():
-            return "stuck"
+        # Given controls are played to their end, wherever that is.
+        if not isinstance(self.actors[0].policy, OpenLoopPolicy):
+            if self.env._is_arrive_destination(ego):
+                return "arrived"
+            if not ego.on_lane:
+                return "off_road"
+            if standing >= STUCK_STEPS and not self.anybody_moves():
+                return "stuck"
         if self.step * STEP_S >= self.spec["duration_s"] - 0.5 * STEP_S:
             return "timeout"
         return None
@@ -554,6 +648,7 @@ class World:
         return any(
             actor.vehicle.speed >= STANDING_MPS or (not actor.halted and actor.policy.has_plans(self.step))
             for actor in self.actors[1:]
+            if actor.gone is None
         )
 
     def clear(self):

@@ -7,6 +7,7 @@
 //! What this crate does **not** do: it opens no file, reads no clock, and knows neither roads nor physics. Units are SI
 //! and stand in the field's name or at the end of its documentation.
 
+pub mod account;
 pub mod diagnostic;
 pub mod geometry;
 pub mod math;

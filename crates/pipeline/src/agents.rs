@@ -110,10 +110,7 @@ impl AgentLog {
 /// The run has to stop, or the rules cannot either.
 pub fn paraphrase(models: Option<&Models>, cast: &Cast, brief: &Brief) -> Result<(Narrative, AgentLog), PipelineError> {
     let by_rules = || {
-        Rules
-            .paraphrase(brief)
-            .map(|outcome| outcome.value)
-            .map_err(|e| PipelineError::bad_input(format!("narrative of {}: {e}", brief.scenario_id)))
+        Rules.paraphrase(brief).map(|outcome| outcome.value).map_err(|e| PipelineError::scenario(brief.scenario_id, e))
     };
     let name = &cast.paraphrase;
     let Some(models) = models.filter(|_| name != RULES) else {

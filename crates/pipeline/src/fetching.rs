@@ -1,5 +1,6 @@
 //! Published crash files, downloaded into a cache.
 
+use crate::caches::{cache_folder, no_cache_folder, variable};
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::store::{sha256, write_file_whole};
@@ -13,9 +14,6 @@ use std::path::{Path, PathBuf};
 
 /// Folder of NHTSA's files under Standing General Order 2021-01.
 const BASE_URL: &str = "https://static.nhtsa.gov/odi/ffdd/sgo-2021-01";
-
-/// Environment variable with the folder of downloaded files.
-const CACHE_VARIABLE: &str = "RECRASH_CACHE";
 
 /// Which of the published files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -111,11 +109,7 @@ impl FetchRequest {
 /// # Errors
 /// It cannot be reached or is not what was expected, or cannot be written; what lay there before still does.
 pub fn fetch(request: &FetchRequest, limits: &Limits) -> Result<Fetched, PipelineError> {
-    let folder = request.cache.clone().or_else(cache_folder).ok_or_else(|| {
-        PipelineError::bad_input(format!(
-            "no folder for caches is known here; give one with --cache or {CACHE_VARIABLE}"
-        ))
-    })?;
+    let folder = request.cache.clone().or_else(|| cache_folder(&variable)).ok_or_else(no_cache_folder)?;
     let url = request.url();
     let name = request.file_name();
     let got = download(&url, limits).map_err(PipelineError::Fetch)?;
@@ -157,24 +151,8 @@ pub fn cached(name: &Path) -> Option<PathBuf> {
     if name.components().count() != 1 {
         return None;
     }
-    let folder = cache_folder()?;
+    let folder = cache_folder(&variable)?;
     [folder.join(name), folder.join(name).with_extension("csv")].into_iter().find(|path| path.is_file())
-}
-
-/// Where downloaded files are kept.
-fn cache_folder() -> Option<PathBuf> {
-    let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    if let Some(folder) = variable(CACHE_VARIABLE) {
-        return Some(folder);
-    }
-    let caches = if cfg!(windows) {
-        variable("LOCALAPPDATA")
-    } else if cfg!(target_os = "macos") {
-        variable("HOME").map(|home| home.join("Library/Caches"))
-    } else {
-        variable("XDG_CACHE_HOME").or_else(|| variable("HOME").map(|home| home.join(".cache")))
-    };
-    caches.map(|folder| folder.join("recrash"))
 }
 
 #[cfg(test)]

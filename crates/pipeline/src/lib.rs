@@ -7,41 +7,64 @@
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
 mod agents;
+mod bench_sim;
+mod caches;
 mod casework;
+mod doctor;
+mod embed_bench;
 mod embedding;
 mod error;
+mod evaluation;
 mod exporting;
+mod failures;
 mod fetching;
+mod importing;
 mod models;
+mod parity;
 mod profiles;
 mod progress;
 mod recording;
 mod scoring;
+mod selecting;
 mod simulator;
 mod stages;
 mod store;
 mod suite;
 mod summary;
 mod view;
+mod weights;
 
 pub use agents::{AgentLog, Cast};
+pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
 };
+pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
+pub use embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
+pub use embedding::EmbeddingKind;
 pub use error::PipelineError;
+pub use evaluation::{Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate};
 pub use exporting::{ExportReport, ExportRequest, export};
+pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
+pub use importing::{ImportRequest, Imported, SourceFormat, import};
 pub use models::{AnswerMode, ModelAccess};
+pub use parity::{
+    Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
+    ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
+};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
-pub use recording::{TableFormat, write_records};
+pub use recording::{TableFormat, read_records, write_records};
 pub use recrash_agents::llm::{Caps, Spent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
+pub use selecting::{SelectionStudy, StrategyStudy};
 pub use simulator::{Simulator, SimulatorKind};
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
 pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

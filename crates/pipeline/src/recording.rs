@@ -2,9 +2,8 @@
 
 use crate::error::PipelineError;
 use crate::fetching::cached;
-use crate::stages::names;
 use crate::store::{read_bytes, read_text, write_file_whole};
-use crate::suite::{Options, RecordSource, Suite};
+use crate::suite::{Options, RecordSource};
 use recrash_model::Outcome;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;
@@ -99,13 +98,26 @@ pub enum TableFormat {
     Parquet,
 }
 
-/// Writes the records of a suite as a table, whole or not at all. Gives the number of rows.
+/// Reads crash files without making a suite: the first stage's result, and nothing written.
 ///
 /// # Errors
-/// The first stage is not done, or the file cannot be written.
-pub fn write_records(suite: &Suite, rows: TableRows, format: TableFormat, path: &Path) -> Result<usize, PipelineError> {
-    let records: RecordSet = suite.store().read_json(names::RECORDS)?;
-    let table = record_table(&records, rows);
+/// A file cannot be read or is no crash file, or the filter, the mapping or the profile cannot be used.
+pub fn read_records(options: &Options) -> Result<Outcome<RecordSet>, PipelineError> {
+    let profile = options.system_profile()?;
+    RecordInput::read(options)?.ingest(&profile)
+}
+
+/// Writes records as a table, whole or not at all. Gives the number of rows.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_records(
+    records: &RecordSet,
+    rows: TableRows,
+    format: TableFormat,
+    path: &Path,
+) -> Result<usize, PipelineError> {
+    let table = record_table(records, rows);
     let bytes = match format {
         TableFormat::Csv => table.to_csv(),
         #[cfg(feature = "parquet")]

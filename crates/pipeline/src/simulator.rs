@@ -75,13 +75,13 @@ impl Simulator {
     /// Runs a scenario.
     ///
     /// # Errors
-    /// MetaDrive failed on it twice. The native simulator cannot fail.
+    /// [`PipelineError::Scenario`] where MetaDrive failed on it twice. The native simulator cannot fail.
     pub fn run(&self, scenario: &Scenario) -> Result<Rollout, PipelineError> {
         match self {
             Self::Native(ego) => Ok(recrash_sim::simulate(scenario, *ego)),
-            Self::Metadrive(pool) => {
-                pool.simulate(scenario, &Drive::MetadriveIdm).map_err(|e| PipelineError::bad_input(e.to_string()))
-            }
+            Self::Metadrive(pool) => pool
+                .simulate(scenario, &Drive::MetadriveIdm)
+                .map_err(|e| PipelineError::scenario(&scenario.draft().id, e)),
         }
     }
 }

@@ -3,12 +3,13 @@
 use crate::agents::{self, AgentLog, RULES};
 use crate::casework::{CaseRun, DesignLog, Designer, MAX_DESIGNS, design_case, read_scenario, run_scenario};
 use crate::error::PipelineError;
+use crate::failures::Failure;
 use crate::progress::{Progress, ProgressEvent};
 use crate::recording::RecordInput;
 use crate::scoring::Scoring;
 use crate::store::{to_compact_json, to_json};
 use crate::suite::{Files, Stage, Suite};
-use crate::{embedding, summary, view};
+use crate::{failures, selecting, summary, view};
 use rayon::prelude::*;
 use recrash_agents::llm::{TuneBrief, prompts_version};
 use recrash_agents::{Brief, Rules, expectation, parameters};
@@ -20,17 +21,24 @@ use recrash_model::selection::{Cluster, Selection};
 use recrash_model::tuning::{TuneLog, TunePoint};
 use recrash_model::{Diagnostic, Outcome, Seed};
 use recrash_search::{Task, TuneOptions};
-use recrash_select::SelectOptions;
 use std::cell::Cell;
 
 /// Files and folders of a suite.
 pub mod names {
+    use crate::suite::Stage;
+
     /// Records.
     pub const RECORDS: &str = "1-records.json";
     /// Remarks on the records.
     pub const RECORD_REMARKS: &str = "1-records.diagnostics.json";
     /// Selection.
     pub const SELECTION: &str = "2-selection.json";
+    /// Remarks on the selection.
+    pub const SELECTION_REMARKS: &str = "2-selection.diagnostics.json";
+    /// How the selection depends on seed, strategy and budget.
+    pub const SELECTION_STUDY: &str = "2-selection.study.json";
+    /// Rows of the embedding model, by content.
+    pub const EMBEDDING: &str = "2-embedding.json";
     /// The page.
     pub const REPORT: &str = "report.html";
     /// For continuous integration.
@@ -40,6 +48,19 @@ pub mod names {
     /// Everything a person is told at the end.
     pub const SUMMARY: &str = "summary.json";
 
+    /// Ending of files that say why a scenario went no further.
+    pub const FAILURE: &str = ".failed.json";
+
+    /// Why a scenario went no further than this stage.
+    pub fn failure(stage: Stage, id: &str) -> String {
+        let folder = match stage {
+            Stage::Design => "4-scenarios",
+            Stage::Simulate => "5-rollouts",
+            Stage::Tune => "6-tuned",
+            _ => "3-narratives",
+        };
+        format!("{folder}/{id}{FAILURE}")
+    }
     /// Narrative of a scenario.
     pub fn narrative(id: &str) -> String {
         format!("3-narratives/{id}.json")
@@ -97,7 +118,7 @@ pub fn run(suite: &Suite, stage: Stage, progress: &dyn Progress) -> Result<Stage
     let work = StageWork { suite, stage, progress };
     match stage {
         Stage::Records => records(&work),
-        Stage::Select => select(&work),
+        Stage::Select => selecting::run(&work),
         Stage::Narrate => narrate(&work),
         Stage::Design => design(&work),
         Stage::Simulate => simulate(&work),
@@ -106,15 +127,17 @@ pub fn run(suite: &Suite, stage: Stage, progress: &dyn Progress) -> Result<Stage
     }
 }
 
-struct StageWork<'a> {
-    suite: &'a Suite,
+/// A stage at work.
+pub struct StageWork<'a> {
+    /// Where.
+    pub suite: &'a Suite,
     stage: Stage,
     progress: &'a dyn Progress,
 }
 
 impl StageWork<'_> {
     /// A stage of one unit.
-    fn whole(
+    pub(crate) fn whole(
         &self,
         inputs: &[&[u8]],
         work: impl FnOnce() -> Result<Files, PipelineError>,
@@ -127,7 +150,8 @@ impl StageWork<'_> {
         Ok(StageReport { done: usize::from(!skipped), skipped: usize::from(skipped), diagnostics: Vec::new() })
     }
 
-    /// A stage of one unit per cluster, in parallel. `inputs` gives the hashes of what goes into a unit.
+    /// A stage of one unit per cluster, in parallel, without those that failed before. `inputs` gives the hashes of what
+    /// goes into a unit.
     fn per_case(
         &self,
         selection: &Selection,
@@ -136,17 +160,20 @@ impl StageWork<'_> {
     ) -> Result<StageReport, PipelineError> {
         let stage = self.stage.name();
         let unit_name = |cluster: &Cluster| format!("{stage}/{}", cluster.scenario_id);
-        let names: Vec<String> = selection.clusters.iter().map(unit_name).collect();
+        let whole = |cluster: &&Cluster| failures::before(self.suite, &cluster.scenario_id, self.stage).is_none();
+        let clusters: Vec<&Cluster> = selection.clusters.iter().filter(whole).collect();
+        let names: Vec<String> = clusters.iter().map(|cluster| unit_name(cluster)).collect();
         self.suite.keep_only(self.stage, &names)?;
         self.progress.event(ProgressEvent::Started { stage, units: names.len() });
-        let results: Vec<Result<bool, PipelineError>> = selection
-            .clusters
+        let results: Vec<Result<bool, PipelineError>> = clusters
             .par_iter()
-            .map(|cluster| {
+            .map(|&cluster| {
                 let inputs = inputs(cluster)?;
                 let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
-                let skipped = self.suite.unit(&unit_name(cluster), &inputs, || work(cluster))?;
-                self.progress.event(ProgressEvent::Advanced { stage, unit: &cluster.scenario_id, skipped });
+                let id = &cluster.scenario_id;
+                let work = || failures::keep(self.stage, id, work(cluster));
+                let skipped = self.suite.unit(&unit_name(cluster), &inputs, work)?;
+                self.progress.event(ProgressEvent::Advanced { stage, unit: id, skipped });
                 Ok(skipped)
             })
             .collect();
@@ -159,7 +186,12 @@ impl StageWork<'_> {
         }
         self.progress.event(ProgressEvent::Finished { stage });
         let there = skipped.iter().filter(|&&s| s).count();
-        Ok(StageReport { done: skipped.len() - there, skipped: there, diagnostics: Vec::new() })
+        let failed = |cluster: &&Cluster| {
+            let id = &cluster.scenario_id;
+            failures::at(self.suite, id, self.stage).map(|failure| failures::remark(id, &failure))
+        };
+        let diagnostics = clusters.iter().filter_map(failed).collect();
+        Ok(StageReport { done: skipped.len() - there, skipped: there, diagnostics })
     }
 
     /// Names of the simulator and the ego: what goes into the hash of everything that is run.
@@ -195,34 +227,6 @@ fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     })?;
     report.diagnostics = suite.store().read_json(names::RECORD_REMARKS)?;
     Ok(report)
-}
-
-fn select(work: &StageWork) -> Result<StageReport, PipelineError> {
-    let suite = work.suite;
-    let options = suite.options();
-    let records_hash = suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS)?;
-    let profile = work.profile_json();
-    let choice = format!("{:?} {} {}", options.strategy, options.budget, options.seed);
-    let model = options.model_dir.as_deref().map(embedding::load).transpose()?;
-    let fingerprint = model.as_ref().map_or("lexical", |model| model.fingerprint());
-    let inputs = [records_hash.as_bytes(), profile.as_bytes(), choice.as_bytes(), fingerprint.as_bytes()];
-    work.whole(&inputs, || {
-        let records: RecordSet = suite.store().read_json(names::RECORDS)?;
-        let select_options = SelectOptions {
-            strategy: options.strategy,
-            budget: options.budget,
-            seed: suite.seed().child("select"),
-            ..SelectOptions::default()
-        };
-        let outcome = match &model {
-            None => recrash_select::select(&records, suite.profile(), &select_options),
-            Some(model) => embedding::embed(model, &records).and_then(|embedding| {
-                recrash_select::select_with(&records, suite.profile(), &select_options, &embedding)
-            }),
-        }
-        .map_err(|e| PipelineError::bad_input(e.to_string()))?;
-        Ok(vec![(names::SELECTION.into(), to_json(&outcome.value))])
-    })
 }
 
 /// What the stages after selection share.
@@ -437,30 +441,32 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
     })
 }
 
-/// One case with everything that was made of it.
+/// One case with everything that was made of it, as far as it went.
 pub struct Case<'a> {
     /// Cluster and pick.
     pub cluster: &'a Cluster,
     /// The pick first, then a few members of its cluster.
     pub records: Vec<&'a CrashRecord>,
-    /// Narrative.
-    pub narrative: Narrative,
-    /// Who wrote it.
-    pub narrative_log: AgentLog,
+    /// Narrative, and who wrote it.
+    pub narrative: Option<(Narrative, AgentLog)>,
     /// How the scenario was designed.
-    pub design_log: DesignLog,
-    /// Scenario as designed.
-    pub scenario: recrash_roads::Scenario,
-    /// First run.
-    pub first: CaseRun,
-    /// Tuned scenario.
-    pub tuned: recrash_roads::Scenario,
-    /// Run of the tuned scenario.
-    pub tuned_run: CaseRun,
-    /// Log of the search.
-    pub tune_log: TuneLog,
+    pub design: Option<DesignLog>,
+    /// As designed.
+    pub first: Option<Ran>,
+    /// As tuned, with the log of the search.
+    pub tuned: Option<(Ran, TuneLog)>,
     /// Who tuned it.
-    pub tune_agent: AgentLog,
+    pub tune_agent: Option<AgentLog>,
+    /// Why it went no further, where it did not.
+    pub failure: Option<Failure>,
+}
+
+/// A scenario and its run.
+pub struct Ran {
+    /// What was run.
+    pub scenario: recrash_roads::Scenario,
+    /// What came of it.
+    pub run: CaseRun,
 }
 
 fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
@@ -470,15 +476,20 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
     inputs.push(suite.output_hash(Stage::Select, Stage::Select.name(), names::SELECTION)?);
     for cluster in &cases.selection.clusters {
         let id = &cluster.scenario_id;
-        for file in [names::narrative(id), names::narrative_log(id)] {
-            inputs.push(case_hash(suite, Stage::Narrate, cluster, &file)?);
-        }
-        for file in [names::scenario(id), names::design_log(id)] {
-            inputs.push(case_hash(suite, Stage::Design, cluster, &file)?);
-        }
-        inputs.push(case_hash(suite, Stage::Simulate, cluster, &names::first_run(id))?);
-        for file in [names::tuned(id), names::tune_log(id), names::tune_agent(id), names::tuned_run(id)] {
-            inputs.push(case_hash(suite, Stage::Tune, cluster, &file)?);
+        let made = [
+            (Stage::Narrate, vec![names::narrative(id), names::narrative_log(id)]),
+            (Stage::Design, vec![names::scenario(id), names::design_log(id)]),
+            (Stage::Simulate, vec![names::first_run(id)]),
+            (Stage::Tune, vec![names::tuned(id), names::tune_log(id), names::tune_agent(id), names::tuned_run(id)]),
+        ];
+        for (stage, files) in made {
+            if let Some(failure) = failures::at(suite, id, stage) {
+                inputs.push(failure.to_string());
+                break;
+            }
+            for file in files {
+                inputs.push(case_hash(suite, stage, cluster, &file)?);
+            }
         }
     }
     let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
@@ -486,7 +497,8 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
         let read = |cluster| -> Result<Case, PipelineError> { read_case(suite, &cases, cluster) };
         let all: Vec<Case> = cases.selection.clusters.iter().map(read).collect::<Result<_, _>>()?;
         let summary = summary::summarise(suite, &cases.records, &cases.selection, &all);
-        let view = view::view(suite, &cases.records, &cases.selection, &all);
+        let remarks = suite.store().read_json(names::RECORD_REMARKS)?;
+        let view = view::view(suite, &cases.records, &cases.selection, &all, remarks);
         Ok(vec![
             (names::SUMMARY.into(), to_json(&summary)),
             (names::REPORT.into(), recrash_report::html(&view).into_bytes()),
@@ -499,17 +511,21 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
 fn read_case<'a>(suite: &Suite, cases: &'a Cases, cluster: &'a Cluster) -> Result<Case<'a>, PipelineError> {
     let id = &cluster.scenario_id;
     let store = suite.store();
-    Ok(Case {
-        cluster,
-        records: cases.records_of(cluster),
-        narrative: store.read_json(&names::narrative(id))?,
-        narrative_log: store.read_json(&names::narrative_log(id))?,
-        design_log: store.read_json(&names::design_log(id))?,
-        scenario: scenario(suite, &names::scenario(id))?,
-        first: store.read_json(&names::first_run(id))?,
-        tuned: scenario(suite, &names::tuned(id))?,
-        tuned_run: store.read_json(&names::tuned_run(id))?,
-        tune_log: store.read_json(&names::tune_log(id))?,
-        tune_agent: store.read_json(&names::tune_agent(id))?,
-    })
+    let failure = failures::before(suite, id, Stage::Report);
+    let made = |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
+    let narrative = made(Stage::Narrate)
+        .then(|| Ok((store.read_json(&names::narrative(id))?, store.read_json(&names::narrative_log(id))?)))
+        .transpose()?;
+    let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
+    let first = made(Stage::Simulate).then(|| ran(suite, &names::scenario(id), &names::first_run(id))).transpose()?;
+    let tuned = made(Stage::Tune)
+        .then(|| Ok((ran(suite, &names::tuned(id), &names::tuned_run(id))?, store.read_json(&names::tune_log(id))?)))
+        .transpose()?;
+    let tune_agent = made(Stage::Tune).then(|| store.read_json(&names::tune_agent(id))).transpose()?;
+    let records = cases.records_of(cluster);
+    Ok(Case { cluster, records, narrative, design, first, tuned, tune_agent, failure })
+}
+
+fn ran(suite: &Suite, file: &str, run: &str) -> Result<Ran, PipelineError> {
+    Ok(Ran { scenario: scenario(suite, file)?, run: suite.store().read_json(run)? })
 }

@@ -99,6 +99,11 @@ impl Store {
             .map_err(|e| PipelineError::Damaged { problem: format!("{}: {}", e.path(), e.inner()), path })
     }
 
+    /// A file's bytes; none where it cannot be read.
+    pub fn read_or_empty(&self, name: &str) -> Vec<u8> {
+        read_bytes(&self.path(name), MAX_SUITE_FILE).unwrap_or_default()
+    }
+
     /// Hash of a file's content; `None` where it is not there.
     pub fn hash(&self, name: &str) -> Option<String> {
         let mut file = fs::File::open(self.path(name)).ok()?;
@@ -196,6 +201,6 @@ fn hex(bytes: &[u8]) -> String {
     })
 }
 
-fn io(action: &'static str, path: &Path, source: std::io::Error) -> PipelineError {
+pub(crate) fn io(action: &'static str, path: &Path, source: std::io::Error) -> PipelineError {
     PipelineError::Io { action, path: path.to_owned(), source }
 }

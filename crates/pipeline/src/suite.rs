@@ -1,18 +1,21 @@
 //! The suite on disk: options, stages, and which units of work are done.
 
 use crate::agents::{Cast, RULES};
+use crate::embedding::EmbeddingKind;
 use crate::error::PipelineError;
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::progress::Progress;
 use crate::recording;
 use crate::simulator::{Simulator, SimulatorKind};
+use crate::stages::names::FAILURE;
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
 use recrash_agents::llm::Spent;
 use recrash_model::profile::{Dedupe, SystemProfile};
-use recrash_model::selection::Strategy;
+use recrash_model::selection::{Strategy, Weighting};
 use recrash_model::{Diagnostic, Seed};
+use recrash_select::SelectOptions;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -35,7 +38,7 @@ pub enum RecordSource {
 }
 
 /// What the user chose. Everything that can change a byte of the results, and nothing else.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Options {
     /// Crash records.
@@ -55,7 +58,22 @@ pub struct Options {
     pub budget: usize,
     /// How the picks are chosen.
     pub strategy: Strategy,
-    /// Folder with the files of the embedding model; the lexical embedding where not given.
+    /// How much one record counts in sharing out the picks.
+    #[serde(default)]
+    pub weighting: Weighting,
+    /// Weight of a template against a narrative: the length of its one-hot vector in the clustering space.
+    #[serde(default = "default_template_weight")]
+    pub template_weight: f64,
+    /// Principal components of the embedding that enter the clustering space.
+    #[serde(default = "default_dimensions")]
+    pub dimensions: usize,
+    /// Runs of k-means, of which the best is kept.
+    #[serde(default = "default_restarts")]
+    pub restarts: usize,
+    /// Which embedding of the narratives.
+    #[serde(default)]
+    pub embedding: EmbeddingKind,
+    /// Folder with the files of the embedding model; looked for where not given.
     #[serde(default)]
     pub model_dir: Option<PathBuf>,
     /// Who plays which role.
@@ -74,6 +92,18 @@ pub struct Options {
     pub seed: u64,
 }
 
+fn default_template_weight() -> f64 {
+    SelectOptions::default().template_weight
+}
+
+fn default_dimensions() -> usize {
+    SelectOptions::default().dimensions
+}
+
+fn default_restarts() -> usize {
+    SelectOptions::default().restarts
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {
@@ -84,6 +114,11 @@ impl Default for Options {
             profile: "paper".into(),
             budget: 20,
             strategy: Strategy::Stratified,
+            weighting: Weighting::default(),
+            template_weight: default_template_weight(),
+            dimensions: default_dimensions(),
+            restarts: default_restarts(),
+            embedding: EmbeddingKind::default(),
             model_dir: None,
             cast: Cast::default(),
             simulator: SimulatorKind::Native,
@@ -114,7 +149,12 @@ impl Options {
         option("where", self.filter.clone().unwrap_or_default(), String::new());
         option("profile", self.profile.clone(), default.profile);
         option("budget", self.budget.to_string(), default.budget.to_string());
-        option("strategy", strategy_name(self.strategy), strategy_name(default.strategy));
+        option("strategy", self.strategy.name().into(), default.strategy.name().into());
+        option("weighting", self.weighting.name().into(), default.weighting.name().into());
+        option("template-weight", self.template_weight.to_string(), default.template_weight.to_string());
+        option("dimensions", self.dimensions.to_string(), default.dimensions.to_string());
+        option("restarts", self.restarts.to_string(), default.restarts.to_string());
+        option("embedding", self.embedding.name().into(), default.embedding.name().into());
         let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
         option("model-dir", model_dir.unwrap_or_default(), String::new());
         option("paraphrase", self.cast.paraphrase.clone(), default.cast.paraphrase);
@@ -129,14 +169,20 @@ impl Options {
         option("seed", self.seed.to_string(), default.seed.to_string());
         words.join(" ")
     }
+
+    /// The profile, with what the options change in it.
+    ///
+    /// # Errors
+    /// There is no such profile, or the file is none.
+    pub(crate) fn system_profile(&self) -> Result<SystemProfile, PipelineError> {
+        let mut profile = load_profile(&self.profile)?;
+        profile.records.dedupe = self.dedupe.unwrap_or(profile.records.dedupe);
+        Ok(profile)
+    }
 }
 
 fn dedupe_name(dedupe: Dedupe) -> String {
     serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
-fn strategy_name(strategy: Strategy) -> String {
-    serde_json::to_value(strategy).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 fn quoted(word: &str) -> String {
@@ -265,8 +311,7 @@ impl Suite {
         resources: Resources,
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
-        let mut profile = load_profile(&options.profile)?;
-        profile.records.dedupe = options.dedupe.unwrap_or(profile.records.dedupe);
+        let profile = options.system_profile()?;
         recording::read_filter(&options)?;
         let store = Store::create(dir, write_file)?;
         let units = if dir.join(SUITE_FILE).exists() {
@@ -307,13 +352,25 @@ impl Suite {
             Stage::Tune => cast.tune != RULES,
             Stage::Records | Stage::Select | Stage::Simulate | Stage::Report => false,
         };
-        let askers = self.askers.as_ref().filter(|_| by_model);
-        askers.unwrap_or(&self.threads).install(|| stages::run(self, stage, progress))
+        match self.askers.as_ref().filter(|_| by_model) {
+            Some(askers) => askers.install(|| stages::run(self, stage, progress)),
+            None => self.in_pool(|| stages::run(self, stage, progress)),
+        }
     }
 
     /// What this run has spent on models.
     pub fn spent(&self) -> Option<Spent> {
         self.models.as_ref().map(Models::spent)
+    }
+
+    /// Does something on the suite's threads.
+    pub(crate) fn in_pool<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.threads.install(work)
+    }
+
+    /// Python interpreter for what needs one.
+    pub(crate) fn python(&self) -> &Path {
+        &self.python
     }
 
     /// The profile.
@@ -357,7 +414,7 @@ impl Suite {
     }
 
     /// Does a unit of work, unless it is done: the same inputs gave files that are still there. Gives whether it was
-    /// skipped.
+    /// skipped. A failure is tried again.
     pub(crate) fn unit(
         &self,
         name: &str,
@@ -368,6 +425,7 @@ impl Suite {
         let before = self.lock().units.get(name).cloned();
         if let Some(unit) = &before
             && unit.inputs == inputs
+            && !unit.outputs.keys().any(|file| file.ends_with(FAILURE))
             && unit.outputs.iter().all(|(file, hash)| self.store.hash(file).as_ref() == Some(hash))
         {
             return Ok(true);

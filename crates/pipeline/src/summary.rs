@@ -1,7 +1,8 @@
 //! What a person is told at the end of a run.
 
-use crate::agents::{Cast, RULES};
+use crate::agents::{AgentLog, Cast, RULES};
 use crate::casework::CaseRun;
+use crate::failures::Failure;
 use crate::stages::Case;
 use crate::suite::{RecordSource, Suite};
 use recrash_model::metrics::CheckResult;
@@ -103,18 +104,20 @@ pub struct CaseSummary {
     /// Template.
     pub template: Template,
     /// How the narrative came about: `rules`, `first answer`, `after repair` or `fallback`.
-    pub narrated: String,
+    pub narrated: Option<String>,
     /// How the design came about, in the same words.
-    pub designed: String,
+    pub designed: Option<String>,
     /// How the tuned one came about, in the same words, or `not asked` where a contact as designed needs no tuning.
     #[serde(default)]
-    pub tuned_by: String,
+    pub tuned_by: Option<String>,
     /// Why the record itself was not used, where it was not.
     pub alternative: Option<String>,
     /// As designed.
-    pub first: RunSummary,
+    pub first: Option<RunSummary>,
     /// As tuned.
-    pub tuned: RunSummary,
+    pub tuned: Option<RunSummary>,
+    /// Why it went no further, where it did not.
+    pub failure: Option<Failure>,
     /// Points the search scored.
     pub points: usize,
 }
@@ -166,13 +169,20 @@ impl RunSummary {
 impl Summary {
     /// Scenarios whose tuned run is faithful.
     pub fn faithful(&self) -> usize {
-        self.cases.iter().filter(|case| case.tuned.faithful).count()
+        self.cases.iter().filter(|case| case.tuned.as_ref().is_some_and(|run| run.faithful)).count()
+    }
+
+    /// Scenarios that went all the way.
+    pub fn run(&self) -> usize {
+        self.cases.iter().filter(|case| case.tuned.is_some()).count()
     }
 
     /// Scenarios the ego fails, as designed and as tuned.
     pub fn failed(&self) -> (usize, usize) {
-        let count = |failed: fn(&CaseSummary) -> bool| self.cases.iter().filter(|case| failed(case)).count();
-        (count(|case| case.first.failed), count(|case| case.tuned.failed))
+        let count = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
+            self.cases.iter().filter(|case| run(case).as_ref().is_some_and(|run| run.failed)).count()
+        };
+        (count(|case| &case.first), count(|case| &case.tuned))
     }
 }
 
@@ -184,7 +194,7 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
         sample: suite.options().records == RecordSource::Sample,
         profile: suite.profile().name.clone(),
         ego: suite.ego().to_owned(),
-        simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
+        simulator: simulator_name(cases),
         rows: records.files.iter().map(|file| file.rows).sum(),
         funnel: records.funnel.clone(),
         usable: records.usable.len(),
@@ -199,16 +209,17 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
             .map(|case| CaseSummary {
                 id: case.cluster.scenario_id.clone(),
                 template: case.cluster.template,
-                narrated: case.narrative_log.outcome().to_owned(),
-                designed: case.design_log.outcome().to_owned(),
-                tuned_by: case.tune_agent.outcome().to_owned(),
-                alternative: match &case.narrative.origin {
+                narrated: case.narrative.as_ref().map(|(_, log)| log.outcome().to_owned()),
+                designed: case.design.as_ref().map(|log| log.outcome().to_owned()),
+                tuned_by: case.tune_agent.as_ref().map(|log| log.outcome().to_owned()),
+                alternative: case.narrative.as_ref().and_then(|(narrative, _)| match &narrative.origin {
                     Origin::Record => None,
                     Origin::Alternative { reason } => Some(reason.clone()),
-                },
-                first: RunSummary::new(&case.first),
-                tuned: RunSummary::new(&case.tuned_run),
-                points: case.tune_log.points.len(),
+                }),
+                first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
+                tuned: case.tuned.as_ref().map(|(ran, _)| RunSummary::new(&ran.run)),
+                failure: case.failure.clone(),
+                points: case.tuned.as_ref().map_or(0, |(_, log)| log.points.len()),
             })
             .collect(),
     }
@@ -216,33 +227,38 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
 
 /// How the models of a cast did.
 pub fn models(cast: &Cast, cases: &[Case]) -> Vec<ModelSummary> {
-    let narrated = |case: &Case| (case.narrative_log.outcome(), case.narrative_log.fallback.clone());
-    let designed = |case: &Case| (case.design_log.outcome(), Some(case.design_log.gave_up.join("; ")));
-    let tuned = |case: &Case| (case.tune_agent.outcome(), case.tune_agent.fallback.clone());
-    [
-        ("paraphrase", &cast.paraphrase, &narrated as &dyn Fn(&Case) -> (&'static str, Option<String>)),
+    type Told = Option<(&'static str, String)>;
+    let of_agent = |log: &AgentLog| (log.outcome(), log.fallback.clone().unwrap_or_default());
+    let narrated = |case: &Case| -> Told { case.narrative.as_ref().map(|(_, log)| of_agent(log)) };
+    let designed = |case: &Case| -> Told { case.design.as_ref().map(|log| (log.outcome(), log.gave_up.join("; "))) };
+    let tuned = |case: &Case| -> Told { case.tune_agent.as_ref().map(of_agent) };
+    let roles: [(&str, &String, &dyn Fn(&Case) -> Told); 3] = [
+        ("paraphrase", &cast.paraphrase, &narrated),
         ("design", &cast.design, &designed),
         ("tune", &cast.tune, &tuned),
-    ]
-    .into_iter()
-    .filter(|(_, model, _)| *model != RULES)
-    .map(|(role, model, outcome)| {
-        let count = |word: &str| cases.iter().filter(|case| outcome(case).0 == word).count();
-        let reason = |case: &Case| match outcome(case) {
-            ("fallback", why) => {
-                Some(FallbackReason { id: case.cluster.scenario_id.clone(), why: why.unwrap_or_default() })
+    ];
+    let by_model = roles.into_iter().filter(|(_, model, _)| *model != RULES);
+    by_model
+        .map(|(role, model, told)| {
+            let count = |word: &str| cases.iter().filter(|case| told(case).is_some_and(|(is, _)| is == word)).count();
+            let reason = |case: &Case| {
+                let why = told(case).filter(|(is, _)| *is == "fallback")?.1;
+                Some(FallbackReason { id: case.cluster.scenario_id.clone(), why })
+            };
+            ModelSummary {
+                role: role.to_owned(),
+                model: model.clone(),
+                first_answer: count("first answer"),
+                after_repair: count("after repair"),
+                fallback: count("fallback"),
+                not_asked: count("not asked"),
+                reasons: cases.iter().filter_map(reason).collect(),
             }
-            _ => None,
-        };
-        ModelSummary {
-            role: role.to_owned(),
-            model: model.clone(),
-            first_answer: count("first answer"),
-            after_repair: count("after repair"),
-            fallback: count("fallback"),
-            not_asked: count("not asked"),
-            reasons: cases.iter().filter_map(reason).collect(),
-        }
-    })
-    .collect()
+        })
+        .collect()
+}
+
+/// The simulator that ran the scenarios, with its version.
+pub fn simulator_name(cases: &[Case]) -> String {
+    cases.iter().find_map(|case| case.first.as_ref()).map_or_else(String::new, |ran| ran.run.rollout.simulator.clone())
 }

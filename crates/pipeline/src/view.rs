@@ -1,35 +1,39 @@
 //! The suite as the report sees it.
 
 use crate::agents::Cast;
-use crate::casework::CaseRun;
-use crate::stages::{Case, names};
+use crate::stages::{Case, Ran, names};
 use crate::suite::{RecordSource, Suite};
-use crate::summary;
+use crate::summary::{self, simulator_name};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::metrics::Verdict;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
 use recrash_report::{CaseView, RunView, SuiteView};
-use recrash_roads::Scenario;
 
 /// Puts together what the report shows.
-pub fn view(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[Case]) -> SuiteView {
+pub fn view(
+    suite: &Suite,
+    records: &RecordSet,
+    selection: &Selection,
+    cases: &[Case],
+    remarks: Vec<Diagnostic>,
+) -> SuiteView {
     let options = suite.options();
     SuiteView {
-        title: "Suite".into(),
+        title: format!("{} crash scenarios for {}", cases.len(), suite.ego()),
         generated_by: format!("recrash {}", env!("CARGO_PKG_VERSION")),
         generated_at: None,
         command: options.command(),
         profile: suite.profile().clone(),
         ego: suite.ego().to_owned(),
-        simulator: cases.first().map_or_else(String::new, |case| case.first.rollout.simulator.clone()),
+        simulator: simulator_name(cases),
         agents: agents(&options.cast, cases),
         seed: options.seed,
         sample: options.records == RecordSource::Sample,
         records: records.clone(),
         selection: selection.clone(),
         cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
-        diagnostics: fallbacks(&options.cast, cases),
+        diagnostics: remarks.into_iter().chain(fallbacks(&options.cast, cases)).collect(),
     }
 }
 
@@ -60,22 +64,22 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
     let id = &case.cluster.scenario_id;
     let positions =
         case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
-    let moved = case.tune_log.best != 0;
+    let moved = case.tuned.as_ref().filter(|(_, log)| log.best != 0);
     CaseView {
         scenario_id: id.clone(),
         template: case.cluster.template,
         cluster: Some(index),
         records: positions.collect(),
-        narrative: Some(case.narrative.clone()),
-        drawing: case.scenario.network().drawing(),
-        before: Some(run_view(suite, &case.scenario, &case.first, &names::scenario(id))),
-        after: moved.then(|| run_view(suite, &case.tuned, &case.tuned_run, &names::tuned(id))),
-        tune_log: Some(case.tune_log.clone()),
-        refused: None,
+        narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
+        drawing: case.first.as_ref().map(|ran| ran.scenario.network().drawing()).unwrap_or_default(),
+        before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
+        after: moved.map(|(ran, _)| run_view(suite, ran, &names::tuned(id))),
+        tune_log: case.tuned.as_ref().map(|(_, log)| log.clone()),
+        refused: case.failure.as_ref().map(ToString::to_string),
     }
 }
 
-fn run_view(suite: &Suite, scenario: &Scenario, run: &CaseRun, file: &str) -> RunView {
+fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
     RunView {
         scenario: scenario.draft().clone(),
         rollout: run.rollout.clone(),

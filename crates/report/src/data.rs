@@ -4,12 +4,15 @@
 //! is not finite is `null`, and the next difference counts from the last finite one. `assets/data.js` reads it back.
 
 use crate::anchor::Anchors;
+use crate::pairs::{PairView, RunTrace};
 use crate::view::{CaseView, RunView, SuiteView};
 use crate::words;
 use recrash_model::geometry::{OrientedBox, Vec2};
+use recrash_model::metrics::{Series, Timed};
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
 use recrash_model::tuning::TuneLog;
+use recrash_roads::RoadDrawing;
 use serde_json::{Value, json};
 
 /// JSON that may stand inside a `script` element: nothing in it can close the element or open a comment.
@@ -49,6 +52,18 @@ pub fn suite(suite: &SuiteView, anchors: &Anchors) -> Value {
 
 /// What the scripts need of one case.
 pub fn case(case: &CaseView) -> Value {
+    let runs = [case.before.as_ref().map(run), case.after.as_ref().map(run)];
+    drawn(&case.scenario_id, &case.drawing, runs, case.tune_log.as_ref().map(tune))
+}
+
+/// What the scripts need of one pair of runs of a scenario.
+pub fn pair(pair: &PairView) -> Value {
+    let runs = [Some(&pair.first), pair.second.as_ref()];
+    let trace = |run: &RunTrace| trace(&run.rollout, &run.series, run.min_gap);
+    drawn(&pair.title, &pair.drawing, runs.map(|run| run.map(trace)), None)
+}
+
+fn drawn(id: &str, drawing: &RoadDrawing, [before, after]: [Option<Value>; 2], tune: Option<Value>) -> Value {
     let polyline = |points: &[Vec2]| {
         let columns = [column(points.iter().map(|p| p.x), 100.0), column(points.iter().map(|p| p.y), 100.0)];
         json!(columns)
@@ -60,17 +75,20 @@ pub fn case(case: &CaseView) -> Value {
         crate::LineKind::Guide => "guide",
     };
     json!({
-        "id": words::clean(&case.scenario_id, 120),
-        "surfaces": case.drawing.surfaces.iter().map(|points| polyline(points)).collect::<Vec<_>>(),
-        "lines": case.drawing.lines.iter().map(|line| json!([line_kind(line.kind), polyline(&line.points)])).collect::<Vec<_>>(),
-        "before": case.before.as_ref().map(run),
-        "after": case.after.as_ref().map(run),
-        "tune": case.tune_log.as_ref().map(tune),
+        "id": words::clean(id, 120),
+        "surfaces": drawing.surfaces.iter().map(|points| polyline(points)).collect::<Vec<_>>(),
+        "lines": drawing.lines.iter().map(|line| json!([line_kind(line.kind), polyline(&line.points)])).collect::<Vec<_>>(),
+        "before": before,
+        "after": after,
+        "tune": tune,
     })
 }
 
 fn run(run: &RunView) -> Value {
-    let rollout = &run.rollout;
+    trace(&run.rollout, &run.series, run.metrics.min_gap)
+}
+
+fn trace(rollout: &Rollout, series: &Series, min_gap: Option<Timed>) -> Value {
     let obstacles = rollout.obstacles.iter().map(|obstacle| {
         let pose = obstacle.pose;
         json!([
@@ -82,7 +100,6 @@ fn run(run: &RunView) -> Value {
             obstacle.width_m
         ])
     });
-    let series = &run.series;
     let mut accelerations = vec![json!([0, column(series.ego_acceleration_mps2.iter().copied(), 100.0)])];
     accelerations
         .extend(series.partners.iter().map(|p| json!([p.actor, column(p.acceleration_mps2.iter().copied(), 100.0)])));
@@ -95,7 +112,7 @@ fn run(run: &RunView) -> Value {
         "contacts": contacts(rollout),
         "gaps": series.partners.iter().map(|p| json!([p.actor, column(p.gap_m.iter().copied(), 1000.0)])).collect::<Vec<_>>(),
         "accelerations": accelerations,
-        "minGap": run.metrics.min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
+        "minGap": min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
     })
 }
 

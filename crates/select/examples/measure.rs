@@ -3,14 +3,15 @@
 //!     cargo run --release -p recrash-select --example measure -- ../shared/data/nhtsa/ads-2021-06-to-2025-06.csv
 //!
 //! Without a file the built-in sample is measured. With a second argument the embedding, the templates and the k-means
-//! inertia of each seed go to that file as JSON, for `crates/select/oracle/oracle.py`. A third argument is a profile
+//! clusters of each seed go to that file as JSON, for `crates/select/oracle/oracle.py`. A third argument is a profile
 //! instead of the paper's.
 
 use recrash_model::Seed;
 use recrash_model::profile::SystemProfile;
+use recrash_model::record::RecordSet;
 use recrash_model::selection::Strategy;
 use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText, ingest};
-use recrash_select::{SelectOptions, budget_table, embed_records, select_with, stability};
+use recrash_select::{Embedding, SelectOptions, budget_table, embed_records, select_with, stability};
 use std::time::Instant;
 
 const SEEDS: usize = 50;
@@ -76,20 +77,33 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     if let Some(path) = arguments.get(1) {
-        let options = SelectOptions { strategy: Strategy::Kmeans, ..options };
-        let inertia = |seed| {
-            Ok(select_with(&records, &profile, &SelectOptions { seed: Seed(seed), ..options.clone() }, &embedding)?
-                .value
-                .inertia)
-        };
-        let inertia: Vec<f64> = (0..20).map(inertia).collect::<Result<_, recrash_select::SelectError>>()?;
-        let templates: Vec<String> =
-            records.usable.iter().filter_map(|&i| Some(records.records[i].template()?.slug())).collect();
-        let entities: Vec<&str> = records.usable.iter().map(|&i| records.records[i].entity.as_str()).collect();
-        let rows: Vec<&[f64]> = (0..embedding.rows()).map(|i| embedding.row(i)).collect();
-        let json = serde_json::json!({ "rows": rows, "templates": templates, "entities": entities, "budget": options.budget,
-            "dimensions": options.dimensions, "restarts": options.restarts, "inertia": inertia });
-        std::fs::write(path, json.to_string())?;
+        std::fs::write(path, dump(&records, &profile, &embedding)?.to_string())?;
     }
     Ok(())
+}
+
+/// What scikit-learn needs to do the same, and what k-means gave here for 20 seeds.
+fn dump(
+    records: &RecordSet,
+    profile: &SystemProfile,
+    embedding: &Embedding,
+) -> Result<serde_json::Value, recrash_select::SelectError> {
+    let options = SelectOptions { strategy: Strategy::Kmeans, ..SelectOptions::default() };
+    let mut inertia = Vec::new();
+    let mut labels: Vec<Vec<usize>> = Vec::new();
+    let mut explained_variance = 0.0;
+    for seed in 0..20 {
+        let options = SelectOptions { seed: Seed(seed), ..options.clone() };
+        let selection = select_with(records, profile, &options, embedding)?.value;
+        inertia.push(selection.inertia);
+        labels.push(selection.map.iter().map(|point| point.cluster).collect());
+        explained_variance = selection.embedding.explained_variance;
+    }
+    let templates: Vec<String> =
+        records.usable.iter().filter_map(|&i| Some(records.records[i].template()?.slug())).collect();
+    let rows: Vec<&[f64]> = (0..embedding.rows()).map(|i| embedding.row(i)).collect();
+    Ok(serde_json::json!({
+        "rows": rows, "templates": templates, "budget": options.budget, "dimensions": options.dimensions,
+        "restarts": options.restarts, "inertia": inertia, "labels": labels, "explained_variance": explained_variance,
+    }))
 }

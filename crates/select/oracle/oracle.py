@@ -3,7 +3,8 @@
     python oracle.py write            writes pca.json, clusters.json and lexical.json beside this file
     python oracle.py compare DUMP     compares a dump of the `measure` example with scikit-learn
 
-Used with numpy 2.4.6 and scikit-learn 1.9.1. No test runs this: the files it wrote are committed.
+Versions: `requirements/oracle-sklearn.txt`. What `write` wrote is committed; `tests/test_selection.py` runs `compare`, which
+prints one JSON object and is for other programs to judge.
 """
 
 import json
@@ -75,19 +76,24 @@ def write_lexical():
 
 
 def compare(dump):
+    """The same k-means by scikit-learn, and our clusters' inertia in scikit-learn's own principal components."""
     data = json.loads(pathlib.Path(dump).read_text())
     templates = np.array(data["templates"])
     pca = PCA(data["dimensions"], svd_solver="full")
     one_hot = (templates[:, None] == np.unique(templates)[None]).astype(float)
     space = np.hstack([one_hot, pca.fit_transform(np.array(data["rows"]))])
     seeds = range(len(data["inertia"]))
-    theirs = np.array([
-        KMeans(data["budget"], n_init=data["restarts"], random_state=seed).fit(space).inertia_ for seed in seeds
-    ])
-    ours = np.array(data["inertia"])
-    for name, x in [("recrash", ours), ("scikit-learn", theirs)]:
-        print(f"{name:14} mean {x.mean():.4f}  least {x.min():.4f}  greatest {x.max():.4f}")
-    print(f"variance kept {pca.explained_variance_ratio_.sum():.6f}")
+    theirs = [KMeans(data["budget"], n_init=data["restarts"], random_state=seed).fit(space).inertia_ for seed in seeds]
+    again = [inertia_of(space, np.array(labels)) for labels in data["labels"]]
+    print(json.dumps({
+        "recrash": data["inertia"], "recrash_again": again, "scikit_learn": theirs,
+        "explained_variance": [data["explained_variance"], float(pca.explained_variance_ratio_.sum())],
+    }))
+
+
+def inertia_of(points, labels):
+    groups = (points[labels == label] for label in np.unique(labels))
+    return float(sum(((group - group.mean(axis=0)) ** 2).sum() for group in groups))
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ mod words;
 
 pub use embedding::{EMBEDDING_GRID, Embedding};
 pub use lexical::{LEXICAL_DIMENSIONS, LEXICAL_NAME, lexical_embedding};
-pub use study::{budget_table, stability};
+pub use study::{budget_table, elbow, stability};
 
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;

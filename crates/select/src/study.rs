@@ -94,6 +94,22 @@ pub fn budget_table(
     Ok(table)
 }
 
+/// The budget at the elbow of the inertia: of the rows between the first and the last, the one farthest below the straight
+/// line that joins these, with both axes scaled to `[0, 1]` (Satopaa et al. 2011). `None` where there is no row between
+/// them, or none below the line.
+pub fn elbow(table: &[BudgetRow]) -> Option<usize> {
+    let (first, last) = (table.first()?, table.last()?);
+    let width = last.budget.checked_sub(first.budget).filter(|&width| width > 0)? as f64;
+    let fall = first.inertia - last.inertia;
+    let below = |row: &BudgetRow| {
+        let share = row.budget.saturating_sub(first.budget) as f64 / width;
+        (first.inertia - row.inertia) / fall - share
+    };
+    let all = table.iter().map(|row| (row.budget, below(row)));
+    let best = all.filter(|(_, below)| *below > 0.0).reduce(|best, row| if row.1 > best.1 { row } else { best });
+    best.map(|(budget, _)| budget)
+}
+
 /// Group of each row.
 fn labels(groups: &[Group], rows: usize) -> Vec<usize> {
     let mut labels = vec![0; rows];
@@ -177,6 +193,23 @@ mod tests {
             .collect();
         assert!((silhouette(&points, &groups).unwrap() - fixture.number("silhouette")).abs() < 1e-12);
         assert!((adjusted_rand_index(&a, &b) - fixture.number("adjusted_rand_index")).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_elbow_is_where_the_inertia_stops_falling() {
+        let row = |budget, inertia| BudgetRow {
+            budget,
+            inertia,
+            silhouette: None,
+            templates_covered: 0,
+            radius: 0.0,
+            mean_distance: 0.0,
+        };
+        // Falls by 8 of 10 in the first fifth of the way: 0.8 - 0.2 below the line; later 0.9 - 0.6.
+        assert_eq!(elbow(&[row(10, 10.0), row(20, 2.0), row(40, 1.0), row(60, 0.0)]), Some(20));
+        assert_eq!(elbow(&[row(10, 10.0), row(20, 5.0), row(30, 0.0)]), None, "a straight line");
+        assert_eq!(elbow(&[row(10, 1.0), row(20, 1.0), row(30, 1.0)]), None, "nothing falls");
+        assert_eq!((elbow(&[row(10, 1.0)]), elbow(&[])), (None, None));
     }
 
     #[test]

@@ -67,6 +67,15 @@ pub struct Controls {
 }
 
 impl Controls {
+    /// The controls for an acceleration [m/s^2] and a wheel angle [rad, left positive] of this vehicle.
+    ///
+    /// Where the tyres hold (up to 8.2 m/s^2 of braking on a dry road), the vehicle follows within 0.1 s.
+    pub fn of_acceleration(acceleration_mps2: f64, wheel_angle_rad: f64, spec: &VehicleSpec) -> Self {
+        let full = if acceleration_mps2 >= 0.0 { spec.max_acceleration_mps2 } else { spec.brake_demand_mps2 };
+        let steer = wheel_angle_rad / spec.max_wheel_angle_rad.max(1e-3);
+        Self { steer, throttle: acceleration_mps2 / full.max(1e-3) }.clipped()
+    }
+
     /// Within the limits; not a number counts as nothing asked for.
     #[must_use]
     pub fn clipped(self) -> Self {

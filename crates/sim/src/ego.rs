@@ -10,20 +10,23 @@ pub enum Ego {
     MetadriveIdm,
     /// The intelligent driver model in SI units; sees crossing traffic and gives way.
     Idm,
+    /// A competent and careful human driver, after UN Regulation No. 157.
+    Reference,
 }
 
 impl Ego {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::MetadriveIdm, Self::Idm];
+    pub const ALL: [Self; 3] = [Self::MetadriveIdm, Self::Idm, Self::Reference];
 
     /// Their names, in the same order.
-    pub const NAMES: [&'static str; 2] = ["metadrive-idm", "idm"];
+    pub const NAMES: [&'static str; 3] = ["metadrive-idm", "idm", "reference"];
 
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::MetadriveIdm => "metadrive-idm",
             Self::Idm => "idm",
+            Self::Reference => "reference",
         }
     }
 }
@@ -64,6 +67,6 @@ mod tests {
             assert_eq!(name.parse(), Ok(ego));
             assert_eq!(ego.to_string(), name);
         }
-        assert!("human".parse::<Ego>().unwrap_err().to_string().contains("metadrive-idm, idm"));
+        assert!("human".parse::<Ego>().unwrap_err().to_string().contains("metadrive-idm, idm, reference"));
     }
 }

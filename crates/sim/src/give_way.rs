@@ -79,7 +79,7 @@ const PATIENCE_STEPS: u32 = 30;
 const HORIZON_S: f64 = 12.0;
 
 /// Where paths merge, the other has gone first when he is this far along the common lane. [m]
-const MERGED_M: f64 = 12.0;
+pub(crate) const MERGED_M: f64 = 12.0;
 
 /// Who has come this far past the place to wait goes on; the stretch itself begins a little behind that place. [m]
 const COMMITTED_M: f64 = 1.0;
@@ -103,22 +103,33 @@ impl GiveWay {
         wanted_mps: f64,
         manners: Manners,
     ) -> Option<f64> {
-        let speed = scene.actors[me].speed;
-        self.standing_steps = if speed < WAITING_MPS { self.standing_steps + 1 } else { 0 };
-        if crossings.iter().all(|crossing| crossing.me != me) {
-            return None;
-        }
+        self.count_standing(scene, me);
+        self.stop_lines(scene, me, crossings, wanted_mps, manners)
+            .map(|(_, distance)| distance)
+            .fold(None, |nearest, distance| Some(nearest.map_or(distance, |least: f64| least.min(distance))))
+    }
+
+    /// Once per decision: how long it has been standing.
+    pub(crate) fn count_standing(&mut self, scene: &Scene<'_>, me: usize) {
+        let stands = scene.actors[me].speed < WAITING_MPS;
+        self.standing_steps = if stands { self.standing_steps + 1 } else { 0 };
+    }
+
+    /// Every crossing it has to wait at now, with the distance from its centre to the place to wait. [m]
+    pub(crate) fn stop_lines<'a>(
+        &'a self,
+        scene: &'a Scene<'_>,
+        me: usize,
+        crossings: &'a [Crossing],
+        wanted_mps: f64,
+        manners: Manners,
+    ) -> impl Iterator<Item = (&'a Crossing, f64)> + 'a {
         let s = scene.path_s(me);
-        let mut nearest: Option<f64> = None;
-        for crossing in crossings.iter().filter(|crossing| crossing.me == me) {
+        crossings.iter().filter(move |crossing| crossing.me == me).filter_map(move |crossing| {
             let ahead = crossing.mine.from - s;
-            if ahead < -COMMITTED_M || !self.must_wait(scene, me, crossing, ahead, s, wanted_mps, manners) {
-                continue;
-            }
-            let distance = ahead.max(0.0);
-            nearest = Some(nearest.map_or(distance, |least| least.min(distance)));
-        }
-        nearest
+            let waits = ahead >= -COMMITTED_M && self.must_wait(scene, me, crossing, ahead, s, wanted_mps, manners);
+            waits.then(|| (crossing, ahead.max(0.0)))
+        })
     }
 
     #[allow(clippy::too_many_arguments, reason = "one private caller")]

@@ -126,38 +126,10 @@ impl Idm {
             // The line is for the bumper already; the usual room in front of it is not wanted twice.
             keep_off(distance + 0.5 * parameters.minimum_gap_m, 0.0);
         }
-        acceleration = acceleration.min(self.curve_limit(scene, me));
+        acceleration = acceleration.min(curve_limit(parameters, scene, me));
         acceleration = acceleration.max(-parameters.hardest_deceleration_mps2);
         let full = if acceleration >= 0.0 { self.full_throttle_mps2 } else { self.full_brake_mps2 };
         Controls { steer, throttle: acceleration / full.max(1e-3) }.clipped()
-    }
-
-    /// The acceleration at which every curve ahead is reached at a fitting speed. [m/s^2]
-    fn curve_limit(&self, scene: &Scene<'_>, me: usize) -> f64 {
-        let seen = &scene.actors[me];
-        let s = scene.path_s(me);
-        let mut limit = f64::INFINITY;
-        for position in scene.rest_of_path(me) {
-            let lane = scene.lanes.lane(scene.route_lanes[position]);
-            let distance = (scene.route_starts[position] - s).max(0.0);
-            if distance > SIGHT_M {
-                break;
-            }
-            let Some(radius) = lane.radius() else { continue };
-            let fitting_squared = self.parameters.curve_mps2 * radius;
-            let over = math::sq(seen.speed) - fitting_squared;
-            // Inside the curve: back to the fitting speed within about a second.
-            let wanted = if distance > 1.0 {
-                if over > 0.0 { -over / (2.0 * distance) } else { continue }
-            } else {
-                fitting_squared.sqrt() - seen.speed
-            };
-            // Far curves ask for little; braking begins when it would be comfortable.
-            if distance <= 1.0 || wanted < -0.7 * self.parameters.comfortable_deceleration_mps2 {
-                limit = limit.min(wanted);
-            }
-        }
-        limit
     }
 }
 
@@ -176,7 +148,7 @@ fn in_the_way<'a>(scene: &'a Scene<'_>, me: usize) -> impl Iterator<Item = (f64,
         if offset.length_squared() > SIGHT_M * SIGHT_M {
             return None;
         }
-        let (distance, t, forward) = along_path(scene, me, position)?;
+        let (distance, t, forward) = scene.ahead(me, position, SIGHT_M)?;
         let right = -forward.left();
         let half_across = half_length * axis.dot(right).abs() + half_width * axis.dot(right.left()).abs();
         let half_along = half_length * axis.dot(forward).abs() + half_width * axis.cross(forward).abs();
@@ -188,25 +160,30 @@ fn in_the_way<'a>(scene: &'a Scene<'_>, me: usize) -> impl Iterator<Item = (f64,
     })
 }
 
-/// Where a point is along an actor's path: distance from its centre, offset to the right, and the way's direction there;
-/// `None` behind it and off its path's length.
-fn along_path(scene: &Scene<'_>, me: usize, point: Vec2) -> Option<(f64, f64, Vec2)> {
-    let here = scene.path_s(me);
-    let path = scene.rest_of_path(me);
-    for position in path.clone() {
-        let start = scene.route_starts[position];
-        if start - here > SIGHT_M {
-            return None;
-        }
+/// The acceleration at which every curve ahead is reached at a fitting speed. [m/s^2]
+pub(crate) fn curve_limit(parameters: &IdmParameters, scene: &Scene<'_>, me: usize) -> f64 {
+    let seen = &scene.actors[me];
+    let s = scene.path_s(me);
+    let mut limit = f64::INFINITY;
+    for position in scene.rest_of_path(me) {
         let lane = scene.lanes.lane(scene.route_lanes[position]);
-        let (s, t) = lane.local(point);
-        let last = position + 1 == path.end;
-        if s < 0.0 && position == path.start {
-            return None;
+        let distance = (scene.route_starts[position] - s).max(0.0);
+        if distance > SIGHT_M {
+            break;
         }
-        if s >= 0.0 && (s <= lane.length_m || last) && t.abs() < lane.reach() {
-            return Some((start + s - here, t, Vec2::from_heading(lane.heading(s))));
+        let Some(radius) = lane.radius() else { continue };
+        let fitting_squared = parameters.curve_mps2 * radius;
+        let over = math::sq(seen.speed) - fitting_squared;
+        // Inside the curve: back to the fitting speed within about a second.
+        let wanted = if distance > 1.0 {
+            if over > 0.0 { -over / (2.0 * distance) } else { continue }
+        } else {
+            fitting_squared.sqrt() - seen.speed
+        };
+        // Far curves ask for little; braking begins when it would be comfortable.
+        if distance <= 1.0 || wanted < -0.7 * parameters.comfortable_deceleration_mps2 {
+            limit = limit.min(wanted);
         }
     }
-    None
+    limit
 }

@@ -6,27 +6,33 @@
 //!
 //! - [`simulate`] runs one scenario and keeps everything.
 //! - [`Simulator`] runs many, with a [`Recorder`] that keeps what is wanted; a step allocates nothing.
-//! - The models behind it are described in `docs/models`: vehicle, metadrive-idm, idm, policies.
+//! - [`EgoDriver`] is the seat for a driver from outside, see [`Simulator::run_with`].
+//! - The models behind it are described in `docs/models`: vehicle, metadrive-idm, idm, reference, policies.
 //!
 //! What this crate does **not** do: it never sees a crash record, opens no file, reads no clock and starts no thread.
 
 mod chassis;
 mod contacts;
+mod driver;
 mod ego;
+mod emergency;
 mod give_way;
 mod idm;
 mod lanes;
 mod metadrive_idm;
 mod recorder;
+mod reference;
 mod scene;
 mod script;
 mod simulator;
 mod steering;
-mod traffic;
+mod swerve;
 mod world;
 
 pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand, friction_of};
+pub use driver::{EgoDriver, Observation};
 pub use ego::{Ego, UnknownEgo};
+pub use emergency::EmergencyResponse;
 pub use idm::IdmParameters;
 pub use recorder::{CastMember, Recorder, RolloutRecorder, Summary, SummaryRecorder};
 pub use simulator::Simulator;

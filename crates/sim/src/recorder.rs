@@ -1,12 +1,12 @@
 //! What is kept of a run: everything ([`RolloutRecorder`]) or a few numbers ([`SummaryRecorder`]).
 
-use crate::ego::Ego;
 use recrash_model::geometry::OrientedBox;
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{
     ActorState, ActorTrack, EGO_ID, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, STEP_S, Termination,
     TerminationKind,
 };
+use recrash_model::scenario::ScenarioDraft;
 use recrash_roads::Scenario;
 
 /// An actor, as it is introduced to a recorder.
@@ -22,10 +22,22 @@ pub struct CastMember {
     pub width_m: f64,
 }
 
+impl CastMember {
+    /// The name of the actor at this position of the cast, as rollouts have it.
+    pub fn id(&self, draft: &ScenarioDraft, position: usize) -> String {
+        match self.role {
+            Role::Ego => EGO_ID.to_owned(),
+            Role::Partner => draft.partners[position - 1].id.clone(),
+            Role::Traffic => format!("traffic{}", position - draft.partners.len()),
+        }
+    }
+}
+
 /// Takes what happens in one run, in order.
 pub trait Recorder {
-    /// The run begins. `cast` holds the ego, the partners in the scenario's order, then background traffic.
-    fn begin(&mut self, scenario: &Scenario, ego: Ego, cast: &[CastMember]);
+    /// The run begins. `ego` is the driver's name; `cast` holds the ego, the partners in the scenario's order, then
+    /// background traffic.
+    fn begin(&mut self, scenario: &Scenario, ego: &str, cast: &[CastMember]);
     /// One step: a state of every actor, with the controls it has chosen for the next (none at the last step).
     fn step(&mut self, states: &[ActorState]);
     /// Something happened.
@@ -53,23 +65,16 @@ impl RolloutRecorder {
 }
 
 impl Recorder for RolloutRecorder {
-    fn begin(&mut self, scenario: &Scenario, ego: Ego, cast: &[CastMember]) {
+    fn begin(&mut self, scenario: &Scenario, ego: &str, cast: &[CastMember]) {
         let draft = scenario.draft();
         let steps = (draft.duration_s / STEP_S).ceil().clamp(0.0, 2000.0) as usize + 2;
-        let actors = cast.iter().enumerate().map(|(position, member)| {
-            let id = match member.role {
-                Role::Ego => EGO_ID.to_owned(),
-                Role::Partner => draft.partners[position - 1].id.clone(),
-                Role::Traffic => format!("traffic{}", position - draft.partners.len()),
-            };
-            ActorTrack {
-                id,
-                role: member.role,
-                kind: member.kind,
-                length_m: member.length_m,
-                width_m: member.width_m,
-                states: Vec::with_capacity(steps),
-            }
+        let actors = cast.iter().enumerate().map(|(position, member)| ActorTrack {
+            id: member.id(draft, position),
+            role: member.role,
+            kind: member.kind,
+            length_m: member.length_m,
+            width_m: member.width_m,
+            states: Vec::with_capacity(steps),
         });
         self.rollout = Some(Rollout {
             format: ROLLOUT_FORMAT.to_owned(),
@@ -145,7 +150,7 @@ impl SummaryRecorder {
 }
 
 impl Recorder for SummaryRecorder {
-    fn begin(&mut self, _: &Scenario, _: Ego, cast: &[CastMember]) {
+    fn begin(&mut self, _: &Scenario, _: &str, cast: &[CastMember]) {
         self.summary = Summary { min_gap_m: f64::INFINITY, actors: cast.len(), ..Summary::default() };
         self.sizes.clear();
         self.sizes.extend(cast.iter().map(|member| {

@@ -75,4 +75,27 @@ impl Scene<'_> {
         let progress = &self.actors[actor].progress;
         progress.at as usize..progress.end as usize
     }
+
+    /// Where a point is along an actor's path: distance from its centre, offset to the right, and the way's direction
+    /// there; `None` behind it, off its path's length, and where the path's next lane begins further away than `sight_m`.
+    pub(crate) fn ahead(&self, actor: usize, point: Vec2, sight_m: f64) -> Option<(f64, f64, Vec2)> {
+        let here = self.path_s(actor);
+        let path = self.rest_of_path(actor);
+        for position in path.clone() {
+            let start = self.route_starts[position];
+            if start - here > sight_m {
+                return None;
+            }
+            let lane = self.lanes.lane(self.route_lanes[position]);
+            let (s, t) = lane.local(point);
+            let last = position + 1 == path.end;
+            if s < 0.0 && position == path.start {
+                return None;
+            }
+            if s >= 0.0 && (s <= lane.length_m || last) && t.abs() < lane.reach() {
+                return Some((start + s - here, t, Vec2::from_heading(lane.heading(s))));
+            }
+        }
+        None
+    }
 }

@@ -3,15 +3,17 @@
 //! The order is written here and nowhere else. The memory of a run is kept for the next, so that a step allocates nothing.
 
 use crate::chassis::Controls;
-use crate::contacts::{actor_state, collide, find_near};
+use crate::contacts::{collide, find_near};
+use crate::driver::{EgoDriver, Observation};
 use crate::ego::Ego;
-use crate::recorder::Recorder;
+use crate::recorder::{CastMember, Recorder};
 use crate::scene::Scene;
 use crate::script::stand;
 use crate::world::{Driver, World};
 use recrash_model::geometry::Vec2;
-use recrash_model::rollout::{Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
+use recrash_model::rollout::{ActorState, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
 use recrash_roads::Scenario;
+use std::convert::Infallible;
 
 /// MetaDrive's rule for having arrived: this near to the end of the route. [m]
 const ARRIVAL_RANGE_M: f64 = 5.0;
@@ -41,17 +43,43 @@ impl Simulator {
 
     /// Runs a scenario. It cannot fail: however a run goes, it ends with a [`Termination`].
     pub fn run<R: Recorder>(&mut self, scenario: &Scenario, ego: Ego, recorder: &mut R) -> Termination {
-        self.world.prepare(scenario, ego);
-        recorder.begin(scenario, ego, &self.world.setting.cast);
+        self.world.prepare(scenario, Some(ego));
+        let Ok(termination) = self.drive(scenario, &mut BuiltIn(ego), recorder);
+        termination
+    }
+
+    /// Runs a scenario with a driver from outside.
+    ///
+    /// # Errors
+    /// The driver's own. What the recorder has of the run until then is not a whole one.
+    pub fn run_with<D: EgoDriver, R: Recorder>(
+        &mut self,
+        scenario: &Scenario,
+        driver: &mut D,
+        recorder: &mut R,
+    ) -> Result<Termination, D::Error> {
+        self.world.prepare(scenario, None);
+        self.drive(scenario, driver, recorder)
+    }
+
+    fn drive<D: EgoDriver, R: Recorder>(
+        &mut self,
+        scenario: &Scenario,
+        driver: &mut D,
+        recorder: &mut R,
+    ) -> Result<Termination, D::Error> {
+        driver.begin(scenario, &self.world.setting.cast)?;
+        recorder.begin(scenario, driver.name(), &self.world.setting.cast);
         self.sense();
         loop {
             if let Some(termination) = self.verdict() {
                 self.world.workspace.controls.fill(Controls::default());
                 self.record(recorder);
                 recorder.end(termination);
-                return termination;
+                driver.end(termination)?;
+                return Ok(termination);
             }
-            self.decide();
+            self.decide(driver)?;
             self.record(recorder);
             self.advance(recorder);
             self.world.state.step += 1;
@@ -84,7 +112,7 @@ impl Simulator {
     }
 
     /// Every actor decides on the same frozen world.
-    fn decide(&mut self) {
+    fn decide<D: EgoDriver>(&mut self, outside: &mut D) -> Result<(), D::Error> {
         let World { setting, state, workspace } = &mut self.world;
         let scene = Scene {
             step: state.step,
@@ -94,6 +122,13 @@ impl Simulator {
             route_starts: &setting.route_starts,
             actors: &state.seen,
             obstacles: &setting.obstacles,
+        };
+        let asked = match state.drivers[0] {
+            Driver::Outside => {
+                workspace.write_states(&state.seen);
+                Some(ask(outside, &scene, &workspace.states)?)
+            }
+            _ => None,
         };
         for (me, driver) in state.drivers.iter_mut().enumerate() {
             let halted = state.halted[me];
@@ -106,18 +141,19 @@ impl Simulator {
                     }
                     Driver::MetadriveIdm(driver) => driver.decide(&scene, me),
                     Driver::Idm(driver) => driver.decide(&scene, me, &setting.crossings),
+                    Driver::Reference(driver) => driver.decide(&scene, me, &setting.crossings, &mut state.attention),
                     Driver::Script(script) => script.decide(&scene, me, &setting.moves, &setting.crossings, halted),
+                    Driver::Outside => asked.unwrap_or_default().clipped(),
                 }
             };
         }
+        Ok(())
     }
 
     /// Hands the states to the recorder, with the controls just chosen.
     fn record<R: Recorder>(&mut self, recorder: &mut R) {
         let World { state, workspace, .. } = &mut self.world;
-        for ((slot, seen), controls) in workspace.states.iter_mut().zip(&state.seen).zip(&workspace.controls) {
-            *slot = actor_state(seen.pose, seen.speed, *controls);
-        }
+        workspace.write_states(&state.seen);
         recorder.step(&workspace.states);
     }
 
@@ -183,9 +219,45 @@ impl Simulator {
         (1..state.seen.len()).any(|actor| {
             let plans = match &state.drivers[actor] {
                 Driver::Script(script) => !state.halted[actor] && script.has_plans(state.step),
-                Driver::MetadriveIdm(_) | Driver::Idm(_) => false,
+                Driver::MetadriveIdm(_) | Driver::Idm(_) | Driver::Reference(_) | Driver::Outside => false,
             };
             state.seen[actor].present && (plans || state.seen[actor].speed >= STANDING_MPS)
         })
+    }
+}
+
+/// Asks the driver from outside.
+fn ask<D: EgoDriver>(outside: &mut D, scene: &Scene<'_>, states: &[ActorState]) -> Result<Controls, D::Error> {
+    let route_t_m = scene.lanes.lane(scene.path_lane(0)).local(scene.actors[0].pose.position).1;
+    outside.decide(&Observation {
+        step: scene.step,
+        time_s: f64::from(scene.step) / STEPS_PER_S,
+        route_s_m: scene.path_s(0),
+        route_t_m,
+        states,
+        seen: scene.actors,
+    })
+}
+
+/// A driver of the simulator's own, which is never asked from outside.
+struct BuiltIn(Ego);
+
+impl EgoDriver for BuiltIn {
+    type Error = Infallible;
+
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn begin(&mut self, _: &Scenario, _: &[CastMember]) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn decide(&mut self, _: &Observation<'_>) -> Result<Controls, Infallible> {
+        Ok(Controls::default())
+    }
+
+    fn end(&mut self, _: Termination) -> Result<(), Infallible> {
+        Ok(())
     }
 }

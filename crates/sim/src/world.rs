@@ -1,21 +1,22 @@
 //! The world of one run: what is fixed in it, what is true at a time, and scratch; and how it is put together.
 
 use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
+use crate::contacts::actor_state;
 use crate::ego::Ego;
 use crate::give_way::{Crossing, HalfSize};
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
 use crate::recorder::CastMember;
+use crate::reference::{Attention, Reference};
 use crate::scene::{Seen, SeenObstacle};
 use crate::script::Script;
-use crate::traffic;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{ActorState, Role};
 use recrash_model::scenario::{LateralMove, Policy};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::{LanePath, RoadId, Scenario};
+use recrash_roads::{LanePath, RoadId, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement};
 
 /// Everything about one run; kept from run to run for its memory.
 #[derive(Debug, Default)]
@@ -50,6 +51,8 @@ pub(crate) struct State {
     pub(crate) drivers: Vec<Driver>,
     /// Touched another road user and brakes for good.
     pub(crate) halted: Vec<bool>,
+    /// What the ego keeps in mind about each actor, where it is `reference`.
+    pub(crate) attention: Vec<Attention>,
     /// Who has touched whom or what: one row per actor, road users first, then obstacles.
     pub(crate) touched: Vec<bool>,
     pub(crate) ego_contact: bool,
@@ -74,12 +77,24 @@ pub(crate) struct Workspace {
 pub(crate) enum Driver {
     MetadriveIdm(MetadriveIdm),
     Idm(Idm),
+    Reference(Reference),
     Script(Script),
+    /// Somebody outside the simulator, see [`crate::EgoDriver`].
+    Outside,
+}
+
+impl Workspace {
+    /// Writes down everybody's state, with the controls chosen last.
+    pub(crate) fn write_states(&mut self, seen: &[Seen]) {
+        for ((slot, seen), controls) in self.states.iter_mut().zip(seen).zip(&self.controls) {
+            *slot = actor_state(seen.pose, seen.speed, *controls);
+        }
+    }
 }
 
 impl World {
-    /// Puts everything where it starts.
-    pub(crate) fn prepare(&mut self, scenario: &Scenario, ego: Ego) {
+    /// Puts everything where it starts; without an ego of the simulator's own, the driver is somebody outside.
+    pub(crate) fn prepare(&mut self, scenario: &Scenario, ego: Option<Ego>) {
         self.setting.clear();
         self.state.clear();
         self.setting.lanes.prepare(scenario.network());
@@ -96,8 +111,12 @@ impl World {
         let target_mps = draft.ego.target_speed_mps;
         let placement = scenario.ego();
         let driver = match ego {
-            Ego::MetadriveIdm => Driver::MetadriveIdm(MetadriveIdm::new(target_mps)),
-            Ego::Idm => Driver::Idm(Idm::new(&VehicleSpec::of(placement.kind), target_mps, surface)),
+            None => Driver::Outside,
+            Some(Ego::MetadriveIdm) => Driver::MetadriveIdm(MetadriveIdm::new(target_mps)),
+            Some(Ego::Idm) => Driver::Idm(Idm::new(&VehicleSpec::of(placement.kind), target_mps, surface)),
+            Some(Ego::Reference) => {
+                Driver::Reference(Reference::new(&VehicleSpec::of(placement.kind), target_mps, surface))
+            }
         };
         let at = (placement.pose, placement.speed_mps);
         self.cast(Role::Ego, placement.kind, &placement.path, placement.s_m, at, surface, driver);
@@ -111,14 +130,15 @@ impl World {
             self.cast(Role::Partner, placement.kind, &placement.path, placement.s_m, at, surface, driver);
         }
 
-        let spawns = traffic::place(scenario);
+        let spawns = recrash_roads::background_traffic(scenario);
         for spawn in &spawns {
-            let driver = Driver::MetadriveIdm(MetadriveIdm::new(traffic::TRAFFIC_SPEED_MPS));
+            let driver = Driver::MetadriveIdm(MetadriveIdm::new(TRAFFIC_SPEED_MPS));
             self.cast(Role::Traffic, spawn.kind, &spawn.path, 0.0, (spawn.pose, 0.0), surface, driver);
         }
         self.find_crossings(scenario, ego, &spawns);
 
         let (actors, obstacles) = (self.setting.cast.len(), self.setting.obstacles.len());
+        self.state.attention.resize(actors, Attention::default());
         self.state.touched.resize(actors * (actors + obstacles), false);
         self.workspace.controls.clear();
         self.workspace.controls.resize(actors, Controls::default());
@@ -171,7 +191,7 @@ impl World {
     }
 
     /// Finds where the paths of those who give way meet other paths.
-    fn find_crossings(&mut self, scenario: &Scenario, ego: Ego, spawns: &[traffic::Spawn]) {
+    fn find_crossings(&mut self, scenario: &Scenario, ego: Option<Ego>, spawns: &[TrafficPlacement]) {
         let partners = scenario.partners().len();
         let path = |actor: usize| match actor {
             0 => &scenario.ego().path,
@@ -179,7 +199,7 @@ impl World {
             _ => &spawns[actor - 1 - partners].path,
         };
         let gives_way = |actor: usize| match actor {
-            0 => ego == Ego::Idm,
+            0 => matches!(ego, Some(Ego::Idm | Ego::Reference)),
             _ if actor <= partners => matches!(scenario.draft().partners[actor - 1].policy, Policy::Yielding { .. }),
             _ => false,
         };
@@ -225,6 +245,7 @@ impl State {
         self.seen.clear();
         self.drivers.clear();
         self.halted.clear();
+        self.attention.clear();
         self.touched.clear();
         self.ego_contact = false;
         self.traffic_released = false;

@@ -2,9 +2,14 @@
 
 use proptest::prelude::*;
 use recrash_model::record::{PartnerKind, Surface};
-use recrash_model::rollout::{Rollout, TerminationKind};
+use recrash_model::rollout::{ActorState, Rollout, Termination, TerminationKind};
 use recrash_model::scenario::{Approach, ScenarioDraft, Start, Turn};
-use recrash_sim::{Ego, RolloutRecorder, Simulator, SummaryRecorder, simulate};
+use recrash_roads::Scenario;
+use recrash_sim::{
+    CastMember, Controls, Ego, EgoDriver, Observation, RolloutRecorder, Simulator, SummaryRecorder, simulate,
+};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 mod common;
 use common::{alone, checked, random_draft, roundabout, steady, wide_cross};
@@ -157,25 +162,130 @@ fn a_driver_who_looks_touches_far_fewer_than_one_who_does_not() {
     assert!(blind >= 10 && 2 * looking <= blind, "{blind} {looking}");
 }
 
-/// State hashes of the scenarios in `closed_loop.jsonl`, every sixth with background traffic, with both egos: equal on
-/// every machine, in debug and release builds, for any history of the simulator. To renew them after a change of the
-/// model run with `RECRASH_RENEW_GOLDENS=1`; that run fails.
+/// Drives as a rollout was driven.
+struct Replay<'a> {
+    rollout: &'a Rollout,
+    fails_at: usize,
+}
+
+impl EgoDriver for Replay<'_> {
+    type Error = String;
+
+    fn name(&self) -> &str {
+        "replay"
+    }
+
+    fn begin(&mut self, scenario: &Scenario, cast: &[CastMember]) -> Result<(), String> {
+        assert_eq!(cast.len(), self.rollout.actors.len());
+        for (position, (member, track)) in cast.iter().zip(&self.rollout.actors).enumerate() {
+            assert_eq!(member.id(scenario.draft(), position), track.id);
+        }
+        Ok(())
+    }
+
+    fn decide(&mut self, observation: &Observation<'_>) -> Result<Controls, String> {
+        let step = observation.step as usize;
+        assert_eq!(observation.time_s, step as f64 / 10.0);
+        for (actor, (state, track)) in observation.states.iter().zip(&self.rollout.actors).enumerate() {
+            assert_eq!(state.pose(), track.states[step].pose(), "{actor} at {step}");
+            assert!(observation.is_present(actor));
+        }
+        if step == self.fails_at {
+            return Err(format!("no answer at step {step}"));
+        }
+        let ActorState { steer, throttle, .. } = self.rollout.actors[0].states[step];
+        Ok(Controls { steer, throttle })
+    }
+
+    fn end(&mut self, termination: Termination) -> Result<(), String> {
+        assert_eq!(termination, self.rollout.termination);
+        Ok(())
+    }
+}
+
 #[test]
-fn state_hashes_are_those_on_file() {
-    let mut hashes = Vec::new();
+fn a_driver_from_outside_that_does_what_another_did_gets_the_same_bits() {
+    let mut simulator = Simulator::new();
+    for draft in (0..200).filter_map(|number| random_draft(12, number)).take(10) {
+        let scenario = checked(draft);
+        let rollout = simulate(&scenario, Ego::Idm);
+        let mut recorder = RolloutRecorder::new();
+        let mut replay = Replay { rollout: &rollout, fails_at: usize::MAX };
+        let termination = simulator.run_with(&scenario, &mut replay, &mut recorder);
+        assert_eq!(termination, Ok(rollout.termination));
+        let again = recorder.finish().expect("a rollout");
+        assert_eq!((again.ego.as_str(), &again.state_hash), ("replay", &rollout.state_hash));
+        assert_eq!(again.events, rollout.events);
+    }
+}
+
+#[test]
+fn a_driver_from_outside_without_an_answer_ends_the_run_with_its_error() {
+    let scenario = checked(alone(wide_cross(2), Turn::Straight, 1, 8.0, 8.0));
+    let rollout = simulate(&scenario, Ego::Idm);
+    let mut replay = Replay { rollout: &rollout, fails_at: 17 };
+    let outcome = Simulator::new().run_with(&scenario, &mut replay, &mut SummaryRecorder::new());
+    assert_eq!(outcome, Err("no answer at step 17".to_owned()));
+}
+
+/// What the goldens are taken of: the scenarios in `closed_loop.jsonl`, every sixth with background traffic, and random
+/// ones with every kind of road user on every surface. The check may grow stricter after the scenarios were drawn.
+fn golden_scenarios() -> Vec<Scenario> {
+    let mut drafts = Vec::new();
     for (number, line) in include_str!("fixtures/closed_loop.jsonl").lines().enumerate() {
         let value: serde_json::Value = serde_json::from_str(line).expect("JSON");
         let mut draft: ScenarioDraft = serde_json::from_value(value["draft"].clone()).expect("a draft");
         if number % 6 == 5 {
             draft.traffic.density = 0.1;
         }
-        // The check may grow stricter after the scenarios were drawn.
-        let Ok(scenario) = recrash_roads::check(draft) else { continue };
-        for ego in Ego::ALL {
-            let rollout = simulate(&scenario.value, ego);
-            hashes.push(format!("{} {ego} {} {}", rollout.scenario_id, rollout.steps(), rollout.state_hash));
-        }
+        drafts.push(draft);
     }
+    for number in 0..500 {
+        let Some(mut draft) = random_draft(31, number) else { continue };
+        for (position, partner) in draft.partners.iter_mut().enumerate() {
+            partner.kind = KINDS[(number as usize + position) % KINDS.len()];
+        }
+        draft.environment.surface = [Surface::Dry, Surface::Wet, Surface::SnowIce][number as usize % 3];
+        drafts.push(draft);
+    }
+    drafts.into_iter().filter_map(|draft| recrash_roads::check(draft).ok()).map(|checked| checked.value).collect()
+}
+
+/// A line per scenario and ego: name, steps and state hash, from this many threads that share the work.
+fn golden_lines(scenarios: &[Scenario], threads: usize) -> Vec<String> {
+    let runs: Vec<(&Scenario, Ego)> =
+        scenarios.iter().flat_map(|scenario| Ego::ALL.map(|ego| (scenario, ego))).collect();
+    let next = AtomicUsize::new(0);
+    let lines: Mutex<Vec<(usize, String)>> = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                let mut simulator = Simulator::new();
+                loop {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(&(scenario, ego)) = runs.get(number) else { return };
+                    let mut recorder = RolloutRecorder::new();
+                    simulator.run(scenario, ego, &mut recorder);
+                    let rollout = recorder.finish().expect("a rollout");
+                    let line = format!("{} {ego} {} {}", rollout.scenario_id, rollout.steps(), rollout.state_hash);
+                    lines.lock().expect("no thread has failed").push((number, line));
+                }
+            });
+        }
+    });
+    let mut lines = lines.into_inner().expect("no thread has failed");
+    lines.sort();
+    lines.into_iter().map(|(_, line)| line).collect()
+}
+
+/// State hashes of all those scenarios with every ego: equal on every machine, in debug and release builds, for any
+/// number of threads and any history of the simulators. To renew them after a change of the model run with
+/// `RECRASH_RENEW_GOLDENS=1`; that run fails.
+#[test]
+fn state_hashes_are_those_on_file_for_1_2_and_8_threads() {
+    let scenarios = golden_scenarios();
+    assert!(scenarios.len() >= 70, "only {} scenarios can still be run", scenarios.len());
+    let hashes = golden_lines(&scenarios, 1);
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/state_hashes.txt");
     if std::env::var_os("RECRASH_RENEW_GOLDENS").is_some() {
         std::fs::write(file, hashes.join("\n") + "\n").expect("the golden can be written");
@@ -183,7 +293,9 @@ fn state_hashes_are_those_on_file() {
     }
     let golden = std::fs::read_to_string(file).unwrap_or_default();
     let golden: Vec<&str> = golden.lines().collect();
-    assert!(hashes.len() >= 80, "only {} scenarios can still be run", hashes.len());
     let unknown: Vec<&String> = hashes.iter().filter(|hash| !golden.contains(&hash.as_str())).collect();
     assert!(unknown.is_empty(), "{} of {} are not on file: {unknown:#?}", unknown.len(), hashes.len());
+    for threads in [2, 8] {
+        assert_eq!(golden_lines(&scenarios, threads), hashes, "{threads} threads");
+    }
 }

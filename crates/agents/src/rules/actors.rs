@@ -45,9 +45,9 @@ pub struct Cast {
 
 /// The ego by its maker's or operator's name, or by a general one. Words that only look like a road user come first, so
 /// that they are taken and mean nobody.
-const NOBODY: &str = r"bik(?:e|ing) lanes?|bicycle lanes?|bus (?:lanes?|stop|bay|zone)|truck lanes?|car ?pool lanes?|test driver|safety driver|vehicle operator|(?:passenger|driver)(?:'s)?[- ]side|vehicle'?s? (?:hood|bumper|door)|parked (?:cars?|vehicles?|trucks?|vans?|suvs?)";
-const EGO: &str = r"(?:waymo|zoox|cruise|apollo|argo|nuro|ghost|beep|kodiak|lucid|aurora|motional|avride|pony|weride|wayve|gatik|navya|easymile|may mobility|autonomous|automated|self-driving|driverless|subject|test|host|ego|ads-equipped)(?:'s)?(?:[ -](?:llc|inc|driver|operated|equipped|ai|prius|autonomous|automated|driving|motor))*(?:[ -](?:vehicle|av\w?|adv|car|truck|shuttle|robotaxi|taxi|suv|bus|van))?\b|\b(?:avs?|adv|ads|sv|robotaxi|shuttle|vehicle (?:1|one)|car (?:1|one)|v1)";
-const TRAFFIC: &str = r"(?:oncoming |cross |crossing |stopped |slow |slower |slowing |the |other )?traffic|crossing guard|queue|police officer";
+const NOBODY: &str = r"(?:[\w-]+ )?bike racks?|bik(?:e|ing) lanes?|bicycle lanes?|bus (?:lanes?|stop|bay|zone)|truck lanes?|car ?pool lanes?|test driver|safety driver|vehicle operator|(?:passenger|driver)(?:'s)?[- ]side|vehicle'?s? (?:hood|bumper|door)|parked (?:cars?|vehicles?|trucks?|vans?|suvs?)";
+const EGO: &str = r"(?:waymo|zoox|cruise|apollo|argo|nuro|ghost|beep|kodiak|lucid|aurora|motional|avride|pony|weride|wayve|gatik|navya|easymile|may mobility|may(?: autonomous)? (?:vehicle|shuttle|av)s?|autonomous|automated|self-driving|driverless|subject|test|host|ego|ads-equipped|our(?: \w+)? (?:vehicle|car|av|truck|shuttle)|our)(?:'s)?(?:[ -](?:llc|inc|driver|operated|equipped|ai|prius|autonomous|automated|driving|motor))*(?:[ -](?:vehicle|av\w?|adv|car|truck|shuttle|robotaxi|taxi|suv|bus|van))?\b|\b(?:avs?|adv|ads|sv|robotaxi|shuttle|vehicle (?:1|one)|car (?:1|one)|v1|we)";
+const TRAFFIC: &str = r"(?:oncoming |cross[- ]|crossing |stopped |slow |slower |slowing |the |other )?traffic|crossing guard|queue|police officer";
 const FOUR_WHEELS: &str = r"passenger (?:cars?|vehicles?)|sport utility vehicle|suv|crossover|minivan|van|pick-?up(?: truck)?|police (?:car|vehicle|cruiser|suv)|patrol car|emergency vehicle|fire (?:truck|engine)|ambulance|golf cart|cart|rickshaw|station wagon|convertible|limousine|tow truck|delivery (?:truck|van|vehicle)|box truck|semi(?:-?trailer|-?truck)?|tractor(?:[- ]trailer)?|dump truck|garbage truck|tanker(?: truck)?|truck|(?:\w+ )?bus|trailer|sedan|hatchback|coupe|taxi|vehicle (?:2|two)|car (?:2|two)|v2|(?:other|second|another|third[- ]party|opposing|approaching) (?:vehicle|driver|car|party|motorist)|honda|toyota|ford|tesla|chevrolet|chevy|nissan|hyundai|kia|subaru|mazda|volkswagen|bmw|audi|mercedes(?:-benz)?|lexus|jeep|dodge|ram|gmc|cadillac|buick|acura|infiniti|volvo|range rover|driver|motorist|vehicle|car";
 const TWO_WHEELS: &str = r"motorcycl\w+|motorbike|moped|(?:motor )?scooter(?:ist)?|e-?scooter|cyclist|bicyclist|bicycl\w+|e-?bike|bike|skateboard\w*|delivery robot|robot|(?:person|rider|man|woman|individual) (?:on|operating|riding)(?: an?)?(?: electric| motorized)? \w+";
 const WALKING: &str = r"pedestrians?|person|people|child";
@@ -75,7 +75,15 @@ static OBLIQUE_BEFORE: LazyLock<Regex> = LazyLock::new(|| {
 /// travelling north`).
 static PARTICIPLE_AFTER: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(
-        r"(?i)^,? (?:that (?:was |were |had been )?|which (?:was |were |had been )?|who (?:was |were )?|also )?(?:travell?ing|approaching|heading|driving|proceeding|coming|moving|going|turning|making|entering|facing|signall?ing|following|stopped (?:at|in|behind)|in the (?:left|right|adjacent|number|next)|operating)\b",
+        r"(?i)^,? (?:that (?:was |were |had been )?|in the process of |which (?:was |were |had been )?|who (?:was |were )?|also )?(?:travell?ing|approaching|heading|driving|proceeding|coming|moving|going|turning|making|entering|facing|signall?ing|following|stopped (?:at|in|behind)|in the (?:left|right|adjacent|number|next)|operating)\b",
+    )
+    .expect("constant pattern")
+});
+
+/// A part of somebody that acts in its place: `the front of the ...` at the beginning of a clause.
+static PART_ACTS: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(
+        r"(?i)(?:^|, |\b(?:and|when|as|while|where|then|before|after|that)\s+)(?:the |its )(?:[\w']+[ -]){0,4}?(?:front|rear|back|side|corner|bumper|mirror|door|fender|edge|part|portion|end|panel|trailer|tire|wheel)s? of (?:the|a|an|another)(?: (?:other|stopped|moving))?\s*$",
     )
     .expect("constant pattern")
 });
@@ -90,7 +98,7 @@ impl Cast {
             .entity
             .split(|c: char| !c.is_alphanumeric())
             .next()
-            .filter(|word| word.len() >= 4 && !matches!(word.to_lowercase().as_str(), "general" | "ford" | "mercedes"))
+            .filter(|word| word.len() >= 4 && !matches!(word.to_lowercase().as_str(), "general" | "ford"))
             .map(str::to_owned);
         let kind = record.partner.known();
         let mut cast = Self { entity, kind, kind_named: false };
@@ -103,7 +111,7 @@ impl Cast {
 
     /// Whether a mention is of a person or an animal, and the partner is none.
     fn is_bystander(&self, capture: &regex::Captures) -> bool {
-        capture.name("walk").is_some() && self.kind != Some(PartnerKind::Pedestrian)
+        capture.name("walk").is_some() && self.kind.is_some_and(|kind| kind != PartnerKind::Pedestrian)
             || capture.name("animal").is_some() && self.kind != Some(PartnerKind::Animal)
     }
 
@@ -183,7 +191,7 @@ fn mention(sentence: &str, actor: Actor, at: Range<usize>) -> Mention {
     }
     let before = &sentence[window..at.start];
     let owner = sentence[at.end..].starts_with("'s") || sentence[..at.end].ends_with("'s");
-    let acts = PARTICIPLE_AFTER.is_match(&sentence[at.end..]);
+    let acts = PARTICIPLE_AFTER.is_match(&sentence[at.end..]) || PART_ACTS.is_match(&sentence[..at.start]);
     Mention { actor, oblique: !acts && (owner || OBLIQUE_BEFORE.is_match(before)), at }
 }
 
@@ -198,6 +206,21 @@ impl Mentions {
     /// Whether this actor is mentioned at all.
     pub fn includes(&self, actor: Actor) -> bool {
         self.list.iter().any(|m| m.actor == actor)
+    }
+
+    /// Where this actor is mentioned. [bytes]
+    pub fn starts(&self, actor: Actor) -> impl Iterator<Item = usize> + '_ {
+        self.list.iter().filter(move |m| m.actor == actor).map(|m| m.at.start)
+    }
+
+    /// Where the mentions of this actor end. [bytes]
+    pub fn ends(&self, actor: Actor) -> impl Iterator<Item = usize> + '_ {
+        self.list.iter().filter(move |m| m.actor == actor).map(|m| m.at.end)
+    }
+
+    /// Whether a phrase at this place can be about a meeting of the two: both are mentioned, or one of them is.
+    pub fn meets_at(&self, place: usize) -> bool {
+        matches!(self.subject_at(place), Some(Actor::Sv | Actor::Cp))
     }
 
     /// Whom a cue at this place is about: the last subject before it, else the last mention before it, else the first

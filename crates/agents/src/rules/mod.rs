@@ -14,12 +14,22 @@ mod writing;
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;
+use recrash_model::account::Account;
 use recrash_model::narrative::Narrative;
+use recrash_model::profile::SystemProfile;
+use recrash_model::record::CrashRecord;
 use recrash_model::scenario::ScenarioDraft;
 
 /// The built-in rules. See `docs/models/rules.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rules;
+
+impl Rules {
+    /// What the rules say happened in a record, whether or not it can be retold: for judging them by labels.
+    pub fn account(&self, record: &CrashRecord, profile: &SystemProfile) -> Account {
+        reading::account(record, profile)
+    }
+}
 
 impl Paraphrase for Rules {
     fn paraphrase(&self, brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {

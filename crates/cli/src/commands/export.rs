@@ -6,8 +6,18 @@ use clap::Args;
 use recrash_pipeline::{ExportReport, ExportRequest, Format, PartnersAs, PipelineError};
 use std::path::{Path, PathBuf};
 
+const EXAMPLES: &str = "\
+Examples:
+  recrash export suite --to openscenario,scenic,metadrive,commonroad    a suite in every format, in suite/exports/
+  recrash export suite --to openscenario --as trajectory --to-dir t     partners on the way that was recorded
+  recrash export suite/6-tuned/01-intersection-straight-straight.json --to scenic --to-dir t
+  recrash import suite/exports/openscenario/01-intersection-straight-straight.xosc    and back
+
+What each file holds, and what each tool takes for a position, a heading and a time: docs/formats.";
+
 /// Options of `export`.
 #[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct ExportArgs {
     /// Folder of a suite, or a scenario file (JSON).
     #[arg(value_name = "SUITE|SCENARIO")]
@@ -44,12 +54,20 @@ pub fn run(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
     } else if !output.quiet {
         show(&report);
     }
-    match report.failures.is_empty() {
-        true => Ok(()),
-        false => Err(PipelineError::BadInput {
-            what: format!("{} scenarios were not exported; the others were", report.failures.len()),
-            diagnostics: report.failures,
-        }),
+    if report.failures.is_empty() {
+        return Ok(());
+    }
+    Err(PipelineError::BadInput { what: not_exported(&report), diagnostics: report.failures })
+}
+
+/// How many scenarios were not exported, and what became of the others.
+fn not_exported(report: &ExportReport) -> String {
+    let (lost, made) = (report.failures.len(), report.scenarios);
+    match (lost, made) {
+        (1, 0) => "the scenario was not exported".to_owned(),
+        (_, 0) => format!("none of {lost} scenarios was exported"),
+        (1, _) => format!("1 scenario was not exported; the other {made} were"),
+        _ => format!("{lost} scenarios were not exported; the other {made} were"),
     }
 }
 
@@ -57,8 +75,8 @@ pub fn run(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
 fn show(report: &ExportReport) {
     let mut folders: Vec<(&Path, usize)> = Vec::new();
     for folder in report.files.iter().filter_map(|file| file.parent()) {
-        match folders.last_mut() {
-            Some((last, count)) if *last == folder => *count += 1,
+        match folders.iter_mut().find(|(known, _)| *known == folder) {
+            Some((_, count)) => *count += 1,
             _ => folders.push((folder, 1)),
         }
     }

@@ -1,7 +1,15 @@
 //! The subcommands: one file each, with what may be typed, what is done and what is shown.
 
+mod bench;
+mod bench_embed;
+mod bench_sim;
+mod doctor;
+mod eval;
 mod export;
 mod fetch;
+mod import;
+mod model;
+mod parity;
 mod records;
 mod run;
 mod schema;
@@ -24,7 +32,8 @@ Examples:
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
-  4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached; 130 interrupted";
+  4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached;
+  5 a share or speed that is asked for was missed; 130 interrupted";
 
 /// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
 #[derive(Debug, Parser)]
@@ -49,7 +58,7 @@ pub enum Command {
     /// Stage 1: read crash files, and show what of them can be used.
     Records(records::RecordsArgs),
     /// Stage 2: choose a few records that stand for all.
-    Select(SuiteArgs),
+    Select(select::SelectArgs),
     /// Stage 3: paraphrase the narratives of the picks.
     Narrate(SuiteArgs),
     /// Stage 4: design a scenario for each narrative, checked by running it.
@@ -62,8 +71,20 @@ pub enum Command {
     Report(SuiteArgs),
     /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
     Export(export::ExportArgs),
+    /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
+    Import(import::ImportArgs),
+    /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
+    Eval(eval::EvalArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
+    /// Get or find the files of the embedding model all-MiniLM-L6-v2.
+    Model(model::ModelArgs),
+    /// Run the same scenarios on both simulators, and tell how far they agree.
+    Parity(parity::ParityArgs),
+    /// Tell what is installed of all that can be used, and how to get the rest.
+    Doctor(doctor::DoctorArgs),
+    /// Measure speeds on this machine.
+    Bench(bench::BenchArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -84,7 +105,13 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Tune(args) => stage::run(args, Stage::Tune, output),
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
+        Command::Import(args) => import::run(args, output),
+        Command::Eval(args) => eval::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
+        Command::Model(args) => model::run(args, output),
+        Command::Parity(args) => parity::run(args, output),
+        Command::Doctor(args) => doctor::run(args, output),
+        Command::Bench(args) => bench::run(args, output),
         Command::Schema => schema::run(),
     }
 }

@@ -1,25 +1,44 @@
 //! `recrash records`: what is in crash files, and what of it can be used.
 
-use crate::options::SuiteArgs;
+use crate::options::SourceArgs;
 use crate::output::{self, Output, number, table, title};
 use anstream::println;
 use clap::Args;
 use comfy_table::Cell;
-use recrash_model::record::{FunnelStep, RecordSet};
+use recrash_model::Outcome;
+use recrash_model::record::{FunnelStep, RecordSet, RejectReason};
 use recrash_pipeline::{
-    Distribution, PipelineError, Stage, Suite, TableFormat, TableRows, distributions, write_records,
+    Distribution, Options, PipelineError, Resources, Stage, Suite, TableFormat, TableRows, distributions, read_records,
+    write_records,
 };
 use std::path::{Path, PathBuf};
 
 /// Values of a distribution that are shown.
 const VALUES_SHOWN: usize = 8;
 
+const EXAMPLES: &str = "\
+Examples:
+  recrash records                                           the built-in sample
+  recrash records ads-archive.csv ads-current.csv --dedupe incident
+  recrash records ads-archive.csv --where 'road = intersection and severity >= minor' --csv crashes.csv
+  recrash records ads-archive.csv --all --parquet all.parquet
+  recrash records ads-archive.csv --out suite               as the first stage of a suite; recrash select goes on
+
+Nothing is written but what --csv, --parquet and --out name.";
+
 /// Options of `records`.
 #[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct RecordsArgs {
     /// SGO crash files (CSV), as with --records. [default: the built-in sample]
     #[arg(value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    /// Where crash records come from.
+    #[command(flatten)]
+    pub source: SourceArgs,
+    /// System profile, which decides what is usable: a built-in name or a TOML file. [default: paper]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub profile: Option<String>,
     /// Write the usable records as a CSV table.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -30,9 +49,19 @@ pub struct RecordsArgs {
     /// Write every record that could be read into the tables, with why it was lost.
     #[arg(long)]
     pub all: bool,
-    /// Options of the suite.
-    #[command(flatten)]
-    pub suite: SuiteArgs,
+    /// Keep the records as the first stage of the suite in this folder. [default: nothing is kept]
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+impl RecordsArgs {
+    /// What was typed, over `base`.
+    fn over(&self, base: Options) -> Options {
+        let mut source = self.source.clone();
+        source.records.extend(self.files.iter().cloned());
+        let base = source.over(base);
+        Options { profile: self.profile.clone().unwrap_or(base.profile), ..base }
+    }
 }
 
 /// Reads crash files and shows what is in them.
@@ -40,23 +69,31 @@ pub struct RecordsArgs {
 /// # Errors
 /// A file cannot be read or written.
 pub fn run(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
-    let mut suite_args = args.suite.clone();
-    suite_args.records.extend(args.files.iter().cloned());
-    let suite = suite_args.open_saved()?;
-    let report = suite.run_stage(Stage::Records, &*output.progress())?;
-    let records: RecordSet = suite.store().read_json("1-records.json")?;
-    let written = write_tables(args, &suite)?;
+    let (records, diagnostics) = match &args.out {
+        None => {
+            let Outcome { value, diagnostics } = read_records(&args.over(Options::default()))?;
+            (value, diagnostics)
+        }
+        Some(out) => {
+            let base = Suite::saved_options(out)?.unwrap_or_default();
+            let suite = Suite::open(out, args.over(base), Resources::default())?;
+            let report = suite.run_stage(Stage::Records, &*output.progress())?;
+            (suite.store().read_json("1-records.json")?, report.diagnostics)
+        }
+    };
+    let written = write_tables(args, &records)?;
     let shown = distributions(&records);
     if output.json {
         output::json(&serde_json::json!({
             "distributions": shown,
             "files": records.files, "funnel": records.funnel, "usable": records.usable.len(),
-            "diagnostics": report.diagnostics,
+            "diagnostics": diagnostics,
         }));
     } else if !output.quiet {
-        output::remarks(&report);
+        output::remark_list(&diagnostics, "told by --json");
         files(&records);
         funnel(&records.funnel);
+        sum(&records);
         show_distributions(&shown);
         written.iter().for_each(|(path, rows)| show_written(path, *rows));
     }
@@ -64,13 +101,13 @@ pub fn run(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
 }
 
 /// Writes the tables that were asked for; gives each file with its rows.
-fn write_tables(args: &RecordsArgs, suite: &Suite) -> Result<Vec<(PathBuf, usize)>, PipelineError> {
+fn write_tables(args: &RecordsArgs, records: &RecordSet) -> Result<Vec<(PathBuf, usize)>, PipelineError> {
     let rows = if args.all { TableRows::All } else { TableRows::Usable };
     let mut wanted = Vec::new();
     wanted.extend(args.csv.iter().map(|path| (TableFormat::Csv, path)));
     #[cfg(feature = "parquet")]
     wanted.extend(args.parquet.iter().map(|path| (TableFormat::Parquet, path)));
-    wanted.into_iter().map(|(format, path)| Ok((path.clone(), write_records(suite, rows, format, path)?))).collect()
+    wanted.into_iter().map(|(format, path)| Ok((path.clone(), write_records(records, rows, format, path)?))).collect()
 }
 
 /// Prints the files read.
@@ -98,6 +135,14 @@ pub fn funnel(steps: &[FunnelStep]) {
         table.add_row(vec![Cell::new(&step.name), number(step.remaining), Cell::new(lost.join(", "))]);
     }
     println!("{table}");
+}
+
+/// Prints that the counts add up.
+fn sum(records: &RecordSet) {
+    let merged = records.rejects.iter().filter(|reject| reject.reason == RejectReason::Merged).count();
+    let rejected = records.rejects.len() - merged;
+    let (rows, usable) = (records.files.iter().map(|file| file.rows).sum::<usize>(), records.usable.len());
+    println!("{rows} rows = {usable} usable + {rejected} rejected + {merged} merged");
 }
 
 /// Prints how the records are spread: of all that could be read, and of the usable ones.

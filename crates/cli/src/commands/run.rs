@@ -47,7 +47,12 @@ fn finish(suite: &Suite, output: Output) -> Result<(), PipelineError> {
         show(&summary, suite.store().dir());
         spent(suite);
     }
-    Ok(())
+    match summary.cases.iter().find_map(|case| case.failure.as_ref()) {
+        Some(failure) if summary.run() == 0 => {
+            Err(PipelineError::bad_input(format!("no scenario could be run; the first: {failure}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Prints what is about to be done.
@@ -65,12 +70,12 @@ fn heading(suite: &Suite) {
     );
 }
 
-fn gap(run: &RunSummary) -> String {
-    match (&run.contact, run.min_gap_m) {
-        (Some(kind), _) => format!("contact: {kind}"),
-        (None, Some(gap)) if gap < 0.01 => "< 0.01 m".into(),
-        (None, Some(gap)) => format!("{gap:.2} m"),
-        (None, None) => "-".into(),
+fn gap(run: Option<&RunSummary>) -> String {
+    match run.map(|run| (&run.contact, run.min_gap_m)) {
+        Some((Some(kind), _)) => format!("contact: {kind}"),
+        Some((None, Some(gap))) if gap < 0.01 => "< 0.01 m".into(),
+        Some((None, Some(gap))) => format!("{gap:.2} m"),
+        Some((None, None)) | None => "-".into(),
     }
 }
 
@@ -119,25 +124,34 @@ fn show(summary: &Summary, dir: &Path) {
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
     let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "findings"]);
     for case in &summary.cases {
-        let verdict = if case.tuned.faithful { "faithful" } else { "NOT FAITHFUL" };
+        let verdict = match &case.tuned {
+            Some(run) if run.faithful => "faithful",
+            Some(_) => "NOT FAITHFUL",
+            None => "NOT RUN",
+        };
         rows.add_row(vec![
             Cell::new(&case.id),
             Cell::new(if case.alternative.is_some() { "alternative" } else { "record" }),
-            Cell::new(gap(&case.first)),
-            Cell::new(gap(&case.tuned)),
+            Cell::new(gap(case.first.as_ref())),
+            Cell::new(gap(case.tuned.as_ref())),
             Cell::new(verdict),
-            Cell::new(case.tuned.findings.join(", ")),
+            Cell::new(case.tuned.as_ref().map_or_else(String::new, |run| run.findings.join(", "))),
         ]);
     }
     println!("{rows}");
-    for case in summary.cases.iter().filter(|case| !case.tuned.faithful) {
-        println!("  {} {}: {}", "not faithful:".yellow(), case.id, case.tuned.unfaithful.join("; "));
+    for case in &summary.cases {
+        if let Some(failure) = &case.failure {
+            println!("  {} {}: {failure}", "not run:".yellow(), case.id);
+        } else if let Some(run) = case.tuned.as_ref().filter(|run| !run.faithful) {
+            println!("  {} {}: {}", "not faithful:".yellow(), case.id, run.unfaithful.join("; "));
+        }
     }
     models(&summary.models);
-    let total = summary.cases.len();
+    let (total, run) = (summary.cases.len(), summary.run());
+    let of_total = if run < total { format!(" of {total}") } else { String::new() };
     let (first, tuned) = summary.failed();
     println!(
-        "\n{} {total} scenarios run; {} faithful; {} fails {first} as designed and {tuned} after tuning",
+        "\n{} {run}{of_total} scenarios run; {} faithful; {} fails {first} as designed and {tuned} after tuning",
         "result:".bold(),
         summary.faithful(),
         summary.ego,

@@ -3,27 +3,117 @@
 use crate::options::SuiteArgs;
 use crate::output::{self, Output, number, table, title};
 use anstream::println;
+use clap::Args;
 use comfy_table::Cell;
 use recrash_model::selection::{Coverage, Selection, StageTables, TemplateCount};
-use recrash_pipeline::{PipelineError, Stage};
+use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suite};
+
+const EXAMPLES: &str = "\
+Examples:
+  recrash select --records ads-archive.csv --out suite      the records are read first where the suite has none
+  recrash select --budget 30 --weighting severity           harmful kinds of crash get more scenarios
+  recrash select --strategy kmeans --embedding minilm       the paper's choice
+  recrash select --study                                    every strategy over 50 seeds, and a table of budgets
+
+How records are chosen, and what that guarantees: docs/models/selection.md";
+
+/// Options of `select`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct SelectArgs {
+    /// Also repeat the choice under many seeds with every strategy, and at many budgets: stability, elbow, silhouette.
+    #[arg(long)]
+    pub study: bool,
+    /// Seeds of the study.
+    #[arg(long, value_name = "N", default_value_t = 50, requires = "study", value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub study_seeds: u16,
+    /// Options of the suite.
+    #[command(flatten)]
+    pub suite: SuiteArgs,
+}
 
 /// Chooses the records and shows the choice.
 ///
 /// # Errors
 /// The stage's.
-pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
-    let suite = args.open_saved()?;
-    let report = suite.run_stage(Stage::Select, &*output.progress())?;
+pub fn run(args: &SelectArgs, output: Output) -> Result<(), PipelineError> {
+    let is_new = Suite::saved_options(&args.suite.out)?.is_none();
+    let suite = args.suite.open_saved()?;
+    let progress = output.progress();
+    if is_new || args.suite.source.is_given() || args.suite.profile.is_some() {
+        let report = suite.run_stage(Stage::Records, &*progress)?;
+        if output.tables() {
+            output::remarks(&report);
+        }
+    }
+    let report = suite.run_stage(Stage::Select, &*progress)?;
     let selection: Selection = suite.store().read_json("2-selection.json")?;
+    let study = args.study.then(|| suite.study_selection(usize::from(args.study_seeds))).transpose()?;
     if output.json {
-        output::json(&selection);
+        match study {
+            None => output::json(&selection),
+            Some(study) => output::json(&serde_json::json!({ "selection": selection, "study": study })),
+        }
     } else if !output.quiet {
         output::remarks(&report);
         tables(&selection.tables);
         coverage(&selection.coverage, &selection.templates);
         picks(&selection);
+        how(&selection);
+        study.iter().for_each(show_study);
     }
     Ok(())
+}
+
+/// Prints how the choice was made.
+fn how(selection: &Selection) {
+    let Selection { embedding, strategy, weighting, .. } = selection;
+    println!(
+        "chosen by {}, weighted by {}; narratives by {}: {} of {} dimensions keep {:.0} % of the variance",
+        strategy.name(),
+        weighting.name(),
+        embedding.name,
+        embedding.dimensions,
+        embedding.source_dimensions,
+        100.0 * embedding.explained_variance
+    );
+}
+
+/// Prints the study of a choice.
+fn show_study(study: &SelectionStudy) {
+    let seeds = study.strategies.first().map_or(0, |s| s.stability.seeds);
+    title(&format!("Every strategy over {seeds} seeds (distances: worst and mean of a record to its nearest pick)"));
+    let mut rows = table(&["strategy", "templates (seeds)", "worst", "mean", "picks in common", "same clusters"]);
+    for StrategyStudy { strategy, stability } in &study.strategies {
+        let covered: Vec<String> =
+            stability.templates_covered.iter().map(|(n, seeds)| format!("{n} ({seeds})")).collect();
+        rows.add_row(vec![
+            Cell::new(strategy.name()),
+            Cell::new(covered.join(", ")),
+            number(format!("{:.3}", stability.mean_radius)),
+            number(format!("{:.3}", stability.mean_distance)),
+            number(format!("{:.2}", stability.picks_in_common)),
+            number(format!("{:.2}", stability.cluster_agreement)),
+        ]);
+    }
+    println!("{rows}");
+    title("Budgets");
+    let mut rows = table(&["budget", "inertia", "silhouette", "templates", "worst", "mean", ""]);
+    for row in &study.budgets {
+        let mut marks = Vec::new();
+        marks.extend((study.elbow == Some(row.budget)).then_some("elbow"));
+        marks.extend((study.best_silhouette == Some(row.budget)).then_some("best silhouette"));
+        rows.add_row(vec![
+            number(row.budget),
+            number(format!("{:.2}", row.inertia)),
+            number(row.silhouette.map_or("-".to_owned(), |s| format!("{s:.3}"))),
+            number(row.templates_covered),
+            number(format!("{:.3}", row.radius)),
+            number(format!("{:.3}", row.mean_distance)),
+            Cell::new(marks.join(", ")),
+        ]);
+    }
+    println!("{rows}");
 }
 
 /// Prints the paper's two tables.

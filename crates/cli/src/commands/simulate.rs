@@ -51,7 +51,7 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
 }
 
 /// Prints one run of one scenario file.
-fn show(result: &FileRun) {
+pub(super) fn show(result: &FileRun) {
     let run = &result.run;
     result.diagnostics.iter().for_each(output::remark);
     println!(

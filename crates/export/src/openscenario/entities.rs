@@ -43,7 +43,11 @@ fn controller_slot() -> Element {
     Element::new("Controller")
         .with("name", "system-under-test")
         .with("controllerType", "movement")
-        .child(Element::new("Properties").child(property("slot", note)))
+        // esmini knows a slot for a program of the user by this name.
+        .child(
+            Element::new("Properties")
+                .children([property("slot", note), property("esminiController", "ExternalController")]),
+        )
 }
 
 fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {

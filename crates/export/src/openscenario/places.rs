@@ -6,7 +6,6 @@ use super::Context;
 use crate::opendrive::LanePlace;
 use crate::xml::{Element, number, rounded};
 use recrash_model::geometry::{Pose, Vec2};
-use recrash_model::math;
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Approach, Start};
 use recrash_model::vehicle::VehicleSpec;
@@ -122,16 +121,12 @@ pub(super) fn fixed_place(place: LanePlace) -> Element {
 }
 
 fn lane_element(place: LanePlace, s: String, offset: String) -> Element {
-    let mut element = Element::new("LanePosition")
+    // No orientation: without one an entity faces the way its lane is driven, on lanes of either sign.
+    let element = Element::new("LanePosition")
         .with("roadId", place.road.to_string())
         .with("laneId", place.lane.to_string())
         .with("s", s)
         .with("offset", offset);
-    if place.lane > 0 {
-        // Without this a vehicle on a left lane would face the reference line's way.
-        element =
-            element.child(Element::new("Orientation").with("type", "relative").with_number("h", rounded(math::PI)));
-    }
     Element::new("Position").child(element)
 }
 

@@ -1,6 +1,7 @@
 //! Policies as speed actions: when each begins, and how the speed goes from there.
 
 use super::Context;
+use super::lateral::offset_at;
 use super::places::reference_point;
 use crate::xml::{Element, number, rounded};
 use recrash_model::rollout::{EventKind, STEP_S};
@@ -274,25 +275,32 @@ fn recorded_curve(context: &Context<'_>, position: usize) -> Option<Curve> {
     }
     let path = &context.scenario.partners()[position].path;
     let mut segment = 0;
-    let places: Vec<f64> = track.states[..until]
+    let draft = context.scenario.draft();
+    let partner = &draft.partners[position];
+    // A metre of the lane's centre is more or less than a metre beside it, where the lane bends.
+    let places: Vec<(f64, f64)> = track.states[..until]
         .iter()
-        .map(|state| {
+        .enumerate()
+        .map(|(step, state)| {
             let point = reference_point(track.kind, state.pose()).position;
             let found = path.project(context.scenario.network(), point, segment);
             segment = found.segment;
-            found.s
+            (found.s, 1.0 + path.curvature(found.s) * offset_at(partner, step as f64 * STEP_S))
         })
         .collect();
+    let speed = |from: usize, at: usize, to: usize| {
+        let time = (to - from) as f64 * STEP_S;
+        ((places[to].0 - places[from].0) * places[at].1 / time).max(0.0)
+    };
     let mut speeds = vec![track.states[0].speed];
-    speeds.extend(places.windows(3).map(|three| ((three[2] - three[0]) / (2.0 * STEP_S)).max(0.0)));
-    speeds.push(((places[until - 1] - places[until - 2]) / STEP_S).max(0.0));
+    speeds.extend((1..until - 1).map(|step| speed(step - 1, step, step + 1)));
+    speeds.push(speed(until - 2, until - 1, until - 1));
     // Behind the end of the record it goes on as its policy would.
-    let draft = context.scenario.draft();
     let spec = VehicleSpec::of(track.kind);
     let mut speed = speeds[until - 1];
     let steps = (draft.duration_s / STEP_S).ceil() as usize;
     for step in until..=steps {
-        speed = next_speed(&draft.partners[position].policy, speed, u32::try_from(step - 1).unwrap_or(u32::MAX), &spec);
+        speed = next_speed(&partner.policy, speed, u32::try_from(step - 1).unwrap_or(u32::MAX), &spec);
         speeds.push(speed);
     }
     Some(Curve(speeds))

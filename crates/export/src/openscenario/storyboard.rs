@@ -199,14 +199,11 @@ fn stop_trigger(context: &Context<'_>) -> Element {
     let mut groups = vec![at_time("time is up", &duration)];
     let ego = context.scenario.ego();
     if let Some((end, _)) = place_on(context, &ego.path, (ego.path.length_m - ARRIVED_M).max(0.0), 0.0) {
-        let mut position = fixed_place(end);
-        // A place is reached whichever way one faces.
-        position.children[0].children.clear();
         groups.push(Element::new("ConditionGroup").child(by_entity(
             "ego arrived",
             EGO_ID,
             0.0,
-            Element::new("ReachPositionCondition").with_number("tolerance", ARRIVED_M).child(position),
+            Element::new("ReachPositionCondition").with_number("tolerance", ARRIVED_M).child(fixed_place(end)),
         )));
     }
     for partner in &draft.partners {

@@ -23,7 +23,7 @@ pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
             @if let Some(why) = &case.refused {
                 p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
             }
-            @if case.last_run().is_some() { (stage(case)) (numbers(case)) }
+            @if case.last_run().is_some() { (stage(["As designed", "Tuned"], [case.before.is_some(), case.after.is_some()])) (numbers(case)) }
             .tabs {
                 div role="tablist" aria-label="About this scenario" {
                     @for (i, (name, label, _)) in tabs.iter().enumerate() {
@@ -70,12 +70,10 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
     }
 }
 
-fn stage(case: &CaseView) -> Markup {
-    let modes = [
-        ("before", "As designed", case.before.is_some()),
-        ("after", "Tuned", case.after.is_some()),
-        ("both", "Side by side", case.before.is_some() && case.after.is_some()),
-    ];
+/// Replay and plots of one or two runs, which the scripts fill: their names, and which of them there are.
+pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]) -> Markup {
+    let modes =
+        [("before", first, is_first), ("after", second, is_second), ("both", "Side by side", is_first && is_second)];
     html! {
         noscript { p.banner { "The replay and the plots need scripts. Every number is in the tables below." } }
         .stage {
@@ -98,8 +96,8 @@ fn stage(case: &CaseView) -> Markup {
                     button.small type="button" data-act="zoom-in" title="Zoom in ( + )" aria-label="Zoom in" { (icon::plus()) }
                 }
                 .views tabindex="0" role="img" aria-label="Top-down picture of the run; the plots and tables hold the same in numbers" {
-                    figure.view data-run="before" hidden { canvas {} figcaption { "As designed" } }
-                    figure.view data-run="after" hidden { canvas {} figcaption { "Tuned" } }
+                    figure.view data-run="before" hidden { canvas {} figcaption { (first) } }
+                    figure.view data-run="after" hidden { canvas {} figcaption { (second) } }
                 }
                 .transport {
                     button.small type="button" data-act="start" title="To the start ( Home )" aria-label="To the start" { (icon::to_start()) }
@@ -119,14 +117,24 @@ fn stage(case: &CaseView) -> Markup {
             }
             .plots aria-label="Values over time" role="group" {
                 .plot-key {
-                    @if case.after.is_some() { span.key.solid { "tuned" } @if case.before.is_some() { span.key.dashed { "as designed" } } }
-                    @else { span.key.solid { "as designed" } }
+                    @if is_second { span.key.solid { (uncapital(second)) } @if is_first { span.key.dashed { (uncapital(first)) } } }
+                    @else { span.key.solid { (uncapital(first)) } }
                     span.key.ego { "ego" } span.key.partner { "partner" } }
                 @for (name, title, unit) in [("gap", "Gap to the nearest partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
                     figure.plot data-plot=(name) { figcaption { b { (title) } " " span.muted { (unit) } span.readout {} } svg role="img" aria-label={ (title) " over time" } {} }
                 }
             }
         }
+    }
+}
+
+/// A name within a line: "As designed" is "as designed", and "MetaDrive" stays what it is.
+fn uncapital(name: &str) -> String {
+    let mut letters = name.chars();
+    let rest_is_small = name.chars().skip(1).all(|letter| !letter.is_uppercase());
+    match letters.next() {
+        Some(letter) if rest_is_small => letter.to_lowercase().chain(letters).collect(),
+        _ => name.to_owned(),
     }
 }
 

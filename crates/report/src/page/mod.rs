@@ -8,6 +8,7 @@ mod coverage;
 mod findings;
 mod icon;
 mod overview;
+mod pairs;
 mod parts;
 mod records;
 mod scenario;
@@ -41,6 +42,8 @@ const SCRIPT: &str = concat!(
     "})();\n",
 );
 
+pub use pairs::render as render_pairs;
+
 /// What every section needs.
 pub struct Context<'a> {
     /// The suite.
@@ -59,7 +62,7 @@ pub fn render(suite: &SuiteView) -> String {
         html lang="en" {
             head {
                 meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(content_security_policy());
+                meta http-equiv="Content-Security-Policy" content=(content_security_policy(SCRIPT));
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 meta name="generator" content=(words::clean(&suite.generated_by, 80));
@@ -88,11 +91,11 @@ pub fn render(suite: &SuiteView) -> String {
 }
 
 /// Nothing may load, and only the style and the script of this very page may run.
-fn content_security_policy() -> String {
+fn content_security_policy(script: &str) -> String {
     format!(
         "default-src 'none'; style-src 'sha256-{}'; script-src 'sha256-{}'; img-src data:; base-uri 'none'; form-action 'none'",
         base64(&Sha256::digest(STYLE.as_bytes())),
-        base64(&Sha256::digest(SCRIPT.as_bytes())),
+        base64(&Sha256::digest(script.as_bytes())),
     )
 }
 

@@ -65,6 +65,44 @@ static CROSSING: LazyLock<Regex> = LazyLock::new(|| {
         r"(?i)\bcross(?:ing)? (?:traffic|street|road)\b|\bperpendicular\b|\b(?:against|ran|running|through|disregard\w*|violat\w+) (?:a|the|its|their) (?:\w+ )?(?:red|stop)\b|\b(?:entered|entering|into|through|past)\b[^.]{0,60}? without (?:first )?stopping\b|\b(?:failed to|did not) (?:first )?stop (?:at|for)\b",
     )
 });
+/// Out of a driveway or a parking place: across the ego's way.
+static FROM_PROPERTY: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:exit\w*|leav\w+|out|pull\w*|revers\w+|emerg\w+|enter\w*)(?: \w+){0,4}? (?:of|from|the|a|an|its) (?:\w+ ){0,3}?(?:driveway|parking (?:lot|stall|space|spot|garage)|alley(?:way)?|gas station)\b",
+    )
+});
+/// The side of the street the partner came from, as a compass point.
+static STREET_SIDE: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:from|on|off|at|in a [\w ]{3,30}? on) the (?P<side>north|south|east|west)(?:ern)?(?: \w+)? (?:side|curb|corner|sidewalk)\b",
+    )
+});
+static CROSSES: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:cross(?:ed|ing|es)?|step\w*|walk\w*|ran|darted|emerg\w+|entered|entering|pull\w* (?:out|away))\b",
+    )
+});
+/// The side of the street the partner came from, as a hand.
+static STREET_HAND: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\bfrom (?:the|its|an?) (?:adjacent )?(?P<side>left|right)(?:[- ]hand)? (?:curb|sidewalk|shoulder|side of)\b",
+    )
+});
+/// The ego about the partner: it is beside it.
+static BESIDE_IT: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)\b(?:adjacent to|next to|alongside|passing|passed|overtaking|to pass|past) ?$"));
+/// The ego about the partner: it is behind it.
+static AFTER_IT: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:stopped|travell?ing|waiting|driving|following|slowed|slowing|queued|directly)?(?: in traffic| directly)? (?:behind|following) ?$",
+    )
+});
+/// The partner about the ego: it is ahead of it.
+static AHEAD: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:directly |immediately )?(?:in front of|ahead of)\b|\b(?:vehicle|car|truck|suv|van|motorcycle) (?:directly )?ahead\b",
+    )
+});
 static UNPROTECTED: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?i)\bunprotected left\b|\byield\w* (?:to|for) oncoming\b|\boncoming traffic\b"));
 static COMPASS: LazyLock<Regex> = LazyLock::new(|| {
@@ -94,9 +132,14 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
         .or_else(|| by_phrase(record, sentences, &ONCOMING, Relation::Oncoming))
         .or_else(|| by_phrase(record, sentences, &BEHIND, Relation::Behind))
         .or_else(|| by_phrase(record, sentences, &BESIDE, Relation::Beside(None)))
+        .or_else(|| from_street_side(record, sentences))
+        .or_else(|| by_phrase(record, sentences, &FROM_PROPERTY, Relation::Crossing))
         .or_else(|| by_phrase(record, sentences, &CROSSING, Relation::Crossing))
         .or_else(|| by_told_lanes(record, sentences))
         .or_else(|| by_unprotected_turn(record, sentences))
+        .or_else(|| by_object(record, sentences, &BESIDE_IT, Relation::Beside(None)))
+        .or_else(|| by_object(record, sentences, &AFTER_IT, Relation::Behind))
+        .or_else(|| ahead_of_ego(record, sentences))
         .or(compass);
     told.map(|(relation, source)| match relation {
         Relation::Beside(None) => {
@@ -140,7 +183,8 @@ fn side_from_zones(record: &CrashRecord) -> Option<Side> {
 
 /// A partner that turns off, told in another lane than the ego: it drove beside it.
 fn by_told_lanes(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
-    let turns = record.cp_movement.known().is_some_and(|movement| movement != Movement::Straight);
+    let (left, right, _) = super::told_turns(sentences, Actor::Cp);
+    let turns = left || right || record.cp_movement.known().is_some_and(|movement| movement != Movement::Straight);
     let side = side_from_lanes(sentences).filter(|_| turns)?;
     let (_, text) = details::told_lanes(sentences).1?;
     Some((Relation::Beside(Some(side)), words(record, text)))
@@ -259,6 +303,66 @@ fn by_phrase(
     })
 }
 
+/// What the ego's sentence says of the partner it names next: `passing the cyclist`.
+fn by_object(
+    record: &CrashRecord,
+    sentences: &[Sentence],
+    phrase: &Regex,
+    relation: Relation,
+) -> Option<(Relation, FactSource)> {
+    sentences.iter().find_map(|sentence| {
+        sentence.mentions.starts(Actor::Cp).find_map(|at| {
+            let before = sentence.text[..at].trim_end_matches(|c: char| c.is_whitespace());
+            let before =
+                ["the", "a", "an", "another"].iter().find_map(|word| before.strip_suffix(word)).unwrap_or(before);
+            let found = phrase.find(before)?;
+            (sentence.mentions.subject_at(found.start()) == Some(Actor::Sv))
+                .then(|| (relation, words(record, found.as_str().trim())))
+        })
+    })
+}
+
+/// A partner that is told ahead of the ego.
+fn ahead_of_ego(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
+    sentences.iter().find_map(|sentence| {
+        AHEAD.find_iter(sentence.text).find_map(|found| {
+            let by_partner = sentence.mentions.subject_at(found.start()) == Some(Actor::Cp);
+            let of_ego = sentence.mentions.object_after(found.end()).is_none_or(|actor| actor == Actor::Sv);
+            (by_partner && of_ego).then(|| (Relation::Behind, words(record, found.as_str())))
+        })
+    })
+}
+
+/// The side of the street from which the partner came, by hand or by compass and the ego's heading.
+fn from_street_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
+    let by_hand = sentences.iter().find_map(|sentence| {
+        let found = STREET_HAND.captures(sentence.text)?;
+        let whole = found.get(0).expect("group 0");
+        (sentence.mentions.subject_at(whole.start()) == Some(Actor::Cp))
+            .then(|| (Relation::From(side(&found["side"])), words(record, whole.as_str())))
+    });
+    by_hand.or_else(|| {
+        let sv = headings(sentences)[0]?;
+        sentences
+            .iter()
+            .filter(|sentence| FROM_PROPERTY.is_match(sentence.text) || CROSSES.is_match(sentence.text))
+            .find_map(|sentence| {
+                let found = STREET_SIDE.captures(sentence.text)?;
+                let whole = found.get(0).expect("group 0");
+                if sentence.mentions.subject_at(whole.start()) != Some(Actor::Cp) {
+                    return None;
+                }
+                // Heading north, the east side is on the right.
+                let relation = match (8 + eighths(None, &found["side"])? - sv.eighths) % 8 {
+                    1..=3 => Relation::From(Side::Right),
+                    5..=7 => Relation::From(Side::Left),
+                    _ => return None,
+                };
+                Some((relation, words(record, whole.as_str())))
+            })
+    })
+}
+
 /// An unprotected left turn is one across oncoming traffic: where one of the two makes it and nothing else is said, the
 /// other came towards it.
 fn by_unprotected_turn(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
@@ -282,8 +386,8 @@ struct Heading<'a> {
     text: &'a str,
 }
 
-/// The relation from the compass directions of both.
-fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
+/// The first heading told of the ego, and of the partner.
+fn headings<'a>(sentences: &[Sentence<'a>]) -> [Option<Heading<'a>>; 2] {
     let mut headings: [Option<Heading>; 2] = [None, None];
     let mut met = false;
     for (number, sentence) in sentences.iter().enumerate() {
@@ -301,8 +405,8 @@ fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation,
                 Some(Actor::Cp) => 1,
                 _ => continue,
             };
-            if headings[who].is_none() {
-                let (first, second) = (found.name("a").map(|m| m.as_str()), found.name("b")?.as_str());
+            if let (None, Some(second)) = (headings[who], found.name("b")) {
+                let (first, second) = (found.name("a").map(|m| m.as_str()), second.as_str());
                 headings[who] = eighths(first, second).map(|eighths| Heading {
                     eighths,
                     sentence: number,
@@ -314,7 +418,12 @@ fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation,
         }
         met |= meeting.is_some();
     }
-    let (sv, cp) = (headings[0]?, headings[1]?);
+    headings
+}
+
+/// The relation from the compass directions of both.
+fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
+    let [Some(sv), Some(cp)] = headings(sentences) else { return None };
     let told = match (8 + cp.eighths - sv.eighths) % 8 {
         // Front and rear touch: one followed the other.
         0 if only(&record.sv_zones, is_rear) && only(&record.cp_zones, is_front) => Relation::Behind,

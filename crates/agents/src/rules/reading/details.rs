@@ -21,8 +21,9 @@ static LANE: LazyLock<Regex> = LazyLock::new(|| {
         r"(?i)\b(?:(?P<far>far )?(?P<side>left|right)(?P<most>[- ]?most)?(?:[- ]hand)?|(?P<mid>middle|cent(?:er|re)|(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?))(?P<kind>(?: (?:dedicated|through|thru|travel|traffic|left|right|turn|turning|only|straight|driving))*) lanes?\b",
     )
 });
-static SECOND_LANE: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:second|third|2nd|3rd) lane (?:from|to) the (?:left|right)(?:most)?\b"));
+static SECOND_LANE: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(r"(?i)\b(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?(?: lane)?\b")
+});
 static SIGNAL: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
         r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\bon (?:a )?(?P<d>green|red|yellow)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",

@@ -1,14 +1,21 @@
 //! What one record states: its columns and its narrative, as facts with their sources.
 
+mod account;
 mod approach;
 mod details;
+mod movement;
+mod order;
+mod road;
+mod zones;
+
+pub use account::account;
 
 pub use approach::{Relation, relation_from_zones};
 
 use super::actors::{Actor, Cast, Mentions};
 use super::text::telling_sentences;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::narrative::{Fact, FactSource, FactValue, FirstMover};
+use recrash_model::narrative::{Fact, FactSource, FactValue};
 use recrash_model::record::{ContactZone, CrashRecord};
 use recrash_model::template::Movement;
 use regex::Regex;
@@ -47,30 +54,37 @@ pub(super) static MEETING: LazyLock<Regex> = LazyLock::new(|| {
 
 static TURN: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(
-        r"(?i)\b(?:making|made|makes|initiat\w+|execut\w+|complet\w+|perform\w+|began|beginning) (?:\w+ ){0,4}?(?P<a>left|right)(?:[- ]hand)?[- ]turn\b|\b(?:turned|turning|turns) (?:\w+ )?(?P<b>left|right)\b",
+        r"(?i)\b(?:making|made|makes?|initiat\w+|execut\w+|complet\w+|perform\w+|attempt\w+|began|beginning) (?:\w+ ){0,4}?(?P<a>left|right)(?:[- ]hand)?[- ]turn\b|\b(?:turned|turning|turns) (?:\w+ )?(?P<b>left|right)\b",
     )
     .expect("constant pattern")
 });
 
 static STRAIGHT: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection").expect("constant pattern")
+    Regex::new(r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection|\bthrough traffic|\bwith the flow of traffic|\bright of way").expect("constant pattern")
 });
 
 /// Reads a record.
 pub fn read(record: &CrashRecord) -> Reading<'_> {
+    reading_of(record, &read_sentences(record))
+}
+
+/// The sentences that tell about the crash, each with whom it mentions.
+fn read_sentences(record: &CrashRecord) -> Vec<Sentence<'_>> {
     let texts = telling_sentences(&record.narrative);
     let cast = Cast::new(record, &texts);
-    let sentences: Vec<Sentence> =
-        texts.into_iter().map(|text| Sentence { text, mentions: cast.mentions(text) }).collect();
-    let relation = approach::relation(record, &sentences);
+    texts.into_iter().map(|text| Sentence { text, mentions: cast.mentions(text) }).collect()
+}
+
+fn reading_of<'a>(record: &'a CrashRecord, sentences: &[Sentence<'a>]) -> Reading<'a> {
+    let relation = approach::relation(record, sentences);
     let partner_named = sentences.iter().any(|sentence| sentence.mentions.includes(Actor::Cp));
     let meets = partner_named && sentences.iter().any(|sentence| MEETING.is_match(sentence.text));
-    let collision = collision(record, &sentences, relation.as_ref().map(|(relation, _)| *relation));
+    let collision = collision(record, sentences, relation.as_ref().map(|(relation, _)| *relation));
     Reading {
         record,
         tells: meets || relation.is_some(),
-        contradiction: contradiction(record, &sentences),
-        facts: facts(record, &sentences, relation.as_ref().map(|(relation, _)| *relation)),
+        contradiction: contradiction(record, sentences),
+        facts: facts(record, sentences, relation.as_ref().map(|(relation, _)| *relation)),
         relation,
         collision,
     }
@@ -106,23 +120,17 @@ fn facts(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation
         let text = format!("SV: {}; CP: {}", zone_list(&record.sv_zones), zone_list(&record.cp_zones));
         let contact = FactValue::Contact { sv: record.sv_zones.clone(), cp: record.cp_zones.clone() };
         add(contact, column(record, "SV and CP Contact Area", text.clone()));
-        if let Some(first) = first_mover(&record.sv_zones, &record.cp_zones) {
+        let met = order::Met {
+            relation,
+            collision: None,
+            movements: (record.sv_movement.known(), record.cp_movement.known()),
+            zones: (&record.sv_zones, &record.cp_zones),
+        };
+        if let Some(first) = order::first(&met) {
             add(FactValue::Order { first }, column(record, "SV and CP Contact Area", text));
         }
     }
     facts
-}
-
-/// Who was at the place of the conflict first: the one that was hit on its side or rear, by the other's front.
-fn first_mover(sv: &[ContactZone], cp: &[ContactZone]) -> Option<FirstMover> {
-    let (sv_front, cp_front) = (only(sv, is_front), only(cp, is_front));
-    let (sv_flank, cp_flank) = (sv.iter().any(|z| is_flank(*z)), cp.iter().any(|z| is_flank(*z)));
-    match (sv_front, cp_front) {
-        (true, true) => Some(FirstMover::Both),
-        (true, false) if cp_flank => Some(FirstMover::Cp),
-        (false, true) if sv_flank => Some(FirstMover::Sv),
-        _ => None,
-    }
 }
 
 /// Front, front left or front right.
@@ -135,10 +143,6 @@ pub fn is_rear(zone: ContactZone) -> bool {
     matches!(zone, ContactZone::Rear | ContactZone::RearLeft | ContactZone::RearRight)
 }
 
-fn is_flank(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Left | ContactZone::Right) || is_rear(zone)
-}
-
 /// Whether there are zones and all of them are of this sort.
 pub fn only(zones: &[ContactZone], sort: fn(ContactZone) -> bool) -> bool {
     !zones.is_empty() && zones.iter().all(|zone| sort(*zone))
@@ -148,6 +152,10 @@ static REAR_END: LazyLock<Regex> =
     LazyLock::new(|| Regex::new(r"(?i)\brear[- ]?end(?:ed|ing|s)?\b").expect("constant pattern"));
 static REAR_ENDED_BY: LazyLock<Regex> =
     LazyLock::new(|| Regex::new(r"(?i)^rear[- ]?ended(?: \w+)? by\b").expect("constant pattern"));
+static STRUCK_FROM_BEHIND: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(r"(?i)\b(?:struck|hit|impacted|contacted|bumped) (?:from|in|on|at)(?: the| its)? (?:behind|rear|back)\b")
+        .expect("constant pattern")
+});
 static HEAD_ON: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"(?i)\bhead[- ]on\b").expect("constant pattern"));
 static HIT_REAR_OF: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(r"(?i)\b(?:contact\w*|struck|hit|collided|impacted|bumped)\b(?: with)?(?: into)? (?:the )?(?:rear|back)(?:[- ]end| bumper)?(?: bumper)?(?: of)?")
@@ -176,6 +184,16 @@ fn collision(
             };
             return Some((kind, words(record, found.as_str())));
         }
+        if let Some(found) = STRUCK_FROM_BEHIND.find(sentence.text) {
+            let kind = match sentence.mentions.subject_at(found.start()) {
+                Some(Actor::Sv) => Some(CollisionKind::RearEndOfEgo),
+                Some(Actor::Cp) if !crosses && !beside => Some(CollisionKind::RearEndByEgo),
+                _ => None,
+            };
+            if let Some(kind) = kind {
+                return Some((kind, words(record, found.as_str())));
+            }
+        }
         if let Some(found) = HIT_REAR_OF.find(sentence.text).filter(|_| !crosses && !beside) {
             let object = sentence.mentions.object_after(found.end());
             let kind = match (sentence.mentions.subject_at(found.start()), object) {
@@ -194,44 +212,52 @@ fn collision(
     };
     let (sv, cp) = (&record.sv_zones, &record.cp_zones);
     let behind = relation == Some(Relation::Behind);
-    if behind && (sv.is_empty() || only(sv, is_rear)) {
-        return Some((CollisionKind::RearEndOfEgo, zones()));
+    let (sv_did, cp_did) = (record.sv_movement.known(), record.cp_movement.known());
+    // Who comes backwards or out of a side street does not follow.
+    let follows = |did: Option<Movement>| {
+        !matches!(did, Some(Movement::Backing | Movement::ParkingManeuver | Movement::EnteringTraffic))
+    };
+    if record.partner.known().is_some() && !crosses && !beside && follows(sv_did) && follows(cp_did) {
+        if (behind && sv.is_empty()) || (only(sv, is_rear) && (behind || only(cp, is_front))) {
+            return Some((CollisionKind::RearEndOfEgo, zones()));
+        }
+        if only(sv, is_front) && only(cp, is_rear) {
+            return Some((CollisionKind::RearEndByEgo, zones()));
+        }
     }
-    if !crosses && !beside && only(sv, is_rear) && only(cp, is_front) {
-        return Some((CollisionKind::RearEndOfEgo, zones()));
+    let ahead = |did: Option<Movement>| {
+        use Movement::{CrossingIntoOpposingLane, Stopped, Straight, WrongWay};
+        matches!(did, Some(Straight | Stopped | WrongWay | CrossingIntoOpposingLane))
+    };
+    let fronts = |zones: &[ContactZone]| zones.is_empty() || zones.iter().any(|zone| is_front(*zone));
+    let head_on = relation == Some(Relation::Oncoming) && ahead(sv_did) && ahead(cp_did) && fronts(sv) && fronts(cp);
+    head_on.then(|| (CollisionKind::HeadOn, zones()))
+}
+
+/// Whether a left turn, a right turn and going straight are told of an actor.
+fn told_turns(sentences: &[Sentence], actor: Actor) -> (bool, bool, bool) {
+    let (mut left, mut right, mut straight) = (false, false, false);
+    for sentence in sentences {
+        for found in TURN.captures_iter(sentence.text) {
+            let at = found.get(0).expect("group 0").start();
+            let together = sentence.text[..at].contains("both ") && sentence.mentions.includes(actor);
+            if together || sentence.mentions.subject_at(at) == Some(actor) {
+                let side = found.name("a").or_else(|| found.name("b")).map_or("", |m| m.as_str());
+                left |= side.eq_ignore_ascii_case("left");
+                right |= side.eq_ignore_ascii_case("right");
+            }
+        }
+        for found in STRAIGHT.find_iter(sentence.text) {
+            straight |= sentence.mentions.subject_at(found.start()) == Some(actor);
+        }
     }
-    if !crosses && !beside && only(sv, is_front) && only(cp, is_rear) && record.sv_movement == record.cp_movement {
-        return Some((CollisionKind::RearEndByEgo, zones()));
-    }
-    let both_straight = record.sv_movement.known() == Some(Movement::Straight)
-        && record.cp_movement.known() == Some(Movement::Straight);
-    match relation {
-        Some(Relation::Oncoming) if both_straight => Some((CollisionKind::HeadOn, zones())),
-        _ => None,
-    }
+    (left, right, straight)
 }
 
 /// A turn the narrative tells of, where the column says otherwise and no words bear the column out.
 fn contradiction(record: &CrashRecord, sentences: &[Sentence]) -> Option<String> {
-    let told = |actor: Actor| {
-        let (mut left, mut right, mut straight) = (false, false, false);
-        for sentence in sentences {
-            for found in TURN.captures_iter(sentence.text) {
-                let at = found.get(0).expect("group 0").start();
-                if sentence.mentions.subject_at(at) == Some(actor) {
-                    let side = found.name("a").or_else(|| found.name("b")).map_or("", |m| m.as_str());
-                    left |= side.eq_ignore_ascii_case("left");
-                    right |= side.eq_ignore_ascii_case("right");
-                }
-            }
-            for found in STRAIGHT.find_iter(sentence.text) {
-                straight |= sentence.mentions.subject_at(found.start()) == Some(actor);
-            }
-        }
-        (left, right, straight)
-    };
     let against = |actor: Actor, movement: Option<Movement>| {
-        let (left, right, straight) = told(actor);
+        let (left, right, straight) = told_turns(sentences, actor);
         match movement? {
             Movement::Straight if !straight && left != right => Some(if left { "left" } else { "right" }),
             Movement::LeftTurn if right && !left => Some("right"),

@@ -1,17 +1,20 @@
 //! Background traffic: where it stands at the start, and where it wants to go.
 //!
 //! MetaDrive's trigger mode: a share of a grid of places on the block's spawn lanes is filled at random; everybody
-//! stands until the ego enters the road that leads to the block. See `docs/models/policies.md`.
+//! stands until the ego enters the road that leads to the block. It is placed here, so that every simulator gets the
+//! same vehicles in the same places. See `docs/models/policies.md`.
 
+use crate::network::{RoadId, RoadPart};
+use crate::path::LanePath;
+use crate::scenario::Scenario;
 use recrash_model::Seed;
 use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Approach, Turn};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::{LanePath, RoadId, RoadPart, Scenario};
 
 /// Speed background traffic wants: MetaDrive's 30 km/h. [m/s]
-pub(crate) const TRAFFIC_SPEED_MPS: f64 = 30.0 / 3.6;
+pub const TRAFFIC_SPEED_MPS: f64 = 30.0 / 3.6;
 
 /// Spacing of the places (`VEHICLE_GAP`). [m]
 const PLACE_SPACING_M: f64 = 10.0;
@@ -25,16 +28,21 @@ const FREE_ROOM_M: f64 = 1.0;
 /// Below this density there is none (MetaDrive's own threshold).
 const LEAST_DENSITY: f64 = 1e-2;
 
-/// A background vehicle at the start.
+/// A background vehicle at the start, where it stands.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Spawn {
-    pub(crate) kind: PartnerKind,
-    pub(crate) path: LanePath,
-    pub(crate) pose: Pose,
+pub struct TrafficPlacement {
+    /// Kind.
+    pub kind: PartnerKind,
+    /// The lanes it takes, from the one it stands on.
+    pub path: LanePath,
+    /// Start along its path. [m]
+    pub s_m: f64,
+    /// Start in the world.
+    pub pose: Pose,
 }
 
-/// The background traffic of a scenario.
-pub(crate) fn place(scenario: &Scenario) -> Vec<Spawn> {
+/// The background traffic of a scenario; none below a density of 0.01.
+pub fn background_traffic(scenario: &Scenario) -> Vec<TrafficPlacement> {
     let traffic = scenario.draft().traffic;
     if traffic.density < LEAST_DENSITY {
         return Vec::new();
@@ -77,7 +85,7 @@ pub(crate) fn place(scenario: &Scenario) -> Vec<Spawn> {
             continue;
         }
         taken.push(outline);
-        spawns.push(Spawn { kind, path, pose });
+        spawns.push(TrafficPlacement { kind, path, s_m: s, pose });
     }
     spawns
 }

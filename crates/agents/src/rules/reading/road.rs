@@ -1,0 +1,44 @@
+//! Where it happened: the column, unless the narrative plainly says otherwise.
+
+use super::{MEETING, Relation, Sentence};
+use recrash_model::account::RoadGroup;
+use recrash_model::record::CrashRecord;
+use recrash_model::template::RoadType;
+use regex::Regex;
+use std::sync::LazyLock;
+
+fn pattern(text: &str) -> Regex {
+    Regex::new(text).expect("constant pattern")
+}
+
+static IN_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:enter(?:ed|ing|s)?|through|into|within|inside|in the middle of|cross(?:ed|ing)|block(?:ed|ing)) (?:the|an|its) (?:\w+ )?intersection\b",
+    )
+});
+/// Where one crosses the other's way, that there is a junction is enough.
+static JUNCTION: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bintersection\b"));
+static GARAGE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bparking (?:garage|structure)\b"));
+
+/// The kind of road of a record, given from where the partner came.
+pub(super) fn road(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation>) -> Option<RoadGroup> {
+    let crosses = matches!(relation, Some(Relation::From(_) | Relation::Crossing));
+    let column = record.road.known();
+    let before_they_met = || {
+        let met = sentences.iter().position(|sentence| MEETING.is_match(sentence.text));
+        &sentences[..met.map_or(sentences.len(), |met| met + 1)]
+    };
+    match column {
+        Some(RoadType::Street)
+            if before_they_met().iter().any(|sentence| {
+                IN_JUNCTION.is_match(sentence.text) || (crosses && JUNCTION.is_match(sentence.text))
+            }) =>
+        {
+            Some(RoadGroup::Intersection)
+        }
+        Some(RoadType::ParkingLot) if sentences.iter().any(|sentence| GARAGE.is_match(sentence.text)) => {
+            Some(RoadGroup::Other)
+        }
+        column => column.map(Into::into),
+    }
+}

@@ -1,0 +1,89 @@
+//! `recrash import`: a scenario of another format as a scenario file.
+
+use super::simulate;
+use crate::output::{self, Output};
+use anstream::println;
+use clap::Args;
+use recrash_pipeline::{FileRequest, ImportRequest, Imported, Options, PipelineError, SimulatorKind, SourceFormat};
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  recrash import 01-intersection-straight-straight.xosc             writes 01-intersection-straight-straight.json
+  recrash import edited.xosc --out edited.json --simulate           and runs it
+  recrash import crash.json --out scenario.json                     the paper's JSON dialect
+
+Of OpenSCENARIO only what recrash wrote is read: numbers from the parameter declarations, road users and map from the
+properties. Edits elsewhere are told and not read. docs/formats/coverage.md lists every element.";
+
+/// Options of `import`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ImportArgs {
+    /// OpenSCENARIO XML that recrash wrote, or a scenario in JSON: recrash's own or the paper's dialect.
+    #[arg(value_name = "FILE")]
+    pub source: PathBuf,
+    /// Scenario file to write. [default: the scenario's id with .json, in this folder]
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Overwrite the scenario file if it is there already.
+    #[arg(long)]
+    pub force: bool,
+    /// Run it in the native simulator, and show its metrics.
+    #[arg(long)]
+    pub simulate: bool,
+    /// System under test to run it with. [default: that of the profile paper]
+    #[arg(long, value_name = "NAME", requires = "simulate")]
+    pub ego: Option<String>,
+}
+
+/// Reads a scenario, writes it, and runs it where asked to.
+///
+/// # Errors
+/// The source is no scenario that can be run, or a file cannot be read or written.
+pub fn run(args: &ImportArgs, output: Output) -> Result<(), PipelineError> {
+    let target = args.out.as_deref();
+    let imported = recrash_pipeline::import(&ImportRequest { source: &args.source, target, force: args.force })?;
+    let defaults = Options::default();
+    let replay = || {
+        recrash_pipeline::simulate_file(&FileRequest {
+            scenario: &imported.file,
+            profile: &defaults.profile,
+            ego: args.ego.as_deref(),
+            simulator: SimulatorKind::Native,
+            python: Path::new(""),
+            rollout: None,
+        })
+    };
+    let replayed = args.simulate.then(replay).transpose()?;
+    if output.json {
+        let run = replayed.map(|replayed| replayed.run);
+        output::json(&serde_json::json!({ "imported": imported, "run": run }));
+    } else if !output.quiet {
+        show(&args.source, &imported);
+        match replayed {
+            Some(replayed) => simulate::show(&replayed),
+            None => println!("run it with: recrash simulate {}", imported.file.display()),
+        }
+    }
+    Ok(())
+}
+
+/// Prints what was read.
+fn show(source: &Path, imported: &Imported) {
+    imported.diagnostics.iter().for_each(output::remark);
+    let scenario = &imported.scenario;
+    let kind = match imported.read_as {
+        SourceFormat::OpenScenario => "OpenSCENARIO",
+        SourceFormat::Json => "JSON",
+    };
+    println!("{}, read as {kind} -> {}", source.display(), imported.file.display());
+    println!(
+        "{}: map {}, partners {}, obstacles {}, {} s",
+        scenario.id,
+        scenario.map.letter(),
+        scenario.partners.len(),
+        scenario.obstacles.len(),
+        scenario.duration_s
+    );
+}

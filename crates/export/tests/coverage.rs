@@ -1,0 +1,55 @@
+//! `docs/formats/coverage.md` lists every element that is written, and none that is not.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Names of the elements in the committed exports of some folders.
+fn written(folders: &[&str], extension: &str) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for folder in folders {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens").join(folder);
+        for entry in std::fs::read_dir(&root).expect("a folder of goldens") {
+            let path = entry.expect("an entry").path();
+            if !path.to_string_lossy().ends_with(extension) {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("a golden");
+            for part in text.split('<').skip(1).filter(|part| part.starts_with(|c: char| c.is_ascii_alphabetic())) {
+                names.insert(part.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect());
+            }
+        }
+    }
+    assert!(names.len() > 10, "{folders:?}");
+    names
+}
+
+/// Names in code font in a section of the page.
+fn listed(section: &str) -> BTreeSet<String> {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formats/coverage.md");
+    let text = std::fs::read_to_string(page).expect("the page");
+    let from = text.find(&format!("## {section}\n")).unwrap_or_else(|| panic!("no section {section}"));
+    let body = &text[from + 3..];
+    let body = &body[..body.find("\n## ").unwrap_or(body.len())];
+    body.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+#[test]
+fn openscenario() {
+    let mut page = listed("OpenSCENARIO XML 1.3");
+    page.remove("import");
+    assert_eq!(written(&["openscenario", "openscenario-trajectory"], ".xosc"), page);
+}
+
+#[test]
+fn opendrive() {
+    assert_eq!(written(&["openscenario"], ".xodr"), listed("OpenDRIVE 1.7"));
+}
+
+#[test]
+fn commonroad() {
+    let mut page = listed("CommonRoad 2020a");
+    for value in ["sunny", "day", "clear", "noon"] {
+        page.remove(value);
+    }
+    assert_eq!(written(&["commonroad"], ".cr.xml"), page);
+}

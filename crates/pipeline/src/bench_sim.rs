@@ -1,0 +1,174 @@
+//! The speed of both simulators on the same scenarios, in one run.
+
+use crate::error::PipelineError;
+use crate::parity::{random_scenario, start};
+use crate::progress::{Progress, ProgressEvent};
+use recrash_metadrive::Drive;
+use recrash_roads::Scenario;
+use recrash_sim::{Ego, Simulator, SummaryRecorder};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// What is asked for: agent-steps per second of one core, times MetaDrive's, and times one thread's on two.
+const WANTED_PER_CORE: f64 = 2e6;
+const WANTED_TIMES_METADRIVE: f64 = 1000.0;
+const WANTED_TIMES_ONE_THREAD: f64 = 1.8;
+
+/// What to measure.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SimBenchRequest {
+    /// Random scenarios that both run.
+    pub count: usize,
+    /// Their seed.
+    pub seed: u64,
+    /// Measurements of the native simulator; the median counts.
+    pub rounds: usize,
+    /// How long one measurement takes at least.
+    pub least: Duration,
+    /// Python interpreter with MetaDrive.
+    pub python: PathBuf,
+}
+
+/// Speeds. An agent-step is one road user over 0.1 s: five physics steps and one decision.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimBench {
+    /// Always `recrash.bench-sim/1`.
+    pub format: &'static str,
+    /// Scenarios.
+    pub scenarios: usize,
+    /// Agent-steps of all of them, once each.
+    pub agent_steps: u64,
+    /// Native, one thread: median of the rounds. [agent-steps/s]
+    pub one_thread: f64,
+    /// Native, two threads, each with scenarios of its own. [agent-steps/s]
+    pub two_threads: f64,
+    /// MetaDrive, one worker, setting up each scenario included. [agent-steps/s]
+    pub metadrive: Option<f64>,
+    /// MetaDrive's version, or why there is no figure of it.
+    pub metadrive_note: String,
+    /// Cores the machine says it has.
+    pub cores: usize,
+}
+
+impl SimBench {
+    /// One thread over MetaDrive.
+    pub fn times_metadrive(&self) -> Option<f64> {
+        self.metadrive.map(|metadrive| self.one_thread / metadrive)
+    }
+
+    /// Two threads over one.
+    pub fn times_one_thread(&self) -> f64 {
+        self.two_threads / self.one_thread
+    }
+
+    /// What is asked for: what, the figure (absent without MetaDrive), how much, and whether it is reached.
+    pub fn asked(&self) -> Vec<(&'static str, Option<f64>, f64, bool)> {
+        let row = |what, figure: Option<f64>, wanted: f64| (what, figure, wanted, figure.is_none_or(|f| f >= wanted));
+        vec![
+            row("agent-steps per second and core", Some(self.one_thread), WANTED_PER_CORE),
+            row("times MetaDrive, one thread", self.times_metadrive(), WANTED_TIMES_METADRIVE),
+            row("times one thread, two threads", Some(self.times_one_thread()), WANTED_TIMES_ONE_THREAD),
+        ]
+    }
+}
+
+/// Measures both simulators. Without MetaDrive the native figures stand alone, with a note.
+///
+/// # Errors
+/// MetaDrive is there but fails on every scenario.
+pub fn bench_sim(request: &SimBenchRequest, progress: &dyn Progress) -> Result<SimBench, PipelineError> {
+    const STAGE: &str = "bench";
+    let scenarios: Vec<Scenario> = (0..request.count).map(|number| random_scenario(request.seed, number)).collect();
+    progress.event(ProgressEvent::Started { stage: STAGE, units: request.rounds + scenarios.len() });
+    let agent_steps = run_all(&scenarios, &mut Simulator::new());
+    let (mut one, mut two) = (Vec::new(), Vec::new());
+    for _ in 0..request.rounds {
+        // In turn, so that other work on the machine meets both.
+        one.push(native(&scenarios, 1, request.least));
+        two.push(native(&scenarios, 2, request.least));
+        progress.event(ProgressEvent::Advanced { stage: STAGE, unit: "native", skipped: false });
+    }
+    let (metadrive, metadrive_note) = match start(&request.python, 1) {
+        Err(why) => (None, why.to_string()),
+        Ok(pool) => {
+            let begun = Instant::now();
+            let mut steps = 0;
+            for scenario in &scenarios {
+                if let Ok(rollout) = pool.simulate(scenario, &Drive::MetadriveIdm) {
+                    steps += (rollout.actors.len() * rollout.steps()) as u64;
+                }
+                progress.event(ProgressEvent::Advanced { stage: STAGE, unit: "MetaDrive", skipped: false });
+            }
+            if steps == 0 {
+                return Err(PipelineError::bad_input("MetaDrive failed on every scenario"));
+            }
+            let (python, version) = pool.versions();
+            (Some(steps as f64 / begun.elapsed().as_secs_f64()), format!("MetaDrive {version} on Python {python}"))
+        }
+    };
+    progress.event(ProgressEvent::Finished { stage: STAGE });
+    Ok(SimBench {
+        format: "recrash.bench-sim/1",
+        scenarios: scenarios.len(),
+        agent_steps,
+        one_thread: median(one),
+        two_threads: median(two),
+        metadrive,
+        metadrive_note,
+        cores: std::thread::available_parallelism().map_or(1, usize::from),
+    })
+}
+
+/// Agent-steps per second of so many threads, each running all scenarios again and again.
+fn native(scenarios: &[Scenario], threads: usize, least: Duration) -> f64 {
+    let begun = Instant::now();
+    let steps: u64 = std::thread::scope(|scope| {
+        let work = || {
+            let mut simulator = Simulator::new();
+            let mut steps = 0;
+            while begun.elapsed() < least {
+                steps += run_all(scenarios, &mut simulator);
+            }
+            steps
+        };
+        let all: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        all.into_iter().map(|thread| thread.join().unwrap_or(0)).sum()
+    });
+    steps as f64 / begun.elapsed().as_secs_f64()
+}
+
+/// Runs every scenario once; gives the agent-steps.
+fn run_all(scenarios: &[Scenario], simulator: &mut Simulator) -> u64 {
+    let mut recorder = SummaryRecorder::new();
+    let run = |scenario| {
+        simulator.run(scenario, Ego::MetadriveIdm, &mut recorder);
+        recorder.summary.actors as u64 * u64::from(recorder.summary.steps)
+    };
+    scenarios.iter().map(run).sum()
+}
+
+fn median(mut figures: Vec<f64>) -> f64 {
+    figures.sort_by(f64::total_cmp);
+    figures.get(figures.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progress::NoProgress;
+
+    #[test]
+    fn without_metadrive_the_native_figures_stand_alone() {
+        let request = SimBenchRequest {
+            count: 3,
+            seed: 1,
+            rounds: 1,
+            least: Duration::from_millis(20),
+            python: "no-such-python".into(),
+        };
+        let bench = bench_sim(&request, &NoProgress).expect("it needs no MetaDrive");
+        assert!(bench.one_thread > 0.0 && bench.two_threads > 0.0 && bench.agent_steps > 100);
+        assert!(bench.metadrive.is_none() && bench.metadrive_note.contains("no-such-python"));
+    }
+}

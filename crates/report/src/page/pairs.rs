@@ -1,0 +1,86 @@
+//! The page of runs side by side: tables, then one replay after the other.
+
+use super::{STYLE, case, content_security_policy, parts};
+use crate::pairs::{PairView, PairsView, TableView};
+use crate::{data, words};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde_json::json;
+
+const SCRIPT: &str = concat!(
+    "'use strict';\n(() => {\n",
+    include_str!("../../assets/data.js"),
+    include_str!("../../assets/scene.js"),
+    include_str!("../../assets/plots.js"),
+    include_str!("../../assets/replay.js"),
+    include_str!("../../assets/pairs.js"),
+    "})();\n",
+);
+
+/// The page.
+pub fn render(view: &PairsView) -> String {
+    let limits = json!({ "minGap": view.criteria.min_gap_m, "hardBraking": view.criteria.hard_braking_mps2 });
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(content_security_policy(SCRIPT));
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta name="generator" content=(words::clean(&view.generated_by, 80));
+                title { (words::clean(&view.title, 200)) }
+                link rel="icon" href="data:,";
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                main #main {
+                    header.page-head {
+                        h1 { (words::clean(&view.title, 200)) }
+                        (parts::command(&view.command))
+                    }
+                    @for table in &view.tables { (table_of(table)) }
+                    @for (position, pair) in view.pairs.iter().enumerate() { (section(view, position, pair)) }
+                }
+                #live.hidden-text role="status" aria-live="polite" {}
+                script type="application/json" id="suite-data" { (PreEscaped(data::embed(&limits))) }
+                script { (PreEscaped(SCRIPT)) }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn table_of(table: &TableView) -> Markup {
+    html! {
+        h2 { (words::clean(&table.caption, 200)) }
+        .table-wrap { table.plain {
+            caption.hidden-text { (words::clean(&table.caption, 200)) }
+            thead { tr { @for name in &table.header { th scope="col" { (words::clean(name, 80)) } } } }
+            tbody { @for row in &table.rows { tr { @for cell in row { td { (words::clean(cell, 400)) } } } } }
+        } }
+        @if table.rows.is_empty() { p.empty { "None." } }
+    }
+}
+
+fn section(view: &PairsView, position: usize, pair: &PairView) -> Markup {
+    let id = format!("pair-{position}");
+    let names = [words::capital(&view.names[0]), words::capital(&view.names[1])];
+    html! {
+        section.case id=(id) data-case=(position) aria-labelledby={ (id) "-title" } {
+            h2 id={ (id) "-title" } { (words::clean(&pair.title, 120)) }
+            p.case-what { (words::clean(&pair.remark, 600)) }
+            (case::stage([&names[0], &names[1]], [true, pair.second.is_some()]))
+            script type="application/json" id={ "case-data-" (position) } { (PreEscaped(data::embed(&data::pair(pair)))) }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_script_cannot_close_its_element() {
+        assert!(!SCRIPT.contains("</script") && !SCRIPT.contains("<!--"));
+    }
+}
