@@ -357,8 +357,10 @@ impl Suite {
             Stage::Tune => cast.tune != RULES,
             Stage::Records | Stage::Select | Stage::Simulate | Stage::Report => false,
         };
-        let askers = self.askers.as_ref().filter(|_| by_model);
-        askers.unwrap_or(&self.threads).install(|| stages::run(self, stage, progress))
+        match self.askers.as_ref().filter(|_| by_model) {
+            Some(askers) => askers.install(|| stages::run(self, stage, progress)),
+            None => self.in_pool(|| stages::run(self, stage, progress)),
+        }
     }
 
     /// What this run has spent on models.

@@ -33,7 +33,7 @@ pub fn view(
         records: records.clone(),
         selection: selection.clone(),
         cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
-        diagnostics: fallbacks(&options.cast, cases).into_iter().chain(remarks).collect(),
+        diagnostics: remarks.into_iter().chain(fallbacks(&options.cast, cases)).collect(),
     }
 }
 
