@@ -70,7 +70,7 @@ impl ScriptedModel {
 }
 
 fn run(out: &Path, extra: &[&str]) -> (i32, String) {
-    let arguments = ["run", "--quiet", "--agent", "scripted", "--out", out.to_str().unwrap()];
+    let arguments = ["run", "--quiet", "--agent", "scripted", "--llm", "batch", "--out", out.to_str().unwrap()];
     let output = recrash(&arguments).args(SMALL).args(extra).output().unwrap();
     (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
 }

@@ -7,9 +7,10 @@ mod scores;
 pub use labels::{Half, Label};
 pub use scores::{Field, FieldScore};
 
-use crate::agents::{AnswerMode, Models, RULES, unusable};
+use crate::agents::{Cast, RULES, unusable};
 use crate::error::PipelineError;
 use crate::fetching::cached;
+use crate::models::{ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::store::{Store, read_bytes, read_text, write_file_whole};
 use labels::read_labels;
@@ -20,8 +21,8 @@ use recrash_model::record::{CrashRecord, RecordRef};
 use recrash_model::{Diagnostic, Location, Seed, Severity};
 use recrash_records::{SourceText, ingest};
 use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicUsize;
 
 /// The labels that come with recrash.
 const BUILT_IN_LABELS: &str = include_str!("../../../eval/labels.csv");
@@ -52,8 +53,8 @@ pub struct EvaluationRequest {
     pub profile: String,
     /// Folder of a model's questions and answers.
     pub out: PathBuf,
-    /// Where a model's answers come from.
-    pub answers: AnswerMode,
+    /// How a model is asked.
+    pub access: ModelAccess,
 }
 
 /// What came of it.
@@ -188,9 +189,10 @@ fn model_accounts(
     unread: &mut Vec<(RecordRef, String)>,
 ) -> Result<Vec<Account>, PipelineError> {
     let store = Store::create(&request.out, write_file_whole)?;
-    let (models, _) = Models::open(&store, request.answers)?;
-    let repairs = AtomicUsize::new(0);
-    let model = models.model(&request.agent, &repairs);
+    let cast = Cast { paraphrase: request.agent.clone(), ..Cast::default() };
+    let (models, _) = Models::open(&store, &cast, &request.access)?;
+    let repairs = Cell::new(0);
+    let model = models.model(&request.agent, &cast, &repairs);
     let mut accounts = Vec::with_capacity(found.len());
     let mut waiting = false;
     for (label, record) in found {

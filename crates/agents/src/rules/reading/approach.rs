@@ -52,7 +52,7 @@ static BESIDE: LazyLock<Regex> = LazyLock::new(|| {
 });
 static ONCOMING: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b",
+        r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b|\bfrom the front\b|\bwrong side of the (?:street|road)\b|\bagainst (?:the flow of )?traffic\b",
     )
 });
 static BEHIND: LazyLock<Regex> = LazyLock::new(|| {
@@ -126,13 +126,13 @@ static COMPASS_LEAVES: LazyLock<Regex> =
 pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let compass = by_compass(record, sentences);
     let told = from_side(record, sentences)
+        .or_else(|| from_street_side(record, sentences))
         .or_else(|| compass.clone().filter(|(relation, _)| !matches!(relation, Relation::Beside(_) | Relation::Behind)))
         .or_else(|| beside_sided(record, sentences))
         .or_else(|| by_lane_numbers(record, sentences))
         .or_else(|| by_phrase(record, sentences, &ONCOMING, Relation::Oncoming))
         .or_else(|| by_phrase(record, sentences, &BEHIND, Relation::Behind))
         .or_else(|| by_phrase(record, sentences, &BESIDE, Relation::Beside(None)))
-        .or_else(|| from_street_side(record, sentences))
         .or_else(|| by_phrase(record, sentences, &FROM_PROPERTY, Relation::Crossing))
         .or_else(|| by_phrase(record, sentences, &CROSSING, Relation::Crossing))
         .or_else(|| by_told_lanes(record, sentences))
@@ -424,15 +424,16 @@ fn headings<'a>(sentences: &[Sentence<'a>]) -> [Option<Heading<'a>>; 2] {
 /// The relation from the compass directions of both.
 fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let [Some(sv), Some(cp)] = headings(sentences) else { return None };
+    // Who comes backwards faces whence it came.
+    let backwards = if record.cp_movement.known() == Some(Movement::Backing) { 4 } else { 0 };
     let told = match (8 + cp.eighths - sv.eighths) % 8 {
+        side @ (2 | 6) if (side + backwards) % 8 == 2 => Relation::From(Side::Left),
+        2 | 6 => Relation::From(Side::Right),
         // Front and rear touch: one followed the other.
         0 if only(&record.sv_zones, is_rear) && only(&record.cp_zones, is_front) => Relation::Behind,
         0 if only(&record.sv_zones, is_front) && record.cp_zones == [ContactZone::Rear] => Relation::Behind,
         0 => Relation::Beside(None),
-        // Heading to the ego's right, it came from the ego's left.
-        2 => Relation::From(Side::Left),
         4 => Relation::Oncoming,
-        6 => Relation::From(Side::Right),
         _ => return None,
     };
     let span = (sv.start.min(cp.start), sv.end.max(cp.end));

@@ -3,7 +3,7 @@
 use super::{MEETING, Relation, Sentence};
 use recrash_model::account::RoadGroup;
 use recrash_model::record::CrashRecord;
-use recrash_model::template::RoadType;
+use recrash_model::template::{Movement, RoadType};
 use regex::Regex;
 use std::sync::LazyLock;
 
@@ -22,7 +22,14 @@ static GARAGE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bparking (?:gar
 
 /// The kind of road of a record, given from where the partner came.
 pub(super) fn road(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation>) -> Option<RoadGroup> {
-    let crosses = matches!(relation, Some(Relation::From(_) | Relation::Crossing));
+    let turns = [record.sv_movement.known(), record.cp_movement.known()]
+        .iter()
+        .any(|movement| matches!(movement, Some(Movement::LeftTurn)));
+    let crosses = match relation {
+        Some(Relation::From(_) | Relation::Crossing) => true,
+        Some(Relation::Oncoming) => turns,
+        _ => false,
+    };
     let column = record.road.known();
     let before_they_met = || {
         let met = sentences.iter().position(|sentence| MEETING.is_match(sentence.text));
