@@ -2,6 +2,7 @@
 
 mod bars;
 mod commands;
+mod model_options;
 mod options;
 mod output;
 
@@ -10,11 +11,24 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = commands::Cli::parse();
+    on_interrupt();
     match commands::run(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             output::error(&error);
+            if error.goes_on() {
+                output::go_on();
+            }
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Ctrl-C stops at once: files are written whole, and every answer of a model is in the ledger as soon as it is there.
+fn on_interrupt() {
+    // Without a handler the system stops the program as well, only without a word.
+    let _ = ctrlc::set_handler(|| {
+        output::interrupted();
+        std::process::exit(130);
+    });
 }

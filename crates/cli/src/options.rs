@@ -1,11 +1,11 @@
 //! Options that several commands share.
 
+use crate::model_options::ModelArgs;
 use clap::Args;
 use recrash_model::profile::Dedupe;
 use recrash_model::selection::{Strategy, Weighting};
 use recrash_pipeline::{
-    AnswerMode, Cast, EmbeddingKind, FILTER_HELP, Options, Patience, PipelineError, RecordSource, Resources,
-    SimulatorKind, Suite,
+    EmbeddingKind, FILTER_HELP, Options, Patience, PipelineError, RecordSource, Resources, SimulatorKind, Suite,
 };
 use std::path::PathBuf;
 use std::time::Duration;
@@ -75,25 +75,6 @@ pub struct SuiteArgs {
     /// How records are chosen.
     #[command(flatten)]
     pub choice: ChoiceArgs,
-    /// Who paraphrases, designs and tunes: rules, or a language model by name (see --llm). [default: rules]
-    #[arg(long, value_name = "rules|MODEL")]
-    pub agent: Option<String>,
-    /// Who paraphrases. [default: as --agent]
-    #[arg(long, value_name = "rules|MODEL")]
-    pub paraphrase: Option<String>,
-    /// Who designs. [default: as --agent]
-    #[arg(long, value_name = "rules|MODEL")]
-    pub design: Option<String>,
-    /// Who tunes; rules is the search. [default: as --agent]
-    #[arg(long, value_name = "rules|MODEL")]
-    pub tune: Option<String>,
-    /// Rounds of a model that tunes. [default: 3]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=50))]
-    pub rounds: Option<u16>,
-    /// How a model is asked: batch writes requests.jsonl in OpenAI's Batch form, stops, and goes on when responses.jsonl
-    /// lies beside it; replay takes answers from the suite's ledger alone.
-    #[arg(long, value_name = "MODE", value_parser = ["batch", "replay"], default_value = "batch")]
-    pub llm: String,
     /// Simulator: native, or metadrive (needs Python with metadrive-simulator 0.4.3). [default: native]
     #[arg(long, value_name = "NAME")]
     pub sim: Option<SimulatorKind>,
@@ -119,6 +100,9 @@ pub struct SuiteArgs {
     /// Worker threads; the results do not depend on it. [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Agents and models.
+    #[command(flatten)]
+    pub models: ModelArgs,
 }
 
 impl SourceArgs {
@@ -179,7 +163,7 @@ impl SuiteArgs {
         let base = self.choice.over(self.source.over(base));
         Options {
             profile: self.profile.clone().unwrap_or(base.profile),
-            cast: self.cast(base.cast),
+            cast: self.models.cast(base.cast),
             simulator: self.sim.unwrap_or(base.simulator),
             ego: self.ego.clone().or(base.ego),
             tune_budget: self.tune_budget.map_or(base.tune_budget, |n| n as usize),
@@ -189,21 +173,10 @@ impl SuiteArgs {
         }
     }
 
-    fn cast(&self, base: Cast) -> Cast {
-        let role = |own: &Option<String>, base: String| own.clone().or_else(|| self.agent.clone()).unwrap_or(base);
-        Cast {
-            paraphrase: role(&self.paraphrase, base.paraphrase),
-            design: role(&self.design, base.design),
-            tune: role(&self.tune, base.tune),
-            rounds: self.rounds.map_or(base.rounds, usize::from),
-        }
-    }
-
     /// What may be used of the machine.
     pub fn resources(&self) -> Resources {
-        let answers = if self.llm == "replay" { AnswerMode::Replay } else { AnswerMode::Batch };
-        let threads = self.threads.map(usize::from);
-        Resources { threads, python: self.python.clone(), patience: self.patience(), answers }
+        let (threads, python) = (self.threads.map(usize::from), self.python.clone());
+        Resources { threads, python, patience: self.patience(), models: self.models.access.access() }
     }
 
     /// How long a program that is the ego is waited for.

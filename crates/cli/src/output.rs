@@ -53,6 +53,28 @@ pub fn error(error: &PipelineError) {
     }
 }
 
+/// Prints the command that goes on where this one stopped.
+pub fn go_on() {
+    let words: Vec<String> = std::env::args_os().map(|word| quoted(&word.to_string_lossy())).collect();
+    eprintln!("go on with: {}", words.join(" "));
+}
+
+/// Prints that the user stopped the program.
+pub fn interrupted() {
+    eprintln!("\ninterrupted; what is done is kept");
+    go_on();
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
 /// Prints one remark.
 pub fn remark(diagnostic: &Diagnostic) {
     match diagnostic.severity {

@@ -88,7 +88,7 @@ pub(crate) fn judge(
 pub struct DesignLog {
     /// `rules`, or the model that was asked first.
     pub asked: String,
-    /// Answers that went back to the model because of their form.
+    /// Answers that went back to the model, because of their form or of what the check or the rollout said.
     pub repairs: usize,
     /// Every try, in order.
     pub attempts: Vec<DesignAttempt>,

@@ -54,13 +54,25 @@ pub enum PipelineError {
         /// What is wrong with it.
         problem: String,
     },
+    /// What the user typed does not go together.
+    #[error("{0}")]
+    Usage(String),
+    /// No model will answer like this.
+    #[error("{0}")]
+    ModelRefused(String),
+    /// A cap on what models may cost is reached.
+    #[error("{0}; what is done is kept")]
+    BudgetSpent(String),
+    /// The ledger cannot keep an answer.
+    #[error("{0}")]
+    Ledger(String),
     /// A unit of work waits for an answer. Never leaves the pipeline: the stage turns it into the next one.
     #[error("an answer is still to come")]
     AnswerPending,
     /// The run stopped until a batch is answered.
     #[error(
-        "{count} questions wait in {}; send them as a batch, put the answers beside it as responses.jsonl, and run the \
-         same command again", requests.display()
+        "{count} questions wait in {}; send them as a batch, put the answers beside it as responses.jsonl, and go on",
+        requests.display()
     )]
     WaitingForBatch {
         /// The batch file.
@@ -106,15 +118,21 @@ impl PipelineError {
         Self::Scenario { id: id.to_owned(), why: why.to_string() }
     }
 
-    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input, 4 for a batch to be sent,
-    /// 5 for results that miss what is asked for.
+    /// Whether the same command goes on where this one stopped.
+    pub fn goes_on(&self) -> bool {
+        matches!(self, Self::WaitingForBatch { .. } | Self::BudgetSpent(_))
+    }
+
+    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input and models that refuse, 4 for
+    /// a run that the same command goes on with (a batch is to be sent, a cap is reached), 5 for results that miss what
+    /// is asked for.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
-            Self::Io { .. } | Self::Fetch(_) | Self::Pull { .. } | Self::Threads(_) => 1,
-            Self::MissingStage { .. } | Self::NotASuite { .. } => 2,
-            Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } => 3,
-            Self::AnswerPending | Self::WaitingForBatch { .. } => 4,
+            Self::Io { .. } | Self::Fetch(_) | Self::Pull { .. } | Self::Threads(_) | Self::Ledger(_) => 1,
+            Self::MissingStage { .. } | Self::NotASuite { .. } | Self::Usage(_) => 2,
+            Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
+            Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
             Self::Missed { .. } => 5,
         }
     }

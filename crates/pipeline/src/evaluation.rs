@@ -7,9 +7,10 @@ mod scores;
 pub use labels::{Half, Label};
 pub use scores::{Field, FieldScore};
 
-use crate::agents::{AnswerMode, Models, RULES, unusable};
+use crate::agents::{Cast, RULES, unusable};
 use crate::error::PipelineError;
 use crate::fetching::cached;
+use crate::models::{ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::store::{Store, read_bytes, read_text, write_file_whole};
 use labels::read_labels;
@@ -20,8 +21,8 @@ use recrash_model::record::{CrashRecord, RecordRef};
 use recrash_model::{Diagnostic, Location, Seed, Severity};
 use recrash_records::{SourceText, ingest};
 use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicUsize;
 
 /// The labels that come with recrash.
 const BUILT_IN_LABELS: &str = include_str!("../../../eval/labels.csv");
@@ -53,7 +54,7 @@ pub struct EvaluationRequest {
     /// Folder of a model's questions and answers.
     pub out: PathBuf,
     /// Where a model's answers come from.
-    pub answers: AnswerMode,
+    pub models: ModelAccess,
 }
 
 /// What came of it.
@@ -188,9 +189,8 @@ fn model_accounts(
     unread: &mut Vec<(RecordRef, String)>,
 ) -> Result<Vec<Account>, PipelineError> {
     let store = Store::create(&request.out, write_file_whole)?;
-    let (models, _) = Models::open(&store, request.answers)?;
-    let repairs = AtomicUsize::new(0);
-    let model = models.model(&request.agent, &repairs);
+    let cast = Cast { paraphrase: request.agent.clone(), ..Cast::default() };
+    let (models, _) = Models::open(&store, &cast, &request.models)?;
     let mut accounts = Vec::with_capacity(found.len());
     let mut waiting = false;
     for (label, record) in found {
@@ -204,7 +204,8 @@ fn model_accounts(
         };
         let scenario_id = format!("eval-{}-{}", label.record.report_id, label.record.version);
         let brief = Brief { scenario_id: &scenario_id, template, records: &[record], profile, seed: Seed(1) };
-        let account = match model.paraphrase(&brief) {
+        let repairs = Cell::new(0);
+        let account = match models.model(&request.agent, &cast, &repairs).paraphrase(&brief) {
             Ok(told) => account_of(&told.value, profile),
             Err(error) => match unusable(error) {
                 Ok(why) => fail(why),

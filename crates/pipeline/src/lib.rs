@@ -20,6 +20,7 @@ mod external;
 mod failures;
 mod fetching;
 mod importing;
+mod models;
 mod parity;
 mod profiles;
 mod progress;
@@ -37,7 +38,7 @@ mod triage;
 mod view;
 mod weights;
 
-pub use agents::{AgentLog, AnswerMode, Cast};
+pub use agents::{AgentLog, Cast};
 pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use casework::{
     CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
@@ -52,6 +53,7 @@ pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patien
 pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use importing::{ImportRequest, Imported, SourceFormat, import};
+pub use models::{AnswerMode, ModelAccess};
 pub use parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
     ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
@@ -59,6 +61,7 @@ pub use parity::{
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use recording::{TableFormat, read_records, write_records};
+pub use recrash_agents::llm::{Caps, Spent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
@@ -68,7 +71,7 @@ pub use simulator::{Simulator, SimulatorKind};
 pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
-pub use summary::{CaseSummary, RunSummary, Summary};
+pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
 #[cfg(feature = "parquet")]
 pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
 pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

@@ -1,6 +1,6 @@
 //! The stages: what each reads, does and writes.
 
-use crate::agents::{self, AgentLog, MAX_REPAIRS, RULES};
+use crate::agents::{self, AgentLog, RULES};
 use crate::casework::{CaseRun, DesignLog, Designer, MAX_DESIGNS, design_case, read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::failures::Failure;
@@ -12,7 +12,8 @@ use crate::suite::{Files, Stage, Suite};
 use crate::triage::triage;
 use crate::{failures, selecting, summary, view};
 use rayon::prelude::*;
-use recrash_agents::{Brief, Rules, expectation, parameters};
+use recrash_agents::llm::{TuneBrief, prompts_version};
+use recrash_agents::{Brief, Rules, expectation, narrative_contradictions, parameters};
 use recrash_model::metrics::Expectation;
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{CrashRecord, RecordSet};
@@ -23,7 +24,7 @@ use recrash_model::tuning::{TuneLog, TunePoint};
 use recrash_model::{Diagnostic, Outcome, Seed};
 use recrash_search::{Task, TuneOptions};
 use serde::de::DeserializeOwned;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cell::Cell;
 
 /// Files and folders of a suite.
 pub mod names {
@@ -90,6 +91,10 @@ pub mod names {
     /// Log of the search.
     pub fn tune_log(id: &str) -> String {
         format!("6-tuned/{id}.search.json")
+    }
+    /// Who tuned it.
+    pub fn tune_agent(id: &str) -> String {
+        format!("6-tuned/{id}.agent.json")
     }
     /// How the other egos fare in the tuned scenario, where the system under test fails.
     pub fn triage(id: &str) -> String {
@@ -205,6 +210,14 @@ impl StageWork<'_> {
         format!("{} {}", self.suite.options().simulator.name(), self.suite.ego())
     }
 
+    /// Who plays a role, and with which prompts: what goes into the hash of everything that is written in it.
+    fn player(&self, name: &str) -> String {
+        match name {
+            RULES => RULES.to_owned(),
+            model => format!("{model} {} {}", self.suite.options().cast.repairs, prompts_version()),
+        }
+    }
+
     fn profile_json(&self) -> String {
         String::from_utf8(to_json(self.suite.profile())).unwrap_or_default()
     }
@@ -213,9 +226,9 @@ impl StageWork<'_> {
 fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let input = RecordInput::read(suite.options())?;
-    let profile = work.profile_json();
-    let mut inputs = vec![profile.as_bytes()];
+    let mut inputs = vec![work.profile_json()];
     inputs.extend(input.parts());
+    let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
     let mut report = work.whole(&inputs, || {
         let Outcome { value, diagnostics } = input.ingest(suite.profile())?;
         Ok(vec![
@@ -272,14 +285,14 @@ fn narrate(work: &StageWork) -> Result<StageReport, PipelineError> {
     let cases = Cases::read(suite)?;
     let inputs = |cluster: &Cluster| {
         let mut inputs = cases.inputs(cluster);
-        let cast = suite.options().cast.paraphrase.clone();
-        inputs.extend([work.profile_json(), suite.options().seed.to_string(), cast]);
+        let player = work.player(&suite.options().cast.paraphrase);
+        inputs.extend([work.profile_json(), suite.options().seed.to_string(), player]);
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
-        let (narrative, log) = agents::paraphrase(suite.models(), &suite.options().cast.paraphrase, &brief)?;
+        let (narrative, log) = agents::paraphrase(suite.models(), &suite.options().cast, &brief)?;
         let id = &cluster.scenario_id;
         Ok(vec![(names::narrative(id), to_json(&narrative)), (names::narrative_log(id), to_json(&log))])
     })
@@ -317,26 +330,40 @@ fn design(work: &StageWork) -> Result<StageReport, PipelineError> {
     let inputs = |cluster: &Cluster| {
         let mut inputs = cases.inputs(cluster);
         inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(&cluster.scenario_id))?);
-        let cast = suite.options().cast.design.clone();
-        inputs.extend([work.profile_json(), work.system(), suite.options().seed.to_string(), cast]);
+        let player = work.player(&suite.options().cast.design);
+        inputs.extend([work.profile_json(), work.system(), suite.options().seed.to_string(), player]);
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
         let (narrative, expectation) = case_expectation(suite, &cases, cluster)?;
-        let name = &suite.options().cast.design;
-        let repairs = AtomicUsize::new(0);
-        let model = suite.models().filter(|_| name != RULES).map(|models| models.model(name, &repairs));
-        let by_model = model.as_ref().map(|agent| Designer { name, agent, tries: MAX_REPAIRS + 1 });
+        refuse_contradictions(&narrative, &brief)?;
+        let cast = &suite.options().cast;
+        let (name, repairs) = (&cast.design, Cell::new(0));
+        let model = suite.models().filter(|_| name != RULES).map(|models| models.model(name, cast, &repairs));
+        let by_model = model.as_ref().map(|agent| Designer { name, agent, tries: cast.repairs + 1 });
         let by_rules = Designer { name: RULES, agent: &Rules, tries: MAX_DESIGNS };
         let designers: Vec<Designer> = by_model.into_iter().chain([by_rules]).collect();
         let (draft, log): (ScenarioDraft, DesignLog) =
             design_case(&designers, &brief, &narrative, &expectation, &simulator)?;
-        let log = DesignLog { repairs: repairs.load(Ordering::Relaxed), ..log };
+        let log = DesignLog { repairs: repairs.get(), ..log };
         let id = &cluster.scenario_id;
         Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
     })
+}
+
+/// Nothing runs for a narrative that contradicts its template: agents mend theirs, so that such a one was edited by hand.
+fn refuse_contradictions(narrative: &Narrative, brief: &Brief) -> Result<(), PipelineError> {
+    let contradictions = narrative_contradictions(&narrative.facts, brief.template, brief.profile);
+    if contradictions.is_empty() {
+        return Ok(());
+    }
+    let why = contradictions.join("; ");
+    Err(PipelineError::scenario(
+        brief.scenario_id,
+        format!("the narrative contradicts its template ({why}); mend it, or remove its file"),
+    ))
 }
 
 /// Reads and checks a scenario file of the suite.
@@ -381,7 +408,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         inputs.push(case_hash(suite, Stage::Simulate, cluster, &names::first_run(id))?);
         let chosen = suite.options();
         inputs.extend([work.profile_json(), work.system(), format!("{options:?}"), chosen.seed.to_string()]);
-        inputs.push(format!("{} {}", chosen.cast.tune, chosen.cast.rounds));
+        inputs.push(format!("{} {}", work.player(&chosen.cast.tune), chosen.cast.rounds));
         inputs.push(TRIAGE_FORMAT.to_owned());
         Ok(inputs)
     };
@@ -397,19 +424,30 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
             |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && first.metrics.contact.is_some();
         let seed = case_seed(suite, cluster).child("tune");
         let search = || recrash_search::tune(id, &parameters, options, seed, |values| scoring.score(values), enough);
-        let log: TuneLog = match suite.models().filter(|_| suite.options().cast.tune != RULES) {
-            None => search(),
+        let cast = &suite.options().cast;
+        let (log, agent): (TuneLog, AgentLog) = match suite.models().filter(|_| cast.tune != RULES) {
+            None => (search(), AgentLog::rules()),
             Some(models) => {
-                let (name, repairs) = (&suite.options().cast.tune, AtomicUsize::new(0));
-                let model = models.model(name, &repairs);
-                let task = Task { scenario_id: id, parameters: &parameters, seed, searcher: name };
+                let (name, repairs) = (&cast.tune, Cell::new(0));
+                let model = models.model(name, cast, &repairs);
+                let records = cases.records_of(cluster);
+                let brief = brief(suite, cluster, &records);
+                let (narrative, draft, metrics) = (&narrative, &draft, &first.metrics);
                 let propose = |history: &[TunePoint]| {
-                    model.propose(id, &narrative, &parameters, history).map(|values| (values, "model"))
+                    let told = TuneBrief { narrative, draft, metrics, parameters: &parameters, history };
+                    model.propose(&brief, &told).map(|values| (values, "model"))
                 };
-                let points = suite.options().cast.rounds + 1;
-                match recrash_search::tune_with(&task, points, propose, |values| scoring.score(values), enough) {
-                    Ok(log) => log,
-                    Err(error) => agents::unusable(error).map(|_why| search())?,
+                let task = Task { scenario_id: id, parameters: &parameters, seed, searcher: name };
+                match recrash_search::tune_with(&task, cast.rounds + 1, propose, |v| scoring.score(v), enough) {
+                    Ok(log) => {
+                        let agent =
+                            AgentLog { needless: log.points.len() == 1, ..AgentLog::model(name, repairs.get()) };
+                        (log, agent)
+                    }
+                    Err(error) => {
+                        let why = agents::unusable(error)?;
+                        (search(), AgentLog::fallback(name, repairs.get(), why))
+                    }
                 }
             }
         };
@@ -423,6 +461,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         let mut files = vec![
             (names::tuned(id), to_json(&tuned)),
             (names::tune_log(id), to_compact_json(&log)),
+            (names::tune_agent(id), to_json(&agent)),
             (names::tuned_run(id), to_compact_json(&run)),
         ];
         if run.failed() {
@@ -446,8 +485,8 @@ pub struct Case<'a> {
     pub design: Option<DesignLog>,
     /// As designed.
     pub first: Option<Ran>,
-    /// As tuned, with the log of the search.
-    pub tuned: Option<(Ran, TuneLog)>,
+    /// As tuned.
+    pub tuned: Option<Tuned>,
     /// How the other egos fare where the system under test fails at last.
     pub triage: Option<Triage>,
     /// The reference driver's run there.
@@ -464,6 +503,16 @@ pub struct Ran {
     pub run: CaseRun,
 }
 
+/// A tuned scenario.
+pub struct Tuned {
+    /// It, and its run.
+    pub ran: Ran,
+    /// Log of the search.
+    pub log: TuneLog,
+    /// Who tuned it.
+    pub agent: AgentLog,
+}
+
 fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
@@ -472,10 +521,10 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
     for cluster in &cases.selection.clusters {
         let id = &cluster.scenario_id;
         let made = [
-            (Stage::Narrate, vec![names::narrative(id)]),
-            (Stage::Design, vec![names::scenario(id)]),
+            (Stage::Narrate, vec![names::narrative(id), names::narrative_log(id)]),
+            (Stage::Design, vec![names::scenario(id), names::design_log(id)]),
             (Stage::Simulate, vec![names::first_run(id)]),
-            (Stage::Tune, vec![names::tuned(id), names::tune_log(id), names::tuned_run(id)]),
+            (Stage::Tune, vec![names::tuned(id), names::tune_log(id), names::tune_agent(id), names::tuned_run(id)]),
         ];
         for (stage, files) in made {
             if let Some(failure) = failures::at(suite, id, stage) {
@@ -517,7 +566,10 @@ fn read_case<'a>(suite: &Suite, cases: &'a Cases, cluster: &'a Cluster) -> Resul
     let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
     let first = made(Stage::Simulate).then(|| ran(suite, &names::scenario(id), &names::first_run(id))).transpose()?;
     let tuned = made(Stage::Tune)
-        .then(|| Ok((ran(suite, &names::tuned(id), &names::tuned_run(id))?, store.read_json(&names::tune_log(id))?)))
+        .then(|| {
+            let (log, agent) = (store.read_json(&names::tune_log(id))?, store.read_json(&names::tune_agent(id))?);
+            Ok(Tuned { ran: ran(suite, &names::tuned(id), &names::tuned_run(id))?, log, agent })
+        })
         .transpose()?;
     let triage = optional(suite, &names::triage(id), tuned.is_some())?;
     let reference = optional(suite, &names::reference_run(id), triage.is_some())?;

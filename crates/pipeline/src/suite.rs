@@ -1,9 +1,10 @@
 //! The suite on disk: options, stages, and which units of work are done.
 
-use crate::agents::{AnswerMode, Cast, Models};
+use crate::agents::{Cast, RULES};
 use crate::embedding::EmbeddingKind;
 use crate::error::PipelineError;
 use crate::external::Patience;
+use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::progress::Progress;
 use crate::recording;
@@ -11,6 +12,7 @@ use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::names::FAILURE;
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
+use recrash_agents::llm::Spent;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::selection::{Strategy, Weighting};
 use recrash_model::{Diagnostic, Seed};
@@ -160,6 +162,7 @@ impl Options {
         option("design", self.cast.design.clone(), default.cast.design);
         option("tune", self.cast.tune.clone(), default.cast.tune);
         option("rounds", self.cast.rounds.to_string(), default.cast.rounds.to_string());
+        option("repairs", self.cast.repairs.to_string(), default.cast.repairs.to_string());
         option("sim", self.simulator.name().into(), default.simulator.name().into());
         option("ego", self.ego.clone().unwrap_or_default(), String::new());
         option("tune-budget", self.tune_budget.to_string(), default.tune_budget.to_string());
@@ -255,6 +258,8 @@ pub struct Suite {
     state: Mutex<State>,
     options: Options,
     threads: rayon::ThreadPool,
+    /// As many threads as questions may be under way; absent where nobody is asked over the network.
+    askers: Option<rayon::ThreadPool>,
     python: PathBuf,
     patience: Patience,
     models: Option<Models>,
@@ -262,7 +267,7 @@ pub struct Suite {
 }
 
 /// What a run may use of the machine. No byte of the results depends on it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Resources {
     /// Worker threads; as many as there are cores where not given.
     pub threads: Option<usize>,
@@ -270,13 +275,14 @@ pub struct Resources {
     pub python: PathBuf,
     /// How long answers of an external ego are waited for.
     pub patience: Patience,
-    /// Where models' answers come from.
-    pub answers: AnswerMode,
+    /// How models are asked.
+    pub models: ModelAccess,
 }
 
 impl Default for Resources {
     fn default() -> Self {
-        Self { threads: None, python: "python3".into(), patience: Patience::default(), answers: AnswerMode::default() }
+        let python = "python3".into();
+        Self { threads: None, python, patience: Patience::default(), models: ModelAccess::default() }
     }
 }
 
@@ -321,21 +327,20 @@ impl Suite {
             return Err(PipelineError::NotASuite { dir: dir.to_owned() });
         };
         store.remove_leftovers()?;
-        let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(resources.threads.unwrap_or(0))
-            .build()
-            .map_err(|e| PipelineError::Threads(e.to_string()))?;
+        let threads = thread_pool(resources.threads.unwrap_or(0))?;
         let state = State {
             format: SUITE_FORMAT.into(),
             version: env!("CARGO_PKG_VERSION").into(),
             options: options.clone(),
             units,
         };
-        let opened = options.cast.has_model().then(|| Models::open(&store, resources.answers)).transpose()?;
+        let has_model = !options.cast.models().is_empty();
+        let opened = has_model.then(|| Models::open(&store, &options.cast, &resources.models)).transpose()?;
         let (models, remarks) = opened.map_or((None, Vec::new()), |(models, remarks)| (Some(models), remarks));
-        let Resources { python, patience, .. } = resources;
-        let suite =
-            Self { store, profile, state: Mutex::new(state), options, threads, python, patience, models, remarks };
+        let asks = has_model && resources.models.mode == AnswerMode::Live;
+        let askers = asks.then(|| thread_pool(resources.models.concurrency)).transpose()?;
+        let (state, python, patience) = (Mutex::new(state), resources.python, resources.patience);
+        let suite = Self { store, profile, state, options, threads, askers, python, patience, models, remarks };
         suite.save(&suite.lock())?;
         Ok(suite)
     }
@@ -345,7 +350,22 @@ impl Suite {
     /// # Errors
     /// A stage before is missing, the input is bad, or a file cannot be read or written. Finished units stay.
     pub fn run_stage(&self, stage: Stage, progress: &dyn Progress) -> Result<StageReport, PipelineError> {
-        self.in_pool(|| stages::run(self, stage, progress))
+        let cast = &self.options.cast;
+        let by_model = match stage {
+            Stage::Narrate => cast.paraphrase != RULES,
+            Stage::Design => cast.design != RULES,
+            Stage::Tune => cast.tune != RULES,
+            Stage::Records | Stage::Select | Stage::Simulate | Stage::Report => false,
+        };
+        match self.askers.as_ref().filter(|_| by_model) {
+            Some(askers) => askers.install(|| stages::run(self, stage, progress)),
+            None => self.in_pool(|| stages::run(self, stage, progress)),
+        }
+    }
+
+    /// What this run has spent on models.
+    pub fn spent(&self) -> Option<Spent> {
+        self.models.as_ref().map(Models::spent)
     }
 
     /// Does something on the suite's threads.
@@ -461,6 +481,11 @@ impl Suite {
     fn save(&self, state: &State) -> Result<(), PipelineError> {
         self.store.write(SUITE_FILE, &to_json(state)).map(drop)
     }
+}
+
+fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, PipelineError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| PipelineError::Threads(e.to_string()))
 }
 
 fn read_state(store: &Store) -> Result<State, PipelineError> {

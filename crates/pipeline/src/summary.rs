@@ -1,5 +1,6 @@
 //! What a person is told at the end of a run.
 
+use crate::agents::{AgentLog, Cast, RULES};
 use crate::casework::CaseRun;
 use crate::failures::Failure;
 use crate::stages::Case;
@@ -43,8 +44,57 @@ pub struct Summary {
     pub templates: Vec<TemplateCount>,
     /// What the picks cover.
     pub coverage: Coverage,
+    /// How the models did, one entry for each role that one plays; empty where the rules play all.
+    #[serde(default)]
+    pub models: Vec<ModelSummary>,
     /// One entry per scenario.
     pub cases: Vec<CaseSummary>,
+}
+
+/// How a model did in a role.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModelSummary {
+    /// `paraphrase`, `design` or `tune`.
+    pub role: String,
+    /// Model that was asked.
+    pub model: String,
+    /// Scenarios whose first answer was accepted.
+    pub first_answer: usize,
+    /// Scenarios with an answer that was accepted after repair.
+    pub after_repair: usize,
+    /// Scenarios where the rules took over.
+    pub fallback: usize,
+    /// Scenarios with nothing to ask: a contact as designed needs no tuning.
+    pub not_asked: usize,
+    /// Why the rules took over.
+    pub reasons: Vec<FallbackReason>,
+}
+
+/// Why the rules took over in one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FallbackReason {
+    /// Scenario.
+    pub id: String,
+    /// Why.
+    pub why: String,
+}
+
+impl ModelSummary {
+    /// Scenarios for which the model was asked.
+    pub fn asked(&self) -> usize {
+        self.first_answer + self.after_repair + self.fallback
+    }
+
+    /// For a line of text: `18 of 20 at the first answer, 1 after repair, 1 by the rules`.
+    pub fn describe(&self) -> String {
+        format!(
+            "{} of {} at the first answer, {} after repair, {} by the rules",
+            self.first_answer,
+            self.asked(),
+            self.after_repair,
+            self.fallback
+        )
+    }
 }
 
 /// One scenario in numbers.
@@ -58,6 +108,9 @@ pub struct CaseSummary {
     pub narrated: Option<String>,
     /// How the design came about, in the same words.
     pub designed: Option<String>,
+    /// How the tuned one came about, in the same words, or `not asked` where a contact as designed needs no tuning.
+    #[serde(default)]
+    pub tuned_by: Option<String>,
     /// Why the record itself was not used, where it was not.
     pub alternative: Option<String>,
     /// As designed.
@@ -162,6 +215,7 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
         tables: selection.tables.clone(),
         templates: selection.templates.clone(),
         coverage: selection.coverage.clone(),
+        models: models(&suite.options().cast, cases),
         cases: cases
             .iter()
             .map(|case| CaseSummary {
@@ -169,18 +223,53 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
                 template: case.cluster.template,
                 narrated: case.narrative.as_ref().map(|(_, log)| log.outcome().to_owned()),
                 designed: case.design.as_ref().map(|log| log.outcome().to_owned()),
+                tuned_by: case.tuned.as_ref().map(|tuned| tuned.agent.outcome().to_owned()),
                 alternative: case.narrative.as_ref().and_then(|(narrative, _)| match &narrative.origin {
                     Origin::Record => None,
                     Origin::Alternative { reason } => Some(reason.clone()),
                 }),
                 first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
-                tuned: case.tuned.as_ref().map(|(ran, _)| RunSummary::new(&ran.run)),
+                tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
                 triage: case.triage.clone(),
                 failure: case.failure.clone(),
-                points: case.tuned.as_ref().map_or(0, |(_, log)| log.points.len()),
+                points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
             })
             .collect(),
     }
+}
+
+/// How the models of a cast did.
+pub fn models(cast: &Cast, cases: &[Case]) -> Vec<ModelSummary> {
+    type Told = Option<(&'static str, String)>;
+    type Role<'a> = (&'static str, &'a String, &'a dyn Fn(&Case) -> Told);
+    let of_agent = |log: &AgentLog| (log.outcome(), log.fallback.clone().unwrap_or_default());
+    let narrated = |case: &Case| -> Told { case.narrative.as_ref().map(|(_, log)| of_agent(log)) };
+    let designed = |case: &Case| -> Told { case.design.as_ref().map(|log| (log.outcome(), log.gave_up.join("; "))) };
+    let tuned = |case: &Case| -> Told { case.tuned.as_ref().map(|tuned| of_agent(&tuned.agent)) };
+    let roles: [Role; 3] = [
+        ("paraphrase", &cast.paraphrase, &narrated),
+        ("design", &cast.design, &designed),
+        ("tune", &cast.tune, &tuned),
+    ];
+    let by_model = roles.into_iter().filter(|(_, model, _)| *model != RULES);
+    by_model
+        .map(|(role, model, told)| {
+            let count = |word: &str| cases.iter().filter(|case| told(case).is_some_and(|(is, _)| is == word)).count();
+            let reason = |case: &Case| {
+                let why = told(case).filter(|(is, _)| *is == "fallback")?.1;
+                Some(FallbackReason { id: case.cluster.scenario_id.clone(), why })
+            };
+            ModelSummary {
+                role: role.to_owned(),
+                model: model.clone(),
+                first_answer: count("first answer"),
+                after_repair: count("after repair"),
+                fallback: count("fallback"),
+                not_asked: count("not asked"),
+                reasons: cases.iter().filter_map(reason).collect(),
+            }
+        })
+        .collect()
 }
 
 /// The simulator that ran the scenarios, with its version.

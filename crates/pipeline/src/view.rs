@@ -1,9 +1,10 @@
 //! The suite as the report sees it.
 
+use crate::agents::Cast;
 use crate::stages::{Case, Ran, names};
 use crate::suite::{RecordSource, Suite, quoted};
-use crate::summary::simulator_name;
-use recrash_model::Diagnostic;
+use crate::summary::{self, simulator_name};
+use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::metrics::Verdict;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
@@ -26,21 +27,44 @@ pub fn view(
         profile: suite.profile().clone(),
         ego: suite.ego().to_owned(),
         simulator: simulator_name(cases),
-        agents: options.cast.describe(),
+        agents: agents(&options.cast, cases),
         seed: options.seed,
         sample: options.records == RecordSource::Sample,
         records: records.clone(),
         selection: selection.clone(),
         cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
-        diagnostics: remarks,
+        diagnostics: remarks.into_iter().chain(fallbacks(&options.cast, cases)).collect(),
     }
+}
+
+/// Who played the roles, and how many answers of models were accepted.
+fn agents(cast: &Cast, cases: &[Case]) -> String {
+    let models = summary::models(cast, cases);
+    if models.is_empty() {
+        return cast.describe();
+    }
+    let roles: Vec<String> = models.iter().map(|m| format!("{} {}: {}", m.role, m.model, m.describe())).collect();
+    roles.join("; ")
+}
+
+/// A remark for each scenario in which the rules took over from a model.
+fn fallbacks(cast: &Cast, cases: &[Case]) -> Vec<Diagnostic> {
+    let models = summary::models(cast, cases);
+    let remarks = models.iter().flat_map(|model| {
+        model.reasons.iter().map(|reason| {
+            let message = format!("{}: the rules took over from {}: {}", reason.id, model.model, reason.why);
+            let code = format!("model.{}", model.role);
+            Diagnostic::new(Severity::Warning, &code, Location::default(), message)
+        })
+    });
+    remarks.collect()
 }
 
 fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseView {
     let id = &case.cluster.scenario_id;
     let positions =
         case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
-    let moved = case.tuned.as_ref().filter(|(_, log)| log.best != 0);
+    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0);
     CaseView {
         scenario_id: id.clone(),
         template: case.cluster.template,
@@ -49,14 +73,14 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
         narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
         drawing: case.first.as_ref().map(|ran| ran.scenario.network().drawing()).unwrap_or_default(),
         before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
-        after: moved.map(|(ran, _)| run_view(suite, ran, &names::tuned(id))),
+        after: moved.map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
         triage: case.triage.clone(),
         reference: case.reference.as_ref().map(|run| RunTrace {
             rollout: run.rollout.clone(),
             series: run.series.clone(),
             min_gap: run.metrics.min_gap,
         }),
-        tune_log: case.tuned.as_ref().map(|(_, log)| log.clone()),
+        tune_log: case.tuned.as_ref().map(|tuned| tuned.log.clone()),
         refused: case.failure.as_ref().map(ToString::to_string),
     }
 }

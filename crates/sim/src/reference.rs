@@ -7,7 +7,7 @@
 //! The regulation covers cut-in, cut-out and braking leads; what is taken over to crossings and to people on foot is
 //! said in `docs/models/reference.md`.
 
-use crate::chassis::{Controls, friction_of};
+use crate::chassis::Controls;
 use crate::emergency::EmergencyResponse;
 use crate::give_way::{Crossing, GiveWay, MERGED_M, Manners, Stretch};
 use crate::idm::{IdmParameters, curve_limit};
@@ -156,7 +156,7 @@ pub(crate) struct Reference {
 
 impl Reference {
     pub(crate) fn new(spec: &VehicleSpec, target_mps: f64, surface: Surface) -> Self {
-        let friction = friction_of(surface);
+        let friction = surface.relative_friction();
         let parameters = IdmParameters {
             time_headway_s: TIME_HEADWAY_S,
             hardest_deceleration_mps2: COMFORTABLE_MPS2 * friction,

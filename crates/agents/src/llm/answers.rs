@@ -1,6 +1,6 @@
-//! Where answers come from: a batch file that somebody sends to any provider, or the ledger alone.
+//! Where answers come from: a live model, a batch file that somebody sends to a provider, or the ledger alone.
 //!
-//! Both are one trait, so prompts, repairs and fallback are one path for every provider and every mode.
+//! All three are one trait, so prompts, repairs and fallback are one path for every provider and every mode.
 
 use crate::llm::question::{Exchange, Question};
 use std::collections::BTreeMap;
@@ -10,6 +10,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub trait Ledger: Send + Sync {
     /// The exchange of this question, where there was one.
     fn find(&self, hash: &str) -> Option<Exchange>;
+
+    /// Keeps an exchange for good.
+    ///
+    /// # Errors
+    /// Why it cannot be kept, in one sentence.
+    fn keep(&self, exchange: &Exchange) -> Result<(), String>;
 }
 
 /// Gives answers.
@@ -24,10 +30,22 @@ pub trait Answers: Send + Sync {
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AskError {
-    /// It was put down for the next batch.
+    /// It was put down for the next batch. The run stops when all questions that can be asked are put down.
     #[error("the question waits for the next batch")]
     Pending,
-    /// The ledger does not hold it, and nothing else is asked.
+    /// A cap on tokens or money is reached. The run stops.
+    #[error("{0}")]
+    BudgetSpent(String),
+    /// No question will be answered like this: a key is missing or wrong, the model is unknown. The run stops.
+    #[error("{0}")]
+    Refused(String),
+    /// This question was not answered, however often it was asked. The rules take over.
+    #[error("{0}")]
+    Trouble(String),
+    /// The ledger cannot keep an answer. The run stops.
+    #[error("the ledger cannot keep an answer: {0}")]
+    Ledger(String),
+    /// The ledger does not hold it, and nothing else is asked. The run stops.
     #[error("the ledger has no answer to question {hash} ({what}); run once without --llm replay")]
     NotInLedger {
         /// Hash of the question.

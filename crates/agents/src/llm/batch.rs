@@ -1,6 +1,8 @@
 //! Batch files in OpenAI's form: one JSON object per line, a request with our `custom_id`, or a response with it.
 
-use crate::llm::question::{EXCHANGE_FORMAT, Exchange, Question, Speaker};
+use crate::llm::prices::plain_name;
+use crate::llm::prompts;
+use crate::llm::question::{Asked, EXCHANGE_FORMAT, Exchange, Question, Speaker};
 use recrash_model::Diagnostic;
 use recrash_model::diagnostic::{Location, Severity};
 use serde::Deserialize;
@@ -16,7 +18,7 @@ pub fn request_line(question: &Question) -> String {
         "method": "POST",
         "url": "/v1/chat/completions",
         "body": {
-            "model": question.model,
+            "model": plain_name(&question.model),
             "messages": messages(question),
             "response_format": {
                 "type": "json_schema",
@@ -117,9 +119,14 @@ fn read_response(line: &str, questions: &[Question]) -> Result<Exchange, String>
         format: EXCHANGE_FORMAT.to_owned(),
         hash: line.custom_id,
         question: question.clone(),
+        prompts: prompts::version(),
         answer: answer.ok_or("its response has no text")?,
+        asked: Asked::Batch,
         input_tokens: body.usage.as_ref().map_or(0, |usage| usage.prompt_tokens),
         output_tokens: body.usage.as_ref().map_or(0, |usage| usage.completion_tokens),
+        latency_s: None,
+        retries: 0,
+        cost_usd: None,
     })
 }
 

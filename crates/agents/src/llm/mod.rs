@@ -1,24 +1,46 @@
 //! The roles played by a language model. Whatever it says is checked; what cannot be used goes back to it a bounded number
 //! of times, and then the caller lets the rules take over.
+//!
+//! A role makes a [`Question`]; [`Answers`] answers it: live, from a batch, or from the ledger. So prompts, repairs and
+//! fallback are one path for every provider, and a provider is known to `live.rs` only.
 
+mod access;
 mod answers;
 mod batch;
 mod extract;
+#[cfg(feature = "live")]
+mod fault;
+#[cfg(feature = "live")]
+mod live;
+mod prices;
 mod prompts;
 mod question;
+mod secrets;
+mod spending;
 
+pub use access::LiveOptions;
 pub use answers::{Answers, AskError, Batch, Ledger, Replay};
 pub use batch::{read_responses, request_line};
-pub use question::{EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
+#[cfg(feature = "live")]
+pub use live::Live;
+pub use prices::{ModelPrice, PriceTable, plain_name};
+pub use prompts::{TuneBrief, version as prompts_version};
+pub use question::{Asked, EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
+pub use secrets::Secret;
+pub use spending::{Caps, Spending, Spent};
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
 use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT, Narrative, Origin};
-use recrash_model::scenario::{Author, SCENARIO_FORMAT, ScenarioDraft, Source};
-use recrash_model::tuning::{Parameter, TunePoint};
+use recrash_model::profile::SystemProfile;
+use recrash_model::scenario::{
+    Author, EgoSpec, Environment, MapSpec, Obstacle, Partner, SCENARIO_FORMAT, ScenarioDraft, Source,
+};
+use recrash_model::tuning::Parameter;
 use recrash_model::{Diagnostic, Outcome};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use serde_json::{Value, json};
+use std::cell::Cell;
 
 /// Longest narrative text that is accepted. [characters]
 const MAX_TEXT: usize = 2_000;
@@ -32,10 +54,10 @@ pub struct LanguageModel<'a> {
     pub model: &'a str,
     /// Where answers come from.
     pub answers: &'a dyn Answers,
-    /// How often an answer that cannot be used goes back.
+    /// How often an answer that cannot be used goes back, in one role for one scenario.
     pub max_repairs: usize,
     /// Counts the answers that went back.
-    pub repairs: &'a AtomicUsize,
+    pub repairs: &'a Cell<usize>,
 }
 
 /// The form of a paraphrase.
@@ -48,6 +70,28 @@ struct NarrativeAnswer {
     facts: Vec<Fact>,
     /// Why the narrative takes the record's place, where it does; null where it retells the record.
     replaces_record: Option<String>,
+}
+
+/// The form of a design: what a model decides of a scenario. `recrash_roads::read_draft` reads it, so it is no type of
+/// its own but for the schema.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "only its schema is used")]
+struct ScenarioAnswer {
+    /// Road map.
+    map: MapSpec,
+    /// The subject vehicle.
+    ego: EgoSpec,
+    /// Other road users with a script, at most 16.
+    partners: Vec<Partner>,
+    /// Static obstacles, at most 64.
+    #[serde(default)]
+    obstacles: Vec<Obstacle>,
+    /// Surface, light and weather.
+    #[serde(default)]
+    environment: Environment,
+    /// The rollout ends after this time at the latest, 1 to 120. [s]
+    duration_s: f64,
 }
 
 /// The form of a proposal.
@@ -65,61 +109,88 @@ impl LanguageModel<'_> {
         mut question: Question,
         accept: impl Fn(&str) -> Result<T, Vec<String>>,
     ) -> Result<T, AgentError> {
-        let mut problems = Vec::new();
-        for _ in 0..=self.max_repairs {
+        loop {
             let exchange = self.answers.answer(&question)?;
             let found = extract::json_object(&exchange.answer).map_err(|why| vec![why]).and_then(&accept);
-            match found {
+            let problems = match found {
                 Ok(value) => return Ok(value),
-                Err(why) => problems = why,
-            }
-            question.turns.push(Turn { speaker: Speaker::Assistant, text: exchange.answer });
-            question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(&problems)? });
-            question.purpose.attempt += 1;
-            self.repairs.fetch_add(1, Ordering::Relaxed);
+                Err(problems) => problems,
+            };
+            self.count_repair(&problems)?;
+            push_repair(&mut question, exchange.answer, &problems)?;
         }
-        let model = self.model.to_owned();
-        Err(AgentError::NoUsableAnswer { model, repairs: self.max_repairs, problem: problems.join("; ") })
     }
 
-    fn question(&self, role: Role, scenario_id: &str, text: String, name: &str, schema: serde_json::Value) -> Question {
-        Question {
+    /// Counts an answer that goes back.
+    ///
+    /// # Errors
+    /// The repairs are used up.
+    fn count_repair(&self, problems: &[String]) -> Result<(), AgentError> {
+        if self.repairs.get() >= self.max_repairs {
+            let (model, problem) = (self.model.to_owned(), problems.join("; "));
+            return Err(AgentError::NoUsableAnswer { model, repairs: self.max_repairs, problem });
+        }
+        self.repairs.set(self.repairs.get() + 1);
+        Ok(())
+    }
+
+    /// The first question of the role that retells.
+    ///
+    /// # Errors
+    /// [`AgentError::Prompt`].
+    pub fn paraphrase_question(&self, brief: &Brief) -> Result<Question, AgentError> {
+        self.question(Role::Paraphrase, brief.scenario_id, brief.profile, prompts::paraphrase(brief)?)
+    }
+
+    /// The first question of the role that designs.
+    ///
+    /// # Errors
+    /// [`AgentError::Prompt`].
+    pub fn design_question(&self, brief: &Brief, narrative: &Narrative) -> Result<Question, AgentError> {
+        self.question(Role::Design, brief.scenario_id, brief.profile, prompts::design(brief, narrative)?)
+    }
+
+    /// A question of the role that tunes.
+    ///
+    /// # Errors
+    /// [`AgentError::Prompt`].
+    pub fn tune_question(&self, brief: &Brief, tune: &TuneBrief) -> Result<Question, AgentError> {
+        self.question(Role::Tune, brief.scenario_id, brief.profile, prompts::tune(brief.scenario_id, tune)?)
+    }
+
+    fn question(
+        &self,
+        role: Role,
+        scenario_id: &str,
+        profile: &SystemProfile,
+        text: String,
+    ) -> Result<Question, AgentError> {
+        let (name, schema) = match role {
+            Role::Paraphrase => ("narrative", schemars::schema_for!(NarrativeAnswer).to_value()),
+            Role::Design => ("scenario", schemars::schema_for!(ScenarioAnswer).to_value()),
+            Role::Tune => ("values", schemars::schema_for!(ValuesAnswer).to_value()),
+        };
+        Ok(Question {
             model: self.model.to_owned(),
             purpose: Purpose { role, scenario_id: scenario_id.to_owned(), attempt: 0 },
-            system: prompts::system(),
+            system: prompts::system(role, profile, &schema)?,
             turns: vec![Turn { speaker: Speaker::User, text }],
             schema_name: name.to_owned(),
             schema,
-        }
+        })
     }
 
-    fn paraphrase_question(&self, brief: &Brief) -> Result<Question, AgentError> {
-        let schema = schemars::schema_for!(NarrativeAnswer).to_value();
-        Ok(self.question(Role::Paraphrase, brief.scenario_id, prompts::paraphrase(brief)?, "narrative", schema))
-    }
-
-    fn design_question(&self, brief: &Brief, narrative: &Narrative) -> Result<Question, AgentError> {
-        let schema = recrash_roads::scenario_schema();
-        Ok(self.question(Role::Design, brief.scenario_id, prompts::design(brief, narrative)?, "scenario", schema))
-    }
-
-    /// Proposes the next values of `parameters`, given what was tried.
+    /// Proposes the next values of the parameters, given what was tried.
     ///
     /// # Errors
     /// [`AgentError`], where the model gives no usable answer.
-    pub fn propose(
-        &self,
-        scenario_id: &str,
-        narrative: &Narrative,
-        parameters: &[Parameter],
-        history: &[TunePoint],
-    ) -> Result<Vec<f64>, AgentError> {
-        let text = prompts::tune(scenario_id, narrative, parameters, history)?;
-        let schema = schemars::schema_for!(ValuesAnswer).to_value();
-        let question = self.question(Role::Tune, scenario_id, text, "values", schema);
+    pub fn propose(&self, brief: &Brief, tune: &TuneBrief) -> Result<Vec<f64>, AgentError> {
+        let mut question = self.tune_question(brief, tune)?;
+        // The design is the first try, and nobody's answer.
+        question.purpose.attempt = tune.history.len().saturating_sub(1);
         self.converse(question, |json| {
             let answer: ValuesAnswer = read(json)?;
-            check_values(&answer.values, parameters)?;
+            check_values(&answer.values, tune.parameters)?;
             Ok(answer.values)
         })
     }
@@ -155,15 +226,22 @@ impl Design for LanguageModel<'_> {
     fn design(&self, brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Result<ScenarioDraft, AgentError> {
         let mut question = self.design_question(brief, narrative)?;
         for earlier in feedback {
-            let draft = serde_json::to_string(&earlier.draft).unwrap_or_default();
-            question.turns.push(Turn { speaker: Speaker::Assistant, text: draft });
-            let problems = problem_sentences(&earlier.problem);
-            question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(&problems)? });
-            question.purpose.attempt += 1;
+            let draft = prompts::answer_form(&earlier.draft).to_string();
+            push_repair(&mut question, draft, &problem_sentences(&earlier.problem))?;
         }
-        let draft = self.converse(question, |json| match recrash_roads::read_draft(json) {
-            Ok(outcome) => Ok(outcome.value),
-            Err(diagnostics) => Err(sentences(&diagnostics)),
+        if let Some(last) = feedback.last() {
+            self.count_repair(&problem_sentences(&last.problem))?;
+        }
+        let draft = self.converse(question, |json| {
+            let mut draft: Value = read(json)?;
+            // Fields that are ours to say; a model may leave them out.
+            draft["format"] = json!(SCENARIO_FORMAT);
+            draft["id"] = json!(brief.scenario_id);
+            draft["source"] = json!({});
+            match recrash_roads::read_draft(&draft.to_string()) {
+                Ok(outcome) => Ok(outcome.value),
+                Err(diagnostics) => Err(sentences(&diagnostics)),
+            }
         })?;
         // What names files and says where things came from is ours to say, never the model's.
         Ok(ScenarioDraft {
@@ -179,6 +257,15 @@ impl Design for LanguageModel<'_> {
             ..draft
         })
     }
+}
+
+fn push_repair(question: &mut Question, answer: String, problems: &[String]) -> Result<(), AgentError> {
+    // Some providers take no empty turn.
+    let answer = if answer.trim().is_empty() { "(no answer)".to_owned() } else { answer };
+    question.turns.push(Turn { speaker: Speaker::Assistant, text: answer });
+    question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(problems)? });
+    question.purpose.attempt += 1;
+    Ok(())
 }
 
 fn read<T: for<'de> Deserialize<'de>>(json: &str) -> Result<T, Vec<String>> {

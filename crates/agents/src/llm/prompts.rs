@@ -1,98 +1,223 @@
-//! Prompts: files in `prompts/`, filled in with minijinja. Their hash is part of what the ledger keeps.
+//! Prompts: files in `prompts/`, filled in with minijinja. What is the same for all questions of a role in a run comes
+//! first, so that providers can keep it in their caches.
 
+use crate::llm::question::{Role, sha256};
 use crate::{AgentError, Brief};
 use minijinja::value::Serde;
 use minijinja::{Environment, context};
+use recrash_model::metrics::Metrics;
 use recrash_model::narrative::Narrative;
+use recrash_model::profile::SystemProfile;
 use recrash_model::record::{Coded, ContactZone, CrashRecord};
+use recrash_model::scenario::ScenarioDraft;
+use recrash_model::template::Template;
 use recrash_model::tuning::{Parameter, TunePoint};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 /// Longest narrative that is sent. [characters]
 const MAX_NARRATIVE: usize = 4_000;
 
-const SYSTEM: &str = include_str!("../../prompts/system.md");
-const PARAPHRASE: &str = include_str!("../../prompts/paraphrase.md");
-const DESIGN: &str = include_str!("../../prompts/design.md");
-const TUNE: &str = include_str!("../../prompts/tune.md");
-const REPAIR: &str = include_str!("../../prompts/repair.md");
-/// Worked examples of designs; a test runs each.
-pub const EXAMPLES: [&str; 2] =
-    [include_str!("../../prompts/example_crossing.json"), include_str!("../../prompts/example_cut_in.json")];
+macro_rules! files {
+    ($($name:literal),* $(,)?) => { [$(($name, include_str!(concat!("../../prompts/", $name)))),*] };
+}
 
-/// The standing instructions.
-pub fn system() -> String {
-    SYSTEM.to_owned()
+/// Every prompt file and worked example: name and content.
+const FILES: [(&str, &str); 14] = files![
+    "system.md",
+    "paraphrase.md",
+    "paraphrase_question.md",
+    "paraphrase_retold.json",
+    "paraphrase_alternative.json",
+    "design.md",
+    "design_question.md",
+    "design_crossing.json",
+    "design_cut_in.json",
+    "design_work_zone.json",
+    "tune.md",
+    "tune_question.md",
+    "tune_crossing.json",
+    "repair.md",
+];
+
+/// Hash of the prompt files: their version, as the ledger keeps it.
+pub fn version() -> String {
+    let all: String = FILES.iter().map(|(name, content)| format!("{name} {}\n{content}", content.len())).collect();
+    sha256(all.as_bytes())
+}
+
+/// The standing instructions of a role: task, system under test, worked examples, schema of the answer.
+///
+/// # Errors
+/// The prompt file and what fills it do not fit.
+pub fn system(role: Role, profile: &SystemProfile, schema: &Value) -> Result<String, AgentError> {
+    let examples: Vec<Example> = match role {
+        Role::Paraphrase => ["paraphrase_retold.json", "paraphrase_alternative.json"]
+            .map(|name| Example::of(name, paraphrase_example))
+            .into_iter()
+            .collect::<Result<_, _>>()?,
+        Role::Design => ["design_crossing.json", "design_cut_in.json", "design_work_zone.json"]
+            .map(|name| Example::of(name, design_example))
+            .into_iter()
+            .collect::<Result<_, _>>()?,
+        Role::Tune => vec![Example::of("tune_crossing.json", tune_example)?],
+    };
+    let examples = minijinja::Value::from(Serde(&examples));
+    let task = file(match role {
+        Role::Paraphrase => "paraphrase.md",
+        Role::Design => "design.md",
+        Role::Tune => "tune.md",
+    });
+    let profile = minijinja::Value::from(Serde(profile));
+    render("system.md", context! { task, profile, examples, schema => schema.to_string() })
 }
 
 /// Asks for a narrative.
 ///
 /// # Errors
-/// The prompt file and what fills it do not fit.
+/// As [`system`].
 pub fn paraphrase(brief: &Brief) -> Result<String, AgentError> {
     let records: Vec<QuotedRecord> = brief.records.iter().map(|record| QuotedRecord::new(record)).collect();
-    let records = minijinja::Value::from(Serde(&records));
-    let BriefContext { scenario_id, template, profile } = BriefContext::new(brief);
-    render("paraphrase.md", PARAPHRASE, context! { scenario_id, template, profile, records })
+    paraphrase_question(brief.scenario_id, brief.template, &records)
 }
 
 /// Asks for a scenario.
 ///
 /// # Errors
-/// As [`paraphrase`].
+/// As [`system`].
 pub fn design(brief: &Brief, narrative: &Narrative) -> Result<String, AgentError> {
-    let BriefContext { scenario_id, template, profile } = BriefContext::new(brief);
-    let narrative = quotable(&narrative.text);
-    render("design.md", DESIGN, context! { scenario_id, template, profile, narrative, examples => EXAMPLES.to_vec() })
+    design_question(brief.scenario_id, brief.template, &narrative.text)
+}
+
+/// What a model that tunes is told.
+#[derive(Debug, Clone, Copy)]
+pub struct TuneBrief<'a> {
+    /// Narrative that must stay true.
+    pub narrative: &'a Narrative,
+    /// Scenario as designed.
+    pub draft: &'a ScenarioDraft,
+    /// What its rollout showed.
+    pub metrics: &'a Metrics,
+    /// What may move.
+    pub parameters: &'a [Parameter],
+    /// What was tried, the design first.
+    pub history: &'a [TunePoint],
 }
 
 /// Asks for other numbers.
 ///
 /// # Errors
-/// As [`paraphrase`].
-pub fn tune(
-    scenario_id: &str,
-    narrative: &Narrative,
-    parameters: &[Parameter],
-    history: &[TunePoint],
-) -> Result<String, AgentError> {
-    let tried: Vec<Tried> = history.iter().map(Tried::new).collect();
-    let tried = minijinja::Value::from(Serde(&tried));
-    let parameters = minijinja::Value::from(Serde(parameters));
-    let narrative = quotable(&narrative.text);
-    render("tune.md", TUNE, context! { scenario_id, narrative, parameters, history => tried })
+/// As [`system`].
+pub fn tune(scenario_id: &str, brief: &TuneBrief) -> Result<String, AgentError> {
+    let tries: Vec<Tried> = brief.history.iter().map(Tried::new).collect();
+    let (scenario, metrics) = (answer_form(brief.draft), describe(brief.metrics));
+    tune_question(scenario_id, &brief.narrative.text, &scenario, &metrics, brief.parameters, &tries)
 }
 
 /// Says what is wrong with an answer.
 ///
 /// # Errors
-/// As [`paraphrase`].
+/// As [`system`].
 pub fn repair(problems: &[String]) -> Result<String, AgentError> {
-    render("repair.md", REPAIR, context! { problems => problems.to_vec() })
+    let problems: Vec<String> = problems.iter().map(|problem| quotable(problem)).collect();
+    render("repair.md", context! { problems })
 }
 
-fn render(name: &'static str, source: &'static str, values: minijinja::Value) -> Result<String, AgentError> {
-    Environment::new().render_named_str(name, source, values).map_err(|e| AgentError::Prompt(e.to_string()))
+/// What of a draft a model decides; the rest is ours to say.
+pub fn answer_form(draft: &ScenarioDraft) -> Value {
+    json!({
+        "map": draft.map, "ego": draft.ego, "partners": draft.partners, "obstacles": draft.obstacles,
+        "environment": draft.environment, "duration_s": draft.duration_s,
+    })
 }
 
-struct BriefContext {
-    scenario_id: String,
-    template: minijinja::Value,
-    profile: minijinja::Value,
+fn paraphrase_question(id: &str, template: Template, records: &[QuotedRecord]) -> Result<String, AgentError> {
+    let (template, records) = (minijinja::Value::from(Serde(template)), minijinja::Value::from(Serde(records)));
+    render("paraphrase_question.md", context! { scenario_id => id, template, records })
 }
 
-impl BriefContext {
-    fn new(brief: &Brief) -> Self {
-        Self {
-            scenario_id: brief.scenario_id.to_owned(),
-            template: minijinja::Value::from(Serde(brief.template)),
-            profile: minijinja::Value::from(Serde(brief.profile)),
-        }
+fn design_question(id: &str, template: Template, narrative: &str) -> Result<String, AgentError> {
+    let template = minijinja::Value::from(Serde(template));
+    render("design_question.md", context! { scenario_id => id, template, narrative => quotable(narrative) })
+}
+
+fn tune_question(
+    id: &str,
+    narrative: &str,
+    scenario: &Value,
+    metrics: &str,
+    parameters: &[Parameter],
+    tries: &[Tried],
+) -> Result<String, AgentError> {
+    let (narrative, scenario) = (quotable(narrative), scenario.to_string());
+    let (parameters, tries) = (minijinja::Value::from(Serde(parameters)), minijinja::Value::from(Serde(tries)));
+    render("tune_question.md", context! { scenario_id => id, narrative, scenario, metrics, parameters, tries })
+}
+
+/// A worked example as a prompt shows it.
+#[derive(Serialize)]
+struct Example {
+    asked: String,
+    answer: String,
+}
+
+impl Example {
+    fn of<T: for<'de> Deserialize<'de>>(
+        name: &str,
+        ask: fn(&T) -> Result<String, AgentError>,
+    ) -> Result<Self, AgentError> {
+        let wrong = |e: serde_json::Error| AgentError::Prompt(format!("{name}: {e}"));
+        let content: Value = serde_json::from_str(file(name)).map_err(wrong)?;
+        let answer = content["answer"].to_string();
+        Ok(Self { asked: ask(&serde_json::from_value(content).map_err(wrong)?)?, answer })
     }
 }
 
+#[derive(Deserialize)]
+struct ParaphraseExample {
+    template: Template,
+    records: Vec<QuotedRecord>,
+}
+
+fn paraphrase_example(example: &ParaphraseExample) -> Result<String, AgentError> {
+    paraphrase_question("example", example.template, &example.records)
+}
+
+#[derive(Deserialize)]
+struct DesignExample {
+    template: Template,
+    narrative: String,
+}
+
+fn design_example(example: &DesignExample) -> Result<String, AgentError> {
+    design_question("example", example.template, &example.narrative)
+}
+
+#[derive(Deserialize)]
+struct TuneExample {
+    narrative: String,
+    scenario: Value,
+    metrics: String,
+    parameters: Vec<Parameter>,
+    tries: Vec<Tried>,
+}
+
+fn tune_example(example: &TuneExample) -> Result<String, AgentError> {
+    let TuneExample { narrative, scenario, metrics, parameters, tries } = example;
+    tune_question("example", narrative, scenario, metrics, parameters, tries)
+}
+
+fn file(name: &str) -> &'static str {
+    FILES.iter().find(|(known, _)| *known == name).map_or("", |(_, content)| *content)
+}
+
+fn render(name: &str, values: minijinja::Value) -> Result<String, AgentError> {
+    let rendered = Environment::new().render_named_str(name, file(name), values);
+    rendered.map(|text| text.trim_end().to_owned() + "\n").map_err(|e| AgentError::Prompt(e.to_string()))
+}
+
 /// A record as a prompt quotes it.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct QuotedRecord {
     id: String,
     partner: String,
@@ -136,26 +261,46 @@ fn zones(zones: &[ContactZone]) -> String {
     if zones.is_empty() { "none given".into() } else { zones.iter().map(|z| z.label()).collect::<Vec<_>>().join(", ") }
 }
 
-/// Untrusted text between the prompt's quotation lines: capped, without a line that would end the quotation.
+/// Untrusted text as a prompt holds it: capped, without a line that would end a quotation.
 fn quotable(text: &str) -> String {
     text.replace("=====", "= = =").chars().filter(|c| !c.is_control() || *c == '\n').take(MAX_NARRATIVE).collect()
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Tried {
     values: Vec<f64>,
     gap: String,
+    findings: String,
     refused: String,
 }
 
 impl Tried {
     fn new(point: &TunePoint) -> Self {
+        let findings: Vec<&str> = point.score.findings.iter().map(|kind| kind.label()).collect();
         Self {
             values: point.values.clone(),
-            gap: point.score.min_gap.map_or_else(|| "none".into(), |gap| format!("{:.2} m", gap.value)),
+            gap: point
+                .score
+                .min_gap
+                .map_or_else(|| "none".into(), |gap| format!("{:.2} m at {:.1} s", gap.value, gap.time_s)),
+            findings: findings.join(", "),
             refused: point.score.refused.join("; "),
         }
     }
+}
+
+/// A rollout in one line.
+fn describe(metrics: &Metrics) -> String {
+    let mut parts = Vec::new();
+    for partner in &metrics.partners {
+        let gap = &partner.min_gap;
+        parts.push(format!("least gap to {} {:.2} m at {:.1} s", partner.id, gap.value, gap.time_s));
+        parts.extend(partner.min_ttc.map(|ttc| format!("least time to collision {:.1} s", ttc.value)));
+        parts.extend(partner.pet.map(|pet| format!("post-encroachment time {:.1} s", pet.value)));
+    }
+    parts.extend(metrics.contact.as_ref().map(|c| format!("contact ({}) at {:.1} s", c.kind.label(), c.time_s)));
+    parts.push(format!("ended after {:.1} s", metrics.duration_s));
+    parts.join("; ")
 }
 
 #[cfg(test)]
@@ -169,10 +314,26 @@ mod tests {
     }
 
     #[test]
-    fn every_worked_example_passes_the_check() {
-        for example in EXAMPLES {
-            let draft = recrash_roads::read_draft(example).unwrap().value;
-            recrash_roads::check(draft).unwrap();
+    fn every_prompt_file_is_listed_and_counts_for_the_version() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("prompts");
+        let mut there: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        let mut listed: Vec<String> = FILES.iter().map(|(name, _)| (*name).to_owned()).collect();
+        there.sort();
+        listed.sort();
+        assert_eq!(there, listed);
+        assert_eq!(version().len(), 64);
+    }
+
+    #[test]
+    fn every_role_has_task_examples_and_schema() {
+        let profile: SystemProfile = toml::from_str(include_str!("../../../../profiles/paper.toml")).unwrap();
+        for (role, word) in [(Role::Paraphrase, "Retell"), (Role::Design, "Design"), (Role::Tune, "Propose")] {
+            let text = system(role, &profile, &json!({"type": "the schema"})).unwrap();
+            assert!(text.contains(word) && text.contains("Answer:\n{\"") && text.contains("the schema"), "{text}");
+            assert!(!text.contains("{{") && !text.contains("{%") && !text.contains("undefined"), "{text}");
         }
     }
 

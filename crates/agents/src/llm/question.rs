@@ -70,9 +70,13 @@ impl Question {
     /// not part of it: the same question asked twice has one answer.
     pub fn hash(&self) -> String {
         let sent = (&self.model, &self.system, &self.turns, &self.schema_name, &self.schema);
-        let bytes = serde_json::to_vec(&sent).unwrap_or_default();
-        Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+        sha256(&serde_json::to_vec(&sent).unwrap_or_default())
     }
+}
+
+/// SHA-256 in hexadecimal.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A question with its answer, as the ledger keeps it.
@@ -84,12 +88,40 @@ pub struct Exchange {
     pub hash: String,
     /// The question.
     pub question: Question,
-    /// What the model said, word for word. Untrusted text.
+    /// Hash of the prompt files behind the question.
+    #[serde(default)]
+    pub prompts: String,
+    /// What the model said, word for word but for keys, which are blacked out. Untrusted text.
     pub answer: String,
+    /// How it was asked.
+    #[serde(default)]
+    pub asked: Asked,
     /// Tokens read by the model.
     pub input_tokens: u64,
     /// Tokens written by the model.
     pub output_tokens: u64,
+    /// Time from the question to its answer; absent for a batch. [s]
+    #[serde(default)]
+    pub latency_s: Option<f64>,
+    /// How often it was asked again after a passing fault.
+    #[serde(default)]
+    pub retries: u32,
+    /// Price when it was asked; absent where none is known. [USD]
+    #[serde(default)]
+    pub cost_usd: Option<f64>,
+}
+
+/// How a question was asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Asked {
+    /// In a batch file.
+    #[default]
+    Batch,
+    /// Over the network, of the model's own provider.
+    Live,
+    /// Over the network, of a server whose address was given.
+    Server,
 }
 
 #[cfg(test)]

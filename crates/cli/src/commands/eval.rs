@@ -1,12 +1,11 @@
 //! `recrash eval`: how well an agent reads records, by labels that people wrote.
 
+use crate::model_options::AccessArgs;
 use crate::output::{self, Output, number, table, title};
 use anstream::{eprintln, println};
 use clap::Args;
 use comfy_table::Cell;
-use recrash_pipeline::{
-    AnswerMode, Evaluation, EvaluationRequest, FieldScore, Half, HalfScore, PipelineError, evaluate,
-};
+use recrash_pipeline::{Evaluation, EvaluationRequest, FieldScore, Half, HalfScore, PipelineError, evaluate};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -14,7 +13,7 @@ Examples:
   recrash eval                                      the rules on the built-in labels and the downloaded crash files
   recrash eval --half dev                           the developed half alone, with its disagreements
   recrash eval --records archive.csv --records current.csv --json
-  recrash eval --agent gpt-5-mini --out eval-mini   a model: writes requests.jsonl there, goes on with responses.jsonl
+  recrash eval --agent gpt-5-mini --out eval-mini   a model, with its questions and answers in that folder
 
 The labels are of NHTSA's two files on automated driving: recrash fetch --edition archive, and recrash fetch.
 How fields are compared is in docs/models/evaluation.md.";
@@ -43,9 +42,9 @@ pub struct EvalArgs {
     /// Folder of a model's questions and answers.
     #[arg(long, short, value_name = "DIR", default_value = "eval-run")]
     pub out: PathBuf,
-    /// How a model is asked: batch or replay, as in `recrash run`.
-    #[arg(long, value_name = "MODE", value_parser = ["batch", "replay"], default_value = "batch")]
-    pub llm: String,
+    /// How a model is asked.
+    #[command(flatten)]
+    pub access: AccessArgs,
 }
 
 /// Reads the labelled records and compares.
@@ -64,7 +63,7 @@ pub fn run(args: &EvalArgs, output: Output) -> Result<(), PipelineError> {
         },
         profile: args.profile.clone(),
         out: args.out.clone(),
-        answers: if args.llm == "replay" { AnswerMode::Replay } else { AnswerMode::Batch },
+        models: args.access.access(),
     })?;
     if output.json {
         output::json(&evaluation);

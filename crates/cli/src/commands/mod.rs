@@ -34,7 +34,8 @@ Examples:
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
 Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
-  4 questions wait for a batch; 5 a share or speed that is asked for was missed";
+  4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached;
+  5 a share or speed that is asked for was missed; 130 interrupted";
 
 /// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
 #[derive(Debug, Parser)]

@@ -3,11 +3,11 @@
 use super::records::funnel;
 use super::select::{coverage, tables};
 use crate::options::SuiteArgs;
-use crate::output::{self, Output, table, title};
+use crate::output::{self, Output, number, table, title};
 use anstream::{eprintln, println};
 use comfy_table::Cell;
 use owo_colors::OwoColorize;
-use recrash_pipeline::{Options, PipelineError, RunSummary, Stage, Suite, Summary};
+use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary};
 use std::path::Path;
 
 /// Runs every stage.
@@ -45,6 +45,7 @@ fn finish(suite: &Suite, output: Output) -> Result<(), PipelineError> {
         output::json(&summary);
     } else if !output.quiet {
         show(&summary, suite.store().dir());
+        spent(suite);
     }
     match summary.cases.iter().find_map(|case| case.failure.as_ref()) {
         Some(failure) if summary.run() == 0 => {
@@ -78,6 +79,43 @@ fn gap(run: Option<&RunSummary>) -> String {
     }
 }
 
+/// Prints what this run has spent on models.
+fn spent(suite: &Suite) {
+    if let Some(spent) = suite.spent().filter(|spent| spent.answers > 0) {
+        let cost = if spent.cost_usd > 0.0 { format!(", {:.4} USD", spent.cost_usd) } else { String::new() };
+        let dir = suite.store().dir().display();
+        println!(
+            "models: {} answers, {} tokens{cost} in this run; recrash ledger {dir} tells more",
+            spent.answers, spent.tokens
+        );
+    }
+}
+
+/// Prints how the models did, and where the rules took over.
+fn models(models: &[ModelSummary]) {
+    if models.is_empty() {
+        return;
+    }
+    title("Language models (scenarios)");
+    let mut rows = table(&["role", "model", "first answer", "after repair", "rules took over", "not asked"]);
+    for model in models {
+        let mut row = vec![Cell::new(&model.role), Cell::new(&model.model)];
+        row.extend([model.first_answer, model.after_repair, model.fallback, model.not_asked].map(number));
+        rows.add_row(row);
+    }
+    println!("{rows}");
+    for model in models {
+        for reason in &model.reasons {
+            println!("  {} {} of {}: {}", "by the rules:".yellow(), model.role, reason.id, one_line(&reason.why));
+        }
+    }
+}
+
+/// A stranger's text, safe to print.
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(300).collect()
+}
+
 /// Prints a whole run in tables.
 fn show(summary: &Summary, dir: &Path) {
     funnel(&summary.funnel);
@@ -109,6 +147,7 @@ fn show(summary: &Summary, dir: &Path) {
             println!("  {} {}: {}", "not faithful:".yellow(), case.id, run.unfaithful.join("; "));
         }
     }
+    models(&summary.models);
     let (total, run) = (summary.cases.len(), summary.run());
     let of_total = if run < total { format!(" of {total}") } else { String::new() };
     let (first, tuned) = summary.failed();
