@@ -1,7 +1,6 @@
 //! What is installed of all that recrash can use, and how to get the rest.
 
 use crate::weights::{find_weights, is_published_model};
-use crate::weights::{find_weights, load};
 use recrash_metadrive::{INSTALL_HINT, METADRIVE_VERSION, inspect};
 use serde::Serialize;
 use std::io::Read;
