@@ -137,6 +137,8 @@ class Player:
     speed: float
     speed_plan: list[tuple[float, float]] = field(default_factory=list)
     lateral_plan: tuple[float, float, float, float] | None = None
+    #: Speed to the left of its lane. [m/s]
+    sideways: float = 0.0
     ended: bool = False
 
     def pose(self) -> tuple[float, float]:
@@ -145,6 +147,8 @@ class Player:
         sign = 1 if self.lane < 0 else -1
         x, y, heading = road.point(self.s, road.lane_centre(self.lane) + sign * self.left)
         heading += 0 if self.lane < 0 else math.pi
+        # It faces the way it moves.
+        heading += math.atan2(self.sideways, self.speed) if self.speed > 0 else 0
         return x + self.to_centre * math.cos(heading), y + self.to_centre * math.sin(heading)
 
     def advance(self, now: float) -> None:
@@ -152,7 +156,9 @@ class Player:
         self.speed = self.planned_speed(now + STEP_S)
         if self.lateral_plan:
             begin, duration, start, target = self.lateral_plan
-            self.left = start + (target - start) * min((now + STEP_S - begin) / duration, 1.0)
+            share = (now + STEP_S - begin) / duration
+            self.left = start + (target - start) * min(share, 1.0)
+            self.sideways = (target - start) / duration if share < 1 else 0.0
         self.move(0.5 * (before + self.speed) * STEP_S)
 
     def planned_speed(self, now: float) -> float:

@@ -1,5 +1,10 @@
 //! `docs/formats/coverage.md` lists every element that is written, and none that is not.
 
+mod common;
+
+use common::{CASES, draft, two_parameters};
+use recrash_export::{ExportOptions, Format, export};
+use recrash_model::record::PartnerKind;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -14,13 +19,29 @@ fn written(folders: &[&str], extension: &str) -> BTreeSet<String> {
                 continue;
             }
             let text = std::fs::read_to_string(&path).expect("a golden");
-            for part in text.split('<').skip(1).filter(|part| part.starts_with(|c: char| c.is_ascii_alphabetic())) {
-                names.insert(part.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect());
-            }
+            names.extend(elements(&text));
         }
     }
     assert!(names.len() > 10, "{folders:?}");
     names
+}
+
+fn elements(xml: &str) -> impl Iterator<Item = String> {
+    let parts = xml.split('<').skip(1).filter(|part| part.starts_with(|c: char| c.is_ascii_alphabetic()));
+    parts.map(|part| part.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect())
+}
+
+/// Names of the elements of a scenario with a pedestrian, and of the points of its sweep.
+fn written_for_a_pedestrian() -> BTreeSet<String> {
+    let mut walking = draft(CASES[2].1);
+    walking.partners[0].kind = PartnerKind::Pedestrian;
+    walking.partners[0].speed_mps = 1.5;
+    walking.partners[0].policy = recrash_model::scenario::Policy::IdmNominal { target_speed_mps: 1.5 };
+    let scenario = recrash_roads::check(walking).expect("a pedestrian may cross").value;
+    let options = ExportOptions::new(Format::OpenScenario);
+    let files = export(&scenario, None, &two_parameters(&scenario), &options).expect("exported");
+    let scenarios = files.iter().filter(|file| file.name.ends_with(".xosc"));
+    scenarios.flat_map(|file| elements(std::str::from_utf8(&file.content).expect("text")).collect::<Vec<_>>()).collect()
 }
 
 /// Names in code font in a section of the page.
@@ -37,7 +58,9 @@ fn listed(section: &str) -> BTreeSet<String> {
 fn openscenario() {
     let mut page = listed("OpenSCENARIO XML 1.3");
     page.remove("import");
-    assert_eq!(written(&["openscenario", "openscenario-trajectory"], ".xosc"), page);
+    let mut found = written(&["openscenario", "openscenario-trajectory"], ".xosc");
+    found.extend(written_for_a_pedestrian());
+    assert_eq!(found, page);
 }
 
 #[test]
