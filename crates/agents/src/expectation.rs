@@ -7,6 +7,7 @@ use recrash_model::narrative::{FactSource, FactValue, Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::CrashRecord;
 use recrash_model::scenario::Approach;
+use recrash_model::template::RoadType;
 
 /// What the rollout must show: the template; the partner's approach and side where the narrative states them; speeds that
 /// the record or its narrative tells, as far as the map allows them; who was first and the record's contact zones where the
@@ -32,6 +33,8 @@ pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &System
     let binds = narrative.origin == Origin::Record;
     // Side by side nobody is first at a place, and the partner keeps to the ego's speed.
     let crosses = approach.is_some_and(|approach| approach != Approach::Same);
+    // On a circle paths run into one, and who is ahead there follows from how far around each drives.
+    let has_place = crosses && narrative.template.road != RoadType::TrafficCircle;
     let ground = staging_of(narrative, &facts).map_or(Ground::Junction, |way| ground(&narrative.template, &way));
     let most = |movement| most_speed(ground, turn(ground, movement)).min(profile.expresses.max_speed_mps);
     let kind = facts.find(|value| match value {
@@ -51,7 +54,7 @@ pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &System
         template: narrative.template,
         approach,
         side,
-        order: order.filter(|_| binds && crosses),
+        order: order.filter(|_| binds && has_place),
         sv_speed_mps: sv_speed.map(|told| told.min(most(narrative.template.sv))),
         cp_speed_mps: cp_speed.filter(|_| crosses).map(|told| told.min(most_of_partner)),
         sv_zones: if binds { record.sv_zones.clone() } else { Vec::new() },

@@ -36,8 +36,9 @@ const ORDER_TOLERANCE_S: f64 = 0.5;
 /// The paths are looked at this long before and after the closest encounter. [steps]
 const ORDER_STEPS: usize = 80;
 
-/// Who are told together come within this. [s] (assumed: the time in which one car clears the way of another)
-const TOGETHER_S: f64 = 1.5;
+/// Who are told together come within this: one that passes the other without contact must clear its way first. [s]
+/// (assumed)
+const TOGETHER_S: f64 = 2.5;
 
 /// Told speeds may be wrong by this share... (assumed: a little more than tuning may move them)
 const SPEED_SHARE: f64 = 0.4;

@@ -85,7 +85,7 @@ static CROSSES: LazyLock<Regex> = LazyLock::new(|| {
 /// The side of the street the partner came from, as a hand.
 static STREET_HAND: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\bfrom (?:the|its|an?) (?:adjacent )?(?P<side>left|right)(?:[- ]hand)? (?:curb|sidewalk|shoulder|side of)\b",
+        r"(?i)\bfrom (?:the|its|an?) (?:adjacent )?(?P<a>left|right)(?:[- ]hand)? (?:curb|sidewalk|shoulder|side of)\b|\b(?:driveway|alley(?:way)?|side street|parking (?:lot|space|stall|spot)) (?:on|to) (?:the|its) (?P<b>left|right)\b",
     )
 });
 /// The ego about the partner: it is beside it.
@@ -337,9 +337,10 @@ fn ahead_of_ego(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relatio
 fn from_street_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let by_hand = sentences.iter().find_map(|sentence| {
         let found = STREET_HAND.captures(sentence.text)?;
+        let hand = found.name("a").or_else(|| found.name("b"))?;
         let whole = found.get(0).expect("group 0");
         (sentence.mentions.subject_at(whole.start()) == Some(Actor::Cp))
-            .then(|| (Relation::From(side(&found["side"])), words(record, whole.as_str())))
+            .then(|| (Relation::From(side(hand.as_str())), words(record, whole.as_str())))
     });
     by_hand.or_else(|| {
         let sv = headings(sentences)[0]?;

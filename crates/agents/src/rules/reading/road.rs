@@ -46,6 +46,22 @@ pub(super) fn road(record: &CrashRecord, sentences: &[Sentence], relation: Optio
         Some(RoadType::ParkingLot) if sentences.iter().any(|sentence| GARAGE.is_match(sentence.text)) => {
             Some(RoadGroup::Other)
         }
-        column => column.map(Into::into),
+        Some(column) => Some(column.into()),
+        None => by_words(sentences),
     }
+}
+
+static WORDS: LazyLock<[(Regex, RoadGroup); 4]> = LazyLock::new(|| {
+    [
+        (pattern(r"(?i)\b(?:parking lot|parking area|parking stall)\b"), RoadGroup::Parking),
+        (pattern(r"(?i)\b(?:highway|freeway|interstate|motorway|I-\d+)\b"), RoadGroup::Highway),
+        (pattern(r"(?i)\b(?:roundabout|traffic circle)\b"), RoadGroup::Circle),
+        (pattern(r"(?i)\bintersection\b"), RoadGroup::Intersection),
+    ]
+});
+
+/// Where the column does not say, the first kind of road that the narrative names; a street where it names none.
+fn by_words(sentences: &[Sentence]) -> Option<RoadGroup> {
+    let named = WORDS.iter().find(|(words, _)| sentences.iter().any(|sentence| words.is_match(sentence.text)));
+    named.map(|(_, road)| *road).or((!sentences.is_empty()).then_some(RoadGroup::Street))
 }
