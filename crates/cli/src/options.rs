@@ -29,34 +29,33 @@ pub struct SourceArgs {
 
 /// How records are chosen.
 #[derive(Debug, Clone, Default, Args)]
-#[command(next_help_heading = "Selection")]
 pub struct ChoiceArgs {
     /// Scenarios to make. [default: 20]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=2000))]
+    #[arg(long, help_heading = "Selection", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=2000))]
     pub budget: Option<u16>,
     /// How the picks are chosen: stratified (every template first), kmeans (the paper's), k-center (no record far from
     /// its pick) or facility-location (near on average). [default: stratified]
-    #[arg(long, value_name = "NAME", value_parser = strategy)]
+    #[arg(long, help_heading = "Selection", value_name = "NAME", value_parser = strategy)]
     pub strategy: Option<Strategy>,
     /// How much a record counts: frequency (each one), severity (by the worst injury) or template (each kind of crash
     /// the same). [default: frequency]
-    #[arg(long, value_name = "NAME", value_parser = weighting)]
+    #[arg(long, help_heading = "Selection", value_name = "NAME", value_parser = weighting)]
     pub weighting: Option<Weighting>,
     /// Weight of the template against the narrative in the clusters; stratified needs none. [default: 1, as in the paper]
-    #[arg(long, value_name = "X")]
+    #[arg(long, help_heading = "Selection", value_name = "X")]
     pub template_weight: Option<f64>,
     /// Principal components of the narratives' embedding that count. [default: 6, as in the paper]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, help_heading = "Selection", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub dimensions: Option<u16>,
     /// Runs of k-means, of which the best is kept. [default: 20]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, help_heading = "Selection", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub restarts: Option<u16>,
     /// Embedding of the narratives: auto (MiniLM where its files are on this machine, see recrash model), lexical or
     /// minilm. [default: auto]
-    #[arg(long, value_name = "NAME", value_parser = embedding, env = "RECRASH_EMBEDDING")]
+    #[arg(long, help_heading = "Selection", value_name = "NAME", value_parser = embedding, env = "RECRASH_EMBEDDING")]
     pub embedding: Option<EmbeddingKind>,
     /// Folder with the files of all-MiniLM-L6-v2. [default: looked for]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, help_heading = "Selection", value_name = "DIR")]
     pub model_dir: Option<PathBuf>,
 }
 

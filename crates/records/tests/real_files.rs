@@ -99,12 +99,14 @@ fn both_files_together_are_one_record_an_incident() {
 }
 
 #[test]
-fn no_code_of_the_real_files_is_unlisted() {
-    let test = "no_code_of_the_real_files_is_unlisted";
+fn no_code_and_no_column_of_the_real_files_is_unknown() {
+    let test = "no_code_and_no_column_of_the_real_files_is_unknown";
     for name in [ARCHIVE, CURRENT] {
         let Some(bytes) = real_file(test, name) else { return };
         let outcome = read(name, &bytes, &paper());
-        assert!(outcome.diagnostics.iter().all(|d| d.code != "records.unlisted-code"), "{:#?}", outcome.diagnostics);
+        for code in ["records.unlisted-code", "records.unknown-column", "records.missing-column"] {
+            assert!(outcome.diagnostics.iter().all(|d| d.code != code), "{:#?}", outcome.diagnostics);
+        }
         for record in &outcome.value.records {
             assert!(!matches!(record.partner, Coded::Unlisted(_)), "{:?}", record.partner);
         }

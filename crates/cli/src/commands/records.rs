@@ -18,11 +18,11 @@ const VALUES_SHOWN: usize = 8;
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash records                                           the built-in sample
-  recrash records ads-archive.csv ads-current.csv --dedupe incident
-  recrash records ads-archive.csv --where 'road = intersection and severity >= minor' --csv crashes.csv
-  recrash records ads-archive.csv --all --parquet all.parquet
-  recrash records ads-archive.csv --out suite               as the first stage of a suite; recrash select goes on
+  recrash records                                    the built-in sample
+  recrash records archive.csv current.csv --dedupe incident
+  recrash records archive.csv --where 'road = intersection and severity >= minor' --csv out.csv
+  recrash records archive.csv --all --parquet all.parquet
+  recrash records archive.csv --out suite            a suite's first stage; recrash select goes on
 
 Nothing is written but what --csv, --parquet and --out name.";
 

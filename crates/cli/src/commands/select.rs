@@ -10,10 +10,10 @@ use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suit
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash select --records ads-archive.csv --out suite      the records are read first where the suite has none
-  recrash select --budget 30 --weighting severity           harmful kinds of crash get more scenarios
-  recrash select --strategy kmeans --embedding minilm       the paper's choice
-  recrash select --study                                    every strategy over 50 seeds, and a table of budgets
+  recrash select --records archive.csv                  reads the records first where there are none
+  recrash select --budget 30 --weighting severity       harmful kinds of crash get more scenarios
+  recrash select --strategy kmeans --embedding minilm   the paper's choice
+  recrash select --study                                every strategy over 50 seeds; many budgets
 
 How records are chosen, and what that guarantees: docs/models/selection.md";
 

@@ -28,13 +28,15 @@ Keep the records of which this is true, such as
 
   road = intersection and severity >= minor and entity contains \"Waymo\" and year >= 2024
 
-Comparisons: = != < <= > >= contains, in (a, b); put together with and, or, not and brackets. Letter case does not
-matter; texts with blanks stand in quotes. A value that is not known equals unknown and nothing else.
+Comparisons: = != < <= > >= contains, in (a, b); put together with and, or, not, brackets.
+Letter case does not matter; texts with blanks stand in quotes. A value that is not known
+equals unknown and nothing else.
 
 Texts:    report incident entity vehicle place narrative file
 Numbers:  year month time_of_day_min posted_speed_mps sv_speed_mps
-Codes:    road sv_movement (sv) cp_movement (cp) partner severity engagement surface lighting weather sv_zones cp_zones
-          redaction edition (a wrong value lists the right ones; severity has an order)
+Codes:    road sv_movement (sv) cp_movement (cp) partner severity engagement surface lighting
+          weather sv_zones cp_zones redaction edition (a wrong value lists the right ones;
+          severity has an order)
 Yes/no:   work_zone";
 
 /// A filter over records.
