@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from exports import Export, of_cases, of_suite, run, shared
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -25,3 +26,22 @@ def suite(recrash: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("suite") / "suite"
     subprocess.run([recrash, "run", "--quiet", "--out", str(folder)], check=True)
     return folder
+
+
+@pytest.fixture(scope="session")
+def exports(recrash: str, suite: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Export]:
+    """One case per map, every scenario of the sample's suite, and of the paper's where its crash file is at hand."""
+    folder = tmp_path_factory.mktemp("exports")
+    found = of_cases(recrash, folder / "cases") + of_suite(recrash, suite, "sample", folder / "sample")
+    records = shared() / "data" / "nhtsa" / "ads-2021-06-to-2025-06.csv"
+    if records.exists():
+        paper = folder / "paper-suite"
+        run(recrash, "run", "--quiet", "--records", records, "--profile", "paper", "--out", paper)
+        found += of_suite(recrash, paper, "paper", folder / "paper")
+    return found
+
+
+@pytest.fixture(scope="session")
+def cases(exports: list[Export]) -> list[Export]:
+    """The cases alone."""
+    return [export for export in exports if export.suite == "cases"]

@@ -1,32 +1,44 @@
-"""What the tests of exports share: the scenarios of the sample suite and one case per map, in every format."""
+"""What the tests of exports share: one case per map, the sample's suite and the paper's, in every format."""
 
 import json
 import math
+import os
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CASES = ROOT / "crates" / "export" / "tests" / "cases"
+FORMATS = "openscenario,scenic,metadrive,commonroad"
 
 
 @dataclass(frozen=True)
 class Export:
     """One scenario: its file, its rollout, and where its exports are."""
 
+    suite: str
     id: str
     scenario: dict
     rollout: dict
     folder: Path
+    #: Parameters that may move, as the log of the search has them.
+    parameters: list[dict]
+
+    def __str__(self) -> str:
+        return f"{self.suite} {self.id}"
 
     def path(self, format_name: str, suffix: str) -> Path:
         return self.folder / format_name / f"{self.id}{suffix}"
+
+    def recorded(self) -> Path:
+        """The OpenSCENARIO file whose partners follow what was recorded."""
+        return self.folder / "recorded" / "openscenario" / f"{self.id}.xosc"
 
     def partners(self) -> list[dict]:
         return [actor for actor in self.rollout["actors"] if actor["role"] == "partner"]
 
     def steps_until_contact(self, actor_id: str) -> int:
-        """Steps of a partner before it first touches anything."""
+        """Steps of an actor before it first touches anything."""
         number = [actor["id"] for actor in self.rollout["actors"]].index(actor_id)
         steps = len(self.rollout["actors"][0]["states"])
         for event in self.rollout["events"]:
@@ -36,19 +48,41 @@ class Export:
         return steps
 
 
-def make(recrash: str, scenarios: list[Path], folder: Path) -> list[Export]:
-    """Exports scenario files one by one in every format, partners acting and recorded."""
+def of_cases(recrash: str, folder: Path) -> list[Export]:
+    """The case of each map, exported as single files."""
     found = []
-    for path in scenarios:
+    for path in sorted(CASES.glob("*.json")):
         scenario = json.loads(path.read_text())
         target = folder / scenario["id"]
-        rollout = target / "rollout.json"
         target.mkdir(parents=True)
-        run(recrash, "simulate", "--quiet", path, "--rollout", rollout)
-        run(recrash, "export", "--quiet", path, "--to", "openscenario,scenic,metadrive,commonroad", "--to-dir", target)
-        run(recrash, "export", "--quiet", path, "--to", "openscenario", "--as", "trajectory", "--to-dir", target / "recorded")
-        found.append(Export(scenario["id"], scenario, json.loads(rollout.read_text()), target))
+        run(recrash, "simulate", "--quiet", path, "--rollout", target / "rollout.json")
+        export(recrash, path, target)
+        rollout = json.loads((target / "rollout.json").read_text())
+        found.append(Export("cases", scenario["id"], scenario, rollout, target, []))
     return found
+
+
+def of_suite(recrash: str, suite: Path, name: str, folder: Path) -> list[Export]:
+    """Every scenario of a suite, exported as a whole."""
+    export(recrash, suite, folder)
+    found = []
+    for path in sorted((suite / "6-tuned").glob("*.run.json")):
+        scenario = json.loads(path.with_name(path.name.replace(".run.json", ".json")).read_text())
+        log = json.loads(path.with_name(path.name.replace(".run.json", ".search.json")).read_text())
+        rollout = json.loads(path.read_text())["rollout"]
+        found.append(Export(name, scenario["id"], scenario, rollout, folder, log["parameters"]))
+    assert found
+    return found
+
+
+def export(recrash: str, source: Path, target: Path) -> None:
+    run(recrash, "export", "--quiet", source, "--to", FORMATS, "--to-dir", target)
+    run(recrash, "export", "--quiet", source, "--to", "openscenario", "--as", "trajectory", "--to-dir", target / "recorded")
+
+
+def shared() -> Path:
+    """The folder of real data, which users do not have."""
+    return Path(os.environ.get("RECRASH_SHARED", ROOT.parent / "shared"))
 
 
 def run(*command: object) -> str:

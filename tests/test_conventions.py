@@ -5,14 +5,14 @@ import math
 import xml.etree.ElementTree as ElementTree
 
 import pytest
-from exports import CASES, ROOT, Export, make
+from exports import ROOT, Export
 from oracles import answers
 from osc_player import DriveMap, Parameters
 
 
 @pytest.fixture(scope="module")
-def crossing(recrash: str, tmp_path_factory: pytest.TempPathFactory) -> Export:
-    return make(recrash, [CASES / "x-crossing.json"], tmp_path_factory.mktemp("conventions"))[0]
+def crossing(cases: list[Export]) -> Export:
+    return next(export for export in cases if export.id == "x-crossing")
 
 
 @pytest.fixture(scope="module")
@@ -48,8 +48,7 @@ def test_openscenario_by_lane_and_by_recording(crossing: Export, table: dict) ->
     assert place.find("Orientation") is None, "it faces the way its lane is driven"
     close((x, y, along + math.pi), table["openscenario"])
 
-    recorded = crossing.folder / "recorded" / "openscenario" / "x-crossing.xosc"
-    at = ElementTree.parse(recorded).getroot().find(".//Private[@entityRef='cp1']//TeleportAction/Position/WorldPosition")
+    at = ElementTree.parse(crossing.recorded()).getroot().find(".//Private[@entityRef='cp1']//TeleportAction/Position/WorldPosition")
     close(tuple(float(at.get(key)) for key in "xyh"), table["openscenario"])
 
 

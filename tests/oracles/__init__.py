@@ -37,7 +37,7 @@ def environment(name: str) -> Path:
 
 def install(folder: Path, programs: Path, requirements: Path) -> None:
     """A fresh environment; uv where it is at hand, else venv and pip."""
-    uv = shutil.which("uv")
+    uv = shutil.which("uv", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
     if uv:
         call([uv, "venv", "--quiet", "--python", sys.executable, str(folder)])
         call([uv, "pip", "install", "--quiet", "--python", str(programs / "python"), "-r", str(requirements)])

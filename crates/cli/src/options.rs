@@ -5,9 +5,10 @@ use clap::Args;
 use recrash_model::profile::Dedupe;
 use recrash_model::selection::{Strategy, Weighting};
 use recrash_pipeline::{
-    EmbeddingKind, FILTER_HELP, Options, PipelineError, RecordSource, Resources, SimulatorKind, Suite,
+    EmbeddingKind, FILTER_HELP, Options, Patience, PipelineError, RecordSource, Resources, SimulatorKind, Suite,
 };
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Where crash records come from.
 #[derive(Debug, Clone, Default, Args)]
@@ -80,9 +81,13 @@ pub struct SuiteArgs {
     /// Python interpreter for MetaDrive.
     #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
     pub python: PathBuf,
-    /// System under test: metadrive-idm, idm. [default: the profile's]
-    #[arg(long, value_name = "NAME")]
+    /// System under test: metadrive-idm, idm, reference, or a program of yours as 'cmd:PROGRAM ARGS', which speaks JSON
+    /// lines as docs/ego-protocol.md says. [default: the profile's]
+    #[arg(long, value_name = "NAME|cmd:PROGRAM")]
     pub ego: Option<String>,
+    /// Seconds such a program may take for an answer; six times that to start.
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600), default_value_t = 10)]
+    pub ego_timeout: u16,
     /// Points the search of each scenario may score; 1 turns tuning off. [default: 160]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub tune_budget: Option<u32>,
@@ -171,7 +176,13 @@ impl SuiteArgs {
     /// What may be used of the machine.
     pub fn resources(&self) -> Resources {
         let (threads, python) = (self.threads.map(usize::from), self.python.clone());
-        Resources { threads, python, models: self.models.access.access() }
+        Resources { threads, python, patience: self.patience(), models: self.models.access.access() }
+    }
+
+    /// How long a program that is the ego is waited for.
+    pub fn patience(&self) -> Patience {
+        let answer = Duration::from_secs(u64::from(self.ego_timeout));
+        Patience { start: 6 * answer, answer }
     }
 }
 

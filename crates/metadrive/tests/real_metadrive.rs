@@ -242,6 +242,45 @@ fn every_kind_of_road_user_drives_walks_or_stands() {
     }
 }
 
+/// A run of two minutes whose worker is killed while it is at it.
+#[cfg(unix)]
+#[test]
+fn a_worker_killed_during_a_run_is_replaced_and_the_result_is_the_same() {
+    use std::os::unix::fs::PermissionsExt;
+    let Some(options) = options("a_worker_killed_during_a_run_is_replaced") else { return };
+    let mut draft = crossing();
+    draft["map"] = json!({"type": "S", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 600.0});
+    draft["ego"]["speed_mps"] = json!(5.0);
+    draft["ego"]["target_speed_mps"] = json!(5.0);
+    draft["partners"] = json!([]);
+    draft["duration_s"] = json!(120.0);
+    let scenario = checked(&draft);
+
+    // In place of Python: notes its process and becomes Python.
+    let folder = tempfile::tempdir().expect("a folder");
+    let (aside, wrapper, pids) =
+        (folder.path().join("aside"), folder.path().join("python"), folder.path().join("pids"));
+    let text = format!("#!/bin/sh\necho $$ >> '{}'\nexec '{}' \"$@\"\n", pids.display(), options.python.display());
+    std::fs::write(&aside, text).expect("a writable folder");
+    std::fs::set_permissions(&aside, std::fs::Permissions::from_mode(0o755)).expect("its owner's");
+    std::fs::rename(&aside, &wrapper).expect("the same folder");
+    let metadrive = Metadrive::start(Options::new(wrapper)).unwrap_or_else(|error| panic!("{error}"));
+    let workers = || std::fs::read_to_string(&pids).expect("a worker has started");
+    let first = workers().trim().to_owned();
+    let killed = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_millis(300));
+            let status = std::process::Command::new("kill").args(["-9", &first]).status().expect("a shell has kill");
+            assert!(status.success(), "the worker had ended already");
+        });
+        metadrive.simulate(&scenario, &Drive::MetadriveIdm).unwrap_or_else(|error| panic!("{error}"))
+    });
+    assert_eq!(workers().lines().count(), 2, "a second worker was started");
+    let again = metadrive.simulate(&scenario, &Drive::MetadriveIdm).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(killed.state_hash, again.state_hash);
+    assert_eq!(workers().lines().count(), 2);
+}
+
 #[test]
 fn the_doctor_tells_both_versions() {
     let Some(options) = options("the_doctor_tells_both_versions") else { return };

@@ -5,7 +5,7 @@ mod world;
 use recrash_metrics::faithfulness_on;
 use recrash_model::math::{FRAC_PI_2, PI};
 use recrash_model::metrics::{CheckKind, CheckResult, CollisionKind, Expectation, Verdict};
-use recrash_model::narrative::Side;
+use recrash_model::narrative::{FirstMover, Side};
 use recrash_model::record::ContactZone;
 use recrash_model::rollout::{ActorState, Role, Rollout};
 use recrash_model::scenario::{Approach, MissingArm, Turn};
@@ -17,6 +17,10 @@ fn expecting(road: RoadType, sv: Movement, cp: Movement) -> Expectation {
     Expectation {
         template: Template { road, sv, cp, work_zone: false },
         approach: None,
+        side: None,
+        order: None,
+        sv_speed_mps: None,
+        cp_speed_mps: None,
         sv_zones: Vec::new(),
         cp_zones: Vec::new(),
         excluded: Vec::new(),
@@ -60,6 +64,8 @@ fn a_crossing_at_an_intersection_passes_every_check() {
     expectation.sv_zones = vec![ContactZone::FrontLeft];
     expectation.cp_zones = vec![ContactZone::Front];
     expectation.excluded = vec![CollisionKind::RearEndByEgo, CollisionKind::RearEndOfEgo, CollisionKind::HeadOn];
+    expectation.order = Some(FirstMover::Sv);
+    (expectation.sv_speed_mps, expectation.cp_speed_mps) = (Some(8.0), Some(7.0));
     let verdict = verdict(&network, &rollout, &expectation);
     assert!(verdict.faithful(), "{verdict:#?}");
     assert!(verdict.checks.iter().all(|check| check.result == CheckResult::Pass), "{verdict:#?}");
@@ -354,6 +360,88 @@ fn the_approach_is_where_the_partner_starts_and_heads() {
     let mut expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
     expectation.approach = Some(Opposite);
     assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::Approach), CheckResult::Pass);
+}
+
+#[test]
+fn the_order_is_that_of_the_arrivals_where_the_paths_cross() {
+    let network = cross();
+    // The partner would be 1.2 s later at the crossing, or earlier; without contact 4 s.
+    let check = |late_s: f64, told: FirstMover| {
+        let rollout = meeting(&network, (Turn::Straight, 1), (Approach::Left, Turn::Straight, 1), 8.0, late_s);
+        let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
+        expectation.order = Some(told);
+        result(&verdict(&network, &rollout, &expectation), CheckKind::Order)
+    };
+    use FirstMover::{Both, Cp, Sv};
+    for late_s in [0.6, 1.2, 4.0] {
+        assert_eq!(check(late_s, Sv), CheckResult::Pass, "{late_s}");
+        assert_eq!(check(-late_s, Cp), CheckResult::Pass, "{late_s}");
+        assert_eq!(check(late_s, Cp), CheckResult::Fail, "{late_s}");
+        assert_eq!(check(-late_s, Sv), CheckResult::Fail, "{late_s}");
+    }
+    assert_eq!(check(0.2, Both), CheckResult::Pass);
+    assert_eq!(check(4.0, Both), CheckResult::Fail);
+    // Side by side there is no crossing, so an order that is told is not shown.
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    let beside =
+        rollout(drive(&network, &way, 5.0, 60, |_| 5.0), vec![drive_at(&network, &way, 9.0, 60, |_| 5.0, |_| -3.5)]);
+    let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
+    expectation.order = Some(Sv);
+    assert_eq!(result(&verdict(&network, &beside, &expectation), CheckKind::Order), CheckResult::Fail);
+}
+
+#[test]
+fn told_speeds_are_driven_within_a_tolerance() {
+    let network = cross();
+    let rollout = meeting(&network, (Turn::Straight, 1), (Approach::Left, Turn::Straight, 1), 10.0, 0.2);
+    let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
+    for (told, wanted) in [
+        (10.0, CheckResult::Pass),
+        // 10 m/s are 40 % more than 7.2 m/s and 38 % less than 16 m/s.
+        (7.2, CheckResult::Pass),
+        (16.0, CheckResult::Pass),
+        (6.0, CheckResult::Fail),
+        (18.0, CheckResult::Fail),
+    ] {
+        (expectation.sv_speed_mps, expectation.cp_speed_mps) = (Some(told), None);
+        let ego = verdict(&network, &rollout, &expectation);
+        assert_eq!(result(&ego, CheckKind::SvSpeed), wanted, "{told}");
+        assert_eq!(result(&ego, CheckKind::CpSpeed), CheckResult::NotApplicable);
+        (expectation.sv_speed_mps, expectation.cp_speed_mps) = (None, Some(told));
+        assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::CpSpeed), wanted, "{told}");
+    }
+}
+
+#[test]
+fn a_partner_beside_the_ego_is_on_the_side_that_is_told() {
+    for network in [straight(), cross(), curve(Side::Left)] {
+        let way = path(&network, Approach::Same, Turn::Straight, 0);
+        let on_right = rollout(
+            drive(&network, &way, 5.0, 40, |_| 8.0),
+            vec![drive_at(&network, &way, 12.0, 40, |_| 8.0, |_| 3.5)],
+        );
+        let check = |side: Option<Side>| {
+            let mut expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
+            (expectation.approach, expectation.side) = (Some(Approach::Same), side);
+            result(&verdict(&network, &on_right, &expectation), CheckKind::Approach)
+        };
+        assert_eq!(check(Some(Side::Right)), CheckResult::Pass);
+        assert_eq!(check(Some(Side::Left)), CheckResult::Fail);
+        assert_eq!(check(None), CheckResult::Pass);
+    }
+}
+
+#[test]
+fn no_cone_belongs_in_the_junction() {
+    let network = cross();
+    let mut rollout = meeting(&network, (Turn::Straight, 1), (Approach::Left, Turn::Straight, 1), 8.0, 0.2);
+    let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
+    expectation.template.work_zone = true;
+    let check = |rollout: &Rollout| result(&verdict(&network, rollout, &expectation), CheckKind::WorkZone);
+    rollout.obstacles = vec![cone(50.0, -1.75)];
+    assert_eq!(check(&rollout), CheckResult::Pass);
+    rollout.obstacles.push(cone(70.0, 0.0));
+    assert_eq!(check(&rollout), CheckResult::Fail);
 }
 
 #[test]

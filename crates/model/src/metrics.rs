@@ -1,5 +1,6 @@
 //! Metrics, findings and faithfulness: what a rollout says about the ego, and whether it is true to its record.
 
+use crate::narrative::{FirstMover, Side};
 use crate::record::ContactZone;
 use crate::rollout::TerminationKind;
 use crate::scenario::Approach;
@@ -212,6 +213,11 @@ impl FindingKind {
         matches!(self, Self::Contact | Self::ObstacleContact | Self::NearMiss | Self::OffRoad | Self::Stuck)
     }
 
+    /// Whether something is hit or the road is left: more serious than the other failures.
+    pub fn is_crash(self) -> bool {
+        matches!(self, Self::Contact | Self::ObstacleContact | Self::OffRoad)
+    }
+
     /// For tables.
     pub fn label(self) -> &'static str {
         match self {
@@ -235,6 +241,18 @@ pub struct Expectation {
     pub template: Template,
     /// Approach of the partner the narrative states.
     pub approach: Option<Approach>,
+    /// On which side of the ego a partner from the ego's own road drives, where the narrative states it.
+    #[serde(default)]
+    pub side: Option<Side>,
+    /// Who reached the place where the paths cross first; absent where the paths do not cross or the record does not tell.
+    #[serde(default)]
+    pub order: Option<FirstMover>,
+    /// Speed told of the ego, as far as the map allows it. [m/s]
+    #[serde(default)]
+    pub sv_speed_mps: Option<f64>,
+    /// Speed told of the partner, as far as the map allows it. [m/s]
+    #[serde(default)]
+    pub cp_speed_mps: Option<f64>,
     /// Contact zones of the record on the ego; empty where they do not bind (alternative narratives).
     pub sv_zones: Vec<ContactZone>,
     /// Contact zones of the record on the partner; empty where they do not bind.
@@ -265,14 +283,20 @@ pub struct Check {
 pub enum CheckKind {
     /// Kind of road driven on.
     Road,
-    /// Obstacles where, and only where, there is a work zone or the narrative names some.
+    /// Obstacles where, and only where, there is a work zone or the narrative names some, and none in a junction.
     WorkZone,
     /// Movement of the ego, from its path.
     SvMovement,
     /// Movement of the partner, from its path.
     CpMovement,
-    /// Side from which the partner came.
+    /// Side from which the partner came, or on which it drove.
     Approach,
+    /// Who reached the place where the paths cross first.
+    Order,
+    /// Speed of the ego against the one told.
+    SvSpeed,
+    /// Speed of the partner against the one told.
+    CpSpeed,
     /// The partner is part of the closest encounter.
     Encounter,
     /// Contact zones.
@@ -290,6 +314,9 @@ impl CheckKind {
             Self::SvMovement => "SV movement",
             Self::CpMovement => "CP movement",
             Self::Approach => "approach",
+            Self::Order => "order",
+            Self::SvSpeed => "SV speed",
+            Self::CpSpeed => "CP speed",
             Self::Encounter => "encounter",
             Self::ContactZones => "contact zones",
             Self::ExcludedCollision => "excluded collisions",

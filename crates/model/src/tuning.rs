@@ -1,7 +1,7 @@
 //! Tuning: which numbers of a scenario may move and how far, and the log of a search over them.
 
 use crate::metrics::{FindingKind, Timed};
-use crate::scenario::ScenarioDraft;
+use crate::scenario::{Policy, ScenarioDraft};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +74,8 @@ pub struct TuneLog {
     pub best: usize,
 }
 
-/// Sets the parameters of a scenario. Whole-number parameters are rounded.
+/// Sets the parameters of a scenario. Whole-number parameters are rounded. Who starts at its target speed in the draft
+/// still does so afterwards: a vehicle above its target would brake hard at once, and one below it come late.
 ///
 /// # Errors
 /// A pointer that is not in the scenario, or a value its place cannot hold: the pointer and what serde said.
@@ -90,7 +91,72 @@ pub fn apply(draft: &ScenarioDraft, parameters: &[Parameter], values: &[f64]) ->
             serde_json::Number::from_f64(value)
                 .ok_or_else(|| format!("{}: {value} is not a finite number", parameter.pointer))?
         };
-        *place = serde_json::Value::Number(number);
+        *place = serde_json::Value::Number(number.clone());
+        if let Some(start) = start_speed_at(draft, &parameter.pointer).and_then(|at| document.pointer_mut(&at)) {
+            *start = serde_json::Value::Number(number);
+        }
     }
     serde_json::from_value(document).map_err(|e| format!("scenario {}: {e}", draft.id))
+}
+
+/// Where the first speed of a vehicle stands whose target speed is at this pointer, where the two are equal.
+fn start_speed_at(draft: &ScenarioDraft, pointer: &str) -> Option<String> {
+    if pointer == "/ego/target_speed_mps" {
+        return (draft.ego.speed_mps == draft.ego.target_speed_mps).then(|| "/ego/speed_mps".to_owned());
+    }
+    let (number, field) = pointer.strip_prefix("/partners/")?.split_once('/')?;
+    let partner = draft.partners.get(number.parse::<usize>().ok()?)?;
+    let target_mps = match (&partner.policy, field) {
+        (Policy::IdmNominal { target_speed_mps }, "policy/target_speed_mps") => *target_speed_mps,
+        (Policy::SuddenBrake { target_speed, .. }, "policy/target_speed") => *target_speed,
+        _ => return None,
+    };
+    (partner.speed_mps == target_mps).then(|| format!("/partners/{number}/speed_mps"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn draft() -> ScenarioDraft {
+        let ego = serde_json::json!({
+            "turn": "straight", "lane": 0, "s_m": 5.0, "speed_mps": 8.0, "target_speed_mps": 8.3
+        });
+        let partner = serde_json::json!({
+            "id": "cp1", "kind": "passenger_car", "approach": "left", "turn": "straight",
+            "start": { "arrival_gap_s": -0.4 }, "speed_mps": 9.0,
+            "policy": { "type": "idm_nominal", "target_speed_mps": 9.0 }
+        });
+        let template = serde_json::json!({
+            "road": "intersection", "sv": "straight", "cp": "straight", "work_zone": false
+        });
+        let draft = serde_json::json!({
+            "format": crate::scenario::SCENARIO_FORMAT, "id": "crossing",
+            "source": { "records": [], "template": template, "narrative": "", "author": "rules", "seed": 1 },
+            "map": { "type": "X", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "arm_m": 60.0 },
+            "ego": ego, "partners": [partner], "duration_s": 20.0
+        });
+        serde_json::from_value(draft).unwrap()
+    }
+
+    fn moved(draft: &ScenarioDraft, pointer: &str, to: f64) -> ScenarioDraft {
+        let (pointer, unit, reason) = (pointer.to_owned(), "m/s".to_owned(), String::new());
+        let parameter = Parameter { pointer, unit, min: 0.0, max: 30.0, start: 1.0, integer: false, reason };
+        apply(draft, &[parameter], &[to]).unwrap()
+    }
+
+    #[test]
+    fn who_starts_at_its_target_speed_still_does() {
+        let mut draft = draft();
+        draft.ego.speed_mps = draft.ego.target_speed_mps;
+        let tuned = moved(&draft, "/ego/target_speed_mps", 6.5);
+        assert_eq!((tuned.ego.speed_mps, tuned.ego.target_speed_mps), (6.5, 6.5));
+        draft.ego.speed_mps = 1.0;
+        assert_eq!(moved(&draft, "/ego/target_speed_mps", 6.5).ego.speed_mps, 1.0);
+        draft.partners[0].policy = Policy::IdmNominal { target_speed_mps: 8.0 };
+        draft.partners[0].speed_mps = 8.0;
+        assert_eq!(moved(&draft, "/partners/0/policy/target_speed_mps", 9.5).partners[0].speed_mps, 9.5);
+        draft.partners[0].speed_mps = 0.0;
+        assert_eq!(moved(&draft, "/partners/0/policy/target_speed_mps", 9.5).partners[0].speed_mps, 0.0);
+    }
 }

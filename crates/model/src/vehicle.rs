@@ -2,6 +2,9 @@
 
 use crate::record::PartnerKind;
 
+/// Tyre friction of MetaDrive's vehicles (`wheel_friction`) on its only surface, taken for a dry road.
+pub const DRY_TYRE_FRICTION: f64 = 0.9;
+
 /// Size and limits of one kind of road user. Sources: `docs/models/vehicle.md`.
 ///
 /// The outline is what others can touch; the chassis is what the physics turns and tilts. Two-wheelers and people move on
@@ -69,7 +72,8 @@ impl VehicleSpec {
             PartnerKind::Cyclist => Self::light([1.8, 0.6], 1.1, [1.0, 3.4], 9.0),
             PartnerKind::OtherNonMotorist => Self::light([1.2, 0.6], 0.9, [1.0, 3.4], 7.0),
             PartnerKind::Pedestrian => Self::light([0.5, 0.5], 0.5, [1.5, 3.0], 3.0),
-            PartnerKind::Animal => Self::light([1.0, 0.4], 0.5, [2.909, 5.0], 12.0),
+            // Long enough that it does not tip over when it brakes with 5 m/s^2.
+            PartnerKind::Animal => Self::light([1.0, 0.4], 0.9, [2.909, 5.0], 12.0),
             PartnerKind::FixedObject => Self::light([1.0, 1.0], 0.9, [0.0, 8.0], 0.0),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::agents::{RULES, unusable};
 use crate::error::PipelineError;
+use crate::external::Patience;
 use crate::profiles::load_profile;
 use crate::simulator::{Simulator, SimulatorKind};
 use crate::store::{read_text, to_compact_json, write_file_whole};
@@ -239,6 +240,8 @@ pub struct FileRequest<'a> {
     pub simulator: SimulatorKind,
     /// Python interpreter for MetaDrive.
     pub python: &'a Path,
+    /// How long answers of an external ego are waited for.
+    pub patience: Patience,
     /// Where to write the rollout.
     pub rollout: Option<&'a Path>,
 }
@@ -251,7 +254,7 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
     let profile = load_profile(request.profile)?;
     let (scenario, diagnostics) = read_scenario(request.scenario)?;
     let ego = request.ego.unwrap_or(&profile.ego);
-    let simulator = Simulator::start(request.simulator, ego, request.python, 1)?;
+    let simulator = Simulator::start(request.simulator, ego, request.python, 1, request.patience)?;
     let run = run_scenario(&scenario, &simulator, &profile, None)?;
     if let Some(target) = request.rollout {
         write_file_whole(target, &to_compact_json(&run.rollout)).map_err(|source| PipelineError::Io {

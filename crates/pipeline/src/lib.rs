@@ -16,6 +16,7 @@ mod embedding;
 mod error;
 mod evaluation;
 mod exporting;
+mod external;
 mod failures;
 mod fetching;
 mod importing;
@@ -33,6 +34,9 @@ mod stages;
 mod store;
 mod suite;
 mod summary;
+#[cfg(feature = "parquet")]
+mod sweep;
+mod triage;
 mod view;
 mod weights;
 
@@ -47,6 +51,7 @@ pub use embedding::EmbeddingKind;
 pub use error::PipelineError;
 pub use evaluation::{Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate};
 pub use exporting::{ExportReport, ExportRequest, export};
+pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
 pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use importing::{ImportRequest, Imported, SourceFormat, import};
@@ -71,4 +76,6 @@ pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
 pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+#[cfg(feature = "parquet")]
+pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
 pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

@@ -3,6 +3,7 @@
 use crate::agents::{Cast, RULES};
 use crate::embedding::EmbeddingKind;
 use crate::error::PipelineError;
+use crate::external::Patience;
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::progress::Progress;
@@ -185,7 +186,7 @@ fn dedupe_name(dedupe: Dedupe) -> String {
     serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()
@@ -260,6 +261,7 @@ pub struct Suite {
     /// As many threads as questions may be under way; absent where nobody is asked over the network.
     askers: Option<rayon::ThreadPool>,
     python: PathBuf,
+    patience: Patience,
     models: Option<Models>,
     remarks: Vec<Diagnostic>,
 }
@@ -271,13 +273,16 @@ pub struct Resources {
     pub threads: Option<usize>,
     /// Python interpreter for MetaDrive.
     pub python: PathBuf,
+    /// How long answers of an external ego are waited for.
+    pub patience: Patience,
     /// How models are asked.
     pub models: ModelAccess,
 }
 
 impl Default for Resources {
     fn default() -> Self {
-        Self { threads: None, python: "python3".into(), models: ModelAccess::default() }
+        let python = "python3".into();
+        Self { threads: None, python, patience: Patience::default(), models: ModelAccess::default() }
     }
 }
 
@@ -334,8 +339,8 @@ impl Suite {
         let (models, remarks) = opened.map_or((None, Vec::new()), |(models, remarks)| (Some(models), remarks));
         let asks = has_model && resources.models.mode == AnswerMode::Live;
         let askers = asks.then(|| thread_pool(resources.models.concurrency)).transpose()?;
-        let (state, python) = (Mutex::new(state), resources.python);
-        let suite = Self { store, profile, state, options, threads, askers, python, models, remarks };
+        let (state, python, patience) = (Mutex::new(state), resources.python, resources.patience);
+        let suite = Self { store, profile, state, options, threads, askers, python, patience, models, remarks };
         suite.save(&suite.lock())?;
         Ok(suite)
     }
@@ -396,7 +401,7 @@ impl Suite {
     /// The simulator with the ego in it.
     pub(crate) fn simulator(&self) -> Result<Simulator, PipelineError> {
         let workers = self.threads.current_num_threads();
-        Simulator::start(self.options.simulator, self.ego(), &self.python, workers)
+        Simulator::start(self.options.simulator, self.ego(), &self.python, workers, self.patience)
     }
 
     /// The models' side; absent where the rules play every role.

@@ -10,6 +10,7 @@ use recrash_model::narrative::Origin;
 use recrash_model::record::{FunnelStep, RecordSet};
 use recrash_model::selection::{Coverage, EmbeddingInfo, Selection, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
+use recrash_model::triage::{FailureClass, Triage};
 use serde::{Deserialize, Serialize};
 
 /// A whole run in numbers (`summary.json`, and `recrash run --json`).
@@ -116,6 +117,9 @@ pub struct CaseSummary {
     pub first: Option<RunSummary>,
     /// As tuned.
     pub tuned: Option<RunSummary>,
+    /// What the failure of the tuned run is worth, and how the other egos fare there; absent where it does not fail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triage: Option<Triage>,
     /// Why it went no further, where it did not.
     pub failure: Option<Failure>,
     /// Points the search scored.
@@ -177,6 +181,14 @@ impl Summary {
         self.cases.iter().filter(|case| case.tuned.is_some()).count()
     }
 
+    /// Failures of each class, after tuning; classes without any are left out.
+    pub fn failure_classes(&self) -> Vec<(FailureClass, usize)> {
+        let classes = self.cases.iter().filter_map(|case| case.triage.as_ref()).map(|triage| triage.class);
+        let classes: Vec<FailureClass> = classes.collect();
+        let count = |class| classes.iter().filter(|&&other| other == class).count();
+        FailureClass::ALL.into_iter().map(|class| (class, count(class))).filter(|(_, count)| *count > 0).collect()
+    }
+
     /// Scenarios the ego fails, as designed and as tuned.
     pub fn failed(&self) -> (usize, usize) {
         let count = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
@@ -211,15 +223,16 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
                 template: case.cluster.template,
                 narrated: case.narrative.as_ref().map(|(_, log)| log.outcome().to_owned()),
                 designed: case.design.as_ref().map(|log| log.outcome().to_owned()),
-                tuned_by: case.tune_agent.as_ref().map(|log| log.outcome().to_owned()),
+                tuned_by: case.tuned.as_ref().map(|tuned| tuned.agent.outcome().to_owned()),
                 alternative: case.narrative.as_ref().and_then(|(narrative, _)| match &narrative.origin {
                     Origin::Record => None,
                     Origin::Alternative { reason } => Some(reason.clone()),
                 }),
                 first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
-                tuned: case.tuned.as_ref().map(|(ran, _)| RunSummary::new(&ran.run)),
+                tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
+                triage: case.triage.clone(),
                 failure: case.failure.clone(),
-                points: case.tuned.as_ref().map_or(0, |(_, log)| log.points.len()),
+                points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
             })
             .collect(),
     }
@@ -228,11 +241,12 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
 /// How the models of a cast did.
 pub fn models(cast: &Cast, cases: &[Case]) -> Vec<ModelSummary> {
     type Told = Option<(&'static str, String)>;
+    type Role<'a> = (&'static str, &'a String, &'a dyn Fn(&Case) -> Told);
     let of_agent = |log: &AgentLog| (log.outcome(), log.fallback.clone().unwrap_or_default());
     let narrated = |case: &Case| -> Told { case.narrative.as_ref().map(|(_, log)| of_agent(log)) };
     let designed = |case: &Case| -> Told { case.design.as_ref().map(|log| (log.outcome(), log.gave_up.join("; "))) };
-    let tuned = |case: &Case| -> Told { case.tune_agent.as_ref().map(of_agent) };
-    let roles: [(&str, &String, &dyn Fn(&Case) -> Told); 3] = [
+    let tuned = |case: &Case| -> Told { case.tuned.as_ref().map(|tuned| of_agent(&tuned.agent)) };
+    let roles: [Role; 3] = [
         ("paraphrase", &cast.paraphrase, &narrated),
         ("design", &cast.design, &designed),
         ("tune", &cast.tune, &tuned),

@@ -45,7 +45,7 @@ pub struct Cast {
 
 /// The ego by its maker's or operator's name, or by a general one. Words that only look like a road user come first, so
 /// that they are taken and mean nobody.
-const NOBODY: &str = r"(?:[\w-]+ )?bike racks?|bik(?:e|ing) lanes?|bicycle lanes?|bus (?:lanes?|stop|bay|zone)|truck lanes?|car ?pool lanes?|test driver|safety driver|vehicle operator|(?:passenger|driver)(?:'s)?[- ]side|vehicle'?s? (?:hood|bumper|door)|parked (?:cars?|vehicles?|trucks?|vans?|suvs?)";
+const NOBODY: &str = r"(?:[\w-]+ )?bike racks?|(?:non-)?avs?[ -](?:only )?lanes?|bik(?:e|ing) lanes?|bicycle lanes?|bus (?:lanes?|stop|bay|zone)|truck lanes?|car ?pool lanes?|test driver|safety driver|vehicle operator|(?:passenger|driver)(?:'s)?[- ]side|vehicle'?s? (?:hood|bumper|door)|parked (?:cars?|vehicles?|trucks?|vans?|suvs?)";
 const EGO: &str = r"(?:waymo|zoox|cruise|apollo|argo|nuro|ghost|beep|kodiak|lucid|aurora|motional|avride|pony|weride|wayve|gatik|navya|easymile|may mobility|may(?: autonomous)? (?:vehicle|shuttle|av)s?|autonomous|automated|self-driving|driverless|subject|test|host|ego|ads-equipped|our(?: \w+)? (?:vehicle|car|av|truck|shuttle)|our)(?:'s)?(?:[ -](?:llc|inc|driver|operated|equipped|ai|prius|autonomous|automated|driving|motor))*(?:[ -](?:vehicle|av\w?|adv|car|truck|shuttle|robotaxi|taxi|suv|bus|van))?\b|\b(?:avs?|adv|ads|sv|robotaxi|shuttle|vehicle (?:1|one)|car (?:1|one)|v1|we)";
 const TRAFFIC: &str = r"(?:oncoming |cross[- ]|crossing |stopped |slow |slower |slowing |the |other )?traffic|crossing guard|queue|police officer";
 const FOUR_WHEELS: &str = r"passenger (?:cars?|vehicles?)|sport utility vehicle|suv|crossover|minivan|van|pick-?up(?: truck)?|police (?:car|vehicle|cruiser|suv)|patrol car|emergency vehicle|fire (?:truck|engine)|ambulance|golf cart|cart|rickshaw|station wagon|convertible|limousine|tow truck|delivery (?:truck|van|vehicle)|box truck|semi(?:-?trailer|-?truck)?|tractor(?:[- ]trailer)?|dump truck|garbage truck|tanker(?: truck)?|truck|(?:\w+ )?bus|trailer|sedan|hatchback|coupe|taxi|vehicle (?:2|two)|car (?:2|two)|v2|(?:other|second|another|third[- ]party|opposing|approaching) (?:vehicle|driver|car|party|motorist)|honda|toyota|ford|tesla|chevrolet|chevy|nissan|hyundai|kia|subaru|mazda|volkswagen|bmw|audi|mercedes(?:-benz)?|lexus|jeep|dodge|ram|gmc|cadillac|buick|acura|infiniti|volvo|range rover|driver|motorist|vehicle|car";
@@ -192,7 +192,8 @@ fn mention(sentence: &str, actor: Actor, at: Range<usize>) -> Mention {
     let before = &sentence[window..at.start];
     let owner = sentence[at.end..].starts_with("'s") || sentence[..at.end].ends_with("'s");
     let acts = PARTICIPLE_AFTER.is_match(&sentence[at.end..]) || PART_ACTS.is_match(&sentence[..at.start]);
-    Mention { actor, oblique: !acts && (owner || OBLIQUE_BEFORE.is_match(before)), at }
+    let aside = before.ends_with('(');
+    Mention { actor, oblique: aside || (!acts && (owner || OBLIQUE_BEFORE.is_match(before))), at }
 }
 
 /// Whether `vehicle` or `driver` stands there for either of the two.

@@ -56,7 +56,7 @@ pub fn design(brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Re
 }
 
 /// The staging the facts name, or the template's most typical one.
-fn staging_of(narrative: &Narrative, facts: &Facts) -> Option<Staging> {
+pub fn staging_of(narrative: &Narrative, facts: &Facts) -> Option<Staging> {
     let ways = stagings(&narrative.template);
     let approach = facts.find(|value| match value {
         FactValue::Approach { approach } => Some(*approach),
@@ -379,7 +379,7 @@ fn holds_speed(target_speed: f64) -> Policy {
 }
 
 /// The turn that shows a movement: on a road without junction there is none.
-fn turn(ground: Ground, movement: Movement) -> Turn {
+pub fn turn(ground: Ground, movement: Movement) -> Turn {
     match movement {
         _ if ground == Ground::Road => Turn::Straight,
         Movement::LeftTurn => Turn::Left,

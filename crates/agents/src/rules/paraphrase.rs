@@ -4,7 +4,7 @@
 use super::reading::{Reading, Relation, read, relation_from_zones};
 use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
 use super::writing;
-use crate::{AgentError, Brief};
+use crate::{AgentError, Brief, narrative_contradictions};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side};
 use recrash_model::record::PartnerKind;
@@ -102,7 +102,14 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
         },
     };
     let facts = reading.facts.clone();
-    Ok(Told { staging, approach: Fact { value: FactValue::Approach { approach: staging.approach }, source }, facts })
+    let approach = Fact { value: FactValue::Approach { approach: staging.approach }, source };
+    // Lanes beside the ego are sorted out by the staging later.
+    let kept = facts.iter().filter(|fact| !matches!(fact.value, FactValue::CpLaneOffset { .. }));
+    let stated: Vec<Fact> = std::iter::once(&approach).chain(kept).cloned().collect();
+    if let Some(contradiction) = narrative_contradictions(&stated, brief.template, brief.profile).first() {
+        return Err(format!("{id} contradicts its template: {contradiction}"));
+    }
+    Ok(Told { staging, approach, facts })
 }
 
 /// Another record of the cluster that can be retold, else a staging of the template chosen by the seed, with what of the

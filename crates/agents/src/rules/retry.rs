@@ -57,17 +57,14 @@ impl Tried {
 
 /// The plan after all feedback. `told` says whether the facts tell of a contact.
 ///
-/// With a contact told, three tries aim at it in ever other ways, then two let the two pass: close, then wide, so that
-/// both finish their movements. Without, the first try already passes, and what failed decides whether closer or wider.
+/// The first try lets the two pass each other where and in the order that is told, too wide to count as a failure: to find
+/// the failure is the search's part. Where that is not faithful and a contact is told, three tries aim at it in ever other
+/// ways, then one lets the two pass close. Where none is told, what failed decides whether closer or wider.
 ///
 /// Two that drive side by side are close anyway, so that a wide pass is left for the last tries.
 pub fn plan(feedback: &[Feedback], told: bool, side_by_side: bool) -> Plan {
     let mut plan = Plan {
-        aim: match (told, side_by_side) {
-            (true, _) => Aim::Touch,
-            (false, true) => Aim::Pass(CLOSE_PASS_M),
-            (false, false) => Aim::Pass(WIDE_PASS_M),
-        },
+        aim: if side_by_side { Aim::Pass(CLOSE_PASS_M) } else { Aim::Pass(WIDE_PASS_M) },
         swap_order: false,
         speed_factor: 1.0,
         length_factor: 1.0,
@@ -85,8 +82,8 @@ pub fn plan(feedback: &[Feedback], told: bool, side_by_side: bool) -> Plan {
                 let failed = |kind: CheckKind| failures.iter().any(|check| check.kind == kind);
                 let too_far = failed(CheckKind::Encounter);
                 plan.aim = match (told, unfaithful) {
-                    (true, 1 | 2) => Aim::Touch,
-                    (true, 3) => Aim::Pass(CLOSE_PASS_M),
+                    (true, 1..=3) => Aim::Touch,
+                    (true, 4) => Aim::Pass(CLOSE_PASS_M),
                     _ if too_far => Aim::Pass(CLOSE_PASS_M),
                     _ => Aim::Pass(WIDE_PASS_M),
                 };

@@ -425,7 +425,7 @@ mod tests {
                     };
                     let excluded = [CollisionKind::RearEndByEgo, CollisionKind::RearEndOfEgo, CollisionKind::HeadOn];
                     let wanted = Wanted { excluded: &excluded, ..task.wanted };
-                    let plan = super::super::retry::plan(&[], true, false);
+                    let plan = Plan { aim: Aim::Touch, ..super::super::retry::plan(&[], true, false) };
                     let timing = time_paths(&Task { wanted, ..task }, &course, &plan);
                     let timing = timing.unwrap_or_else(|| panic!("{template} {staging:?} {lanes:?}: never meet"));
                     // The best plan of each way shows both movements fully; the others may leave a little to the tuner.

@@ -4,7 +4,9 @@ use super::simulate;
 use crate::output::{self, Output};
 use anstream::println;
 use clap::Args;
-use recrash_pipeline::{FileRequest, ImportRequest, Imported, Options, PipelineError, SimulatorKind, SourceFormat};
+use recrash_pipeline::{
+    FileRequest, ImportRequest, Imported, Options, Patience, PipelineError, SimulatorKind, SourceFormat,
+};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -52,6 +54,7 @@ pub fn run(args: &ImportArgs, output: Output) -> Result<(), PipelineError> {
             ego: args.ego.as_deref(),
             simulator: SimulatorKind::Native,
             python: Path::new(""),
+            patience: Patience::default(),
             rollout: None,
         })
     };

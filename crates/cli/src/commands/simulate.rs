@@ -40,6 +40,7 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
         ego: args.suite.ego.as_deref(),
         simulator: args.suite.sim.unwrap_or_default(),
         python: &args.suite.python,
+        patience: args.suite.patience(),
         rollout: args.rollout.as_deref(),
     })?;
     if output.json {

@@ -1,5 +1,4 @@
 //! Helpers of the command's tests.
-#![allow(dead_code)]
 #![allow(dead_code, reason = "not every test file needs all of it")]
 
 pub mod scripted;

@@ -6,16 +6,18 @@
 
 pub mod layout;
 pub mod movement;
+mod order;
 
 use crate::contact::{ContactGeometry, contact_geometry};
 use crate::scene::{Scene, time_of};
 use layout::Layout;
 use movement::{degrees, driven};
-use recrash_model::geometry::OrientedBox;
+use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::{
     Check, CheckKind, CheckResult, CollisionKind, Expectation, Metrics, PartnerMetrics, Verdict,
 };
+use recrash_model::narrative::{FirstMover, Side};
 use recrash_model::record::ContactZone;
 use recrash_model::rollout::{Role, Rollout};
 use recrash_model::scenario::Approach;
@@ -27,6 +29,25 @@ const JUNCTION_INFLUENCE_M: f64 = 30.0;
 
 /// Obstacles the ego comes this near to are on its way. [m] (the range in which MetaDrive's IDM sees)
 const OBSTACLE_NEAR_M: f64 = 30.0;
+
+/// Who is told first may come this much later: a car's length of time in town. [s] (assumed)
+const ORDER_TOLERANCE_S: f64 = 0.5;
+
+/// The paths are looked at this long before and after the closest encounter. [steps]
+const ORDER_STEPS: usize = 80;
+
+/// Who are told together come within this: one that passes the other without contact must clear its way first. [s]
+/// (assumed)
+const TOGETHER_S: f64 = 2.5;
+
+/// Told speeds may be wrong by this share... (assumed: a little more than tuning may move them)
+const SPEED_SHARE: f64 = 0.4;
+
+/// ... or by this, which is more at low speeds. [m/s] (assumed: 5 mph)
+const SPEED_MARGIN_MPS: f64 = 2.2;
+
+/// A partner beside the ego is at least this far to one side: half a car. [m] (assumed)
+const BESIDE_M: f64 = 0.9;
 
 /// Farther apart, nobody calls it an encounter, unless the times below say so. [m] (assumed)
 const ENCOUNTER_M: f64 = 10.0;
@@ -68,6 +89,9 @@ pub fn faithfulness_on(
             witness.movement(CheckKind::SvMovement, Some(0), expectation.template.sv),
             witness.movement(CheckKind::CpMovement, partner.map(|partner| partner.actor), expectation.template.cp),
             witness.approach(),
+            witness.order(),
+            witness.speed(CheckKind::SvSpeed, Some(0), expectation.sv_speed_mps),
+            witness.speed(CheckKind::CpSpeed, partner.map(|partner| partner.actor), expectation.cp_speed_mps),
             witness.encounter(),
             witness.contact_zones(),
             witness.excluded_collision(),
@@ -125,15 +149,18 @@ impl Witness<'_> {
     fn work_zone(&self) -> Check {
         let near = self.metrics.obstacle_gaps.iter().filter(|gap| gap.value <= OBSTACLE_NEAR_M).count();
         let all = self.scene.obstacles.len();
+        let in_junction = |outline: &&OrientedBox| self.layout.distance_from_junction(outline.centre) == Some(0.0);
+        let misplaced = self.scene.obstacles.iter().filter(in_junction).count();
         let observed = match (near, all) {
+            _ if misplaced > 0 => format!("{misplaced} obstacle(s) in the junction"),
             (_, 0) => "no obstacles".to_owned(),
             (0, all) => format!("{all} obstacle(s), none within {OBSTACLE_NEAR_M:.0} m of the ego's way"),
             (near, _) => format!("{near} obstacle(s) on the ego's way"),
         };
         let (expected, agrees) = if self.expectation.template.work_zone {
-            ("work zone", near > 0)
+            ("work zone", near > 0 && misplaced == 0)
         } else if self.expectation.obstacles_named {
-            ("no work zone, obstacles in the narrative", near > 0)
+            ("no work zone, obstacles in the narrative", near > 0 && misplaced == 0)
         } else {
             ("no work zone", all == 0)
         };
@@ -161,8 +188,74 @@ impl Witness<'_> {
             return check(CheckKind::Approach, label(expected), "no scripted partner", false);
         };
         let observed = self.approach_of(ego, other);
-        let text = observed.map_or("from no arm in particular", label);
-        check(CheckKind::Approach, label(expected), text, observed == Some(expected))
+        let side = self.side_of(ego, other);
+        let text = |approach: Approach, side: Option<Side>| match (approach, side) {
+            (Approach::Same, Some(Side::Left)) => format!("{}, on its left", label(approach)),
+            (Approach::Same, Some(Side::Right)) => format!("{}, on its right", label(approach)),
+            _ => label(approach).to_owned(),
+        };
+        let beside = self.expectation.side.filter(|_| expected == Approach::Same);
+        let agrees = observed == Some(expected) && beside.is_none_or(|told| side == Some(told));
+        let shown = observed.map_or_else(|| "from no arm in particular".to_owned(), |approach| text(approach, side));
+        check(CheckKind::Approach, text(expected, beside), shown, agrees)
+    }
+
+    /// On which side of the ego another starts; `None` in line with it.
+    fn side_of(&self, ego: &OrientedBox, other: &OrientedBox) -> Option<Side> {
+        let left_m = match &self.layout {
+            Layout::Plain { along } => {
+                let t = |outline: &OrientedBox| along.project(self.network, outline.centre, 0).t;
+                let road = self.layout.road_heading(self.network, ego.centre);
+                let with_road = Vec2::from_heading(road).dot(ego.axis) >= 0.0;
+                if with_road { t(ego) - t(other) } else { t(other) - t(ego) }
+            }
+            Layout::Junction { .. } | Layout::Circle { .. } => ego.to_local(other.centre).y,
+        };
+        match left_m {
+            left if left >= BESIDE_M => Some(Side::Left),
+            left if left <= -BESIDE_M => Some(Side::Right),
+            _ => None,
+        }
+    }
+
+    fn order(&self) -> Check {
+        let Some(expected) = self.expectation.order else {
+            return not_applicable(CheckKind::Order, "not stated", "");
+        };
+        let told = match expected {
+            FirstMover::Sv => "the ego first",
+            FirstMover::Cp => "the partner first",
+            FirstMover::Both => "both at about the same time",
+        };
+        let Some(partner) = self.partner else {
+            return check(CheckKind::Order, told, "no scripted partner", false);
+        };
+        let around = self.step_at(partner.min_gap.time_s, partner.actor);
+        let near = |actor: usize| {
+            let outlines = &self.scene.outlines[actor];
+            &outlines[around.saturating_sub(ORDER_STEPS)..(around + ORDER_STEPS).min(outlines.len())]
+        };
+        let Some(lag_s) = order::lag(near(0), near(partner.actor)) else {
+            return check(CheckKind::Order, told, "their paths do not meet", false);
+        };
+        let agrees = match expected {
+            FirstMover::Sv => lag_s >= -ORDER_TOLERANCE_S,
+            FirstMover::Cp => lag_s <= ORDER_TOLERANCE_S,
+            FirstMover::Both => lag_s.abs() <= TOGETHER_S,
+        };
+        let first = if lag_s >= 0.0 { "the ego" } else { "the partner" };
+        check(CheckKind::Order, told, format!("{first} first, by {:.1} s", lag_s.abs()), agrees)
+    }
+
+    /// The greatest speed up to the encounter: what comes after braking for it is no told speed.
+    fn speed(&self, kind: CheckKind, actor: Option<usize>, told_mps: Option<f64>) -> Check {
+        let Some(told_mps) = told_mps else { return not_applicable(kind, "not stated", "") };
+        let expected = format!("about {told_mps:.1} m/s");
+        let Some(actor) = actor else { return check(kind, expected, "no scripted partner", false) };
+        let steps = self.scene.outlines[actor].len();
+        let driven = (0..steps).map(|step| self.scene.state(actor, step).speed).fold(0.0, f64::max);
+        let agrees = (driven - told_mps).abs() <= (SPEED_SHARE * told_mps).max(SPEED_MARGIN_MPS);
+        check(kind, expected, format!("up to {driven:.1} m/s"), agrees)
     }
 
     /// From where a road user comes that starts as `other`, seen from the ego's start.

@@ -52,7 +52,7 @@ static BESIDE: LazyLock<Regex> = LazyLock::new(|| {
 });
 static ONCOMING: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b",
+        r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b|\bfrom the front\b|\bwrong side of the (?:street|road)\b|\bagainst (?:the flow of )?traffic\b",
     )
 });
 static BEHIND: LazyLock<Regex> = LazyLock::new(|| {
@@ -85,7 +85,7 @@ static CROSSES: LazyLock<Regex> = LazyLock::new(|| {
 /// The side of the street the partner came from, as a hand.
 static STREET_HAND: LazyLock<Regex> = LazyLock::new(|| {
     pattern(
-        r"(?i)\bfrom (?:the|its|an?) (?:adjacent )?(?P<side>left|right)(?:[- ]hand)? (?:curb|sidewalk|shoulder|side of)\b",
+        r"(?i)\bfrom (?:the|its|an?) (?:adjacent )?(?P<a>left|right)(?:[- ]hand)? (?:curb|sidewalk|shoulder|side of)\b|\b(?:driveway|alley(?:way)?|side street|parking (?:lot|space|stall|spot)) (?:on|to) (?:the|its) (?P<b>left|right)\b",
     )
 });
 /// The ego about the partner: it is beside it.
@@ -126,13 +126,13 @@ static COMPASS_LEAVES: LazyLock<Regex> =
 pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let compass = by_compass(record, sentences);
     let told = from_side(record, sentences)
+        .or_else(|| from_street_side(record, sentences))
         .or_else(|| compass.clone().filter(|(relation, _)| !matches!(relation, Relation::Beside(_) | Relation::Behind)))
         .or_else(|| beside_sided(record, sentences))
         .or_else(|| by_lane_numbers(record, sentences))
         .or_else(|| by_phrase(record, sentences, &ONCOMING, Relation::Oncoming))
         .or_else(|| by_phrase(record, sentences, &BEHIND, Relation::Behind))
         .or_else(|| by_phrase(record, sentences, &BESIDE, Relation::Beside(None)))
-        .or_else(|| from_street_side(record, sentences))
         .or_else(|| by_phrase(record, sentences, &FROM_PROPERTY, Relation::Crossing))
         .or_else(|| by_phrase(record, sentences, &CROSSING, Relation::Crossing))
         .or_else(|| by_told_lanes(record, sentences))
@@ -337,9 +337,10 @@ fn ahead_of_ego(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relatio
 fn from_street_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let by_hand = sentences.iter().find_map(|sentence| {
         let found = STREET_HAND.captures(sentence.text)?;
+        let hand = found.name("a").or_else(|| found.name("b"))?;
         let whole = found.get(0).expect("group 0");
         (sentence.mentions.subject_at(whole.start()) == Some(Actor::Cp))
-            .then(|| (Relation::From(side(&found["side"])), words(record, whole.as_str())))
+            .then(|| (Relation::From(side(hand.as_str())), words(record, whole.as_str())))
     });
     by_hand.or_else(|| {
         let sv = headings(sentences)[0]?;
@@ -424,15 +425,16 @@ fn headings<'a>(sentences: &[Sentence<'a>]) -> [Option<Heading<'a>>; 2] {
 /// The relation from the compass directions of both.
 fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let [Some(sv), Some(cp)] = headings(sentences) else { return None };
+    // Who comes backwards faces whence it came.
+    let backwards = if record.cp_movement.known() == Some(Movement::Backing) { 4 } else { 0 };
     let told = match (8 + cp.eighths - sv.eighths) % 8 {
+        side @ (2 | 6) if (side + backwards) % 8 == 2 => Relation::From(Side::Left),
+        2 | 6 => Relation::From(Side::Right),
         // Front and rear touch: one followed the other.
         0 if only(&record.sv_zones, is_rear) && only(&record.cp_zones, is_front) => Relation::Behind,
         0 if only(&record.sv_zones, is_front) && record.cp_zones == [ContactZone::Rear] => Relation::Behind,
         0 => Relation::Beside(None),
-        // Heading to the ego's right, it came from the ego's left.
-        2 => Relation::From(Side::Left),
         4 => Relation::Oncoming,
-        6 => Relation::From(Side::Right),
         _ => return None,
     };
     let span = (sv.start.min(cp.start), sv.end.max(cp.end));

@@ -59,6 +59,11 @@ static TURN: LazyLock<Regex> = LazyLock::new(|| {
     .expect("constant pattern")
 });
 
+/// Before a turn: it was over before anything happened.
+static DONE_BEFORE: LazyLock<Regex> = LazyLock::new(|| {
+    Regex::new(r"(?i)\b(?:having|had|after|following)(?: just| recently)?\s*$").expect("constant pattern")
+});
+
 static STRAIGHT: LazyLock<Regex> = LazyLock::new(|| {
     Regex::new(r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection|\bthrough traffic|\bwith the flow of traffic|\bright of way").expect("constant pattern")
 });
@@ -185,8 +190,10 @@ fn collision(
             return Some((kind, words(record, found.as_str())));
         }
         if let Some(found) = STRUCK_FROM_BEHIND.find(sentence.text) {
+            let by_partner = sentence.mentions.object_after(found.end()) == Some(Actor::Cp);
             let kind = match sentence.mentions.subject_at(found.start()) {
                 Some(Actor::Sv) => Some(CollisionKind::RearEndOfEgo),
+                _ if by_partner && !only(&record.sv_zones, is_front) => Some(CollisionKind::RearEndOfEgo),
                 Some(Actor::Cp) if !crosses && !beside => Some(CollisionKind::RearEndByEgo),
                 _ => None,
             };
@@ -240,6 +247,9 @@ fn told_turns(sentences: &[Sentence], actor: Actor) -> (bool, bool, bool) {
     for sentence in sentences {
         for found in TURN.captures_iter(sentence.text) {
             let at = found.get(0).expect("group 0").start();
+            if DONE_BEFORE.is_match(&sentence.text[..at]) {
+                continue;
+            }
             let together = sentence.text[..at].contains("both ") && sentence.mentions.includes(actor);
             if together || sentence.mentions.subject_at(at) == Some(actor) {
                 let side = found.name("a").or_else(|| found.name("b")).map_or("", |m| m.as_str());

@@ -3,7 +3,7 @@
 use super::{MEETING, Relation, Sentence};
 use recrash_model::account::RoadGroup;
 use recrash_model::record::CrashRecord;
-use recrash_model::template::RoadType;
+use recrash_model::template::{Movement, RoadType};
 use regex::Regex;
 use std::sync::LazyLock;
 
@@ -22,7 +22,14 @@ static GARAGE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bparking (?:gar
 
 /// The kind of road of a record, given from where the partner came.
 pub(super) fn road(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation>) -> Option<RoadGroup> {
-    let crosses = matches!(relation, Some(Relation::From(_) | Relation::Crossing));
+    let turns = [record.sv_movement.known(), record.cp_movement.known()]
+        .iter()
+        .any(|movement| matches!(movement, Some(Movement::LeftTurn)));
+    let crosses = match relation {
+        Some(Relation::From(_) | Relation::Crossing) => true,
+        Some(Relation::Oncoming) => turns,
+        _ => false,
+    };
     let column = record.road.known();
     let before_they_met = || {
         let met = sentences.iter().position(|sentence| MEETING.is_match(sentence.text));
@@ -39,6 +46,22 @@ pub(super) fn road(record: &CrashRecord, sentences: &[Sentence], relation: Optio
         Some(RoadType::ParkingLot) if sentences.iter().any(|sentence| GARAGE.is_match(sentence.text)) => {
             Some(RoadGroup::Other)
         }
-        column => column.map(Into::into),
+        Some(column) => Some(column.into()),
+        None => by_words(sentences),
     }
+}
+
+static WORDS: LazyLock<[(Regex, RoadGroup); 4]> = LazyLock::new(|| {
+    [
+        (pattern(r"(?i)\b(?:parking lot|parking area|parking stall)\b"), RoadGroup::Parking),
+        (pattern(r"(?i)\b(?:highway|freeway|interstate|motorway|I-\d+)\b"), RoadGroup::Highway),
+        (pattern(r"(?i)\b(?:roundabout|traffic circle)\b"), RoadGroup::Circle),
+        (pattern(r"(?i)\bintersection\b"), RoadGroup::Intersection),
+    ]
+});
+
+/// Where the column does not say, the first kind of road that the narrative names; a street where it names none.
+fn by_words(sentences: &[Sentence]) -> Option<RoadGroup> {
+    let named = WORDS.iter().find(|(words, _)| sentences.iter().any(|sentence| words.is_match(sentence.text)));
+    named.map(|(_, road)| *road).or((!sentences.is_empty()).then_some(RoadGroup::Street))
 }

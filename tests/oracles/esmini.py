@@ -1,0 +1,142 @@
+"""esmini, where its binary is at hand: plays exported OpenSCENARIO with our recorded ego in the slot for the system under test."""
+
+import math
+import os
+import re
+import subprocess
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+from exports import Export
+from osc_player import play
+
+#: Columns of an object in esmini's CSV log, and those that are read.
+COLUMNS, TO_CENTRE, X, Y, HEADING = 31, 5, 11, 12, 24
+
+
+@dataclass(frozen=True)
+class Played:
+    """One file, played to its end."""
+
+    exit_code: int
+    errors: list[str]
+    #: The greatest distance of a partner's centre from ours until first contact or the end of its road; in all, and in the
+    #: first 5 s. [m]
+    off_m: float
+    off_5_s_m: float
+    #: First contact of the ego, there and here. [s]
+    contact_s: float | None
+    our_contact_s: float | None
+
+
+def find() -> str | None:
+    """The binary, from $ESMINI_BIN."""
+    return os.environ.get("ESMINI_BIN")
+
+
+def version(esmini: str) -> str:
+    done = subprocess.run([esmini, "--version"], capture_output=True, text=True, timeout=60)
+    return re.search(r"v?\d+\.\d+\.\d+", done.stdout).group(0).lstrip("v")
+
+
+def play_with_our_ego(esmini: str, export: Export, scenario: Path, folder: Path) -> Played:
+    # Beside the original, because it names its map by a relative path.
+    source = scenario.with_name(f"{export.id}.played.xosc")
+    put_in_the_slot(export, scenario, source)
+    log, states = folder / "esmini.log", folder / "esmini.csv"
+    command = [esmini, "--osc", str(source), "--headless", "--fixed_timestep", "0.01", "--collision", "--disable_stdout",
+               "--csv_logger", str(states), "--logfile_path", str(log), "--seed", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    source.unlink()
+    text = log.read_text()
+    contacts = re.findall(r"\[([\d.]+)\] \[warn\] Collision between (.*) and (.*)", text)
+    theirs = [float(time) for time, a, b in contacts if "ego" in (a, b) and "obstacle." not in a + b]
+    ours = [event["time_s"] for event in export.rollout["events"] if 0 in (event["kind"].get("a"), event["kind"].get("b"))]
+    until_s = min(theirs[0] if theirs else math.inf, 0.1 * (len(export.rollout["actors"][0]["states"]) - 1))
+    tracks, until_road_ends = read_states(states), play(scenario, until_s)
+    off = [
+        distance
+        for actor in export.partners()
+        for distance in distances(export, actor, tracks[actor["id"]], len(until_road_ends[actor["id"]]))
+    ]
+    return Played(
+        done.returncode,
+        [line for line in text.splitlines() if "[error]" in line],
+        max(distance for _, distance in off),
+        max(distance for time, distance in off if time <= 5),
+        theirs[0] if theirs else None,
+        ours[0] if ours else None,
+    )
+
+
+def put_in_the_slot(export: Export, scenario: Path, target: Path) -> None:
+    """The ego's own action gives way to the trajectory that our ego drove."""
+    tree = ElementTree.parse(scenario)
+    root = tree.getroot()
+    to_centre = float(root.find("Entities/ScenarioObject[@name='ego']//BoundingBox/Center").get("x"))
+    action = root.find("Storyboard/Story[@name='ego: story']//Event/Action")
+    action.remove(action.find("PrivateAction"))
+    follow = below(action, "PrivateAction", "RoutingAction", "FollowTrajectoryAction")
+    trajectory = ElementTree.SubElement(follow, "Trajectory", name="ego", closed="false")
+    polyline = below(trajectory, "Shape", "Polyline")
+    for step, state in enumerate(export.rollout["actors"][0]["states"]):
+        x = state["x"] - to_centre * math.cos(state["heading"])
+        y = state["y"] - to_centre * math.sin(state["heading"])
+        position = below(ElementTree.SubElement(polyline, "Vertex", time=f"{0.1 * step:.1f}"), "Position")
+        ElementTree.SubElement(position, "WorldPosition", x=f"{x:.6f}", y=f"{y:.6f}", z="0", h=f"{state['heading']:.6f}")
+    ElementTree.SubElement(below(follow, "TimeReference"), "Timing", domainAbsoluteRelative="absolute", scale="1", offset="0")
+    ElementTree.SubElement(follow, "TrajectoryFollowingMode", followingMode="position")
+    tree.write(target)
+
+
+def below(element: ElementTree.Element, *names: str) -> ElementTree.Element:
+    for name in names:
+        element = ElementTree.SubElement(element, name)
+    return element
+
+
+def read_states(path: Path) -> dict[str, dict[int, tuple[float, float]]]:
+    """Centres by object and hundredth of a second."""
+    tracks: dict[str, dict[int, tuple[float, float]]] = {}
+    for line in path.read_text().splitlines():
+        cells = [cell.strip() for cell in line.split(",")]
+        if not cells[0].isdigit():
+            continue
+        for first in range(2, len(cells) - COLUMNS + 1, COLUMNS):
+            to_centre, x, y, heading = (float(cells[first + column]) for column in (TO_CENTRE, X, Y, HEADING))
+            centre = (x + to_centre * math.cos(heading), y + to_centre * math.sin(heading))
+            tracks.setdefault(cells[first], {})[round(float(cells[1]) * 100)] = centre
+    return tracks
+
+
+def distances(export: Export, actor: dict, track: dict, most_steps: int) -> list[tuple[float, float]]:
+    """Time and distance from ours, at each step until contact or the end of its road."""
+    steps = range(min(export.steps_until_contact(actor["id"]), most_steps))
+    found = [
+        (0.1 * step, math.dist(track[10 * step], (state["x"], state["y"])))
+        for step, state in zip(steps, actor["states"])
+        if 10 * step in track
+    ]
+    assert found, f"{export} {actor['id']}"
+    return found
+
+
+def table(esmini: str, rows: list[tuple[Export, Played, Played]]) -> str:
+    """The results as a page for the docs."""
+    lines = [
+        f"Played by esmini {version(esmini)} with `--fixed_timestep 0.01 --collision`. Distances are between centres, until first "
+        "contact or the end of the road. No file made it end with another exit code than 0, or write a line with `[error]`.",
+        "",
+        "| suite | scenario | partners | acting, first 5 s [m] | acting [m] | recorded [m] | contact [s] | esmini, acting [s] | esmini, recorded [s] |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    time = lambda value: "-" if value is None else f"{value:.2f}"
+    for export, acting, recorded in rows:
+        assert acting.errors == recorded.errors == [] and acting.exit_code == recorded.exit_code == 0, export
+        kinds = ", ".join(f"{p['kind'].replace('_', ' ')}, {p['turn']}" for p in export.scenario["partners"])
+        lines.append(
+            f"| {export.suite} | {export.id} | {kinds} | {acting.off_5_s_m:.2f} | {acting.off_m:.2f} | {recorded.off_m:.2f} "
+            f"| {time(acting.our_contact_s)} | {time(acting.contact_s)} | {time(recorded.contact_s)} |"
+        )
+    return "\n".join(lines) + "\n"

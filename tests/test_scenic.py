@@ -1,0 +1,82 @@
+"""Scenic files on both their simulators, and the MetaDrive export without recrash: all in the environment of Scenic."""
+
+import ast
+import json
+import math
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from exports import Export, run
+from oracles import answers, environment
+
+
+def test_scenic_compiles_every_file_and_samples_its_ranges(exports: list[Export]) -> None:
+    files = scenic_files(exports)
+    half = len(files) // 2
+    compile_all = lambda some: answers("scenic", "scenic_run.py", "compile", "1", "sweep=1", *some)
+    with ThreadPoolExecutor(2) as threads:
+        found = [report for part in threads.map(compile_all, (files[:half], files[half:])) for report in part]
+    assert len(found) == len(files)
+    assert [report for report in found if "error" in report] == []
+
+
+def test_scenic_drives_each_map_as_our_simulator_does(cases: list[Export]) -> None:
+    """Newtonian has no tyres and its own brakes; over 5 s, and before any contact, it stays within 0.5 m all the same
+    (0.7 m for a partner that moves sideways)."""
+    check_driven(cases, answers("scenic", "scenic_run.py", "newtonian", "50", *scenic_files(cases)), 0.7)
+
+
+def test_scenic_on_metadrive_drives_each_map_as_our_simulator_does(cases: list[Export]) -> None:
+    for export in cases:
+        net = export.path("scenic", ".net.xml")
+        run(environment("sumo") / "netconvert", "--opendrive-files", export.path("scenic", ".xodr"), "-o", net)
+    check_driven(cases, answers("scenic", "scenic_run.py", "metadrive", "50", *scenic_files(cases)), 0.5)
+
+
+def scenic_files(exports: list[Export]) -> list[str]:
+    return [str(export.path("scenic", ".scenic")) for export in exports]
+
+
+def check_driven(cases: list[Export], found: list[dict], sideways_m: float) -> None:
+    assert len(cases) == len(found) == 5
+    for export, report in zip(cases, found):
+        assert "error" not in report, report
+        sideways = {spec["id"] for spec in export.scenario["partners"] if spec.get("lateral")}
+        within(export, report["trajectory"], {actor: sideways_m for actor in sideways})
+
+
+def within(export: Export, trajectory: list, bounds_m: dict[str, float]) -> None:
+    """The first 5 s of ego and partners, until contact, against ours: within 0.5 m, or the actor's own bound."""
+    actors = export.rollout["actors"][: 1 + len(export.scenario["partners"])]
+    steps = min([len(trajectory), 51] + [export.steps_until_contact(actor["id"]) for actor in actors])
+    assert steps > 25, export
+    for step in range(steps):
+        # Obstacles come behind the road users.
+        assert len(trajectory[step]) >= len(actors), export
+        for actor, (x, y, *_) in zip(actors, trajectory[step]):
+            off = math.dist((x, y), (actor["states"][step]["x"], actor["states"][step]["y"]))
+            most = bounds_m.get(actor["id"], 0.5)
+            assert off <= most, f"{export} {actor['id']}: {off:.2f} m at {0.1 * step:.1f} s"
+
+
+def test_metadrive_script_is_python_and_its_scenario_complete(exports: list[Export]) -> None:
+    for export in exports:
+        ast.parse((export.folder / "metadrive" / "run_metadrive.py").read_text())
+        scenario = json.loads(export.path("metadrive", ".metadrive.json").read_text())
+        assert scenario["map"]["block"] == export.scenario["map"]["type"]
+        assert [partner["id"] for partner in scenario["partners"]] == [p["id"] for p in export.scenario["partners"]]
+        assert len(scenario["obstacles"]) == len(export.scenario["obstacles"])
+
+
+def test_metadrive_script_drives_each_map_as_our_simulator_does(cases: list[Export], tmp_path: Path) -> None:
+    python = environment("scenic") / "python"
+
+    def drive(export: Export) -> list:
+        trace = tmp_path / f"{export.id}.json"
+        script = export.folder / "metadrive" / "run_metadrive.py"
+        run(python, script, export.path("metadrive", ".metadrive.json"), "--headless", "--trace", trace)
+        return json.loads(trace.read_text())["states"]
+
+    with ThreadPoolExecutor(2) as threads:
+        for export, states in zip(cases, threads.map(drive, cases)):
+            within(export, states, {})
