@@ -105,6 +105,8 @@ fn file_problems(name: &str, text: &str) -> Vec<String> {
         }
         if let Some(stage) = stage_crate(name) {
             let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+            // Patience with a provider is measured by the clock; nothing that is written depends on it.
+            let test = test || name == "crates/agents/src/llm/live.rs";
             for import in
                 ["std::fs", "std::env", "std::thread", "time::Instant", "time::SystemTime", "std::net", "std::process"]
             {

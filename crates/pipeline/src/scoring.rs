@@ -7,6 +7,7 @@ use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{Role, Rollout, STEP_S};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::{Parameter, Score, apply};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A least gap before this time says more about the start than about the ego. [s]
 const EARLIEST_MINIMUM_S: f64 = 1.0;
@@ -18,6 +19,8 @@ const PLAUSIBLE_BRAKING_MPS2: f64 = 0.9 * 9.81;
 const BRAKING_STEPS: usize = 3;
 /// Price of the distance from the scenario as designed: among equal outcomes the nearest to the record wins. [m]
 const DISTANCE_PRICE_M: f64 = 0.05;
+/// After this many failures of a program that hangs or ends, the search of a scenario asks no more of it.
+const MAX_FAULTS: usize = 3;
 /// Worth of each kind of odd behaviour. [m]
 const ODD_BEHAVIOUR_WORTH_M: f64 = 0.1;
 
@@ -35,6 +38,8 @@ pub struct Scoring<'a> {
     pub simulator: &'a Simulator,
     /// Hardest braking of partners as designed, which the narrative asks for. [m/s^2]
     pub designed_braking_mps2: f64,
+    /// Points that could not be run.
+    faults: AtomicUsize,
 }
 
 impl<'a> Scoring<'a> {
@@ -48,7 +53,8 @@ impl<'a> Scoring<'a> {
         first: &CaseRun,
     ) -> Self {
         let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
-        Self { draft, parameters, expectation, profile, simulator, designed_braking_mps2 }
+        let faults = AtomicUsize::new(0);
+        Self { draft, parameters, expectation, profile, simulator, designed_braking_mps2, faults }
     }
 
     /// Applies the values, checks, runs, measures and judges.
@@ -68,9 +74,15 @@ impl<'a> Scoring<'a> {
             }
             Ok(Ok(checked)) => checked.value,
         };
+        if self.faults.load(Ordering::Relaxed) >= MAX_FAULTS {
+            return refused(format!("not run: the simulator or the ego failed {MAX_FAULTS} times here"));
+        }
         let run = match run_scenario(&scenario, self.simulator, self.profile, Some(self.expectation)) {
             Ok(run) => run,
-            Err(why) => return refused(format!("not run: {why}")),
+            Err(why) => {
+                self.faults.fetch_add(1, Ordering::Relaxed);
+                return refused(format!("not run: {why}"));
+            }
         };
         let refused = self.refusals(&run);
         let mut kinds: Vec<_> = run.findings.iter().map(|f| f.kind).collect();

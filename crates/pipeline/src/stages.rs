@@ -102,7 +102,7 @@ pub mod names {
     }
     /// Run of the reference driver in it.
     pub fn reference_run(id: &str) -> String {
-        format!("6-tuned/{id}.reference.run.json")
+        format!("6-tuned/{id}.reference.json")
     }
     /// Run of the tuned scenario.
     pub fn tuned_run(id: &str) -> String {

@@ -1,5 +1,6 @@
 //! What drivers do, against what was measured in MetaDrive and what the models promise.
 
+use recrash_model::narrative::Side;
 use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{EventKind, Rollout, TerminationKind};
 use recrash_model::scenario::{
@@ -8,7 +9,7 @@ use recrash_model::scenario::{
 use recrash_sim::{Ego, simulate};
 
 mod common;
-use common::{alone, checked, cross, lead, roundabout, steady, straight, wide_cross};
+use common::{alone, checked, cross, curve, lead, roundabout, steady, straight, wide_cross};
 
 fn run(draft: ScenarioDraft, ego: Ego) -> Rollout {
     simulate(&checked(draft), ego)
@@ -343,6 +344,47 @@ mod partners {
         near(moved(60), 6.0, 1.5);
         near(moved(120), 6.0, 0.7);
         assert!(states.iter().all(|state| state.speed < 1.6));
+    }
+
+    #[test]
+    fn a_cyclist_keeps_to_the_edge_on_straights_and_through_curves() {
+        for map in [straight(2, 200.0), curve(2, Side::Left), curve(2, Side::Right)] {
+            let mut draft = alone(map, Turn::Straight, 1, 4.0, 4.0);
+            let mut riding = lead(20.0, 5.0);
+            riding.kind = PartnerKind::Cyclist;
+            riding.start = Start::Offset { delta_s_m: 20.0, delta_t_m: 1.2 };
+            draft.partners.push(riding);
+            let scenario = checked(draft);
+            let (path, network) = (scenario.partners()[0].path.clone(), scenario.network().clone());
+            let rollout = simulate(&scenario, Ego::Idm);
+            assert!(!touches(&rollout));
+            let mut segment = 0;
+            for state in &rollout.actors[1].states {
+                let point = path.project(&network, state.position(), segment);
+                segment = point.segment;
+                if point.s < path.length_m {
+                    near(point.t, 1.2, 0.3);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_parked_car_half_on_the_lane_is_passed_by_who_has_room_and_waited_behind_by_who_has_not() {
+        let parked = |t_m| {
+            let mut draft = alone(straight(2, 200.0), Turn::Straight, 1, 8.0, 8.0);
+            let mut standing = lead(60.0, 0.0);
+            standing.policy = Policy::Stopped { depart_step: None, target_speed_mps: 0.0 };
+            standing.start = Start::Offset { delta_s_m: 60.0, delta_t_m: t_m };
+            draft.partners.push(standing);
+            let rollout = run(draft, Ego::Idm);
+            assert!(!touches(&rollout), "{t_m}");
+            let states = &rollout.actors[1].states;
+            assert_eq!(states[0].position(), states.last().expect("states").position());
+            rollout.termination.kind
+        };
+        assert_eq!(parked(2.4), TerminationKind::Arrived);
+        assert_ne!(parked(1.0), TerminationKind::Arrived);
     }
 
     #[test]

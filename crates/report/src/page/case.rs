@@ -84,7 +84,7 @@ pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]
         ("both", "Side by side", is_first && is_second),
     ];
     if reference {
-        modes.push(("reference", "Beside the reference driver", true));
+        modes.push(("reference", "Reference driver", true));
     }
     html! {
         noscript { p.banner { "The replay and the plots need scripts. Every number is in the tables below." } }
