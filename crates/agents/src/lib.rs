@@ -2,8 +2,8 @@
 //!
 //! [`Paraphrase`] reads a pick and gives a [`Narrative`]: a short text and its facts, each with the words or the column
 //! it comes from, or marked as assumed. [`Design`] turns a narrative into a [`ScenarioDraft`], and tries again when told
-//! what was wrong ([`Feedback`]). [`Rules`] plays both, deterministic and without a network; a language model will stand
-//! behind the same two traits. What the rules read and assume is written in `docs/models/rules.md`.
+//! what was wrong ([`Feedback`]). [`Rules`] plays both, deterministic and without a network; a language model ([`llm`])
+//! stands behind the same two traits. What the rules read and assume is written in `docs/models/rules.md`.
 //!
 //! [`expectation`] says what a rollout must show to be true to a narrative, [`parameters`] which numbers of a scenario
 //! may move while it stays true.

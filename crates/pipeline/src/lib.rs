@@ -20,10 +20,12 @@ mod external;
 mod failures;
 mod fetching;
 mod importing;
+mod ledger;
 mod models;
 mod parity;
 mod profiles;
 mod progress;
+mod prompting;
 mod recording;
 mod scoring;
 mod selecting;
@@ -53,6 +55,7 @@ pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patien
 pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use importing::{ImportRequest, Imported, SourceFormat, import};
+pub use ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
 pub use models::{AnswerMode, ModelAccess};
 pub use parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
@@ -60,8 +63,9 @@ pub use parity::{
 };
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
+pub use prompting::{Prompt, PromptRequest, prompt};
 pub use recording::{TableFormat, read_records, write_records};
-pub use recrash_agents::llm::{Caps, Spent};
+pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};

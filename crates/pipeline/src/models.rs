@@ -145,9 +145,19 @@ fn live(
     _access: &ModelAccess,
     _spending: &Arc<Spending>,
 ) -> Result<Arc<dyn Answers>, PipelineError> {
-    Err(PipelineError::Usage(
-        "this recrash was built without live models; build it with the feature `live`, or give --llm batch".into(),
-    ))
+    Ok(Arc::new(Absent))
+}
+
+/// Stands in for live models where they were left out of the build.
+#[cfg(not(feature = "live"))]
+struct Absent;
+
+#[cfg(not(feature = "live"))]
+impl Answers for Absent {
+    fn answer(&self, _question: &Question) -> Result<Exchange, recrash_agents::llm::AskError> {
+        let why = "this recrash was built without live models; build it with the feature `live`, or give --llm batch";
+        Err(recrash_agents::llm::AskError::Refused(why.into()))
+    }
 }
 
 /// Reads what the environment says about keys. Nothing of it is kept.

@@ -241,14 +241,16 @@ fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
 }
 
 /// What the stages after selection share.
-struct Cases {
-    records: RecordSet,
-    selection: Selection,
+pub(crate) struct Cases {
+    /// All records.
+    pub records: RecordSet,
+    /// Which were picked.
+    pub selection: Selection,
     records_hash: String,
 }
 
 impl Cases {
-    fn read(suite: &Suite) -> Result<Self, PipelineError> {
+    pub fn read(suite: &Suite) -> Result<Self, PipelineError> {
         let records_hash = suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS)?;
         suite.output_hash(Stage::Select, Stage::Select.name(), names::SELECTION)?;
         let records: RecordSet = suite.store().read_json(names::RECORDS)?;
@@ -264,7 +266,7 @@ impl Cases {
     }
 
     /// The pick first, then a few members of its cluster.
-    fn records_of(&self, cluster: &Cluster) -> Vec<&CrashRecord> {
+    pub fn records_of(&self, cluster: &Cluster) -> Vec<&CrashRecord> {
         let others = cluster.members.iter().filter(|&&m| m != cluster.pick_index).take(MEMBERS_SHOWN);
         std::iter::once(&cluster.pick_index).chain(others).map(|&index| &self.records.records[index]).collect()
     }
@@ -298,7 +300,8 @@ fn narrate(work: &StageWork) -> Result<StageReport, PipelineError> {
     })
 }
 
-fn brief<'a>(suite: &'a Suite, cluster: &'a Cluster, records: &'a [&'a CrashRecord]) -> Brief<'a> {
+/// What an agent is told about a case.
+pub(crate) fn brief<'a>(suite: &'a Suite, cluster: &'a Cluster, records: &'a [&'a CrashRecord]) -> Brief<'a> {
     Brief {
         scenario_id: &cluster.scenario_id,
         template: cluster.template,

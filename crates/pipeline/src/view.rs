@@ -3,7 +3,7 @@
 use crate::agents::Cast;
 use crate::stages::{Case, Ran, names};
 use crate::suite::{RecordSource, Suite, quoted};
-use crate::summary::{self, simulator_name};
+use crate::summary::{self, FallbackReason, simulator_name};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::metrics::Verdict;
 use recrash_model::record::RecordSet;
@@ -27,37 +27,30 @@ pub fn view(
         profile: suite.profile().clone(),
         ego: suite.ego().to_owned(),
         simulator: simulator_name(cases),
-        agents: agents(&options.cast, cases),
+        agents: options.cast.describe(),
         seed: options.seed,
         sample: options.records == RecordSource::Sample,
         records: records.clone(),
         selection: selection.clone(),
         cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
-        diagnostics: remarks.into_iter().chain(fallbacks(&options.cast, cases)).collect(),
+        diagnostics: model_remarks(&options.cast, cases).into_iter().chain(remarks).collect(),
     }
 }
 
-/// Who played the roles, and how many answers of models were accepted.
-fn agents(cast: &Cast, cases: &[Case]) -> String {
-    let models = summary::models(cast, cases);
-    if models.is_empty() {
-        return cast.describe();
+/// How the models did: a note for each role, and a warning for each scenario in which the rules took over.
+fn model_remarks(cast: &Cast, cases: &[Case]) -> Vec<Diagnostic> {
+    let mut remarks = Vec::new();
+    for model in summary::models(cast, cases) {
+        let code = format!("model.{}", model.role);
+        let mut tell = |severity, message| {
+            remarks.push(Diagnostic::new(severity, &code, Location::default(), message));
+        };
+        tell(Severity::Note, format!("{} by {}: {}", model.role, model.model, model.describe()));
+        for FallbackReason { id, why } in &model.reasons {
+            tell(Severity::Warning, format!("{id}: the rules took over from {}: {why}", model.model));
+        }
     }
-    let roles: Vec<String> = models.iter().map(|m| format!("{} {}: {}", m.role, m.model, m.describe())).collect();
-    roles.join("; ")
-}
-
-/// A remark for each scenario in which the rules took over from a model.
-fn fallbacks(cast: &Cast, cases: &[Case]) -> Vec<Diagnostic> {
-    let models = summary::models(cast, cases);
-    let remarks = models.iter().flat_map(|model| {
-        model.reasons.iter().map(|reason| {
-            let message = format!("{}: the rules took over from {}: {}", reason.id, model.model, reason.why);
-            let code = format!("model.{}", model.role);
-            Diagnostic::new(Severity::Warning, &code, Location::default(), message)
-        })
-    });
-    remarks.collect()
+    remarks
 }
 
 fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseView {

@@ -8,6 +8,10 @@ use serde_json::Value;
 /// Longest text of a provider's that is passed on. [characters]
 const LONGEST_TEXT: usize = 240;
 
+/// How models find their servers.
+const WHERE: &str =
+    "Models are asked at --base-url; without it, at the provider their name tells, and at Ollama where it tells none";
+
 /// What is wrong, and what follows from it.
 #[derive(Debug, PartialEq)]
 pub enum Fault {
@@ -53,10 +57,14 @@ impl Fault {
                     passing(format!("no answer within {} s (--timeout)", options.timeout_s), true)
                 }
                 Web::Reqwest(e) if e.is_builder() => Self::Refused("the address or the key cannot be sent".to_owned()),
-                Web::Reqwest(e) if e.is_connect() => passing(
-                    format!("cannot connect ({}); is the server running, and --base-url right?", innermost(e)),
-                    false,
-                ),
+                Web::Reqwest(e) if e.is_connect() => {
+                    let host = e.url().and_then(|url| url.host_str()).unwrap_or("the server");
+                    let port = e.url().and_then(|url| url.port()).map(|port| format!(":{port}")).unwrap_or_default();
+                    passing(
+                        format!("cannot connect to {host}{port} ({}); is it running? {}", innermost(e), WHERE),
+                        false,
+                    )
+                }
                 _ => passing(broken, true),
             },
             ChatResponseGeneration { .. } => passing(broken, true),

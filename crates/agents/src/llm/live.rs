@@ -18,7 +18,7 @@ use genai::resolver::{AuthData, Endpoint};
 use genai::{Client, ModelIden, ServiceTarget, WebConfig};
 use recrash_model::Seed;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 use tokio::runtime::Runtime;
 use tokio::time::Instant;
@@ -45,6 +45,8 @@ pub struct Live {
     not_before: Mutex<Option<Instant>>,
     /// The server takes no schema; the prompt has it as well.
     without_schema: AtomicBool,
+    /// Why no question will be answered, once that is known.
+    refused: OnceLock<String>,
 }
 
 impl Live {
@@ -62,14 +64,17 @@ impl Live {
             .with_timeout(Duration::from_secs_f64(options.timeout_s))
             .with_connect_timeout(Duration::from_secs_f64(options.timeout_s.min(CONNECT_S)));
         let client = Client::builder().with_web_config(web).build().map_err(|e| failed(&e))?;
-        let (not_before, without_schema) = (Mutex::new(None), AtomicBool::new(false));
-        Ok(Self { ledger, options, spending, runtime, client, not_before, without_schema })
+        let (not_before, without_schema, refused) = (Mutex::new(None), AtomicBool::new(false), OnceLock::new());
+        Ok(Self { ledger, options, spending, runtime, client, not_before, without_schema, refused })
     }
 
     async fn ask(&self, question: &Question) -> Result<Exchange, AskError> {
         let mut retries = 0;
         loop {
             self.wait_for_turn().await;
+            if let Some(why) = self.refused.get() {
+                return Err(AskError::Refused(why.clone()));
+            }
             self.spending.check(&self.options.caps)?;
             let schema = !self.without_schema.load(Ordering::Relaxed);
             let begun = Instant::now();
@@ -178,7 +183,12 @@ impl Answers for Live {
         if let Some(exchange) = self.ledger.find(&question.hash()) {
             return Ok(exchange);
         }
-        let exchange = self.runtime.block_on(self.ask(question))?;
+        let exchange = self.runtime.block_on(self.ask(question)).inspect_err(|error| {
+            if let AskError::Refused(why) = error {
+                // Another thread may have been told first: the same.
+                let _ = self.refused.set(why.clone());
+            }
+        })?;
         self.spending.add(&exchange);
         self.ledger.keep(&exchange).map_err(AskError::Ledger)?;
         Ok(exchange)

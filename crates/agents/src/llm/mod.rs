@@ -15,6 +15,7 @@ mod live;
 mod prices;
 mod prompts;
 mod question;
+mod schema;
 mod secrets;
 mod spending;
 
@@ -31,7 +32,6 @@ pub use spending::{Caps, Spending, Spent};
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
 use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT, Narrative, Origin};
-use recrash_model::profile::SystemProfile;
 use recrash_model::scenario::{
     Author, EgoSpec, Environment, MapSpec, Obstacle, Partner, SCENARIO_FORMAT, ScenarioDraft, Source,
 };
@@ -102,6 +102,47 @@ struct ValuesAnswer {
     values: Vec<f64>,
 }
 
+/// The first question of the role that retells.
+///
+/// # Errors
+/// [`AgentError::Prompt`].
+pub fn paraphrase_question(model: &str, brief: &Brief) -> Result<Question, AgentError> {
+    question(model, Role::Paraphrase, brief, prompts::paraphrase(brief)?)
+}
+
+/// The first question of the role that designs.
+///
+/// # Errors
+/// [`AgentError::Prompt`].
+pub fn design_question(model: &str, brief: &Brief, narrative: &Narrative) -> Result<Question, AgentError> {
+    question(model, Role::Design, brief, prompts::design(brief, narrative)?)
+}
+
+/// A question of the role that tunes.
+///
+/// # Errors
+/// [`AgentError::Prompt`].
+pub fn tune_question(model: &str, brief: &Brief, tune: &TuneBrief) -> Result<Question, AgentError> {
+    question(model, Role::Tune, brief, prompts::tune(brief.scenario_id, tune)?)
+}
+
+fn question(model: &str, role: Role, brief: &Brief, text: String) -> Result<Question, AgentError> {
+    let (name, schema) = match role {
+        Role::Paraphrase => ("narrative", schemars::schema_for!(NarrativeAnswer).to_value()),
+        Role::Design => ("scenario", schemars::schema_for!(ScenarioAnswer).to_value()),
+        Role::Tune => ("values", schemars::schema_for!(ValuesAnswer).to_value()),
+    };
+    let schema = schema::plain(schema);
+    Ok(Question {
+        model: model.to_owned(),
+        purpose: Purpose { role, scenario_id: brief.scenario_id.to_owned(), attempt: 0 },
+        system: prompts::system(role, brief.profile, &schema)?,
+        turns: vec![Turn { speaker: Speaker::User, text }],
+        schema_name: name.to_owned(),
+        schema,
+    })
+}
+
 impl LanguageModel<'_> {
     /// Asks, and asks again with what is wrong, until `accept` takes the answer or the repairs are used up.
     fn converse<T>(
@@ -134,58 +175,12 @@ impl LanguageModel<'_> {
         Ok(())
     }
 
-    /// The first question of the role that retells.
-    ///
-    /// # Errors
-    /// [`AgentError::Prompt`].
-    pub fn paraphrase_question(&self, brief: &Brief) -> Result<Question, AgentError> {
-        self.question(Role::Paraphrase, brief.scenario_id, brief.profile, prompts::paraphrase(brief)?)
-    }
-
-    /// The first question of the role that designs.
-    ///
-    /// # Errors
-    /// [`AgentError::Prompt`].
-    pub fn design_question(&self, brief: &Brief, narrative: &Narrative) -> Result<Question, AgentError> {
-        self.question(Role::Design, brief.scenario_id, brief.profile, prompts::design(brief, narrative)?)
-    }
-
-    /// A question of the role that tunes.
-    ///
-    /// # Errors
-    /// [`AgentError::Prompt`].
-    pub fn tune_question(&self, brief: &Brief, tune: &TuneBrief) -> Result<Question, AgentError> {
-        self.question(Role::Tune, brief.scenario_id, brief.profile, prompts::tune(brief.scenario_id, tune)?)
-    }
-
-    fn question(
-        &self,
-        role: Role,
-        scenario_id: &str,
-        profile: &SystemProfile,
-        text: String,
-    ) -> Result<Question, AgentError> {
-        let (name, schema) = match role {
-            Role::Paraphrase => ("narrative", schemars::schema_for!(NarrativeAnswer).to_value()),
-            Role::Design => ("scenario", schemars::schema_for!(ScenarioAnswer).to_value()),
-            Role::Tune => ("values", schemars::schema_for!(ValuesAnswer).to_value()),
-        };
-        Ok(Question {
-            model: self.model.to_owned(),
-            purpose: Purpose { role, scenario_id: scenario_id.to_owned(), attempt: 0 },
-            system: prompts::system(role, profile, &schema)?,
-            turns: vec![Turn { speaker: Speaker::User, text }],
-            schema_name: name.to_owned(),
-            schema,
-        })
-    }
-
     /// Proposes the next values of the parameters, given what was tried.
     ///
     /// # Errors
     /// [`AgentError`], where the model gives no usable answer.
     pub fn propose(&self, brief: &Brief, tune: &TuneBrief) -> Result<Vec<f64>, AgentError> {
-        let mut question = self.tune_question(brief, tune)?;
+        let mut question = tune_question(self.model, brief, tune)?;
         // The design is the first try, and nobody's answer.
         question.purpose.attempt = tune.history.len().saturating_sub(1);
         self.converse(question, |json| {
@@ -201,7 +196,7 @@ impl Paraphrase for LanguageModel<'_> {
         if brief.records.is_empty() {
             return Err(AgentError::NoRecord { scenario_id: brief.scenario_id.to_owned() });
         }
-        let answer = self.converse(self.paraphrase_question(brief)?, |json| {
+        let answer = self.converse(paraphrase_question(self.model, brief)?, |json| {
             let answer: NarrativeAnswer = read(json)?;
             let problems = narrative_problems(&answer, brief);
             if problems.is_empty() { Ok(answer) } else { Err(problems) }
@@ -224,7 +219,7 @@ impl Design for LanguageModel<'_> {
     /// Every earlier try is one more turn of the conversation. Forms are repaired here; what the check and the rollout
     /// say comes back through `feedback`.
     fn design(&self, brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Result<ScenarioDraft, AgentError> {
-        let mut question = self.design_question(brief, narrative)?;
+        let mut question = design_question(self.model, brief, narrative)?;
         for earlier in feedback {
             let draft = prompts::answer_form(&earlier.draft).to_string();
             push_repair(&mut question, draft, &problem_sentences(&earlier.problem))?;

@@ -46,6 +46,20 @@ pub enum Role {
     Tune,
 }
 
+impl Role {
+    /// All of them, in order.
+    pub const ALL: [Self; 3] = [Self::Paraphrase, Self::Design, Self::Tune];
+
+    /// Name on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paraphrase => "paraphrase",
+            Self::Design => "design",
+            Self::Tune => "tune",
+        }
+    }
+}
+
 /// One part of a conversation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Turn {

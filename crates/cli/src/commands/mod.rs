@@ -8,8 +8,10 @@ mod eval;
 mod export;
 mod fetch;
 mod import;
+mod ledger;
 mod model;
 mod parity;
+mod prompt;
 mod records;
 mod run;
 mod schema;
@@ -30,6 +32,7 @@ Examples:
   recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
   recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
   recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
+  recrash run --agent gpt-5-mini --max-cost 2            a language model in the roles; recrash prompt shows its questions
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
@@ -77,6 +80,10 @@ pub enum Command {
     Import(import::ImportArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
+    /// Show what a language model would be asked, without asking it.
+    Prompt(prompt::PromptArgs),
+    /// Tell what language models were asked for a suite, what they answered, and what it cost.
+    Ledger(ledger::LedgerArgs),
     /// Download NHTSA's crash file, whole or not at all, for --records.
     Fetch(fetch::FetchArgs),
     /// Get or find the files of the embedding model all-MiniLM-L6-v2.
@@ -112,6 +119,8 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
         Command::Eval(args) => eval::run(args, output),
+        Command::Prompt(args) => prompt::run(args, output),
+        Command::Ledger(args) => ledger::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Model(args) => model::run(args, output),
         Command::Parity(args) => parity::run(args, output),
