@@ -53,7 +53,10 @@ fn scores_are_told_by_half_and_held_out_disagreements_only_where_they_are_asked_
     assert_eq!(both["disagreements"].as_array().unwrap().len(), 0, "{both:#}");
     let held_out = json(&eval(&files, &["--json", "--half", "held-out"]));
     let shown = &held_out["disagreements"][0];
-    assert_eq!((&shown["record"], &shown["label"], &shown["said"]), (&"90104-33/1".into(), &"right".into(), &"left".into()));
+    assert_eq!(
+        (&shown["record"], &shown["label"], &shown["said"]),
+        (&"90104-33/1".into(), &"right".into(), &"left".into())
+    );
     let text = eval(&files, &[]);
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
     assert!(text.find("held-out").unwrap() < text.find("1 dev").unwrap(), "the headline comes first: {text}");
@@ -90,7 +93,8 @@ fn a_model_is_asked_by_batch_and_its_answers_are_scored() {
         {"value": {"fact": "approach", "approach": "right"}, "source": source},
         {"value": {"fact": "collision", "kind": "angle"}, "source": source},
     ]);
-    let answer = serde_json::json!({"text": "A pickup truck comes from the right.", "facts": facts, "replaces_record": null});
+    let answer =
+        serde_json::json!({"text": "A pickup truck comes from the right.", "facts": facts, "replaces_record": null});
     let line = serde_json::json!({
         "custom_id": request["custom_id"],
         "response": {"status_code": 200, "body": {"choices": [{"message": {"role": "assistant", "content": answer.to_string()}}],
@@ -115,7 +119,8 @@ fn the_rules_read_the_held_out_half_as_well_as_the_documentation_says() {
     }
     let files = ["ads-2021-06-to-2025-06.csv", "ads-2025-06-to-2026-01.csv"].map(|name| shared.join(name));
     let names = files.each_ref().map(|path| path.to_str().unwrap());
-    let evaluation = json(&recrash(&["eval", "--json", "--records", names[0], "--records", names[1]]).output().unwrap());
+    let evaluation =
+        json(&recrash(&["eval", "--json", "--records", names[0], "--records", names[1]]).output().unwrap());
     for (field, least) in [
         ("road", 0.9),
         ("approach", 0.85),

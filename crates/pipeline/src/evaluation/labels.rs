@@ -229,7 +229,7 @@ mod tests {
         ] {
             let wrong = row().replacen(from, to, 1);
             assert_ne!(wrong, row(), "{from}");
-            let Err(PipelineError::BadInput { diagnostics, .. }) = read(&[wrong.clone()]) else {
+            let Err(PipelineError::BadInput { diagnostics, .. }) = read(std::slice::from_ref(&wrong)) else {
                 panic!("{wrong} is taken")
             };
             assert_eq!(diagnostics.len(), 1, "{diagnostics:?}");
