@@ -30,6 +30,15 @@ pub struct ModelArgs {
     /// How often an answer that cannot be used goes back to its model before the rules take over. [default: 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=20))]
     pub repairs: Option<u16>,
+    /// How models are asked.
+    #[command(flatten)]
+    pub access: AccessArgs,
+}
+
+/// How models are asked.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Agents and language models")]
+pub struct AccessArgs {
     /// Where a model's answers come from.
     #[arg(long, value_name = "MODE", value_enum, default_value_t)]
     pub llm: Llm,
@@ -80,7 +89,9 @@ impl ModelArgs {
             repairs: self.repairs.map_or(base.repairs, usize::from),
         }
     }
+}
 
+impl AccessArgs {
     /// How models are asked.
     pub fn access(&self) -> ModelAccess {
         let default = ModelAccess::default();

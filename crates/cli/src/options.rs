@@ -176,7 +176,7 @@ impl SuiteArgs {
     /// What may be used of the machine.
     pub fn resources(&self) -> Resources {
         let (threads, python) = (self.threads.map(usize::from), self.python.clone());
-        Resources { threads, python, patience: self.patience(), models: self.models.access() }
+        Resources { threads, python, patience: self.patience(), models: self.models.access.access() }
     }
 
     /// How long a program that is the ego is waited for.

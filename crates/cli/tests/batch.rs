@@ -4,87 +4,52 @@
 mod common;
 
 use common::recrash;
+use common::scripted::ScriptedModel;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const SMALL: [&str; 6] = ["--budget", "5", "--rounds", "2", "--seed", "5"];
 /// Waits for a batch.
 const WAITS: i32 = 4;
 
-/// Plays the model: answers with what the rules wrote for the same scenario.
-struct ScriptedModel {
-    rules: PathBuf,
+/// Answers every request of a suite, as the provider's batch service would; `mangle` spoils the first answer of a
+/// conversation. Gives their number.
+fn answer_all(model: &ScriptedModel, suite: &Path, mangle: fn(&str) -> String) -> usize {
+    let requests = std::fs::read_to_string(suite.join("requests.jsonl")).unwrap();
+    let lines: Vec<String> = requests
+        .lines()
+        .map(|line| {
+            let request: Value = serde_json::from_str(line).unwrap();
+            let messages = request["body"]["messages"].as_array().unwrap();
+            let good = model.answer(messages);
+            let text = if messages.len() == 2 { mangle(&good) } else { good };
+            let body = json!({"choices": [{"message": {"content": text}}],
+                              "usage": {"prompt_tokens": 10, "completion_tokens": 5}});
+            let response = json!({"status_code": 200, "body": body});
+            json!({"custom_id": request["custom_id"], "response": response, "error": null}).to_string() + "\n"
+        })
+        .collect();
+    std::fs::write(suite.join("responses.jsonl"), lines.concat()).unwrap();
+    lines.len()
 }
 
-impl ScriptedModel {
-    fn new(folder: &Path) -> Self {
-        let rules = folder.join("rules");
-        recrash(&["run", "--quiet", "--out", rules.to_str().unwrap()]).args(SMALL).assert().success();
-        Self { rules }
-    }
-
-    fn read(&self, file: String) -> Value {
-        serde_json::from_slice(&std::fs::read(self.rules.join(file)).unwrap()).unwrap()
-    }
-
-    /// The answer to one request; `mangle` spoils the first answer of a conversation.
-    fn answer(&self, request: &Value, mangle: fn(&str) -> String) -> String {
-        let messages = request["body"]["messages"].as_array().unwrap();
-        let asked = messages[1]["content"].as_str().unwrap();
-        let id = asked.split("scenario ").nth(1).unwrap().split(['.', ',', ':', ' ']).next().unwrap();
-        let good = match request["body"]["response_format"]["json_schema"]["name"].as_str().unwrap() {
-            "narrative" => {
-                let narrative = self.read(format!("3-narratives/{id}.json"));
-                let reason = narrative["origin"].get("reason").cloned().unwrap_or(Value::Null);
-                json!({"text": narrative["text"], "facts": narrative["facts"], "replaces_record": reason})
-            }
-            "scenario" => self.read(format!("4-scenarios/{id}.json")),
-            "values" => {
-                let log = self.read(format!("6-tuned/{id}.search.json"));
-                let starts: Vec<Value> =
-                    log["parameters"].as_array().unwrap().iter().map(|p| p["start"].clone()).collect();
-                json!({ "values": starts })
-            }
-            other => panic!("a question in form \"{other}\""),
-        };
-        if messages.len() == 2 { mangle(&good.to_string()) } else { good.to_string() }
-    }
-
-    /// Answers every request of a suite, as the provider's batch service would. Gives their number.
-    fn answer_all(&self, suite: &Path, mangle: fn(&str) -> String) -> usize {
-        let requests = std::fs::read_to_string(suite.join("requests.jsonl")).unwrap();
-        let lines: Vec<String> = requests
-            .lines()
-            .map(|line| {
-                let request: Value = serde_json::from_str(line).unwrap();
-                let text = self.answer(&request, mangle);
-                let body = json!({"choices": [{"message": {"content": text}}],
-                                  "usage": {"prompt_tokens": 10, "completion_tokens": 5}});
-                let response = json!({"status_code": 200, "body": body});
-                json!({"custom_id": request["custom_id"], "response": response, "error": null}).to_string() + "\n"
-            })
-            .collect();
-        std::fs::write(suite.join("responses.jsonl"), lines.concat()).unwrap();
-        lines.len()
-    }
-}
-
-fn run(out: &Path, extra: &[&str]) -> (i32, String) {
-    let arguments = ["run", "--quiet", "--agent", "scripted", "--llm", "batch", "--out", out.to_str().unwrap()];
-    let output = recrash(&arguments).args(SMALL).args(extra).output().unwrap();
+fn run(out: &Path, mode: &str) -> (i32, String) {
+    let arguments = ["run", "--quiet", "--agent", "scripted", "--llm", mode, "--out", out.to_str().unwrap()];
+    let output = recrash(&arguments).args(SMALL).output().unwrap();
     (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
 /// Runs to the end, answering every batch. Gives the number of stops.
 fn run_to_the_end(model: &ScriptedModel, out: &Path, mangle: fn(&str) -> String) -> usize {
     for stops in 0..20 {
-        let (code, shown) = run(out, &[]);
+        let (code, shown) = run(out, "batch");
         if code == 0 {
             return stops;
         }
         assert_eq!(code, WAITS, "{shown}");
         assert!(shown.contains("requests.jsonl") && shown.contains("responses.jsonl"), "{shown}");
-        assert!(model.answer_all(out, mangle) > 0);
+        assert!(shown.contains("go on with:") && shown.contains(out.to_str().unwrap()), "{shown}");
+        assert!(answer_all(model, out, mangle) > 0);
     }
     panic!("the run never ends");
 }
@@ -104,7 +69,7 @@ fn outcomes(out: &Path, role: &str) -> Vec<String> {
 #[test]
 fn good_answers_are_taken_at_once_and_replay_gives_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path());
+    let model = ScriptedModel::new(folder.path(), &SMALL);
     let batch = folder.path().join("batch");
     // Paraphrase, design, and rounds of tuning where the design is no contact yet.
     let stops = run_to_the_end(&model, &batch, str::to_owned);
@@ -120,7 +85,7 @@ fn good_answers_are_taken_at_once_and_replay_gives_the_same_bytes() {
         let path = entry.unwrap().path();
         std::fs::copy(&path, replay.join("ledger").join(path.file_name().unwrap())).unwrap();
     }
-    let (code, shown) = run(&replay, &["--llm", "replay"]);
+    let (code, shown) = run(&replay, "replay");
     assert_eq!(code, 0, "{shown}");
     for file in ["suite.json", "summary.json", "report.html", "results.csv", "junit.xml", "2-selection.json"] {
         assert!(std::fs::read(batch.join(file)).unwrap() == std::fs::read(replay.join(file)).unwrap(), "{file}");
@@ -130,7 +95,7 @@ fn good_answers_are_taken_at_once_and_replay_gives_the_same_bytes() {
 #[test]
 fn replay_without_an_answer_says_which() {
     let folder = tempfile::tempdir().unwrap();
-    let (code, shown) = run(&folder.path().join("suite"), &["--llm", "replay"]);
+    let (code, shown) = run(&folder.path().join("suite"), "replay");
     assert_eq!(code, 3, "{shown}");
     assert!(shown.contains("the ledger has no answer") && shown.contains("paraphrase of 0"), "{shown}");
 }
@@ -146,7 +111,7 @@ fn answers_that_cannot_be_used_are_repaired() {
         },
     ];
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path());
+    let model = ScriptedModel::new(folder.path(), &SMALL);
     for (number, mangle) in spoilt.into_iter().enumerate() {
         let out = folder.path().join(number.to_string());
         run_to_the_end(&model, &out, mangle);
@@ -159,7 +124,7 @@ fn answers_that_cannot_be_used_are_repaired() {
 #[test]
 fn json_in_prose_is_found() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path());
+    let model = ScriptedModel::new(folder.path(), &SMALL);
     let out = folder.path().join("suite");
     run_to_the_end(&model, &out, |good| format!("Sure! Here it is:\n```json\n{good}\n```\nAnything else?"));
     assert!(outcomes(&out, "narrated").iter().all(|o| o == "first answer"));
@@ -170,7 +135,7 @@ fn the_rules_take_over_from_a_model_that_never_gives_a_usable_answer() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("suite");
     for _ in 0..20 {
-        let (code, shown) = run(&out, &[]);
+        let (code, shown) = run(&out, "batch");
         if code == 0 {
             break;
         }

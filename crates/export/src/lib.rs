@@ -17,7 +17,6 @@ mod xml;
 
 pub use import::{MAX_IMPORT_BYTES, import, parameter_name};
 
-use recrash_model::record::Surface;
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Parameter;
@@ -131,15 +130,6 @@ pub fn export(
         Format::Scenic => Ok(scenic::files(scenario, parameters)),
         Format::MetaDrive => Ok(metadrive::files(scenario)),
         Format::CommonRoad => commonroad::files(scenario, rollout, options),
-    }
-}
-
-/// Friction relative to a dry road, as the simulator's (`docs/models/vehicle.md`).
-pub(crate) fn relative_friction(surface: Surface) -> f64 {
-    match surface {
-        Surface::Dry => 1.0,
-        Surface::Wet => 0.7,
-        Surface::SnowIce => 0.3,
     }
 }
 

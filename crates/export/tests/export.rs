@@ -102,7 +102,7 @@ fn every_point_of_the_sweep_is_in_range_and_the_first_is_the_scenario() {
 }
 
 #[test]
-fn friction_is_the_simulators() {
+fn friction_of_the_surface_is_written() {
     use recrash_model::record::Surface;
     for surface in [Surface::Dry, Surface::Wet, Surface::SnowIce] {
         let mut draft = common::draft(CASES[2].1);
@@ -110,7 +110,7 @@ fn friction_is_the_simulators() {
         let scenario = recrash_roads::check(draft).unwrap().value;
         let files = export(&scenario, None, &[], &ExportOptions::new(Format::OpenScenario)).unwrap();
         let text = String::from_utf8(files[1].content.clone()).unwrap();
-        let written = format!("frictionScaleFactor=\"{}\"", recrash_sim::friction_of(surface));
+        let written = format!("frictionScaleFactor=\"{}\"", surface.relative_friction());
         assert!(text.contains(&written), "{surface:?}: no {written}");
     }
 }

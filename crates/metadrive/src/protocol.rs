@@ -4,15 +4,14 @@
 
 use crate::METADRIVE_VERSION;
 use crate::worker::NotReady;
-use recrash_model::record::Surface;
+use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{
     ActorState, ActorTrack, EGO_ID, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, Termination, TerminationKind,
 };
 use recrash_model::scenario::{DEFAULT_SPEED_KP, LateralMove, MapSpec, ObstacleKind, Policy, ScenarioDraft};
-use recrash_model::vehicle::VehicleSpec;
-use recrash_model::{math, record::PartnerKind};
+use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
 use recrash_roads::{
-    Conflict, LanePath, RoadNetwork, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic,
+    Footprint, LanePath, RoadNetwork, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -189,19 +188,6 @@ struct DoneEvent {
     obstacle: Option<usize>,
 }
 
-/// Tyre friction of MetaDrive's vehicles on its only surface, taken for a dry road.
-const DRY_FRICTION: f64 = 0.9;
-
-/// Friction by surface, the native simulator's ratios (`docs/models/vehicle.md`).
-fn friction(surface: Surface) -> f64 {
-    DRY_FRICTION
-        * match surface {
-            Surface::Dry => 1.0,
-            Surface::Wet => 0.7,
-            Surface::SnowIce => 0.3,
-        }
-}
-
 /// A scenario as a worker takes it.
 pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> RunSpec {
     let draft = scenario.draft();
@@ -324,7 +310,7 @@ fn actor(scenario: &Scenario, way: &Way<'_>, t_m: f64, speed_mps: f64, target_sp
             brake_mps2: size.brake_demand_mps2,
             speed_mps: size.max_speed_mps,
             wheel_angle_rad: size.max_wheel_angle_rad,
-            friction: friction(scenario.draft().environment.surface),
+            friction: DRY_TYRE_FRICTION * scenario.draft().environment.surface.relative_friction(),
         },
         controls: None,
         policy: None,
@@ -343,22 +329,15 @@ fn crossings(network: &RoadNetwork, ways: &[Way<'_>], me: usize) -> Vec<Crossing
         let other_size = VehicleSpec::of(way.kind);
         let meets = own.path.conflict(way.path, network, size.width_m, other_size.width_m);
         let Some(conflict) = meets else { continue };
-        let angle =
-            own.path.pose(network, conflict.s_a, 0.0).heading - way.path.pose(network, conflict.s_b, 0.0).heading;
-        let mine = stretch(conflict.s_a - own.begins_m(), &size, &other_size, angle, &conflict);
-        let theirs = stretch(conflict.s_b - way.begins_m(), &other_size, &size, angle, &conflict);
+        let (reach, other_reach) =
+            conflict.reaches(network, (own.path, Footprint::of(own.kind)), (way.path, Footprint::of(way.kind)));
+        // JSON has no infinity; no map is this long.
+        let stretch = |s: f64, reach: f64| (s - reach, if conflict.merges { 1e9 } else { s + reach });
+        let mine = stretch(conflict.s_a - own.begins_m(), reach);
+        let theirs = stretch(conflict.s_b - way.begins_m(), other_reach);
         found.push(CrossingSpec { other, mine, theirs, merges: conflict.merges });
     }
     found
-}
-
-/// The stretch of a way on which the centre of `mine` may touch `theirs`.
-fn stretch(s: f64, mine: &VehicleSpec, theirs: &VehicleSpec, angle: f64, conflict: &Conflict) -> (f64, f64) {
-    let (sin, cos) = math::sincos(angle);
-    let sin = sin.abs().max(0.5);
-    let reach = 0.5 * mine.length_m + 0.5 * (theirs.width_m + mine.width_m * cos.abs()) / sin + 0.5;
-    // JSON has no infinity; no map is this long.
-    (s - reach, if conflict.merges { 1e9 } else { s + reach })
 }
 
 /// A finished run as a rollout; `None` where the answer does not fit the scenario.

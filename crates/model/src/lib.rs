@@ -20,6 +20,7 @@ pub mod scenario;
 pub mod seed;
 pub mod selection;
 pub mod template;
+pub mod triage;
 pub mod tuning;
 pub mod vehicle;
 

@@ -213,6 +213,11 @@ impl FindingKind {
         matches!(self, Self::Contact | Self::ObstacleContact | Self::NearMiss | Self::OffRoad | Self::Stuck)
     }
 
+    /// Whether something is hit or the road is left: more serious than the other failures.
+    pub fn is_crash(self) -> bool {
+        matches!(self, Self::Contact | Self::ObstacleContact | Self::OffRoad)
+    }
+
     /// For tables.
     pub fn label(self) -> &'static str {
         match self {

@@ -123,6 +123,18 @@ pub enum Surface {
     SnowIce,
 }
 
+impl Surface {
+    /// Friction relative to a dry road. Assumed: textbook ratios of locked-wheel friction at town speeds are 0.6 to 0.8
+    /// for wet asphalt and 0.2 to 0.4 for packed snow (wong2008).
+    pub const fn relative_friction(self) -> f64 {
+        match self {
+            Self::Dry => 1.0,
+            Self::Wet => 0.7,
+            Self::SnowIce => 0.3,
+        }
+    }
+}
+
 /// Light at the time of the crash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

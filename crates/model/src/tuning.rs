@@ -119,7 +119,24 @@ mod tests {
     use super::*;
 
     fn draft() -> ScenarioDraft {
-        serde_json::from_str(include_str!("../../agents/prompts/example_crossing.json")).unwrap()
+        let ego = serde_json::json!({
+            "turn": "straight", "lane": 0, "s_m": 5.0, "speed_mps": 8.0, "target_speed_mps": 8.3
+        });
+        let partner = serde_json::json!({
+            "id": "cp1", "kind": "passenger_car", "approach": "left", "turn": "straight",
+            "start": { "arrival_gap_s": -0.4 }, "speed_mps": 9.0,
+            "policy": { "type": "idm_nominal", "target_speed_mps": 9.0 }
+        });
+        let template = serde_json::json!({
+            "road": "intersection", "sv": "straight", "cp": "straight", "work_zone": false
+        });
+        let draft = serde_json::json!({
+            "format": crate::scenario::SCENARIO_FORMAT, "id": "crossing",
+            "source": { "records": [], "template": template, "narrative": "", "author": "rules", "seed": 1 },
+            "map": { "type": "X", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "arm_m": 60.0 },
+            "ego": ego, "partners": [partner], "duration_s": 20.0
+        });
+        serde_json::from_value(draft).unwrap()
     }
 
     fn moved(draft: &ScenarioDraft, pointer: &str, to: f64) -> ScenarioDraft {

@@ -2,6 +2,9 @@
 
 use crate::record::PartnerKind;
 
+/// Tyre friction of MetaDrive's vehicles (`wheel_friction`) on its only surface, taken for a dry road.
+pub const DRY_TYRE_FRICTION: f64 = 0.9;
+
 /// Size and limits of one kind of road user. Sources: `docs/models/vehicle.md`.
 ///
 /// The outline is what others can touch; the chassis is what the physics turns and tilts. Two-wheelers and people move on

@@ -15,6 +15,9 @@ const WANTED_PER_CORE: f64 = 2e6;
 const WANTED_TIMES_METADRIVE: f64 = 1000.0;
 const WANTED_TIMES_ONE_THREAD: f64 = 1.8;
 
+/// Times that MetaDrive runs every scenario.
+const METADRIVE_PASSES: usize = 2;
+
 /// What to measure.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SimBenchRequest {
@@ -22,7 +25,7 @@ pub struct SimBenchRequest {
     pub count: usize,
     /// Their seed.
     pub seed: u64,
-    /// Measurements of the native simulator; the median counts.
+    /// Measurements of the native simulator. The fastest counts: other work on the machine can only slow one down.
     pub rounds: usize,
     /// How long one measurement takes at least.
     pub least: Duration,
@@ -39,11 +42,12 @@ pub struct SimBench {
     pub scenarios: usize,
     /// Agent-steps of all of them, once each.
     pub agent_steps: u64,
-    /// Native, one thread: median of the rounds. [agent-steps/s]
+    /// Native, one thread: the fastest of the rounds. [agent-steps/s]
     pub one_thread: f64,
     /// Native, two threads, each with scenarios of its own. [agent-steps/s]
     pub two_threads: f64,
-    /// MetaDrive, one worker, setting up each scenario included. [agent-steps/s]
+    /// MetaDrive, one worker, setting up each scenario included: the faster of two passes, the second of which finds
+    /// every map built. [agent-steps/s]
     pub metadrive: Option<f64>,
     /// MetaDrive's version, or why there is no figure of it.
     pub metadrive_note: String,
@@ -80,7 +84,7 @@ impl SimBench {
 pub fn bench_sim(request: &SimBenchRequest, progress: &dyn Progress) -> Result<SimBench, PipelineError> {
     const STAGE: &str = "bench";
     let scenarios: Vec<Scenario> = (0..request.count).map(|number| random_scenario(request.seed, number)).collect();
-    progress.event(ProgressEvent::Started { stage: STAGE, units: request.rounds + scenarios.len() });
+    progress.event(ProgressEvent::Started { stage: STAGE, units: request.rounds + METADRIVE_PASSES * scenarios.len() });
     let agent_steps = run_all(&scenarios, &mut Simulator::new());
     let (mut one, mut two) = (Vec::new(), Vec::new());
     for _ in 0..request.rounds {
@@ -92,19 +96,23 @@ pub fn bench_sim(request: &SimBenchRequest, progress: &dyn Progress) -> Result<S
     let (metadrive, metadrive_note) = match start(&request.python, 1) {
         Err(why) => (None, why.to_string()),
         Ok(pool) => {
-            let begun = Instant::now();
-            let mut steps = 0;
-            for scenario in &scenarios {
-                if let Ok(rollout) = pool.simulate(scenario, &Drive::MetadriveIdm) {
-                    steps += (rollout.actors.len() * rollout.steps()) as u64;
+            let mut fastest: f64 = 0.0;
+            for _ in 0..METADRIVE_PASSES {
+                let begun = Instant::now();
+                let mut steps = 0;
+                for scenario in &scenarios {
+                    if let Ok(rollout) = pool.simulate(scenario, &Drive::MetadriveIdm) {
+                        steps += (rollout.actors.len() * rollout.steps()) as u64;
+                    }
+                    progress.event(ProgressEvent::Advanced { stage: STAGE, unit: "MetaDrive", skipped: false });
                 }
-                progress.event(ProgressEvent::Advanced { stage: STAGE, unit: "MetaDrive", skipped: false });
+                fastest = fastest.max(steps as f64 / begun.elapsed().as_secs_f64());
             }
-            if steps == 0 {
+            if fastest == 0.0 {
                 return Err(PipelineError::bad_input("MetaDrive failed on every scenario"));
             }
             let (python, version) = pool.versions();
-            (Some(steps as f64 / begun.elapsed().as_secs_f64()), format!("MetaDrive {version} on Python {python}"))
+            (Some(fastest), format!("MetaDrive {version} on Python {python}"))
         }
     };
     progress.event(ProgressEvent::Finished { stage: STAGE });
@@ -112,8 +120,8 @@ pub fn bench_sim(request: &SimBenchRequest, progress: &dyn Progress) -> Result<S
         format: "recrash.bench-sim/1",
         scenarios: scenarios.len(),
         agent_steps,
-        one_thread: median(one),
-        two_threads: median(two),
+        one_thread: fastest(&one),
+        two_threads: fastest(&two),
         metadrive,
         metadrive_note,
         cores: std::thread::available_parallelism().map_or(1, usize::from),
@@ -148,9 +156,8 @@ fn run_all(scenarios: &[Scenario], simulator: &mut Simulator) -> u64 {
     scenarios.iter().map(run).sum()
 }
 
-fn median(mut figures: Vec<f64>) -> f64 {
-    figures.sort_by(f64::total_cmp);
-    figures.get(figures.len() / 2).copied().unwrap_or(0.0)
+fn fastest(figures: &[f64]) -> f64 {
+    figures.iter().copied().fold(0.0, f64::max)
 }
 
 #[cfg(test)]

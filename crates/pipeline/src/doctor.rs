@@ -1,6 +1,6 @@
 //! What is installed of all that recrash can use, and how to get the rest.
 
-use crate::weights::{find_weights, load};
+use crate::weights::{find_weights, is_published_model};
 use recrash_metadrive::{INSTALL_HINT, METADRIVE_VERSION, inspect};
 use serde::Serialize;
 use std::io::Read;
@@ -74,7 +74,7 @@ impl DoctorItem {
 pub struct DoctorRequest {
     /// Python interpreter.
     pub python: PathBuf,
-    /// Folder with the files of all-MiniLM-L6-v2.
+    /// Folder with the files of all-MiniLM-L6-v2; looked for where not given.
     pub model_dir: Option<PathBuf>,
 }
 
@@ -130,8 +130,11 @@ fn minilm(model_dir: Option<&Path>, python: &Path) -> DoctorItem {
     let found = model_dir.map(Path::to_owned).or_else(|| find_weights(python).map(|weights| weights.folder));
     match found {
         None => DoctorItem::missing(name, needed_for, remedy),
-        Some(folder) => match load(&folder) {
-            Ok(_) => DoctorItem::ready(name, needed_for, folder.display().to_string()),
+        Some(folder) => match is_published_model(&folder) {
+            Ok(true) => DoctorItem::ready(name, needed_for, folder.display().to_string()),
+            Ok(false) => {
+                DoctorItem::ready(name, needed_for, format!("{}, not the published weights", folder.display()))
+            }
             Err(why) => DoctorItem::unusable(name, needed_for, why.to_string(), remedy),
         },
     }
@@ -237,7 +240,7 @@ mod tests {
         let request = DoctorRequest { python: "no-such-python".into(), model_dir: None };
         let all = doctor(&request);
         assert_eq!(item(&all, "recrash").state, State::Ready);
-        for name in ["Python", "MetaDrive", "Scenic", "CommonRoad", "MiniLM weights"] {
+        for name in ["Python", "MetaDrive", "Scenic", "CommonRoad"] {
             assert_eq!(item(&all, name).state, State::Missing, "{name}");
         }
         assert!(item(&all, "MetaDrive").remedy.contains("metadrive-simulator==0.4.3"));

@@ -124,8 +124,8 @@ impl PipelineError {
     }
 
     /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input and models that refuse, 4 for
-    /// a run that the same command goes on with: a batch is to be sent, a cap is reached; 5 for results that miss what is
-    /// asked for.
+    /// a run that the same command goes on with (a batch is to be sent, a cap is reached), 5 for results that miss what
+    /// is asked for.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,

@@ -53,8 +53,8 @@ pub struct EvaluationRequest {
     pub profile: String,
     /// Folder of a model's questions and answers.
     pub out: PathBuf,
-    /// How a model is asked.
-    pub access: ModelAccess,
+    /// Where a model's answers come from.
+    pub models: ModelAccess,
 }
 
 /// What came of it.
@@ -190,9 +190,7 @@ fn model_accounts(
 ) -> Result<Vec<Account>, PipelineError> {
     let store = Store::create(&request.out, write_file_whole)?;
     let cast = Cast { paraphrase: request.agent.clone(), ..Cast::default() };
-    let (models, _) = Models::open(&store, &cast, &request.access)?;
-    let repairs = Cell::new(0);
-    let model = models.model(&request.agent, &cast, &repairs);
+    let (models, _) = Models::open(&store, &cast, &request.models)?;
     let mut accounts = Vec::with_capacity(found.len());
     let mut waiting = false;
     for (label, record) in found {
@@ -206,7 +204,8 @@ fn model_accounts(
         };
         let scenario_id = format!("eval-{}-{}", label.record.report_id, label.record.version);
         let brief = Brief { scenario_id: &scenario_id, template, records: &[record], profile, seed: Seed(1) };
-        let account = match model.paraphrase(&brief) {
+        let repairs = Cell::new(0);
+        let account = match models.model(&request.agent, &cast, &repairs).paraphrase(&brief) {
             Ok(told) => account_of(&told.value, profile),
             Err(error) => match unusable(error) {
                 Ok(why) => fail(why),

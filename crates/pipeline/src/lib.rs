@@ -32,6 +32,9 @@ mod stages;
 mod store;
 mod suite;
 mod summary;
+#[cfg(feature = "parquet")]
+mod sweep;
+mod triage;
 mod view;
 mod weights;
 
@@ -69,4 +72,6 @@ pub use stages::StageReport;
 pub use store::{Store, WriteFile};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
 pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+#[cfg(feature = "parquet")]
+pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
 pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

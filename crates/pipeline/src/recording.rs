@@ -2,7 +2,7 @@
 
 use crate::error::PipelineError;
 use crate::fetching::cached;
-use crate::store::{read_bytes, read_text, write_file_whole};
+use crate::store::{read_bytes, read_text, sha256, write_file_whole};
 use crate::suite::{Options, RecordSource};
 use recrash_model::Outcome;
 use recrash_model::profile::SystemProfile;
@@ -49,22 +49,21 @@ impl RecordInput {
         Ok(Self { files, filter, mapping, mapping_text })
     }
 
-    /// The bytes that decide, for telling whether the stage is done.
-    pub fn parts(&self) -> Vec<&[u8]> {
+    /// What decides, for telling whether the stage is done: names, and hashes of contents.
+    pub fn parts(&self) -> Vec<String> {
         let filter = self.filter.as_ref().map_or("", Filter::text);
-        let mut all = vec![filter.as_bytes(), self.mapping_text.as_bytes()];
+        let mut all = vec![filter.to_owned(), self.mapping_text.clone()];
         for (name, content) in &self.files {
-            all.push(name.as_bytes());
-            all.push(content);
+            all.extend([name.clone(), sha256(content)]);
         }
         all
     }
 
-    /// The records.
+    /// The records. The files' contents are gone afterwards: nobody should hold 100 MB of them beside the records.
     ///
     /// # Errors
     /// A file is no crash file, or does not fit the mapping.
-    pub fn ingest(&self, profile: &SystemProfile) -> Result<Outcome<RecordSet>, PipelineError> {
+    pub fn ingest(self, profile: &SystemProfile) -> Result<Outcome<RecordSet>, PipelineError> {
         let sources: Vec<SourceText> = self.files.iter().map(|(name, bytes)| SourceText { name, bytes }).collect();
         let options = IngestOptions { filter: self.filter.as_ref(), mapping: self.mapping.as_ref() };
         ingest_with(&sources, profile, &options).map_err(|e| PipelineError::bad_input(e.to_string()))

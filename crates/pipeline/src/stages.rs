@@ -9,6 +9,7 @@ use crate::recording::RecordInput;
 use crate::scoring::Scoring;
 use crate::store::{to_compact_json, to_json};
 use crate::suite::{Files, Stage, Suite};
+use crate::triage::triage;
 use crate::{failures, selecting, summary, view};
 use rayon::prelude::*;
 use recrash_agents::llm::{TuneBrief, prompts_version};
@@ -18,9 +19,11 @@ use recrash_model::narrative::Narrative;
 use recrash_model::record::{CrashRecord, RecordSet};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
+use recrash_model::triage::{TRIAGE_FORMAT, Triage};
 use recrash_model::tuning::{TuneLog, TunePoint};
-use recrash_model::{Diagnostic, Location, Outcome, Seed, Severity};
+use recrash_model::{Diagnostic, Outcome, Seed};
 use recrash_search::{Task, TuneOptions};
+use serde::de::DeserializeOwned;
 use std::cell::Cell;
 
 /// Files and folders of a suite.
@@ -92,6 +95,14 @@ pub mod names {
     /// Who tuned it.
     pub fn tune_agent(id: &str) -> String {
         format!("6-tuned/{id}.agent.json")
+    }
+    /// How the other egos fare in the tuned scenario, where the system under test fails.
+    pub fn triage(id: &str) -> String {
+        format!("6-tuned/{id}.triage.json")
+    }
+    /// Run of the reference driver in it.
+    pub fn reference_run(id: &str) -> String {
+        format!("6-tuned/{id}.reference.run.json")
     }
     /// Run of the tuned scenario.
     pub fn tuned_run(id: &str) -> String {
@@ -215,9 +226,9 @@ impl StageWork<'_> {
 fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let input = RecordInput::read(suite.options())?;
-    let profile = work.profile_json();
-    let mut inputs = vec![profile.as_bytes()];
+    let mut inputs = vec![work.profile_json()];
     inputs.extend(input.parts());
+    let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
     let mut report = work.whole(&inputs, || {
         let Outcome { value, diagnostics } = input.ingest(suite.profile())?;
         Ok(vec![
@@ -348,11 +359,11 @@ fn refuse_contradictions(narrative: &Narrative, brief: &Brief) -> Result<(), Pip
     if contradictions.is_empty() {
         return Ok(());
     }
-    let told = |message| Diagnostic::new(Severity::Error, "narrative.contradiction", Location::default(), message);
-    Err(PipelineError::BadInput {
-        what: format!("the narrative of {} contradicts its template; mend it, or remove its file", brief.scenario_id),
-        diagnostics: contradictions.into_iter().map(told).collect(),
-    })
+    let why = contradictions.join("; ");
+    Err(PipelineError::scenario(
+        brief.scenario_id,
+        format!("the narrative contradicts its template ({why}); mend it, or remove its file"),
+    ))
 }
 
 /// Reads and checks a scenario file of the suite.
@@ -398,6 +409,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         let chosen = suite.options();
         inputs.extend([work.profile_json(), work.system(), format!("{options:?}"), chosen.seed.to_string()]);
         inputs.push(format!("{} {}", work.player(&chosen.cast.tune), chosen.cast.rounds));
+        inputs.push(TRIAGE_FORMAT.to_owned());
         Ok(inputs)
     };
     work.per_case(&cases.selection, inputs, |cluster| {
@@ -446,12 +458,18 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
             diagnostics,
         })?;
         let run = run_scenario(&scenario.value, &simulator, suite.profile(), Some(&expectation))?;
-        Ok(vec![
+        let mut files = vec![
             (names::tuned(id), to_json(&tuned)),
             (names::tune_log(id), to_compact_json(&log)),
             (names::tune_agent(id), to_json(&agent)),
             (names::tuned_run(id), to_compact_json(&run)),
-        ])
+        ];
+        if run.failed() {
+            let (triage, reference) = triage(&scenario.value, suite.ego(), &run.findings, suite.profile())?;
+            files.push((names::triage(id), to_json(&triage)));
+            files.extend(reference.map(|run| (names::reference_run(id), to_compact_json(&run))));
+        }
+        Ok(files)
     })
 }
 
@@ -469,6 +487,10 @@ pub struct Case<'a> {
     pub first: Option<Ran>,
     /// As tuned.
     pub tuned: Option<Tuned>,
+    /// How the other egos fare where the system under test fails at last.
+    pub triage: Option<Triage>,
+    /// The reference driver's run there.
+    pub reference: Option<CaseRun>,
     /// Why it went no further, where it did not.
     pub failure: Option<Failure>,
 }
@@ -513,6 +535,9 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
                 inputs.push(case_hash(suite, stage, cluster, &file)?);
             }
         }
+        for file in [names::triage(id), names::reference_run(id)] {
+            inputs.push(suite.store().hash(&file).unwrap_or_default());
+        }
     }
     let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
     work.whole(&inputs, || {
@@ -546,7 +571,16 @@ fn read_case<'a>(suite: &Suite, cases: &'a Cases, cluster: &'a Cluster) -> Resul
             Ok(Tuned { ran: ran(suite, &names::tuned(id), &names::tuned_run(id))?, log, agent })
         })
         .transpose()?;
-    Ok(Case { cluster, records: cases.records_of(cluster), narrative, design, first, tuned, failure })
+    let triage = optional(suite, &names::triage(id), tuned.is_some())?;
+    let reference = optional(suite, &names::reference_run(id), triage.is_some())?;
+    let records = cases.records_of(cluster);
+    Ok(Case { cluster, records, narrative, design, first, tuned, triage, reference, failure })
+}
+
+/// Reads a file that not every unit writes; a stage removes what an earlier run left.
+fn optional<T: DeserializeOwned>(suite: &Suite, file: &str, wanted: bool) -> Result<Option<T>, PipelineError> {
+    let there = wanted && suite.store().path(file).exists();
+    there.then(|| suite.store().read_json(file)).transpose()
 }
 
 fn ran(suite: &Suite, file: &str, run: &str) -> Result<Ran, PipelineError> {

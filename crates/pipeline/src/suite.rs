@@ -186,7 +186,7 @@ fn dedupe_name(dedupe: Dedupe) -> String {
     serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()
@@ -357,8 +357,10 @@ impl Suite {
             Stage::Tune => cast.tune != RULES,
             Stage::Records | Stage::Select | Stage::Simulate | Stage::Report => false,
         };
-        let askers = self.askers.as_ref().filter(|_| by_model);
-        askers.unwrap_or(&self.threads).install(|| stages::run(self, stage, progress))
+        match self.askers.as_ref().filter(|_| by_model) {
+            Some(askers) => askers.install(|| stages::run(self, stage, progress)),
+            None => self.in_pool(|| stages::run(self, stage, progress)),
+        }
     }
 
     /// What this run has spent on models.

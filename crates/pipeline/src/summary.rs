@@ -10,6 +10,7 @@ use recrash_model::narrative::Origin;
 use recrash_model::record::{FunnelStep, RecordSet};
 use recrash_model::selection::{Coverage, EmbeddingInfo, Selection, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
+use recrash_model::triage::{FailureClass, Triage};
 use serde::{Deserialize, Serialize};
 
 /// A whole run in numbers (`summary.json`, and `recrash run --json`).
@@ -116,6 +117,9 @@ pub struct CaseSummary {
     pub first: Option<RunSummary>,
     /// As tuned.
     pub tuned: Option<RunSummary>,
+    /// What the failure of the tuned run is worth, and how the other egos fare there; absent where it does not fail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triage: Option<Triage>,
     /// Why it went no further, where it did not.
     pub failure: Option<Failure>,
     /// Points the search scored.
@@ -177,6 +181,14 @@ impl Summary {
         self.cases.iter().filter(|case| case.tuned.is_some()).count()
     }
 
+    /// Failures of each class, after tuning; classes without any are left out.
+    pub fn failure_classes(&self) -> Vec<(FailureClass, usize)> {
+        let classes = self.cases.iter().filter_map(|case| case.triage.as_ref()).map(|triage| triage.class);
+        let classes: Vec<FailureClass> = classes.collect();
+        let count = |class| classes.iter().filter(|&&other| other == class).count();
+        FailureClass::ALL.into_iter().map(|class| (class, count(class))).filter(|(_, count)| *count > 0).collect()
+    }
+
     /// Scenarios the ego fails, as designed and as tuned.
     pub fn failed(&self) -> (usize, usize) {
         let count = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
@@ -218,6 +230,7 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
                 }),
                 first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
                 tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
+                triage: case.triage.clone(),
                 failure: case.failure.clone(),
                 points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
             })
@@ -225,43 +238,41 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
     }
 }
 
+/// How the models of a cast did.
+pub fn models(cast: &Cast, cases: &[Case]) -> Vec<ModelSummary> {
+    type Told = Option<(&'static str, String)>;
+    type Role<'a> = (&'static str, &'a String, &'a dyn Fn(&Case) -> Told);
+    let of_agent = |log: &AgentLog| (log.outcome(), log.fallback.clone().unwrap_or_default());
+    let narrated = |case: &Case| -> Told { case.narrative.as_ref().map(|(_, log)| of_agent(log)) };
+    let designed = |case: &Case| -> Told { case.design.as_ref().map(|log| (log.outcome(), log.gave_up.join("; "))) };
+    let tuned = |case: &Case| -> Told { case.tuned.as_ref().map(|tuned| of_agent(&tuned.agent)) };
+    let roles: [Role; 3] = [
+        ("paraphrase", &cast.paraphrase, &narrated),
+        ("design", &cast.design, &designed),
+        ("tune", &cast.tune, &tuned),
+    ];
+    let by_model = roles.into_iter().filter(|(_, model, _)| *model != RULES);
+    by_model
+        .map(|(role, model, told)| {
+            let count = |word: &str| cases.iter().filter(|case| told(case).is_some_and(|(is, _)| is == word)).count();
+            let reason = |case: &Case| {
+                let why = told(case).filter(|(is, _)| *is == "fallback")?.1;
+                Some(FallbackReason { id: case.cluster.scenario_id.clone(), why })
+            };
+            ModelSummary {
+                role: role.to_owned(),
+                model: model.clone(),
+                first_answer: count("first answer"),
+                after_repair: count("after repair"),
+                fallback: count("fallback"),
+                not_asked: count("not asked"),
+                reasons: cases.iter().filter_map(reason).collect(),
+            }
+        })
+        .collect()
+}
+
 /// The simulator that ran the scenarios, with its version.
 pub fn simulator_name(cases: &[Case]) -> String {
     cases.iter().find_map(|case| case.first.as_ref()).map_or_else(String::new, |ran| ran.run.rollout.simulator.clone())
-}
-
-/// How the models of a cast did.
-pub fn models(cast: &Cast, cases: &[Case]) -> Vec<ModelSummary> {
-    // A role that a scenario never came to counts nowhere.
-    let by = |log: Option<&AgentLog>| log.map_or(("", None), |log| (log.outcome(), log.fallback.clone()));
-    let narrated = |case: &Case| by(case.narrative.as_ref().map(|(_, log)| log));
-    let designed =
-        |case: &Case| case.design.as_ref().map_or(("", None), |log| (log.outcome(), Some(log.gave_up.join("; "))));
-    let tuned = |case: &Case| by(case.tuned.as_ref().map(|tuned| &tuned.agent));
-    [
-        ("paraphrase", &cast.paraphrase, &narrated as &dyn Fn(&Case) -> (&'static str, Option<String>)),
-        ("design", &cast.design, &designed),
-        ("tune", &cast.tune, &tuned),
-    ]
-    .into_iter()
-    .filter(|(_, model, _)| *model != RULES)
-    .map(|(role, model, outcome)| {
-        let count = |word: &str| cases.iter().filter(|case| outcome(case).0 == word).count();
-        let reason = |case: &Case| match outcome(case) {
-            ("fallback", why) => {
-                Some(FallbackReason { id: case.cluster.scenario_id.clone(), why: why.unwrap_or_default() })
-            }
-            _ => None,
-        };
-        ModelSummary {
-            role: role.to_owned(),
-            model: model.clone(),
-            first_answer: count("first answer"),
-            after_repair: count("after repair"),
-            fallback: count("fallback"),
-            not_asked: count("not asked"),
-            reasons: cases.iter().filter_map(reason).collect(),
-        }
-    })
-    .collect()
 }

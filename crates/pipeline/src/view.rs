@@ -2,13 +2,13 @@
 
 use crate::agents::Cast;
 use crate::stages::{Case, Ran, names};
-use crate::suite::{RecordSource, Suite};
+use crate::suite::{RecordSource, Suite, quoted};
 use crate::summary::{self, simulator_name};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::metrics::Verdict;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
-use recrash_report::{CaseView, RunView, SuiteView};
+use recrash_report::{CaseView, RunTrace, RunView, SuiteView};
 
 /// Puts together what the report shows.
 pub fn view(
@@ -33,7 +33,7 @@ pub fn view(
         records: records.clone(),
         selection: selection.clone(),
         cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
-        diagnostics: fallbacks(&options.cast, cases).into_iter().chain(remarks).collect(),
+        diagnostics: remarks.into_iter().chain(fallbacks(&options.cast, cases)).collect(),
     }
 }
 
@@ -74,6 +74,12 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
         drawing: case.first.as_ref().map(|ran| ran.scenario.network().drawing()).unwrap_or_default(),
         before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
         after: moved.map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
+        triage: case.triage.clone(),
+        reference: case.reference.as_ref().map(|run| RunTrace {
+            rollout: run.rollout.clone(),
+            series: run.series.clone(),
+            min_gap: run.metrics.min_gap,
+        }),
         tune_log: case.tuned.as_ref().map(|tuned| tuned.log.clone()),
         refused: case.failure.as_ref().map(ToString::to_string),
     }
@@ -87,6 +93,6 @@ fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
         findings: run.findings.clone(),
         verdict: run.verdict.clone().unwrap_or(Verdict { checks: Vec::new() }),
         series: run.series.clone(),
-        rerun_command: format!("recrash simulate {file} --ego {}", suite.ego()),
+        rerun_command: format!("recrash simulate {file} --ego {}", quoted(suite.ego())),
     }
 }

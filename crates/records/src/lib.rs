@@ -30,6 +30,8 @@ pub use distribution::{Distribution, ValueCount, distributions};
 pub use error::IngestError;
 pub use filter::{FILTER_HELP, Filter, FilterError};
 pub use mapping::{MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, MappingError};
+#[cfg(feature = "parquet")]
+pub use parquet::ParquetWriter;
 pub use table::{Column, RecordTable, TableRows, record_table};
 
 use recrash_model::profile::{Dedupe, SystemProfile};

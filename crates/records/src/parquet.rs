@@ -1,14 +1,16 @@
-//! A table as a Parquet file: one row group, Snappy, every column optional. The crate's plain column writers are enough
-//! for a flat table; Arrow would double the dependencies.
+//! Tables as Parquet files: Snappy, every column optional. The crate's plain column writers are enough for a flat table;
+//! Arrow would double the dependencies.
 
 use crate::table::{Column, RecordTable};
 use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as PhysicalType};
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
+use std::io::Write;
 use std::sync::Arc;
 
 impl RecordTable {
@@ -19,21 +21,75 @@ impl RecordTable {
     }
 
     fn write_parquet(&self) -> Result<Vec<u8>, ParquetError> {
-        let fields = self.columns.iter().map(|(name, column)| field(name, column)).collect::<Result<_, _>>()?;
-        let schema = Arc::new(Type::group_type_builder("records").with_fields(fields).build()?);
+        let columns = self.columns.iter().map(|(name, column)| (*name, column));
+        let mut writer = ParquetWriter::begin(Vec::new(), "records", columns, &[])?;
+        writer.put(self.columns.iter().map(|(_, column)| column))?;
+        writer.writer.into_inner()
+    }
+}
+
+/// Writes a table piece by piece: what is in memory is one piece.
+pub struct ParquetWriter<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+}
+
+impl<W: Write + Send> ParquetWriter<W> {
+    /// Begins a table of columns with these names and of these types; `notes` are kept in the file as metadata.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn new<'a>(
+        sink: W,
+        name: &str,
+        columns: impl IntoIterator<Item = (&'a str, &'a Column)>,
+        notes: &[(&str, String)],
+    ) -> std::io::Result<Self> {
+        Self::begin(sink, name, columns, notes).map_err(std::io::Error::other)
+    }
+
+    fn begin<'a>(
+        sink: W,
+        name: &str,
+        columns: impl IntoIterator<Item = (&'a str, &'a Column)>,
+        notes: &[(&str, String)],
+    ) -> Result<Self, ParquetError> {
+        let fields = columns.into_iter().map(|(name, column)| field(name, column)).collect::<Result<_, _>>()?;
+        let schema = Arc::new(Type::group_type_builder(name).with_fields(fields).build()?);
+        let notes = notes.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone()));
+        let notes: Vec<KeyValue> = notes.collect();
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_created_by(format!("recrash {}", env!("CARGO_PKG_VERSION")))
+            .set_key_value_metadata((!notes.is_empty()).then_some(notes))
             .build();
-        let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties))?;
-        let mut group = writer.next_row_group()?;
-        for (_, column) in &self.columns {
+        Ok(Self { writer: SerializedFileWriter::new(sink, schema, Arc::new(properties))? })
+    }
+
+    /// Writes a piece: the columns of [`ParquetWriter::new`] with the next rows.
+    ///
+    /// # Errors
+    /// It cannot be written, or these are other columns.
+    pub fn write<'a>(&mut self, columns: impl IntoIterator<Item = &'a Column>) -> std::io::Result<()> {
+        self.put(columns).map_err(std::io::Error::other)
+    }
+
+    fn put<'a>(&mut self, columns: impl IntoIterator<Item = &'a Column>) -> Result<(), ParquetError> {
+        let mut group = self.writer.next_row_group()?;
+        for column in columns {
             let mut slot = group.next_column()?.ok_or_else(|| ParquetError::General("too few columns".into()))?;
             write_column(slot.untyped(), column)?;
             slot.close()?;
         }
         group.close()?;
-        writer.into_inner()
+        Ok(())
+    }
+
+    /// Ends the table.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(self) -> std::io::Result<W> {
+        self.writer.into_inner().map_err(std::io::Error::other)
     }
 }
 

@@ -73,7 +73,7 @@ function readCase(position) {
       surfaces: raw.surfaces.map(polyline),
       lines: raw.lines.map(([kind, points]) => ({ kind, points: polyline(points) })),
     };
-    cases.set(position, { id: raw.id, drawing, before: readRun(raw.before), after: readRun(raw.after), tune: raw.tune });
+    cases.set(position, { id: raw.id, drawing, before: readRun(raw.before), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });
   }
   return cases.get(position);
 }

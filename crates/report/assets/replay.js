@@ -1,6 +1,6 @@
 // The replay of one scenario: time, which run, camera, and the controls that move them.
 
-const MODES = ['before', 'after', 'both'];
+const MODES = ['before', 'after', 'both', 'reference'];
 const CAMERAS = ['fit', 'follow', 'map'];
 
 class Replay {
@@ -48,21 +48,27 @@ class Replay {
   }
 
   get runs() {
-    return (this.mode === 'both' ? ['before', 'after'] : [this.mode]).map((which) => [which, this.kase[which]]).filter(([, run]) => run);
+    return this.shownIn(this.mode).map((which) => [which, this.kase[which]]).filter(([, run]) => run);
+  }
+
+  /** The runs that a mode shows; the reference driver beside the ego's last run. */
+  shownIn(mode) {
+    if (mode === 'both') return ['before', 'after'];
+    return mode === 'reference' ? [this.kase.after ? 'after' : 'before', 'reference'] : [mode];
   }
 
   get end() {
     return Math.max(...this.runs.map(([, run]) => run.end), 0);
   }
 
-  /** The run whose numbers are told: the tuned one where both are seen. */
+  /** The run whose numbers are told, which is one of the plots: the tuned one where both are seen. */
   get told() {
-    return this.runs[this.runs.length - 1];
+    const plotted = this.runs.filter(([which]) => which !== 'reference');
+    return plotted[plotted.length - 1];
   }
 
   show(mode) {
-    const there = mode === 'both' ? this.kase.before && this.kase.after : this.kase[mode];
-    if (!there) return;
+    if (!this.shownIn(mode).every((which) => this.kase[which])) return;
     this.mode = mode;
     all('[data-mode]', this.root).forEach((button) => button.setAttribute('aria-pressed', button.dataset.mode === mode));
     all('.view', this.views).forEach((view) => {
@@ -117,7 +123,7 @@ class Replay {
       reset: () => this.look(this.camera),
       follow: () => this.look(this.camera === 'follow' ? 'fit' : 'follow'),
       mode: () => {
-        const modes = MODES.filter((mode) => !one(`[data-mode=${mode}]`, this.root).disabled);
+        const modes = MODES.filter((mode) => one(`[data-mode=${mode}]`, this.root)?.disabled === false);
         this.show(modes[(modes.indexOf(this.mode) + 1) % modes.length]);
       },
     };

@@ -53,7 +53,11 @@ pub fn suite(suite: &SuiteView, anchors: &Anchors) -> Value {
 /// What the scripts need of one case.
 pub fn case(case: &CaseView) -> Value {
     let runs = [case.before.as_ref().map(run), case.after.as_ref().map(run)];
-    drawn(&case.scenario_id, &case.drawing, runs, case.tune_log.as_ref().map(tune))
+    let mut data = drawn(&case.scenario_id, &case.drawing, runs, case.tune_log.as_ref().map(tune));
+    if let Some(RunTrace { rollout, series, min_gap }) = &case.reference {
+        data["reference"] = trace(rollout, series, *min_gap);
+    }
+    data
 }
 
 /// What the scripts need of one pair of runs of a scenario.

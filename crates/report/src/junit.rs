@@ -1,7 +1,9 @@
 //! JUnit XML, in the form that Jenkins, GitLab and GitHub actions read.
 
+use crate::results::other_egos;
 use crate::view::{CaseView, RunView, SuiteView};
 use crate::words::{self, fixed};
+use recrash_model::triage::Triage;
 use std::fmt::Write;
 
 /// The document.
@@ -70,9 +72,10 @@ fn test_case(suite: &SuiteView, case: &CaseView, run: Option<&RunView>, name: &s
                 let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
                 let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
                 let sentences: Vec<_> = failures.iter().map(|finding| escape(&finding.sentence)).collect();
+                let class = triage_of(case, run).map_or_else(String::new, |t| format!(" ({})", t.class.label()));
                 let _ = writeln!(
                     text,
-                    "      <failure type=\"{}\" message=\"{}\">{}</failure>",
+                    "      <failure type=\"{}\" message=\"{}{class}\">{}</failure>",
                     kinds.first().copied().unwrap_or_default(),
                     escape(&kinds.join(", ")),
                     sentences.join("\n")
@@ -83,6 +86,11 @@ fn test_case(suite: &SuiteView, case: &CaseView, run: Option<&RunView>, name: &s
     }
     text.push_str("    </testcase>\n");
     text
+}
+
+/// The triage, which is about the last run.
+fn triage_of<'a>(case: &'a CaseView, run: &RunView) -> Option<&'a Triage> {
+    case.triage.as_ref().filter(|_| case.last_run().is_some_and(|last| std::ptr::eq(run, last)))
 }
 
 /// What a person reads when the test has failed.
@@ -101,8 +109,11 @@ fn told(case: &CaseView, run: &RunView) -> String {
             .map(|check| format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed));
         format!("no ({})", why.collect::<Vec<_>>().join("; "))
     };
+    let others = triage_of(case, run).map_or_else(String::new, |triage| {
+        format!("\n{}: {}\nother egos: {}", triage.class.label(), triage.class.meaning(), other_egos(triage))
+    });
     format!(
-        "template: {}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}\nagain: {}",
+        "template: {}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}\nagain: {}",
         case.template,
         words::name(&run.metrics.termination),
         run.rerun_command

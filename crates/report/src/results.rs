@@ -5,8 +5,9 @@ use crate::view::{CaseView, RunView, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{PartnerMetrics, Timed};
 use recrash_model::narrative::Origin;
+use recrash_model::triage::Triage;
 
-const HEADER: [&str; 37] = [
+const HEADER: [&str; 39] = [
     "scenario",
     "run",
     "road",
@@ -42,6 +43,8 @@ const HEADER: [&str; 37] = [
     "termination",
     "duration_s",
     "state_hash",
+    "failure_class",
+    "other_egos",
     "refused_because",
     "command",
 ];
@@ -93,9 +96,24 @@ fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) ->
         Some(run) => row.extend(measured(run)),
         None => row.extend(std::iter::repeat_n(String::new(), 22)),
     }
+    // The triage is about the last run.
+    let is_last = run.is_some_and(|run| case.last_run().is_some_and(|last| std::ptr::eq(run, last)));
+    let triage = case.triage.as_ref().filter(|_| is_last);
+    row.push(triage.map_or_else(String::new, |triage| triage.class.label().to_owned()));
+    row.push(triage.map_or_else(String::new, other_egos));
     row.push(case.refused.clone().unwrap_or_default());
     row.push(run.map_or_else(String::new, |run| run.rerun_command.clone()));
     row
+}
+
+/// How the others fared, such as `idm avoids it, 3.20 m; reference does not, 0.00 m`.
+pub fn other_egos(triage: &Triage) -> String {
+    let told = triage.others.iter().map(|other| {
+        let gap =
+            other.min_gap.and_then(|gap| fixed(gap.value, 2)).map_or("no gap".to_owned(), |gap| format!("{gap} m"));
+        format!("{} {}, {gap}", other.ego, if other.avoids { "avoids it" } else { "does not" })
+    });
+    told.collect::<Vec<_>>().join("; ")
 }
 
 fn measured(run: &RunView) -> Vec<String> {

@@ -3,6 +3,7 @@
 use crate::view::{CaseView, RunView, SuiteView};
 use recrash_model::metrics::FindingKind;
 use recrash_model::narrative::Origin;
+use recrash_model::triage::FailureClass;
 
 /// How a run ended for the ego.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,6 +60,8 @@ pub struct Summary {
     pub failed_before: usize,
     /// Scenarios the ego fails after tuning.
     pub failed_after: usize,
+    /// Failures after tuning of each class that has any.
+    pub classes: Vec<(FailureClass, usize)>,
     /// Scenarios that passed as designed and have a smaller least gap after tuning.
     pub closer: usize,
     /// Median of the least gaps as designed. [m]
@@ -84,6 +87,11 @@ impl Summary {
             faithful: count(&|case| case.last_run().is_some_and(|run| run.faithful() == Some(true))),
             failed_before: count(&|case| case.before.as_ref().is_some_and(RunView::failed)),
             failed_after: count(&|case| case.last_run().is_some_and(RunView::failed)),
+            classes: FailureClass::ALL
+                .into_iter()
+                .map(|class| (class, count(&|case| case.triage.as_ref().is_some_and(|triage| triage.class == class))))
+                .filter(|(_, count)| *count > 0)
+                .collect(),
             closer: count(&|case| closer(case) == Some(true)),
             median_before_m: gaps(&|case| case.before.as_ref()?.min_gap_m()),
             median_after_m: gaps(&|case| case.last_run()?.min_gap_m()),

@@ -3,6 +3,7 @@
 //! Nothing is said twice: strategy, budget and embedding stand in [`Selection`], limits in [`SystemProfile`],
 //! files and their hashes in [`RecordSet`].
 
+use crate::pairs::RunTrace;
 use recrash_model::Diagnostic;
 use recrash_model::metrics::{Finding, Metrics, Series, Verdict};
 use recrash_model::narrative::Narrative;
@@ -12,6 +13,7 @@ use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
+use recrash_model::triage::Triage;
 use recrash_model::tuning::TuneLog;
 use recrash_roads::RoadDrawing;
 
@@ -67,6 +69,10 @@ pub struct CaseView {
     pub before: Option<RunView>,
     /// The scenario as tuned, where tuning kept another point.
     pub after: Option<RunView>,
+    /// How the other egos fare in the last run's scenario, where the ego under test fails it.
+    pub triage: Option<Triage>,
+    /// The reference driver's run of that scenario.
+    pub reference: Option<RunTrace>,
     /// Log of the search, where there was one.
     pub tune_log: Option<TuneLog>,
     /// Why the scenario was refused, where it was.

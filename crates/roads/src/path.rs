@@ -4,6 +4,8 @@ use crate::lane::{Centreline, Lane, LaneId};
 use crate::network::{RoadId, RoadNetwork};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
+use recrash_model::record::PartnerKind;
+use recrash_model::vehicle::VehicleSpec;
 
 /// One lane of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,6 +82,40 @@ pub struct Conflict {
     pub point: Vec2,
     /// Whether the paths merge into one lane, rather than cross.
     pub merges: bool,
+}
+
+/// Length and width of a vehicle. [m]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Footprint {
+    /// Length. [m]
+    pub length_m: f64,
+    /// Width. [m]
+    pub width_m: f64,
+}
+
+impl Footprint {
+    /// That of a kind of road user.
+    pub const fn of(kind: PartnerKind) -> Self {
+        let spec = VehicleSpec::of(kind);
+        Self { length_m: spec.length_m, width_m: spec.width_m }
+    }
+}
+
+/// Room left on both sides of a stretch where two vehicles can touch. [m]
+const REACH_MARGIN_M: f64 = 0.5;
+
+impl Conflict {
+    /// How far before the conflict, and behind it where the paths cross, the centre of each vehicle can touch the other: half
+    /// of the other's width cut at an angle, and half of its own length (`docs/models/policies.md`). [m]
+    pub fn reaches(&self, network: &RoadNetwork, a: (&LanePath, Footprint), b: (&LanePath, Footprint)) -> (f64, f64) {
+        let angle = a.0.pose(network, self.s_a, 0.0).heading - b.0.pose(network, self.s_b, 0.0).heading;
+        let (sin, cos) = math::sincos(angle);
+        let (sin, cos) = (sin.abs().max(0.5), cos.abs());
+        let reach = |mine: Footprint, theirs: Footprint| {
+            0.5 * mine.length_m + 0.5 * (theirs.width_m + mine.width_m * cos) / sin + REACH_MARGIN_M
+        };
+        (reach(a.1, b.1), reach(b.1, a.1))
+    }
 }
 
 impl SegmentShape {

@@ -10,16 +10,13 @@
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 use recrash_model::record::Surface;
-use recrash_model::vehicle::VehicleSpec;
+use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
 
 /// Physics step. [s]
 pub const PHYSICS_STEP_S: f64 = 0.02;
 
 /// Standard gravity as MetaDrive sets it. [m/s^2]
 const GRAVITY_MPS2: f64 = 9.81;
-
-/// Tyre friction of MetaDrive's vehicles (`wheel_friction`) on its only surface, taken for a dry road.
-const DRY_FRICTION: f64 = 0.9;
 
 /// Share of the sideways velocity at a wheel that one physics step takes away (Bullet, `resolveSingleBilateral`).
 const CONTACT_DAMPING: f64 = 0.2;
@@ -121,22 +118,12 @@ impl Chassis {
             yaw_per_m2: inverse_inertia(length, width),
             roll_per_m2: inverse_inertia(width, height),
             pitch_per_m2: inverse_inertia(length, height),
-            friction: DRY_FRICTION * friction_of(surface),
+            friction: DRY_TYRE_FRICTION * surface.relative_friction(),
             engine_mps2: spec.max_acceleration_mps2,
             brake_mps2: spec.brake_demand_mps2,
             max_speed_mps: spec.max_speed_mps,
             max_wheel_angle_rad: spec.max_wheel_angle_rad,
         }
-    }
-}
-
-/// Friction relative to a dry road. Assumed: textbook ratios of locked-wheel friction at town speeds are 0.6 to 0.8
-/// for wet asphalt and 0.2 to 0.4 for packed snow (wong2008).
-pub const fn friction_of(surface: Surface) -> f64 {
-    match surface {
-        Surface::Dry => 1.0,
-        Surface::Wet => 0.7,
-        Surface::SnowIce => 0.3,
     }
 }
 

@@ -1,8 +1,7 @@
 //! Giving way where paths cross or merge: who may go first, and where the other waits.
 
 use crate::scene::Scene;
-use recrash_model::math;
-use recrash_roads::{Conflict, LanePath, RoadNetwork};
+use recrash_roads::{Conflict, Footprint, LanePath, RoadNetwork};
 
 /// A place where an actor's path meets another's.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,39 +23,24 @@ pub(crate) struct Stretch {
     pub(crate) to: f64,
 }
 
-/// Half sizes of a vehicle. [m]
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct HalfSize {
-    pub(crate) length: f64,
-    pub(crate) width: f64,
-}
-
-/// Room added on both sides of a stretch. [m]
-const MARGIN_M: f64 = 0.5;
-
 impl Crossing {
     /// The crossing of two paths, from their conflict.
     pub(crate) fn new(
         network: &RoadNetwork,
-        (me, path, size): (usize, &LanePath, HalfSize),
-        (other, other_path, other_size): (usize, &LanePath, HalfSize),
+        (me, path, size): (usize, &LanePath, Footprint),
+        (other, other_path, other_size): (usize, &LanePath, Footprint),
         conflict: Conflict,
     ) -> Self {
-        let heading = path.pose(network, conflict.s_a, 0.0).heading;
-        let other_heading = other_path.pose(network, conflict.s_b, 0.0).heading;
-        let (sin, cos) = math::sincos(heading - other_heading);
-        let (sin, cos) = (sin.abs().max(0.5), cos.abs());
-        // Half of the other's lane, cut by mine at an angle, and half of my own length.
-        let reach = |mine: HalfSize, theirs: HalfSize| mine.length + (theirs.width + mine.width * cos) / sin + MARGIN_M;
-        let stretch = |s: f64, mine: HalfSize, theirs: HalfSize| {
-            let reach = reach(mine, theirs);
-            Stretch { from: s - reach, to: if conflict.merges { f64::INFINITY } else { s + reach } }
+        let (reach, other_reach) = conflict.reaches(network, (path, size), (other_path, other_size));
+        let stretch = |s: f64, reach: f64| Stretch {
+            from: s - reach,
+            to: if conflict.merges { f64::INFINITY } else { s + reach },
         };
         Self {
             me,
             other,
-            mine: stretch(conflict.s_a, size, other_size),
-            theirs: stretch(conflict.s_b, other_size, size),
+            mine: stretch(conflict.s_a, reach),
+            theirs: stretch(conflict.s_b, other_reach),
             merges: conflict.merges,
         }
     }

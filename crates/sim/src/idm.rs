@@ -5,7 +5,7 @@
 //! first. It slows for curves. It keeps its lane: it does not overtake and does not steer around anything.
 //! Equations and fields: `docs/models/idm.md`.
 
-use crate::chassis::{Controls, friction_of};
+use crate::chassis::Controls;
 use crate::give_way::{Crossing, GiveWay, Manners};
 use crate::scene::Scene;
 use crate::steering::LaneKeeper;
@@ -98,7 +98,7 @@ pub(crate) struct Idm {
 impl Idm {
     pub(crate) fn new(spec: &VehicleSpec, target_mps: f64, surface: Surface) -> Self {
         let mut parameters = IdmParameters::town(target_mps);
-        let friction = friction_of(surface);
+        let friction = surface.relative_friction();
         parameters.hardest_deceleration_mps2 *= friction;
         parameters.curve_mps2 *= friction;
         Self {

@@ -29,7 +29,7 @@ mod steering;
 mod swerve;
 mod world;
 
-pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand, friction_of};
+pub use chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand};
 pub use driver::{EgoDriver, Observation};
 pub use ego::{Ego, UnknownEgo};
 pub use emergency::EmergencyResponse;

@@ -7,7 +7,7 @@
 //! The regulation covers cut-in, cut-out and braking leads; what is taken over to crossings and to people on foot is
 //! said in `docs/models/reference.md`.
 
-use crate::chassis::{Controls, friction_of};
+use crate::chassis::Controls;
 use crate::emergency::EmergencyResponse;
 use crate::give_way::{Crossing, GiveWay, MERGED_M, Manners, Stretch};
 use crate::idm::{IdmParameters, curve_limit};
@@ -56,6 +56,12 @@ const DRIFT_MPS: f64 = 0.1;
 /// Somebody beside whose side is further away than this is not cutting in yet. [m]
 const BESIDE_M: f64 = 3.5;
 
+/// Somebody beside whose middle is further behind than this comes in behind. [m]
+const BEHIND_M: f64 = 1.5;
+
+/// Acceleration with which it draws ahead of somebody who comes over; assumed. [m/s^2]
+const HURRY_MPS2: f64 = 2.0;
+
 /// Braking in an emergency goes on until what is left asks for no more than this; assumed. [m/s^2]
 const RELAXED_MPS2: f64 = 1.0;
 
@@ -94,6 +100,10 @@ pub(crate) struct Attention {
     noticed: u16,
     /// Steps since he became a danger.
     danger: u16,
+    /// Steps for which he has been coming over from beside.
+    beside: u16,
+    /// It has to draw ahead of him.
+    hurry: bool,
     /// Steps he has stood.
     standing: u16,
     /// His speed a step ago. [m/s]
@@ -123,6 +133,13 @@ impl Encounter {
     }
 }
 
+/// On which end of it somebody beside it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Beside {
+    Ahead,
+    Behind,
+}
+
 /// The state of one such driver.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reference {
@@ -139,7 +156,7 @@ pub(crate) struct Reference {
 
 impl Reference {
     pub(crate) fn new(spec: &VehicleSpec, target_mps: f64, surface: Surface) -> Self {
-        let friction = friction_of(surface);
+        let friction = surface.relative_friction();
         let parameters = IdmParameters {
             time_headway_s: TIME_HEADWAY_S,
             hardest_deceleration_mps2: COMFORTABLE_MPS2 * friction,
@@ -176,8 +193,8 @@ impl Reference {
         self.give_way.count_standing(scene, me);
 
         let own_t = lane.local(seen.pose.position).1;
-        let mut acceleration =
-            self.parameters.acceleration(seen.speed, None).min(curve_limit(&self.parameters, scene, me));
+        let alone = self.parameters.acceleration(seen.speed, None).min(curve_limit(&self.parameters, scene, me));
+        let mut acceleration = alone;
         for obstacle in scene.obstacles {
             let outline = &obstacle.outline;
             let body = Body { axis: outline.axis, half_length: outline.half_length, half_width: outline.half_width };
@@ -193,6 +210,10 @@ impl Reference {
                 acceleration = acceleration.min(self.react(scene, me, other, crossings, own_t, mind));
             }
             mind.speed_mps = scene.actors[other].speed;
+        }
+        // Nobody is in its way, and somebody beside needs the place.
+        if acceleration == alone && attention.iter().any(|mind| mind.hurry) {
+            acceleration = alone.max(HURRY_MPS2);
         }
         let full = if acceleration >= 0.0 { self.full_throttle_mps2 } else { self.full_brake_mps2 };
         let (line, drift) = self.swerve.line(seen.speed);
@@ -211,6 +232,12 @@ impl Reference {
         mind: &mut Attention,
     ) -> f64 {
         let (seen, actor) = (&scene.actors[me], &scene.actors[other]);
+        mind.hurry = false;
+        if let Some(side) = self.beside(scene, me, other, own_t) {
+            mind.beside = mind.beside.saturating_add(1);
+            return self.make_room(side, mind);
+        }
+        mind.beside = 0;
         let encounter = self.encounter(scene, me, other, crossings, own_t);
         let wanted = self.parameters.desired_speed_mps;
         let manners = Manners { gap_s: CROSSING_GAP_S };
@@ -238,10 +265,9 @@ impl Reference {
             asked = asked.min(self.comfortable(seen.speed, ahead));
         }
         if let Some((crossing, distance)) = line {
-            // The line is for the bumper already; the usual room in front of it is not wanted twice.
-            let gap_m = distance + 0.5 * self.parameters.minimum_gap_m;
-            let stop = Encounter { gap_m, lead_mps: 0.0, closing_mps: seen.speed };
-            let hard = Encounter { gap_m: distance, ..stop }.required_mps2();
+            // It stops its usual room in front of the line; past that it still may stop at the line.
+            let stop = Encounter { gap_m: distance.max(0.1), lead_mps: 0.0, closing_mps: seen.speed };
+            let hard = stop.required_mps2();
             danger |= hard > self.comfortable_mps2 && collision_course(scene, crossing, braking_mps2);
             required = required.max(hard);
             asked = asked.min(self.comfortable(seen.speed, &stop));
@@ -273,6 +299,34 @@ impl Reference {
             }
         }
         acceleration
+    }
+
+    /// Where somebody beside, on the same way, comes over: on which end he is.
+    fn beside(&self, scene: &Scene<'_>, me: usize, other: usize, own_t: f64) -> Option<Beside> {
+        let (seen, actor) = (&scene.actors[me], &scene.actors[other]);
+        let ahead = (actor.pose.position - seen.pose.position).dot(seen.forward);
+        if ahead.abs() > seen.half_length + actor.half_length || actor.forward.dot(seen.forward) < 0.5 {
+            return None;
+        }
+        let lane = scene.lanes.lane(scene.path_lane(me));
+        let (s, t) = lane.local(actor.pose.position);
+        let offset = t - own_t;
+        let coming = -actor.velocity.dot(-Vec2::from_heading(lane.heading(s)).left()) * offset.signum();
+        let side = offset.abs() - seen.half_width - actor.half_width;
+        let leaves_his_lane = -actor.place.t * offset.signum() > WANDERING_M;
+        (leaves_his_lane && coming > DRIFT_MPS && side < BESIDE_M).then_some(if ahead > -BEHIND_M {
+            Beside::Ahead
+        } else {
+            Beside::Behind
+        })
+    }
+
+    /// Lets somebody in who is coming over: falls back behind him, or draws ahead of him. [m/s^2]
+    fn make_room(&self, side: Beside, mind: &mut Attention) -> f64 {
+        let since_s = (f64::from(mind.beside) - 0.5) * STEP_S;
+        mind.hurry = side == Beside::Behind && since_s > self.response.onset_s();
+        let falls_back = side == Beside::Ahead && since_s > self.response.evaluation_s;
+        if falls_back { -self.response.deceleration(since_s) } else { f64::INFINITY }
     }
 
     /// The law of `idm`, with comfortable braking. [m/s^2]

@@ -3,7 +3,7 @@
 use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
 use crate::contacts::actor_state;
 use crate::ego::Ego;
-use crate::give_way::{Crossing, HalfSize};
+use crate::give_way::Crossing;
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
@@ -16,7 +16,7 @@ use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{ActorState, Role};
 use recrash_model::scenario::{LateralMove, Policy};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::{LanePath, RoadId, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement};
+use recrash_roads::{Footprint, LanePath, RoadId, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement};
 
 /// Everything about one run; kept from run to run for its memory.
 #[derive(Debug, Default)]
@@ -207,11 +207,11 @@ impl World {
             for other in (0..self.setting.cast.len()).filter(|&other| other != me) {
                 let size = |actor: usize| {
                     let member = &self.setting.cast[actor];
-                    HalfSize { length: 0.5 * member.length_m, width: 0.5 * member.width_m }
+                    Footprint { length_m: member.length_m, width_m: member.width_m }
                 };
                 let (mine, theirs) = (size(me), size(other));
                 let network = scenario.network();
-                let conflict = path(me).conflict(path(other), network, 2.0 * mine.width, 2.0 * theirs.width);
+                let conflict = path(me).conflict(path(other), network, mine.width_m, theirs.width_m);
                 if let Some(conflict) = conflict {
                     self.setting.crossings.push(Crossing::new(
                         network,

@@ -244,6 +244,29 @@ fn cut_ins_are_avoided_down_to_the_distance_that_the_reaction_takes() {
 }
 
 #[test]
+fn lets_somebody_in_who_comes_over_from_beside() {
+    // He is ahead by half a length, beside, or behind by half a length, and comes over slowly.
+    for ahead_m in [2.5, 0.0, -2.5] {
+        let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 8.0, 8.0);
+        let mut other = lead(ahead_m, 8.0);
+        other.lane_offset = -1;
+        other.lateral = vec![LateralMove { start_s: 2.0, duration_s: 9.0, to_t_m: 3.5 }];
+        draft.partners.push(other);
+        assert!(!touches(&run(draft)), "{ahead_m}");
+    }
+}
+
+#[test]
+fn cannot_help_somebody_who_swerves_into_its_side() {
+    let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 8.0, 8.0);
+    let mut other = lead(0.0, 8.0);
+    other.lane_offset = -1;
+    other.lateral = vec![LateralMove { start_s: 2.0, duration_s: 1.0, to_t_m: 3.5 }];
+    draft.partners.push(other);
+    assert!(touches(&run(draft)));
+}
+
+#[test]
 fn a_lead_that_brakes_fully_is_not_hit_from_two_seconds_behind() {
     for speed in [8.0, 12.0, 16.0, 20.0] {
         let mut draft = alone(straight(1, 500.0), Turn::Straight, 0, speed, speed);

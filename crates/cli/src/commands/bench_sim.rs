@@ -13,8 +13,8 @@ Examples:
   recrash bench sim --python .venv/bin/python
   recrash bench sim --json
 
-Without MetaDrive the native figures stand alone. Exit code 5: a figure that is asked for was missed. The figures mean
-something for a release build on an idle machine only.";
+Without MetaDrive the native figures stand alone. Exit code 5: a figure that is asked for was missed. Only a release build on
+a machine with two idle cores says what the simulator can do.";
 
 /// Options of `bench sim`.
 #[derive(Debug, Clone, Args)]
@@ -26,7 +26,7 @@ pub struct BenchSimArgs {
     /// Their seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Measurements of the native simulator, of at least a second each; the median counts.
+    /// Measurements of the native simulator, of at least a second each; the fastest counts.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub rounds: u16,
     /// Python interpreter with MetaDrive.

@@ -22,7 +22,7 @@ pub struct DoctorArgs {
     /// Python interpreter to look at.
     #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
     pub python: PathBuf,
-    /// Folder with the files of all-MiniLM-L6-v2.
+    /// Folder with the files of all-MiniLM-L6-v2. [default: looked for]
     #[arg(long, value_name = "DIR")]
     pub model_dir: Option<PathBuf>,
 }

@@ -1,11 +1,11 @@
 //! `recrash eval`: how well an agent reads records, by labels that people wrote.
 
-use crate::model_options::ModelArgs;
+use crate::model_options::AccessArgs;
 use crate::output::{self, Output, number, table, title};
 use anstream::{eprintln, println};
 use clap::Args;
 use comfy_table::Cell;
-use recrash_pipeline::{Cast, Evaluation, EvaluationRequest, FieldScore, Half, HalfScore, PipelineError, evaluate};
+use recrash_pipeline::{Evaluation, EvaluationRequest, FieldScore, Half, HalfScore, PipelineError, evaluate};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -13,7 +13,7 @@ Examples:
   recrash eval                                      the rules on the built-in labels and the downloaded crash files
   recrash eval --half dev                           the developed half alone, with its disagreements
   recrash eval --records archive.csv --records current.csv --json
-  recrash eval --agent gpt-5-mini --out eval-mini   a model; its questions and answers are kept there
+  recrash eval --agent gpt-5-mini --out eval-mini   a model, with its questions and answers in that folder
 
 The labels are of NHTSA's two files on automated driving: recrash fetch --edition archive, and recrash fetch.
 How fields are compared is in docs/models/evaluation.md.";
@@ -22,6 +22,9 @@ How fields are compared is in docs/models/evaluation.md.";
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct EvalArgs {
+    /// Who reads: rules, or a language model by name.
+    #[arg(long, value_name = "rules|MODEL", default_value = "rules")]
+    pub agent: String,
     /// Label file (CSV). [default: the built-in labels, eval/labels.csv]
     #[arg(long, value_name = "FILE")]
     pub labels: Option<PathBuf>,
@@ -41,7 +44,7 @@ pub struct EvalArgs {
     pub out: PathBuf,
     /// How a model is asked.
     #[command(flatten)]
-    pub models: ModelArgs,
+    pub access: AccessArgs,
 }
 
 /// Reads the labelled records and compares.
@@ -50,7 +53,7 @@ pub struct EvalArgs {
 /// Labels or crash files cannot be used; questions wait for a batch.
 pub fn run(args: &EvalArgs, output: Output) -> Result<(), PipelineError> {
     let evaluation = evaluate(&EvaluationRequest {
-        agent: args.models.cast(Cast::default()).paraphrase,
+        agent: args.agent.clone(),
         labels: args.labels.clone(),
         records: args.records.clone(),
         half: match args.half.as_str() {
@@ -60,7 +63,7 @@ pub fn run(args: &EvalArgs, output: Output) -> Result<(), PipelineError> {
         },
         profile: args.profile.clone(),
         out: args.out.clone(),
-        access: args.models.access(),
+        models: args.access.access(),
     })?;
     if output.json {
         output::json(&evaluation);

@@ -16,6 +16,8 @@ mod schema;
 mod select;
 mod simulate;
 mod stage;
+#[cfg(feature = "parquet")]
+mod sweep;
 
 use crate::options::SuiteArgs;
 use crate::output::Output;
@@ -85,6 +87,9 @@ pub enum Command {
     Doctor(doctor::DoctorArgs),
     /// Measure speeds on this machine.
     Bench(bench::BenchArgs),
+    /// Run very many rollouts around a scenario or a suite, into a Parquet file.
+    #[cfg(feature = "parquet")]
+    Sweep(sweep::SweepArgs),
     /// Print the JSON Schema of scenario files.
     Schema,
 }
@@ -112,6 +117,8 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Parity(args) => parity::run(args, output),
         Command::Doctor(args) => doctor::run(args, output),
         Command::Bench(args) => bench::run(args, output),
+        #[cfg(feature = "parquet")]
+        Command::Sweep(args) => sweep::run(args, output),
         Command::Schema => schema::run(),
     }
 }

@@ -122,7 +122,7 @@ fn show(summary: &Summary, dir: &Path) {
     tables(&summary.tables);
     coverage(&summary.coverage, &summary.templates);
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
-    let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "findings"]);
+    let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"]);
     for case in &summary.cases {
         let verdict = match &case.tuned {
             Some(run) if run.faithful => "faithful",
@@ -135,6 +135,7 @@ fn show(summary: &Summary, dir: &Path) {
             Cell::new(gap(case.first.as_ref())),
             Cell::new(gap(case.tuned.as_ref())),
             Cell::new(verdict),
+            Cell::new(case.triage.as_ref().map_or("", |triage| triage.class.label())),
             Cell::new(case.tuned.as_ref().map_or_else(String::new, |run| run.findings.join(", "))),
         ]);
     }
@@ -156,6 +157,9 @@ fn show(summary: &Summary, dir: &Path) {
         summary.faithful(),
         summary.ego,
     );
+    for (class, count) in summary.failure_classes() {
+        println!("  {count:>4} {}: {}", class.label(), class.meaning());
+    }
     if summary.sample {
         println!("records: the built-in sample, invented; give real crash files with --records FILE");
     }

@@ -1,5 +1,8 @@
 //! Helpers of the command's tests.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "not every test file needs all of it")]
+
+pub mod scripted;
+pub mod server;
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use recrash_model::narrative::Side;
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::STEP_S;
 use recrash_model::scenario::{LateralMove, MapSpec, MissingArm, ObstacleKind, Policy, ScenarioDraft};
-use recrash_model::vehicle::VehicleSpec;
+use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
 use recrash_roads::{LaneId, Placement, Scenario};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -15,9 +15,6 @@ const METADRIVE_FORMAT: &str = "recrash.metadrive/1";
 
 /// The same for every scenario.
 const SCRIPT: &str = include_str!("run_metadrive.py");
-
-/// `wheel_friction` of MetaDrive's vehicles, taken for a dry road.
-const DRY_TYRE_FRICTION: f64 = 0.9;
 
 /// MetaDrive's name of a lane: the nodes it lies between and its number, 0 the leftmost.
 type LaneIndex = (String, String, u8);
@@ -155,7 +152,7 @@ fn road_user(scenario: &Scenario, placement: &Placement) -> RoadUser {
         brake_demand_mps2: spec.brake_demand_mps2,
         max_speed_mps: spec.max_speed_mps,
         max_wheel_angle_deg: spec.max_wheel_angle_rad.to_degrees(),
-        tyre_friction: DRY_TYRE_FRICTION * crate::relative_friction(scenario.draft().environment.surface),
+        tyre_friction: DRY_TYRE_FRICTION * scenario.draft().environment.surface.relative_friction(),
         spawn_lane: lane_index(scenario, segment.lane),
         spawn_s_m: placement.s_m - segment.start_m,
         speed_mps: placement.speed_mps,

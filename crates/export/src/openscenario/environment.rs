@@ -8,7 +8,7 @@ use recrash_model::scenario::Environment;
 /// The environment action.
 pub(super) fn environment_action(environment: &Environment) -> Element {
     let road = Element::new("RoadCondition")
-        .with("frictionScaleFactor", number(crate::relative_friction(environment.surface)))
+        .with("frictionScaleFactor", number(environment.surface.relative_friction()))
         .with("wetness", wetness(environment));
     Element::new("GlobalAction").child(
         Element::new("EnvironmentAction").child(

@@ -7,12 +7,14 @@ use recrash_model::metrics::*;
 use recrash_model::narrative::*;
 use recrash_model::profile::*;
 use recrash_model::record::*;
+use recrash_model::rollout::TerminationKind;
 use recrash_model::scenario::*;
 use recrash_model::selection::*;
 use recrash_model::template::*;
+use recrash_model::triage::{EgoOutcome, Triage};
 use recrash_model::tuning::*;
 use recrash_model::{Diagnostic, Location, Seed};
-use recrash_report::{CaseView, RunView, SuiteView};
+use recrash_report::{CaseView, RunTrace, RunView, SuiteView};
 
 /// The paper's templates, as (road, SV, CP, work zone, records, picks).
 const TEMPLATES: [(RoadType, Movement, Movement, bool, usize, usize); 14] = {
@@ -357,6 +359,20 @@ fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, folder: &str) -> RunV
     )
 }
 
+/// Other egos: by turns all avoid it, one, the other, none.
+fn triage(number: usize, careful: &RunView) -> Triage {
+    let outcome = |ego: &str, failed: bool| EgoOutcome {
+        ego: ego.to_owned(),
+        failed,
+        avoids: !failed,
+        findings: if failed { vec![FindingKind::Contact] } else { Vec::new() },
+        min_gap: if failed { Some(Timed { value: 0.0, time_s: 4.2 }) } else { careful.metrics.min_gap },
+        termination: if failed { TerminationKind::Contact } else { TerminationKind::Arrived },
+        state_hash: careful.rollout.state_hash.clone(),
+    };
+    Triage::new(&[FindingKind::Contact], vec![outcome("idm", number % 4 >= 2), outcome("reference", number % 2 == 1)])
+}
+
 /// The suite.
 pub fn demo() -> SuiteView {
     let seed = Seed(7);
@@ -379,6 +395,10 @@ pub fn demo() -> SuiteView {
         let refused = cluster.number == 19;
         let mut members = cluster.members.clone();
         members.truncate(4);
+        let before = (!refused).then(|| run(cluster, &plan, designed, "4-scenarios"));
+        let after = (!refused && log.best != 0).then(|| run(cluster, &plan, tuned, "6-tuned"));
+        let failed = after.as_ref().or(before.as_ref()).is_some_and(RunView::failed);
+        let careful = failed.then(|| run(cluster, &plan, designed + 3.0, "6-tuned"));
         CaseView {
             scenario_id: cluster.scenario_id.clone(),
             template: cluster.template,
@@ -386,8 +406,14 @@ pub fn demo() -> SuiteView {
             records: members,
             narrative: Some(narrative(cluster, record, &plan)),
             drawing: plan.drawing(),
-            before: (!refused).then(|| run(cluster, &plan, designed, "4-scenarios")),
-            after: (!refused && log.best != 0).then(|| run(cluster, &plan, tuned, "6-tuned")),
+            before,
+            after,
+            triage: careful.as_ref().map(|run| triage(cluster.number, run)),
+            reference: careful.map(|run| RunTrace {
+                rollout: run.rollout,
+                series: run.series,
+                min_gap: run.metrics.min_gap,
+            }),
             tune_log: (!refused).then_some(log),
             refused: refused.then(|| "partners[0].turn: no left turn on this map; allowed: straight".to_owned()),
         }

@@ -1,6 +1,6 @@
 //! One scenario: what it stands for, the replay with its plots, and tabs with everything behind it.
 
-use super::{Context, compare, icon, parts, scenario, story};
+use super::{Context, compare, icon, parts, scenario, story, triage};
 use crate::summary::{Result, finding_kinds};
 use crate::view::{CaseView, RunView};
 use crate::{data, words};
@@ -10,10 +10,11 @@ use recrash_model::narrative::Origin;
 /// The section of one case.
 pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
     let anchor = context.anchors.case(position);
-    let tabs: [(&str, &str, Markup); 5] = [
+    let tabs: [(&str, &str, Markup); 6] = [
         ("story", "Record and narrative", story::story(context, case)),
         ("checks", "Faithfulness", compare::checks(case)),
         ("metrics", "Metrics", compare::metrics(context, case)),
+        ("triage", "Other egos", triage::of_case(context, case)),
         ("tuning", "Tuning", scenario::tuning(position, case)),
         ("scenario", "Scenario file", scenario::files(case)),
     ];
@@ -23,7 +24,10 @@ pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
             @if let Some(why) = &case.refused {
                 p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
             }
-            @if case.last_run().is_some() { (stage(["As designed", "Tuned"], [case.before.is_some(), case.after.is_some()])) (numbers(case)) }
+            @if case.last_run().is_some() {
+                (stage(["As designed", "Tuned"], [case.before.is_some(), case.after.is_some()], case.reference.is_some()))
+                (numbers(case))
+             }
             .tabs {
                 div role="tablist" aria-label="About this scenario" {
                     @for (i, (name, label, _)) in tabs.iter().enumerate() {
@@ -53,6 +57,7 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
             }
             .chips {
                 (parts::result_chip(Result::of(last)))
+                @if let Some(triage) = &case.triage { (parts::class_chip(triage.class)) }
                 (parts::faithful_chip(last))
                 @for kind in last.map(finding_kinds).unwrap_or_default() { (parts::finding_chip(kind)) }
                 @match case.narrative.as_ref().map(|narrative| &narrative.origin) {
@@ -70,10 +75,17 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
     }
 }
 
-/// Replay and plots of one or two runs, which the scripts fill: their names, and which of them there are.
-pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]) -> Markup {
-    let modes =
-        [("before", first, is_first), ("after", second, is_second), ("both", "Side by side", is_first && is_second)];
+/// Replay and plots of one or two runs, which the scripts fill: their names, which of them there are, and whether the
+/// reference driver's run is there to be seen beside the last.
+pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2], reference: bool) -> Markup {
+    let mut modes = vec![
+        ("before", first, is_first),
+        ("after", second, is_second),
+        ("both", "Side by side", is_first && is_second),
+    ];
+    if reference {
+        modes.push(("reference", "Beside the reference driver", true));
+    }
     html! {
         noscript { p.banner { "The replay and the plots need scripts. Every number is in the tables below." } }
         .stage {
@@ -98,6 +110,7 @@ pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]
                 .views tabindex="0" role="img" aria-label="Top-down picture of the run; the plots and tables hold the same in numbers" {
                     figure.view data-run="before" hidden { canvas {} figcaption { (first) } }
                     figure.view data-run="after" hidden { canvas {} figcaption { (second) } }
+                    @if reference { figure.view data-run="reference" hidden { canvas {} figcaption { "Reference driver" } } }
                 }
                 .transport {
                     button.small type="button" data-act="start" title="To the start ( Home )" aria-label="To the start" { (icon::to_start()) }

@@ -1,6 +1,6 @@
 //! What the suite found out about the ego.
 
-use super::{Context, parts};
+use super::{Context, parts, triage};
 use crate::view::{CaseView, RunView};
 use crate::words::{self, fixed};
 use maud::{Markup, html};
@@ -29,6 +29,7 @@ pub fn section(context: &Context) -> Markup {
                     " scenarios as designed and " (context.summary.failed_after) " after tuning. The other kinds are odd behaviour worth a look."
                 }
             }
+            .panel { h2 { "What the failures are worth" } (triage::by_class(context)) }
             .panel { h2 { "By kind" } (by_kind(context)) }
             .panel { h2 { "Every finding" } (every(context)) }
         }

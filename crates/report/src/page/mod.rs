@@ -13,6 +13,7 @@ mod parts;
 mod records;
 mod scenario;
 mod story;
+mod triage;
 mod zones;
 
 use crate::anchor::Anchors;

@@ -107,7 +107,10 @@ fn tiles(context: &Context) -> Markup {
             (tile(
                 "Ego fails",
                 html! { (s.failed_before) (arrow()) (s.failed_after) span.of { " of " (s.ran) } },
-                html! { "as designed, after tuning" },
+                html! {
+                    "as designed, after tuning"
+                    @for (class, count) in &s.classes { br; (count) " " (class.label()) }
+                },
                 Some((share(s.failed_after, s.ran), "bad")),
             ))
             (tile(
@@ -214,6 +217,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
                 @match contact { Some(contact) => (contact.kind.label()), None => (missing("no contact")) }
             }
             td.findings data-sort=(finding_weight(&kinds)) {
+                @if let Some(triage) = &case.triage { (parts::class_chip(triage.class)) " " }
                 @for kind in &kinds { (parts::finding_chip(*kind)) " " }
                 @if kinds.is_empty() { (missing(if last.is_some() { "no finding" } else { not_run })) }
             }

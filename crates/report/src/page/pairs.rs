@@ -69,7 +69,7 @@ fn section(view: &PairsView, position: usize, pair: &PairView) -> Markup {
         section.case id=(id) data-case=(position) aria-labelledby={ (id) "-title" } {
             h2 id={ (id) "-title" } { (words::clean(&pair.title, 120)) }
             p.case-what { (words::clean(&pair.remark, 600)) }
-            (case::stage([&names[0], &names[1]], [true, pair.second.is_some()]))
+            (case::stage([&names[0], &names[1]], [true, pair.second.is_some()], false))
             script type="application/json" id={ "case-data-" (position) } { (PreEscaped(data::embed(&data::pair(pair)))) }
         }
     }
@@ -78,6 +78,36 @@ fn section(view: &PairsView, position: usize, pair: &PairView) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_are_escaped_and_nothing_may_load() {
+        let bad = "</script><img src=x onerror=alert(1)>".to_owned();
+        let view = PairsView {
+            title: bad.clone(),
+            generated_by: bad.clone(),
+            command: bad.clone(),
+            names: [bad.clone(), bad.clone()],
+            criteria: criteria(),
+            tables: vec![TableView { caption: bad.clone(), header: vec![bad.clone()], rows: vec![vec![bad.clone()]] }],
+            pairs: Vec::new(),
+        };
+        let page = render(&view);
+        assert!(!page.contains("<img") && page.contains("&lt;img"), "{page}");
+        assert!(page.contains("default-src 'none'"));
+        // One block of data, one script.
+        assert_eq!(page.matches("<script").count(), 2);
+    }
+
+    fn criteria() -> recrash_model::profile::FailureCriteria {
+        recrash_model::profile::FailureCriteria {
+            min_gap_m: 2.0,
+            hard_braking_mps2: 4.0,
+            phantom_braking_mps2: 3.0,
+            oscillation_reversals: 4,
+            oscillation_window_s: 5.0,
+            lane_departure_m: 0.3,
+        }
+    }
 
     #[test]
     fn the_script_cannot_close_its_element() {

@@ -6,6 +6,7 @@ use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};
 use recrash_model::metrics::{CheckResult, FindingKind, Timed};
+use recrash_model::triage::FailureClass;
 
 /// A dash that says why there is no value.
 pub fn missing(why: &str) -> Markup {
@@ -73,6 +74,16 @@ pub fn check_chip(result: CheckResult) -> Markup {
 pub fn finding_chip(kind: FindingKind) -> Markup {
     let (class, sign) = if kind.is_failure() { ("bad", icon::cross()) } else { ("odd", icon::bang()) };
     html! { span.chip.(class) { (sign) (kind.label()) } }
+}
+
+/// What a failure is worth.
+pub fn class_chip(class: FailureClass) -> Markup {
+    let (kind, sign) = match class {
+        FailureClass::Avoidable | FailureClass::Quirk => ("bad", icon::bang()),
+        FailureClass::BeyondReference => ("odd", icon::bang()),
+        FailureClass::Unavoidable => ("none", icon::dash()),
+    };
+    html! { span.chip.(kind) title=(class.meaning()) { (sign) (class.label()) } }
 }
 
 /// A command with a button that copies it.
