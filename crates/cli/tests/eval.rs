@@ -11,7 +11,7 @@ const HEADER: &str = "half,report,version,file,entity,road,sv_movement,cp_moveme
 const DEV: &str = "dev,90104-54,1,sample,Acme,intersection,straight,straight,right,unknown,,,angle,no,";
 /// Wrong on purpose: the partner came from the left.
 const HELD_OUT: &str = "held-out,90104-33,1,sample,Acme,intersection,straight,straight,right,unknown,,,angle,no,";
-const NOWHERE: &str = "dev,90104-99999,1,sample,Acme,street,unknown,unknown,unknown,unknown,,,unknown,unknown,";
+const NOWHERE: &str = "dev,90104-99994,1,sample,Acme,street,unknown,unknown,unknown,unknown,,,unknown,unknown,";
 
 struct Files {
     folder: tempfile::TempDir,
@@ -66,10 +66,10 @@ fn scores_are_told_by_half_and_held_out_disagreements_only_where_they_are_asked_
 fn records_that_are_not_there_are_named_and_where_none_is_the_command_stops() {
     let some = eval(&files(&[DEV, NOWHERE]), &[]);
     assert!(some.status.success());
-    assert!(String::from_utf8_lossy(&some.stderr).contains("90104-99999/1"));
+    assert!(String::from_utf8_lossy(&some.stderr).contains("90104-99994/1"));
     let none = eval(&files(&[NOWHERE]), &[]);
     assert_eq!(none.status.code(), Some(3));
-    assert!(String::from_utf8_lossy(&none.stderr).contains("90104-99999/1"));
+    assert!(String::from_utf8_lossy(&none.stderr).contains("90104-99994/1"));
 }
 
 #[test]
