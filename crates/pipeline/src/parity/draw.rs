@@ -218,7 +218,7 @@ mod tests {
             let scenario = random_scenario(1, number);
             let draft = scenario.draft();
             seen.insert(draft.map.letter().to_string());
-            seen.insert(format!("{:?}", draft.ego.turn));
+            seen.insert(format!("ego {:?}", draft.ego.turn));
             seen.extend(draft.partners.iter().map(|partner| format!("{:?}", partner.approach)));
             seen.extend(draft.partners.iter().map(|partner| format!("{:?}", partner.kind)));
             seen.insert(super::super::compare::policy_name(&draft.partners[0].policy).to_owned());

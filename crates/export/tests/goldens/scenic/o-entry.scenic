@@ -29,9 +29,9 @@ def varied(value, low, high):
 EGO_S_M = 10
 EGO_SPEED_MPS = 6
 EGO_TARGET_SPEED_MPS = varied(6.5, 5.5, 7.5)    # [m/s] a test
-PARTNER1_POLICY_TARGET_SPEED_MPS = 7
-PARTNER1_SPEED_MPS = 6.5
 PARTNER1_START_ARRIVAL_GAP_S = varied(-0.6, -1.1, -0.09999999999999998)    # [s] a test
+PARTNER1_SPEED_MPS = 6.5
+PARTNER1_POLICY_TARGET_SPEED_MPS = 7
 DURATION_S = 40
 
 # ---- driving: the same in every file -----------------------------------------------------------------------------

@@ -29,13 +29,13 @@ def varied(value, low, high):
 EGO_S_M = 5
 EGO_SPEED_MPS = 8
 EGO_TARGET_SPEED_MPS = varied(8.3, 7.300000000000001, 9.3)    # [m/s] a test
+PARTNER1_START_ARRIVAL_GAP_S = varied(-0.4, -0.9, 0.09999999999999998)    # [s] a test
+PARTNER1_SPEED_MPS = 9
 PARTNER1_POLICY_ACCEL_MAG = 0.6
 PARTNER1_POLICY_ACCEL_STEPS = 10
+PARTNER1_POLICY_CRUISE_SPEED = 9.5
 PARTNER1_POLICY_BRAKE_STEP = 75
 PARTNER1_POLICY_BRAKE_STEPS = 20
-PARTNER1_POLICY_CRUISE_SPEED = 9.5
-PARTNER1_SPEED_MPS = 9
-PARTNER1_START_ARRIVAL_GAP_S = varied(-0.4, -0.9, 0.09999999999999998)    # [s] a test
 DURATION_S = 30
 
 # ---- driving: the same in every file -----------------------------------------------------------------------------
