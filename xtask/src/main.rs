@@ -14,7 +14,9 @@ usage: cargo xtask COMMAND
   test      all Rust tests
   docs      rustdoc, warnings denied
   python    sets up .venv from requirements/dev.txt and runs the Python tests
+  metadrive the tests on a real MetaDrive, in an environment of their own (0.8 GB, once)
   browser   makes a suite and clicks through its report in headless Chromium
+  fuzz      20 s of fuzzing for each reader of untrusted files
 With CI set in the environment a step that lacks something fails; without it, it is skipped by name.";
 
 fn main() -> ExitCode {
@@ -27,7 +29,9 @@ fn main() -> ExitCode {
         ["test"] => steps::test(),
         ["docs"] => steps::docs(),
         ["python"] => steps::python(),
+        ["metadrive"] => steps::metadrive(),
         ["browser"] => steps::browser(),
+        ["fuzz"] => steps::fuzz(),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

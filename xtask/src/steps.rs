@@ -13,14 +13,16 @@ type Step = (&'static str, fn() -> Result);
 
 /// Everything, in order of cost.
 pub fn ci() -> Result {
-    let steps: [Step; 7] = [
+    let steps: [Step; 9] = [
         ("format", format),
         ("tidy", tidy::run),
         ("lint", lint),
         ("test", test),
         ("docs", docs),
         ("python", python),
+        ("metadrive", metadrive),
         ("browser", browser),
+        ("fuzz", fuzz),
     ];
     for (name, step) in steps {
         let begun = Instant::now();
@@ -66,6 +68,54 @@ pub fn python() -> Result {
     run(Command::new(&inside).args(pip).arg(requirements))?;
     cargo(&["build", "--release", "--package", "recrash-cli"], &[])?;
     run(Command::new(&inside).args(["-m", "pytest", "--quiet", "tests"]).env("RECRASH", binary()))
+}
+
+/// The tests on a real MetaDrive, in the environment of `requirements/metadrive.txt`. The step before makes `.venv`.
+pub fn metadrive() -> Result {
+    let python = root().join(".venv").join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    if !python.exists() {
+        return missing("metadrive", "there is no .venv; `cargo xtask python` makes it");
+    }
+    let script = "from oracles import environment; print(environment('metadrive') / 'python')";
+    let output = Command::new(python)
+        .args(["-c", script])
+        .current_dir(root().join("tests"))
+        .output()
+        .map_err(|error| error.to_string())?;
+    let metadrive = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+    if !output.status.success() || metadrive.is_empty() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return missing("metadrive", said.lines().last().unwrap_or("its environment cannot be made"));
+    }
+    let arguments = ["test", "-p", "recrash-metadrive", "-p", "recrash-pipeline"];
+    let tests = ["--test", "real_metadrive", "--test", "parity"];
+    cargo(&[&arguments[..], &tests].concat(), &[("RECRASH_METADRIVE_PYTHON", &metadrive)])
+}
+
+/// A short run of every fuzz target, from the inputs that longer runs found.
+pub fn fuzz() -> Result {
+    let tools = root().join("target/tools");
+    let program = tools.join("bin").join(if cfg!(windows) { "cargo-fuzz.exe" } else { "cargo-fuzz" });
+    if !program.exists() {
+        let install = ["install", "cargo-fuzz@0.13.2", "--locked", "--quiet", "--root"];
+        cargo(&[&install[..], &[&tools.to_string_lossy()]].concat(), &[])?;
+    }
+    for target in ["crash_file", "mapping", "openscenario", "scenario"] {
+        let fresh = root().join("target/fuzz").join(target);
+        std::fs::create_dir_all(&fresh).map_err(|error| format!("{}: {error}", fresh.display()))?;
+        let known = ["corpus", "found"].map(|folder| root().join("fuzz").join(folder).join(target));
+        let dictionary = root().join("fuzz/dictionaries").join(target);
+        let mut command = Command::new(&program);
+        // Coverage instrumentation is unstable in the compiler; this lets the stable one have it.
+        command.env("RUSTC_BOOTSTRAP", "1").args(["fuzz", "run", "-s", "none", target]).arg(fresh);
+        command.args(known.iter().filter(|folder| folder.is_dir()));
+        command.args(["--", "-max_len=4096", "-max_total_time=20", "-verbosity=0"]);
+        if dictionary.exists() {
+            command.arg(format!("-dict={}", dictionary.display()));
+        }
+        run(&mut command)?;
+    }
+    Ok(())
 }
 
 /// The report of a fresh suite, in a browser.

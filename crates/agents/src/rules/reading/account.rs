@@ -45,9 +45,10 @@ pub fn account(record: &CrashRecord, profile: &SystemProfile) -> Account {
             cp_zones.push(cp);
         }
     }
+    let sv_movement = movement::movement(&sentences, Actor::Sv, record.sv_movement.known(), relation);
     let mut account = Account {
-        road: road::road(record, &sentences, relation),
-        sv_movement: movement::movement(&sentences, Actor::Sv, record.sv_movement.known(), relation),
+        road: road::road(record, &sentences, relation, sv_movement),
+        sv_movement,
         cp_movement: movement::movement(&sentences, Actor::Cp, record.cp_movement.known(), relation),
         approach: None,
         order: None,

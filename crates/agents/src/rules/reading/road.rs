@@ -16,16 +16,22 @@ static IN_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
         r"(?i)\b(?:enter(?:ed|ing|s)?|through|into|within|inside|in the middle of|cross(?:ed|ing)|block(?:ed|ing)) (?:the|an|its) (?:\w+ )?intersection\b",
     )
 });
-/// Where one crosses the other's way, that there is a junction is enough.
+/// Where one crosses the way of a moving other, that there is a junction is enough. Who stands still waits before it.
 static JUNCTION: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bintersection\b"));
 static GARAGE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bparking (?:garage|structure)\b"));
 
-/// The kind of road of a record, given from where the partner came.
-pub(super) fn road(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation>) -> Option<RoadGroup> {
+/// The kind of road of a record, given from where the partner came and what the ego did.
+pub(super) fn road(
+    record: &CrashRecord,
+    sentences: &[Sentence],
+    relation: Option<Relation>,
+    sv_movement: Option<Movement>,
+) -> Option<RoadGroup> {
     let turns = [record.sv_movement.known(), record.cp_movement.known()]
         .iter()
         .any(|movement| matches!(movement, Some(Movement::LeftTurn)));
     let crosses = match relation {
+        _ if sv_movement == Some(Movement::Stopped) => false,
         Some(Relation::From(_) | Relation::Crossing) => true,
         Some(Relation::Oncoming) => turns,
         _ => false,
