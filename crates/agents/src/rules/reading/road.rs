@@ -18,6 +18,18 @@ static IN_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
 });
 /// Where one crosses the way of a moving other, that there is a junction is enough. Who stands still waits before it.
 static JUNCTION: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bintersection\b"));
+/// Short of the junction, or already out of it: the contact was not inside.
+static SHORT_OF_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(r"(?i)\b(?:before|prior to|without) (?:enter|cross|block)ing (?:the|an|its) (?:\w+ )?intersection\b")
+});
+static PAST_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
+    pattern(
+        r"(?i)\b(?:after (?:passing|driving|traveling|proceeding|going) through (?:the|an|its) (?:\w+ )?intersection|through (?:the|an|its) (?:\w+ )?intersection\b.*\btowards? the curb)\b",
+    )
+});
+/// Who comes out of one of these does not cross at the junction that the narrative names.
+static BY_THE_STREET: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"(?i)\b(?:driveway|parking (?:lot|stall|space|garage))\b"));
 static GARAGE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bparking (?:garage|structure)\b"));
 
 /// The kind of road of a record, given from where the partner came and what the ego did.
@@ -44,7 +56,8 @@ pub(super) fn road(
     match column {
         Some(RoadType::Street)
             if before_they_met().iter().any(|sentence| {
-                IN_JUNCTION.is_match(sentence.text) || (crosses && JUNCTION.is_match(sentence.text))
+                in_junction(sentence.text)
+                    || (crosses && JUNCTION.is_match(sentence.text) && !BY_THE_STREET.is_match(sentence.text))
             }) =>
         {
             Some(RoadGroup::Intersection)
@@ -55,6 +68,11 @@ pub(super) fn road(
         Some(column) => Some(column.into()),
         None => by_words(sentences),
     }
+}
+
+/// Whether a sentence puts somebody inside a junction, neither short of it nor past it.
+fn in_junction(text: &str) -> bool {
+    IN_JUNCTION.is_match(text) && !SHORT_OF_JUNCTION.is_match(text) && !PAST_JUNCTION.is_match(text)
 }
 
 static WORDS: LazyLock<[(Regex, RoadGroup); 4]> = LazyLock::new(|| {
