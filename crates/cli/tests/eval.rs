@@ -108,7 +108,7 @@ fn a_model_is_asked_by_batch_and_its_answers_are_scored() {
     assert_eq!(share(&scored, "dev", "sv_movement"), 0.0);
 }
 
-/// The bounds are the targets of the evaluation, as totals; the road's is below its target (`docs/models/evaluation.md`).
+/// The bounds are the targets of the evaluation, as totals (`docs/models/evaluation.md`).
 #[test]
 fn the_rules_read_the_held_out_half_as_well_as_the_documentation_says() {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
@@ -122,7 +122,7 @@ fn the_rules_read_the_held_out_half_as_well_as_the_documentation_says() {
     let evaluation =
         json(&recrash(&["eval", "--json", "--records", names[0], "--records", names[1]]).output().unwrap());
     for (field, least) in [
-        ("road", 0.9),
+        ("road", 0.95),
         ("approach", 0.85),
         ("sv_movement", 0.85),
         ("cp_movement", 0.85),
