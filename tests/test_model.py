@@ -8,13 +8,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from oracles import ROOT, unavailable
+from oracles import ROOT, kept, unavailable
 
 
 @pytest.fixture(scope="session")
 def cache(recrash: str) -> Path:
     """A cache with the model in it, made once and kept with the other environments."""
-    folder = Path(os.environ.get("RECRASH_ORACLES", ROOT / ".oracles")) / "model-cache"
+    folder = kept() / "model-cache"
     done = model(recrash, "pull", "--cache", str(folder))
     if done.returncode != 0:
         unavailable("all-MiniLM-L6-v2", done.stderr[-500:])

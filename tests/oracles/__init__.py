@@ -14,6 +14,11 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 HERE = Path(__file__).resolve().parent
 
 
+def kept() -> Path:
+    """Where environments and weights are kept from run to run: $RECRASH_ORACLES, or below `target`."""
+    return Path(os.environ.get("RECRASH_ORACLES", ROOT / "target" / "oracles"))
+
+
 def environment(name: str) -> Path:
     """The folder of programs of the environment of `requirements/NAME.txt`.
 
@@ -21,7 +26,7 @@ def environment(name: str) -> Path:
     """
     requirements = ROOT / "requirements" / f"{name}.txt"
     digest = hashlib.sha256(requirements.read_bytes()).hexdigest()[:12]
-    folder = Path(os.environ.get("RECRASH_ORACLES", ROOT / "target" / "oracles")) / f"{name}-{digest}"
+    folder = kept() / f"{name}-{digest}"
     programs = folder / ("Scripts" if os.name == "nt" else "bin")
     finished = folder / "finished"
     if not finished.exists():
