@@ -12,6 +12,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 STEP_S = 0.02
+#: Share of the way after a share of the time.
+SHAPES = {
+    "linear": lambda x: x,
+    "cubic": lambda x: x * x * (3 - 2 * x),
+    "sinusoidal": lambda x: 0.5 - 0.5 * math.cos(math.pi * x),
+}
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
 
 
@@ -123,6 +129,28 @@ class Parameters:
         return float(node.value)
 
 
+class Line:
+    """A polyline of positions and headings."""
+
+    def __init__(self, polyline: ElementTree.Element) -> None:
+        at = [vertex.find("Position/WorldPosition") for vertex in polyline.findall("Vertex")]
+        self.points = [tuple(float(position.get(key)) for key in "xyh") for position in at]
+        self.times = [float(vertex.get("time", "nan")) for vertex in polyline.findall("Vertex")]
+        self.ends = [0.0]
+        for a, b in zip(self.points, self.points[1:]):
+            self.ends.append(self.ends[-1] + math.dist(a[:2], b[:2]))
+
+    def centre(self, along: float, to_centre: float, measure: list[float] | None = None) -> tuple[float, float]:
+        """The centre of a box whose reference point is so far along: in metres, or by another measure of the vertices."""
+        measure = measure or self.ends
+        k = next((k for k in range(1, len(measure) - 1) if along < measure[k]), len(measure) - 1)
+        share = min(max((along - measure[k - 1]) / (measure[k] - measure[k - 1]), 0.0), 1.0)
+        (xa, ya, ha), (xb, yb, hb) = self.points[k - 1], self.points[k]
+        heading = ha + math.remainder(hb - ha, math.tau) * share
+        x, y = xa + (xb - xa) * share, ya + (yb - ya) * share
+        return x + to_centre * math.cos(heading), y + to_centre * math.sin(heading)
+
+
 @dataclass
 class Player:
     """One partner while it is played."""
@@ -136,13 +164,18 @@ class Player:
     left: float
     speed: float
     speed_plan: list[tuple[float, float]] = field(default_factory=list)
-    lateral_plan: tuple[float, float, float, float] | None = None
+    lateral_plan: tuple[float, float, float, float, str] | None = None
     #: Speed to the left of its lane. [m/s]
     sideways: float = 0.0
+    #: The line it follows instead of its lane, and how far along that it is. [m]
+    line: "Line | None" = None
+    along: float = 0.0
     ended: bool = False
 
     def pose(self) -> tuple[float, float]:
         """Centre of its box."""
+        if self.line:
+            return self.line.centre(self.along, self.to_centre)
         road = self.drive_map.roads[self.road]
         sign = 1 if self.lane < 0 else -1
         x, y, heading = road.point(self.s, road.lane_centre(self.lane) + sign * self.left)
@@ -155,11 +188,16 @@ class Player:
         before = self.speed
         self.speed = self.planned_speed(now + STEP_S)
         if self.lateral_plan:
-            begin, duration, start, target = self.lateral_plan
-            share = (now + STEP_S - begin) / duration
-            self.left = start + (target - start) * min(share, 1.0)
-            self.sideways = (target - start) / duration if share < 1 else 0.0
-        self.move(0.5 * (before + self.speed) * STEP_S)
+            begin, duration, start, target, shape = self.lateral_plan
+            share = min((now + STEP_S - begin) / duration, 1.0)
+            before_left, self.left = self.left, start + (target - start) * SHAPES[shape](share)
+            self.sideways = (self.left - before_left) / STEP_S
+        way = 0.5 * (before + self.speed) * STEP_S
+        if self.line:
+            self.along += way
+            self.ended = self.along > self.line.ends[-1]
+        else:
+            self.move(math.sqrt(max(way**2 - (self.sideways * STEP_S) ** 2, 0.0)))
 
     def planned_speed(self, now: float) -> float:
         plan = self.speed_plan
@@ -209,33 +247,35 @@ def play(scenario: Path, seconds: float) -> dict[str, list[tuple[float, float]]]
             if [ref.get("entityRef") for ref in group.findall("Actors/EntityRef")] == [name]
             for event in group.iter("Event")
         ]
-        polyline = next((event.find(".//Polyline") for event in events if event.find(".//Polyline") is not None), None)
-        if polyline is not None:
-            tracks[name] = replay(polyline, to_centre)
+        recorded = next((event for event in events if event.find(".//TimeReference/Timing") is not None), None)
+        if recorded is not None:
+            tracks[name] = replay(Line(recorded.find(".//Polyline")), to_centre)
         else:
             tracks[name] = act(drive_map, parameters, init, events, to_centre, seconds)
     return tracks
 
 
-def replay(polyline: ElementTree.Element, to_centre: float) -> list[tuple[float, float]]:
-    """Centres on a recorded polyline whose vertices lie 0.1 s apart."""
-    points = []
-    for number, vertex in enumerate(polyline.findall("Vertex")):
-        assert abs(float(vertex.get("time")) - 0.1 * number) < 1e-9
-        at = vertex.find("Position/WorldPosition")
-        x, y, h = (float(at.get(key)) for key in "xyh")
-        points.append((x + to_centre * math.cos(h), y + to_centre * math.sin(h)))
-    return points
+def replay(line: Line, to_centre: float) -> list[tuple[float, float]]:
+    """Centres on a recorded line each 0.1 s."""
+    return [line.centre(0.1 * step, to_centre, line.times) for step in range(round(line.times[-1] / 0.1) + 1)]
 
 
 def act(drive_map, parameters, init, events, to_centre, seconds):
-    place = init.find(".//TeleportAction/Position/LanePosition")
-    lane = int(place.get("laneId"))
-    offset = parameters.number(place.get("offset"))
     route = [p.get("roadId") for p in init.findall(".//Waypoint/Position/LanePosition")]
+    place = init.find(".//TeleportAction/Position/LanePosition")
+    if place is None:
+        # Its rear axle is still behind the beginning of the first road.
+        first, at = init.find(".//Waypoint/Position/LanePosition"), init.find(".//TeleportAction/Position/WorldPosition")
+        lane, offset = int(first.get("laneId")), 0.0
+        x, y, heading = drive_map.roads[route[0]].point(parameters.number(first.get("s")), 0.0)
+        s = parameters.number(first.get("s")) + (float(at.get("x")) - x) * math.cos(heading) + (float(at.get("y")) - y) * math.sin(heading)
+        road = route[0]
+    else:
+        road, lane = place.get("roadId"), int(place.get("laneId"))
+        s, offset = parameters.number(place.get("s")), parameters.number(place.get("offset"))
     player = Player(
-        drive_map, route, to_centre, place.get("roadId"), lane, parameters.number(place.get("s")),
-        offset if lane < 0 else -offset, parameters.number(init.find(".//AbsoluteTargetSpeed").get("value")),
+        drive_map, route, to_centre, road, lane, s, offset if lane < 0 else -offset,
+        parameters.number(init.find(".//AbsoluteTargetSpeed").get("value")),
     )
     waiting = []
     for event in events:
@@ -259,10 +299,14 @@ def act(drive_map, parameters, init, events, to_centre, seconds):
 def begin(player: Player, parameters: Parameters, event: ElementTree.Element, now: float) -> None:
     action = event.find("Action/PrivateAction")
     profile, speed, change = action.find(".//SpeedProfileAction"), action.find(".//SpeedAction"), action.find(".//LaneChangeAction")
-    if profile is not None:
+    follow = action.find(".//FollowTrajectoryAction")
+    if follow is not None:
+        assert follow.find("TimeReference/None") is not None
+        player.line, player.along = Line(follow.find(".//Polyline")), parameters.number(follow.get("initialDistanceOffset"))
+    elif profile is not None:
         plan, time = [(now, player.speed)], now
         for entry in profile.findall("SpeedProfileEntry"):
-            time += float(entry.get("time"))
+            time += parameters.number(entry.get("time"))
             plan.append((time, parameters.number(entry.get("speed"))))
         player.speed_plan = plan
     elif speed is not None:
@@ -277,12 +321,16 @@ def begin(player: Player, parameters: Parameters, event: ElementTree.Element, no
         player.speed_plan = [(now, player.speed), (now + max(duration, 1e-6), target)]
     elif change is not None:
         dynamics = change.find("LaneChangeActionDynamics")
-        lanes_left = int(change.find(".//RelativeTargetLane").get("value"))
+        absolute, relative = change.find(".//AbsoluteTargetLane"), change.find(".//RelativeTargetLane")
         offset = parameters.number(change.get("targetLaneOffset"))
-        width = player.drive_map.roads[player.road].widths[player.lane]
-        # Lanes are counted from the one it is on by now; offsets are in the road's direction.
-        on_lane = round(player.left / width)
-        target = (on_lane + lanes_left) * width + (offset if player.lane < 0 else -offset)
-        player.lateral_plan = (now, parameters.number(dynamics.get("value")), player.left, target)
+        road = player.drive_map.roads[player.road]
+        if absolute is not None:
+            target = road.lane_centre(int(absolute.get("value"))) - road.lane_centre(player.lane)
+        else:
+            assert relative.get("value") == "0", "only within its lane"
+            target = 0.0
+        # Offsets are in the road's direction.
+        target = target + offset if player.lane < 0 else -target - offset
+        player.lateral_plan = (now, parameters.number(dynamics.get("value")), player.left, target, dynamics.get("dynamicsShape"))
     else:
         raise AssertionError(f"an action this player does not know: {ElementTree.tostring(action)[:200]}")

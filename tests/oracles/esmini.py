@@ -37,7 +37,8 @@ def find() -> str | None:
 
 def version(esmini: str) -> str:
     done = subprocess.run([esmini, "--version"], capture_output=True, text=True, timeout=60)
-    return re.search(r"v?\d+\.\d+\.\d+", done.stdout).group(0).lstrip("v")
+    found = re.search(r"\d+\.\d+\.\d+", done.stdout)
+    return found.group(0) if found else "of an unnamed build"
 
 
 def play_with_our_ego(esmini: str, export: Export, scenario: Path, folder: Path) -> Played:
@@ -80,14 +81,34 @@ def put_in_the_slot(export: Export, scenario: Path, target: Path) -> None:
     follow = below(action, "PrivateAction", "RoutingAction", "FollowTrajectoryAction")
     trajectory = ElementTree.SubElement(follow, "Trajectory", name="ego", closed="false")
     polyline = below(trajectory, "Shape", "Polyline")
-    for step, state in enumerate(export.rollout["actors"][0]["states"]):
+    for time, state in ego_until_contact(export):
         x = state["x"] - to_centre * math.cos(state["heading"])
         y = state["y"] - to_centre * math.sin(state["heading"])
-        position = below(ElementTree.SubElement(polyline, "Vertex", time=f"{0.1 * step:.1f}"), "Position")
+        position = below(ElementTree.SubElement(polyline, "Vertex", time=f"{time:.2f}"), "Position")
         ElementTree.SubElement(position, "WorldPosition", x=f"{x:.6f}", y=f"{y:.6f}", z="0", h=f"{state['heading']:.6f}")
     ElementTree.SubElement(below(follow, "TimeReference"), "Timing", domainAbsoluteRelative="absolute", scale="1", offset="0")
     ElementTree.SubElement(follow, "TrajectoryFollowingMode", followingMode="position")
     tree.write(target)
+
+
+def ego_until_contact(export: Export) -> list[tuple[float, dict]]:
+    """Times and states of our ego. After its first contact, if any, it goes on as it came: what the contact did to it does not
+    happen where there is none."""
+    states = [(0.1 * step, state) for step, state in enumerate(export.rollout["actors"][0]["states"])]
+    found = next(((e["time_s"], e["kind"]["a_state"]) for e in export.rollout["events"] if e["kind"].get("a") == 0), None)
+    if found is None:
+        return states
+    at, contact = found
+    before = [(time, state) for time, state in states if time < at - 1e-6]
+    turning = math.remainder(contact["heading"] - before[-1][1]["heading"], math.tau) / (at - before[-1][0])
+    goes_on = []
+    for after in (0.1, 0.2, 0.3, 0.4, 0.5):
+        along, way = contact["heading"] + 0.5 * turning * after, contact["speed"] * after
+        goes_on.append((at + after, {
+            "x": contact["x"] + way * math.cos(along), "y": contact["y"] + way * math.sin(along),
+            "heading": contact["heading"] + turning * after,
+        }))
+    return [*before, found, *goes_on]
 
 
 def below(element: ElementTree.Element, *names: str) -> ElementTree.Element:

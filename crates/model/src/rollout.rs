@@ -214,6 +214,16 @@ impl Rollout {
         self.actors[0].states.len()
     }
 
+    /// An actor's first contact with anything: the time and its state then.
+    pub fn first_contact_of(&self, actor: usize) -> Option<(f64, &ActorState)> {
+        self.events.iter().find_map(|event| match &event.kind {
+            EventKind::Contact { a, a_state, .. } if *a == actor => Some((event.time_s, a_state)),
+            EventKind::Contact { b, b_state, .. } if *b == actor => Some((event.time_s, b_state)),
+            EventKind::ObstacleContact { actor: who, state, .. } if *who == actor => Some((event.time_s, state)),
+            _ => None,
+        })
+    }
+
     /// The ego's first contact with a road user: the other's position in `actors`, the time and both states.
     pub fn first_ego_contact(&self) -> Option<(usize, f64, ActorState, ActorState)> {
         self.events.iter().find_map(|event| match event.kind {

@@ -1,5 +1,6 @@
 //! Where a file says something else than recrash would write for the scenario it describes: told, and not read.
 
+use crate::openscenario::LANES;
 use crate::openscenario::names::Declaration;
 use crate::xml::Element;
 use crate::{ExportOptions, Format};
@@ -7,8 +8,16 @@ use recrash_model::tuning::Parameter;
 use recrash_model::{Diagnostic, Location, Severity};
 use recrash_roads::Scenario;
 
-/// Parts of the story whose content depends on a rollout, which the file does not hold.
-const FROM_ROLLOUT: [&str; 3] = ["SpeedProfileAction", "SpeedAction", "FollowTrajectoryAction"];
+/// Parts of the story whose content depends on a rollout, which the file does not hold: how fast a partner is, and where
+/// across its lane.
+fn from_rollout(element: &Element) -> bool {
+    let across = || element.attribute("name").is_some_and(|name| name.ends_with(LANES));
+    match element.name.as_str() {
+        "SpeedProfileAction" | "SpeedAction" => true,
+        "Maneuver" => across(),
+        _ => false,
+    }
+}
 
 /// The differences between a file and what recrash would write for `original`, the scenario its properties describe.
 pub(super) fn differences(root: &Element, original: &Scenario, declared: &[Declaration]) -> Vec<Diagnostic> {
@@ -55,9 +64,8 @@ fn compare(found: &Element, expected: &Element, place: &str, list: &mut Vec<Diag
             list.push(edited(found, &format!("{place}/@{name}"), message));
         }
     }
-    // Which action holds a speed best depends on the rollout.
     let in_story = place.contains("/Story[");
-    let compared = |child: &&Element| !(in_story && FROM_ROLLOUT.contains(&child.name.as_str()));
+    let compared = |child: &&Element| !(in_story && from_rollout(child));
     let have = named(found.children.iter().filter(compared));
     let want = named(expected.children.iter().filter(compared));
     for (key, child) in &have {
@@ -80,7 +88,7 @@ fn compare(found: &Element, expected: &Element, place: &str, list: &mut Vec<Diag
 fn recorded(element: &Element) -> bool {
     let starts_in_the_world =
         element.name == "Private" && element.children.len() == 2 && element.deep("WorldPosition").is_some();
-    starts_in_the_world || (element.name == "ManeuverGroup" && element.deep("FollowTrajectoryAction").is_some())
+    starts_in_the_world || (element.name == "ManeuverGroup" && element.deep("Timing").is_some())
 }
 
 /// Children by what tells them apart: element, name or reference, and how many like it came before.

@@ -60,7 +60,7 @@ fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {
                 .with("mass", "80")
                 .with("pedestrianCategory", category)
                 .child(bounding_box(0.0, [spec.length_m, spec.width_m, height(kind)]))
-                .child(properties(description))
+                .child(properties(description).child(between_vertices()))
         }
         PartnerKind::FixedObject => {
             misc_object("object", "obstacle", [spec.length_m, spec.width_m, height(kind)], description)
@@ -96,7 +96,7 @@ fn vehicle(name: &str, kind: PartnerKind, description: &impl Serialize) -> Eleme
             axle("FrontAxle", spec.max_wheel_angle_rad, spec.front_axle_m + to_centre),
             axle("RearAxle", 0.0, 0.0),
         ]))
-        .child(properties(description))
+        .child(properties(description).child(between_vertices()))
 }
 
 fn misc_object(name: &str, category: &str, size: [f64; 3], description: &impl Serialize) -> Element {
@@ -122,6 +122,12 @@ fn bounding_box(to_centre: f64, [length, width, height]: [f64; 3]) -> Element {
 fn properties(description: &impl Serialize) -> Element {
     let json = serde_json::to_string(description).unwrap_or_default();
     Element::new("Properties").child(property(PROPERTY, &json))
+}
+
+/// Headings between the vertices of a trajectory go evenly from one to the next. esmini asks for this in so many words, as
+/// otherwise it turns at the vertices; other players pass over it.
+fn between_vertices() -> Element {
+    property("plineInterpolation", "segment")
 }
 
 pub(super) fn property(name: &str, value: &str) -> Element {

@@ -1,8 +1,11 @@
 //! OpenSCENARIO XML 1.3, with its OpenDRIVE map and, where numbers may move, the files of the logical scenario.
 
+mod driven;
 mod entities;
 mod environment;
+mod expression;
 mod lateral;
+mod line;
 pub(crate) mod names;
 mod places;
 mod speed;
@@ -113,6 +116,9 @@ pub(crate) fn scenario_element(scenario: &Scenario, parameters: &[Parameter], op
     let context = Context { scenario, map, names, parameters, tracks: Vec::new(), rollout: None, options };
     document(&context, &crate::title(draft), &format!("{}.xodr", draft.id))
 }
+
+/// How the maneuvers end that say where across its lane a partner is.
+pub(crate) const LANES: &str = ": lanes";
 
 /// Whether an entity is an obstacle.
 pub(crate) fn is_obstacle_name(name: &str) -> bool {

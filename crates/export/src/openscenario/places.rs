@@ -43,13 +43,37 @@ pub(super) fn ego_start(context: &Context<'_>) -> Element {
 
 /// A partner's start, by its position in the draft.
 pub(super) fn partner_start(context: &Context<'_>, position: usize) -> Element {
+    let placement = &context.scenario.partners()[position];
+    let (t, t_m) = match context.scenario.draft().partners[position].start {
+        Start::Offset { delta_t_m, .. } => {
+            (context.names.reference(&format!("/partners/{position}/start/delta_t_m"), delta_t_m), delta_t_m)
+        }
+        Start::ArrivalGap { .. } => ("0".to_owned(), 0.0),
+    };
+    start(context, placement, partner_along(context, position), t, t_m)
+}
+
+/// Where a partner starts along its way, and so much further on, as an attribute value. Not before the way begins.
+pub(super) fn start_along(context: &Context<'_>, position: usize, further_m: f64) -> String {
+    let along = partner_along(context, position);
+    if along.value + further_m < 0.0 {
+        return "0".to_owned();
+    }
+    if !along.expression.contains('$') {
+        return number(rounded(along.value + further_m));
+    }
+    let sign = if further_m < 0.0 { "-" } else { "+" };
+    format!("${{{} {sign} {}}}", along.expression, number(further_m.abs()))
+}
+
+fn partner_along(context: &Context<'_>, position: usize) -> Along {
     let draft = context.scenario.draft();
     let (ego, placement) = (&draft.ego, &context.scenario.partners()[position]);
     let partner = &draft.partners[position];
     let at = |field: &str, value: f64| context.names.reference(&format!("/partners/{position}/{field}"), value);
     let ego_s = context.names.reference("/ego/s_m", ego.s_m);
-    match partner.start {
-        Start::Offset { delta_s_m, delta_t_m } => {
+    let expression = match partner.start {
+        Start::Offset { delta_s_m, .. } => {
             let (moved, ego_along) = (at("start/delta_s_m", delta_s_m), ego.s_m + delta_s_m);
             // Straight roads have equally long lanes; on a curve this is the tangent at the designed place.
             let sense = if partner.approach == Approach::Opposite { "-" } else { "+" };
@@ -57,27 +81,23 @@ pub(super) fn partner_start(context: &Context<'_>, position: usize) -> Element {
                 Approach::Opposite => placement.s_m + ego_along,
                 _ => placement.s_m - ego_along,
             });
-            let expression = match (rest == 0.0, sense) {
+            match (rest == 0.0, sense) {
                 (true, "+") => format!("({ego_s} + {moved})"),
                 _ => format!("({} {sense} ({ego_s} + {moved}))", number(rest)),
-            };
-            let t = at("start/delta_t_m", delta_t_m);
-            start(context, placement, Along { expression, value: placement.s_m }, t, delta_t_m)
+            }
         }
-        Start::ArrivalGap { arrival_gap_s } => {
-            let expression = match (&placement.conflict, target_speed(context, position)) {
-                (Some(conflict), Some(speed)) => format!(
-                    "({} - {speed} * (({} - {ego_s}) / {} + {}))",
-                    number(rounded(conflict.s_b)),
-                    number(rounded(conflict.s_a)),
-                    context.names.reference("/ego/target_speed_mps", ego.target_speed_mps),
-                    at("start/arrival_gap_s", arrival_gap_s),
-                ),
-                _ => number(placement.s_m),
-            };
-            start(context, placement, Along { expression, value: placement.s_m }, "0".to_owned(), 0.0)
-        }
-    }
+        Start::ArrivalGap { arrival_gap_s } => match (&placement.conflict, target_speed(context, position)) {
+            (Some(conflict), Some(speed)) => format!(
+                "({} - {speed} * (({} - {ego_s}) / {} + {}))",
+                number(rounded(conflict.s_b)),
+                number(rounded(conflict.s_a)),
+                context.names.reference("/ego/target_speed_mps", ego.target_speed_mps),
+                at("start/arrival_gap_s", arrival_gap_s),
+            ),
+            _ => number(placement.s_m),
+        },
+    };
+    Along { expression, value: placement.s_m }
 }
 
 /// The parameter that holds the speed a partner's policy wants.

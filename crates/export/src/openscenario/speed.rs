@@ -1,18 +1,18 @@
 //! Policies as speed actions: when each begins, and how the speed goes from there.
 
 use super::Context;
-use super::lateral::offset_at;
-use super::places::reference_point;
+use super::driven::{Driven, corners};
 use crate::xml::{Element, number, rounded};
-use recrash_model::rollout::{EventKind, STEP_S};
+use recrash_model::rollout::STEP_S;
 use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
 use recrash_model::vehicle::VehicleSpec;
 
 /// Speeds nearer to their target than this have reached it. [m/s]
-const REACHED_MPS: f64 = 0.02;
+const REACHED_MPS: f64 = 0.005;
 
-/// A straight piece of a speed profile stays this near to the curve it stands for. [m/s]
-const PROFILE_TOLERANCE_MPS: f64 = 0.02;
+/// A straight piece of a speed profile stays this near to the curve it stands for, in speed and in distance since the
+/// piece began. [m/s], [m]
+const PROFILE_TOLERANCE: (f64, f64) = (0.05, 0.02);
 
 /// A part of a policy: from when on, and what then.
 pub(super) struct Phase {
@@ -44,33 +44,30 @@ impl Curve {
 }
 
 /// The parts of a partner's policy, in order of time.
-pub(super) fn phases(context: &Context<'_>, position: usize) -> Vec<Phase> {
+pub(super) fn phases(context: &Context<'_>, position: usize, driven: Option<&Driven>) -> Vec<Phase> {
     let draft = context.scenario.draft();
     let partner = &draft.partners[position];
     let spec = VehicleSpec::of(partner.kind);
-    let nominal = nominal_curve(&partner.policy, partner.speed_mps, &spec, draft.duration_s);
-    let recorded = recorded_curve(context, position);
+    let curve =
+        curve(&partner.policy, driven.map_or_else(|| vec![partner.speed_mps], Driven::speeds), &spec, draft.duration_s);
     let end_s = draft.duration_s;
     let pointer = |field: &str| format!("/partners/{position}/policy/{field}");
     let named = |field: &str, value: f64| context.names.reference(&pointer(field), value);
     let initial = context.names.reference(&format!("/partners/{position}/speed_mps"), partner.speed_mps);
-    let curve = recorded.as_ref().unwrap_or(&nominal);
     let steps = |value: &str| format!("${{{value} * 0.1}}");
     let after = |from: &str, count: &str| format!("${{({from} + {count}) * 0.1}}");
     let in_seconds = |step: u32| f64::from(step) * STEP_S;
     let zero = || "0".to_owned();
     let hold = |from_s: f64, to_s: f64, target: (&str, f64), start: Option<(&str, f64)>| {
-        approach(curve, from_s, to_s.min(end_s), target, start)
-    };
-    let alone = |curve: &Curve| {
-        vec![Phase { name: "drive", start: zero(), action: profile(curve, 0.0, end_s, |speed| number(rounded(speed))) }]
+        approach(&curve, from_s, to_s.min(end_s), target, start)
     };
     match partner.policy {
         // Braking within the throttle's time: the parts would not follow one another.
         Policy::AccelThenBrake { accel_steps, brake_step, brake_steps, .. }
             if brake_steps > 0 && brake_step < accel_steps =>
         {
-            alone(curve)
+            let action = profile(&curve, 0.0, end_s, |speed| number(rounded(speed)), plain_time);
+            vec![Phase { name: "drive", start: zero(), action }]
         }
         Policy::SuddenBrake { target_speed, brake_step, brake_steps, .. } => {
             let target = named("target_speed", target_speed);
@@ -105,20 +102,18 @@ pub(super) fn phases(context: &Context<'_>, position: usize) -> Vec<Phase> {
             let (cruise_s, brake_s) = (in_seconds(accel_steps), in_seconds(brake_step));
             let again_s = in_seconds(brake_step.saturating_add(brake_steps));
             let mut list = Vec::new();
+            // The speed that the throttle alone would lead to, as what it depends on.
+            let free_mps = partner.speed_mps + accel_mag * spec.max_acceleration_mps2 * cruise_s;
+            let rate = number(rounded(spec.max_acceleration_mps2 * STEP_S));
+            let free = format!("({initial} + {accelerate} * {rate} * {during})");
             if accel_steps > 0 {
-                let reached = curve.at(cruise_s);
-                // The speed at the end of the throttle, told as what it depends on where that is exact.
-                let free = partner.speed_mps + accel_mag.max(0.0) * spec.max_acceleration_mps2 * cruise_s;
-                let target = if accel_mag >= 0.0 && (free - reached).abs() < 0.3 {
-                    let rate = number(rounded(spec.max_acceleration_mps2 * STEP_S));
-                    format!("${{{initial} + {accelerate} * {rate} * {during}}}")
-                } else {
-                    number(rounded(reached))
-                };
+                let ends = ((initial.as_str(), partner.speed_mps), (free.as_str(), free_mps));
+                let speed = |speed: f64| mixed(ends.0, ends.1, speed).unwrap_or_else(|| number(rounded(speed)));
+                let time = |time_s: f64| format!("${{{during} * {}}}", short(time_s / f64::from(accel_steps)));
                 list.push(Phase {
                     name: "throttle",
                     start: zero(),
-                    action: speed_action("linear", "time", &steps(&during), &target),
+                    action: profile(&curve, 0.0, cruise_s, speed, time),
                 });
             }
             let start = if accel_steps > 0 { steps(&during) } else { zero() };
@@ -154,10 +149,7 @@ pub(super) fn phases(context: &Context<'_>, position: usize) -> Vec<Phase> {
         // These react to others, which no action can: with a rollout, what they did there; else what they would do alone.
         Policy::IdmNominal { target_speed_mps } | Policy::Yielding { target_speed_mps, .. } => {
             let target = named("target_speed_mps", target_speed_mps);
-            let action = match &recorded {
-                Some(recorded) => return alone(recorded),
-                None => hold(0.0, end_s, (&target, target_speed_mps), Some((&initial, partner.speed_mps))),
-            };
+            let action = hold(0.0, end_s, (&target, target_speed_mps), Some((&initial, partner.speed_mps)));
             vec![Phase { name: "drive", start: zero(), action }]
         }
     }
@@ -198,122 +190,82 @@ fn approach(curve: &Curve, from_s: f64, to_s: f64, target: (&str, f64), start: O
     {
         return speed_at_once(name);
     }
-    profile(curve, from_s, to_s, |speed| {
+    let write = |speed: f64| {
         if reached(speed) {
             return name.to_owned();
         }
         // On the way from one to the other it is a mix of both.
-        if let Some((start_name, start_mps)) = start
-            && (start_mps - target_mps).abs() > REACHED_MPS
-            && (start_mps.min(target_mps)..=start_mps.max(target_mps)).contains(&speed)
-        {
-            let share = (speed - start_mps) / (target_mps - start_mps);
-            return format!("${{{start_name} * {} + {name} * {}}}", short(1.0 - share), short(share));
+        if let Some(mix) = start.and_then(|start| mixed(start, target, speed)) {
+            return mix;
         }
         if target_mps > 0.0 { format!("${{{name} * {}}}", short(speed / target_mps)) } else { number(rounded(speed)) }
-    })
+    };
+    profile(curve, from_s, to_s, write, plain_time)
 }
 
-/// Four decimals: well within what a profile stands for. Never negative: `- -0.1` is no expression everywhere.
+/// A speed between two others that have names, as a mix of them.
+fn mixed((start, start_mps): (&str, f64), (end, end_mps): (&str, f64), speed: f64) -> Option<String> {
+    let between = (start_mps.min(end_mps)..=start_mps.max(end_mps)).contains(&speed);
+    let share = (speed - start_mps) / (end_mps - start_mps);
+    let apart = (start_mps - end_mps).abs() > 0.3;
+    (between && apart).then(|| format!("${{{start} * {} + {end} * {}}}", short(1.0 - share), short(share)))
+}
+
+/// Five decimals: well within what a profile stands for. Never negative: `- -0.1` is no expression everywhere.
 fn short(value: f64) -> String {
-    number((value.max(0.0) * 1e4).round() / 1e4)
+    number((value.max(0.0) * 1e5).round() / 1e5)
+}
+
+fn plain_time(seconds: f64) -> String {
+    number(rounded(seconds))
 }
 
 /// The curve between two times as a speed profile of straight pieces.
-fn profile(curve: &Curve, from_s: f64, to_s: f64, write: impl Fn(f64) -> String) -> Element {
+fn profile(
+    curve: &Curve,
+    from_s: f64,
+    to_s: f64,
+    write: impl Fn(f64) -> String,
+    write_time: impl Fn(f64) -> String,
+) -> Element {
     let speeds = curve.between(from_s, to_s);
-    let count = speeds.len() - 1;
-    let mut corners = Vec::new();
-    simplify(&speeds, 0, count, &mut corners);
-    corners.push(count);
-    // Nothing is said by holding a speed to the end.
-    if let [.., before, end] = corners[..]
-        && (speeds[before] - speeds[end]).abs() < REACHED_MPS
-    {
-        corners.pop();
+    let mut distances = vec![0.0];
+    for pair in speeds.windows(2) {
+        distances.push(distances[distances.len() - 1] + 0.5 * (pair[0] + pair[1]) * STEP_S);
     }
-    let mut last = 0;
-    let entries: Vec<Element> = corners
+    let off = |first: usize, position: usize, last: usize| {
+        let slope = (speeds[last] - speeds[first]) / (last - first) as f64;
+        let along = (position - first) as f64;
+        let speed = speeds[position] - speeds[first] - slope * along;
+        let distance = distances[position] - distances[first] - (speeds[first] + 0.5 * slope * along) * along * STEP_S;
+        (speed.abs(), (speed.abs() / PROFILE_TOLERANCE.0).max(distance.abs() / PROFILE_TOLERANCE.1))
+    };
+    let last = speeds.len() - 1;
+    let mut found = corners(0, last, &off);
+    // Nothing is said by holding a speed to the end.
+    let holds = found.last().is_some_and(|&before| (speeds[before] - speeds[last]).abs() < REACHED_MPS);
+    if !holds {
+        found.push(last);
+    }
+    let mut before = 0;
+    let entries: Vec<Element> = found
         .into_iter()
         .map(|corner| {
-            let time = (corner - last) as f64 * STEP_S;
-            last = corner;
-            Element::new("SpeedProfileEntry").with("speed", write(speeds[corner])).with_number("time", rounded(time))
+            let time = (corner - before) as f64 * STEP_S;
+            before = corner;
+            Element::new("SpeedProfileEntry").with("speed", write(speeds[corner])).with("time", write_time(time))
         })
         .collect();
     longitudinal(Element::new("SpeedProfileAction").with("followingMode", "position").children(entries))
 }
 
-/// Corners between two ends of a polyline that stays near all points (Ramer, Douglas and Peucker), in order.
-fn simplify(speeds: &[f64], first: usize, last: usize, corners: &mut Vec<usize>) {
-    let slope = (speeds[last] - speeds[first]) / (last - first).max(1) as f64;
-    let off = |position: usize| (speeds[position] - speeds[first] - slope * (position - first) as f64).abs();
-    let farthest = (first + 1..last).max_by(|&a, &b| off(a).total_cmp(&off(b)));
-    if let Some(corner) = farthest.filter(|&corner| off(corner) > PROFILE_TOLERANCE_MPS) {
-        simplify(speeds, first, corner, corners);
-        corners.push(corner);
-        simplify(speeds, corner, last, corners);
-    }
-}
-
-/// How fast the partner moved along its way in the rollout, up to its first contact.
-///
-/// Not its speed over ground: a vehicle that sways or cuts a curve is faster than it gets on, and actions know no swaying.
-fn recorded_curve(context: &Context<'_>, position: usize) -> Option<Curve> {
-    let rollout = context.rollout?;
-    let actor = position + 1;
-    let track = rollout.actors.get(actor)?;
-    let contact_s = rollout.events.iter().find_map(|event| match event.kind {
-        EventKind::Contact { a, b, .. } if a == actor || b == actor => Some(event.time_s),
-        EventKind::ObstacleContact { actor: who, .. } if who == actor => Some(event.time_s),
-        _ => None,
-    });
-    let count = track.states.len();
-    let until = contact_s.map_or(count, |time| (time / STEP_S).floor() as usize + 1).min(count);
-    if until < 3 {
-        return None;
-    }
-    let path = &context.scenario.partners()[position].path;
-    let mut segment = 0;
-    let draft = context.scenario.draft();
-    let partner = &draft.partners[position];
-    // A metre of the lane's centre is more or less than a metre beside it, where the lane bends.
-    let places: Vec<(f64, f64)> = track.states[..until]
-        .iter()
-        .enumerate()
-        .map(|(step, state)| {
-            let point = reference_point(track.kind, state.pose()).position;
-            let found = path.project(context.scenario.network(), point, segment);
-            segment = found.segment;
-            (found.s, 1.0 + path.curvature(found.s) * offset_at(partner, step as f64 * STEP_S))
-        })
-        .collect();
-    let speed = |from: usize, at: usize, to: usize| {
-        let time = (to - from) as f64 * STEP_S;
-        ((places[to].0 - places[from].0) * places[at].1 / time).max(0.0)
-    };
-    let mut speeds = vec![track.states[0].speed];
-    speeds.extend((1..until - 1).map(|step| speed(step - 1, step, step + 1)));
-    speeds.push(speed(until - 2, until - 1, until - 1));
-    // Behind the end of the record it goes on as its policy would.
-    let spec = VehicleSpec::of(track.kind);
-    let mut speed = speeds[until - 1];
-    let steps = (draft.duration_s / STEP_S).ceil() as usize;
-    for step in until..=steps {
-        speed = next_speed(&partner.policy, speed, u32::try_from(step - 1).unwrap_or(u32::MAX), &spec);
-        speeds.push(speed);
-    }
-    Some(Curve(speeds))
-}
-
-/// What a policy does to the speed with nobody else on the road: `docs/models/policies.md`, without tyres.
-fn nominal_curve(policy: &Policy, start_mps: f64, spec: &VehicleSpec, duration_s: f64) -> Curve {
-    let steps = (duration_s / STEP_S).ceil() as u32;
-    let mut speeds = vec![start_mps];
-    let mut speed = start_mps;
-    for step in 0..steps {
-        speed = next_speed(policy, speed, step, spec);
-        speeds.push(speed);
+/// Speeds at the steps of a scenario: those given, and behind them what the policy does to the last with nobody else on
+/// the road (`docs/models/policies.md`, without tyres). [m/s]
+fn curve(policy: &Policy, mut speeds: Vec<f64>, spec: &VehicleSpec, duration_s: f64) -> Curve {
+    let steps = (duration_s / STEP_S).ceil() as usize;
+    for step in speeds.len()..=steps {
+        let before = u32::try_from(step - 1).unwrap_or(u32::MAX);
+        speeds.push(next_speed(policy, speeds[step - 1], before, spec));
     }
     Curve(speeds)
 }
@@ -360,7 +312,7 @@ mod tests {
     #[test]
     fn full_brake_from_ten_metres_per_second_takes_two_thirds_of_a_second() {
         let policy = Policy::SuddenBrake { target_speed: 10.0, brake_step: 0, brake_steps: 20, speed_kp: None };
-        let curve = nominal_curve(&policy, 10.0, &CAR, 2.0);
+        let curve = curve(&policy, vec![10.0], &CAR, 2.0);
         // 10 / 15.13 = 0.66 s: moving after 0.6 s, standing after 0.7 s.
         assert!((curve.at(0.6) - (10.0 - 0.6 * 15.13)).abs() < 1e-9);
         assert!(curve.at(0.7) < 1e-9);
@@ -377,16 +329,7 @@ mod tests {
             brake_steps: 1,
             speed_kp: None,
         };
-        let curve = nominal_curve(&policy, 8.0, &CAR, 2.0);
+        let curve = curve(&policy, vec![8.0], &CAR, 2.0);
         assert!((curve.at(2.0) - (8.0 + 2.0 * 0.5 * CAR.max_acceleration_mps2)).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_straight_piece_has_no_corners_and_a_bend_has_one() {
-        let mut corners = Vec::new();
-        simplify(&[0.0, 1.0, 2.0, 3.0], 0, 3, &mut corners);
-        assert_eq!(corners, [] as [usize; 0]);
-        simplify(&[0.0, 1.0, 2.0, 2.0, 2.0], 0, 4, &mut corners);
-        assert_eq!(corners, [2]);
     }
 }

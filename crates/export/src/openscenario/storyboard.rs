@@ -1,14 +1,16 @@
 //! The storyboard: how it begins, who does what when, what is watched, and when it stops.
 
+use super::driven::Driven;
+use super::line::line;
 use super::speed::{Phase, brake, phases, speed_at_once};
-use super::{Context, obstacle_name};
+use super::{Context, LANES, obstacle_name};
 use crate::openscenario::environment::environment_action;
 use crate::openscenario::places::{
     ego_start, fixed_place, partner_start, place_on, reference_point, route, world_position,
 };
 use crate::openscenario::{lateral, names::Declarations};
 use crate::xml::{Element, number, rounded};
-use recrash_model::rollout::{ActorTrack, EGO_ID, STEP_S};
+use recrash_model::rollout::{ActorState, ActorTrack, EGO_ID, STEP_S};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Placement;
 
@@ -129,19 +131,27 @@ fn partners_story(context: &Context<'_>) -> Element {
         match context.tracks.get(position) {
             Some(track) => {
                 let name = format!("{id}: recorded");
-                let follow = follow_trajectory(track, &name);
+                let follow = follow_trajectory(context, position + 1, track, &name);
                 events.push(event(&name, &format!("{id}: follow"), follow, at_time(&name, "0")));
             }
             None => {
-                for Phase { name, start, action } in phases(context, position) {
+                let driven = Driven::new(context, position);
+                for Phase { name, start, action } in phases(context, position, driven.as_ref()) {
                     let name = format!("{id}: {name}");
                     let trigger = at_time(&format!("{name}: time"), &start);
                     events.push(event(&name, &format!("{name}: speed"), action, trigger));
                 }
-                for (number_of, (start, action)) in lateral::moves(context, position).into_iter().enumerate() {
-                    let name = format!("{id}: move {}", number_of + 1);
-                    let trigger = at_time(&format!("{name}: time"), &start);
-                    lane_events.push(event(&name, &format!("{name}: lane"), action, trigger));
+                let name = format!("{id}: line");
+                if let Some(action) = driven.as_ref().and_then(|driven| line(context, position, driven, &name)) {
+                    let trigger = at_time(&format!("{name}: time"), "0");
+                    lane_events.push(event(&name, &format!("{name}: follow"), action, trigger));
+                } else {
+                    let moves = lateral::moves(context, position, driven.as_ref());
+                    for (number_of, (start, action)) in moves.into_iter().enumerate() {
+                        let name = format!("{id}: move {}", number_of + 1);
+                        let trigger = at_time(&format!("{name}: time"), &start);
+                        lane_events.push(event(&name, &format!("{name}: lane"), action, trigger));
+                    }
                 }
                 // Whoever has touched another brakes to a stand, as in the simulator.
                 let name = format!("{id}: halt");
@@ -155,7 +165,7 @@ fn partners_story(context: &Context<'_>) -> Element {
                 ));
             }
         }
-        let lanes = (!lane_events.is_empty()).then(|| maneuver(&format!("{id}: lanes"), lane_events));
+        let lanes = (!lane_events.is_empty()).then(|| maneuver(&format!("{id}{LANES}"), lane_events));
         group(id, Some(id), std::iter::once(maneuver(&format!("{id}: speed"), events)).chain(lanes).collect())
     });
     story("partners", groups.collect())
@@ -213,11 +223,22 @@ fn stop_trigger(context: &Context<'_>) -> Element {
     Element::new("StopTrigger").children(groups)
 }
 
-/// The recorded way of a partner as a polyline in time.
-fn follow_trajectory(track: &ActorTrack, name: &str) -> Element {
-    let vertices = track.states.iter().enumerate().map(|(step, state)| {
+/// The recorded way of a partner as a polyline in time, with the moment of its first contact between two steps: what it does
+/// in the step of it is no straight line.
+fn follow_trajectory(context: &Context<'_>, actor: usize, track: &ActorTrack, name: &str) -> Element {
+    let contact = context.rollout.and_then(|rollout| rollout.first_contact_of(actor));
+    let mut moments: Vec<(f64, &ActorState)> =
+        track.states.iter().enumerate().map(|(step, state)| (step as f64 * STEP_S, state)).collect();
+    if let Some((time_s, state)) = contact
+        && let Some(after) = moments.iter().position(|(time, _)| *time > time_s + 1e-6)
+        && after > 0
+        && time_s > moments[after - 1].0 + 1e-6
+    {
+        moments.insert(after, (time_s, state));
+    }
+    let vertices = moments.into_iter().map(|(time_s, state)| {
         Element::new("Vertex")
-            .with_number("time", rounded(step as f64 * STEP_S))
+            .with_number("time", rounded(time_s))
             .child(world_position(reference_point(track.kind, state.pose())))
     });
     let shape = Element::new("Shape").child(Element::new("Polyline").children(vertices));
