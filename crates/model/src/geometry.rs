@@ -161,15 +161,28 @@ impl OrientedBox {
     pub fn overlaps(&self, other: &Self) -> bool {
         let d = other.centre - self.centre;
         let reach = self.radius() + other.radius();
-        if d.length_squared() > reach * reach {
-            return false;
-        }
+        d.length_squared() <= reach * reach && self.axis_overlaps(other).into_iter().all(|overlap| overlap >= 0.0)
+    }
+
+    /// How far one of the boxes would have to move for them to be apart, 0 where they are. [m]
+    pub fn depth(&self, other: &Self) -> f64 {
+        self.axis_overlaps(other).into_iter().fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
+    /// By how much their shadows overlap on the two axes of each box; negative where they are apart. [m]
+    #[inline]
+    fn axis_overlaps(&self, other: &Self) -> [f64; 4] {
+        let d = other.centre - self.centre;
         let c = self.axis.dot(other.axis).abs();
         let s = self.axis.cross(other.axis).abs();
-        d.dot(self.axis).abs() <= self.half_length + other.half_length * c + other.half_width * s
-            && d.dot(self.axis.left()).abs() <= self.half_width + other.half_length * s + other.half_width * c
-            && d.dot(other.axis).abs() <= other.half_length + self.half_length * c + self.half_width * s
-            && d.dot(other.axis.left()).abs() <= other.half_width + self.half_length * s + self.half_width * c
+        let (own_l, own_w) = (self.half_length, self.half_width);
+        let (other_l, other_w) = (other.half_length, other.half_width);
+        [
+            own_l + other_l * c + other_w * s - d.dot(self.axis).abs(),
+            own_w + other_l * s + other_w * c - d.dot(self.axis.left()).abs(),
+            other_l + own_l * c + own_w * s - d.dot(other.axis).abs(),
+            other_w + own_l * s + own_w * c - d.dot(other.axis.left()).abs(),
+        ]
     }
 
     /// The distance between the boxes, 0 when they touch or overlap. [m]
@@ -240,6 +253,15 @@ mod tests {
     fn gap_corner_to_corner_is_a_hypotenuse() {
         let gap = boxed(0.0, 0.0, 0.0).gap(&boxed(7.0, 6.0, 0.0));
         assert!((gap - 5.0).abs() < 1e-12, "{gap}");
+    }
+
+    #[test]
+    fn depth_is_the_way_out_of_one_another() {
+        let at = |x: f64, y: f64, heading: f64| OrientedBox::new(Pose { position: Vec2::new(x, y), heading }, 4.0, 2.0);
+        assert!((at(0.0, 0.0, 0.0).depth(&at(3.7, 0.5, 0.0)) - 0.3).abs() < 1e-12);
+        assert!((at(0.0, 0.0, 0.0).depth(&at(0.5, 1.9, 0.0)) - 0.1).abs() < 1e-12);
+        assert!((at(0.0, 0.0, 0.0).depth(&at(2.8, 0.0, math::FRAC_PI_2)) - 0.2).abs() < 1e-12);
+        assert_eq!(at(0.0, 0.0, 0.0).depth(&at(4.1, 0.0, 0.0)), 0.0);
     }
 
     #[test]

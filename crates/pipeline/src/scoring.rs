@@ -2,9 +2,11 @@
 
 use crate::casework::{CaseRun, run_scenario};
 use crate::simulator::Simulator;
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::math::wrap_angle;
 use recrash_model::metrics::Expectation;
 use recrash_model::profile::SystemProfile;
-use recrash_model::rollout::{Role, Rollout, STEP_S};
+use recrash_model::rollout::{ActorState, Role, Rollout, STEP_S};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::{Parameter, Score, apply};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,6 +21,13 @@ const PLAUSIBLE_BRAKING_MPS2: f64 = 0.9 * 9.81;
 const BRAKING_STEPS: usize = 3;
 /// Price of the distance from the scenario as designed: among equal outcomes the nearest to the record wins. [m]
 const DISTANCE_PRICE_M: f64 = 0.05;
+/// A contact this deep is one in another simulator as well, and a gap this wide is none there. Twice what the partners of the
+/// exports are off in esmini at the time of contact, `docs/formats/esmini.md`. [m]
+const MARGIN_M: f64 = 0.1;
+/// How deep a contact is shows within this time. [s]
+const DEPTH_TIME_S: f64 = 0.3;
+/// Times at which it is looked at in that, as often as the physics steps.
+const DEPTH_LOOKS: u8 = 15;
 /// After this many failures of a program that hangs or ends, the search of a scenario asks no more of it.
 const MAX_FAULTS: usize = 3;
 /// Worth of each kind of odd behaviour. [m]
@@ -89,7 +98,10 @@ impl<'a> Scoring<'a> {
         kinds.sort_unstable();
         kinds.dedup();
         let odd = kinds.iter().filter(|kind| !kind.is_failure()).count();
-        let gap = run.metrics.min_gap.map_or(1e3, |gap| gap.value);
+        let gap = match contact_depth(&run.rollout) {
+            Some(depth_m) => -depth_m.min(MARGIN_M),
+            None => run.metrics.min_gap.map_or(1e3, |gap| gap.value.max(MARGIN_M)),
+        };
         Score {
             objective: gap + DISTANCE_PRICE_M * self.distance(values) - ODD_BEHAVIOUR_WORTH_M * odd as f64,
             min_gap: run.metrics.min_gap,
@@ -133,6 +145,35 @@ impl<'a> Scoring<'a> {
             .sum();
         (squares / self.parameters.len().max(1) as f64).sqrt()
     }
+}
+
+/// Whether a run ends in a contact of the ego that no small difference would undo.
+pub fn is_sound_contact(rollout: &Rollout) -> bool {
+    contact_depth(rollout).is_some_and(|depth_m| depth_m >= MARGIN_M)
+}
+
+/// How deep into one another the ego and what it touched would go, if both went on for a moment as they came, at the same
+/// speed: along the same arc or straight on, whichever is less deep. [m]
+fn contact_depth(rollout: &Rollout) -> Option<f64> {
+    let (other, time_s, ego_state, other_state) = rollout.first_ego_contact()?;
+    let step = ((time_s / STEP_S - 1e-6).floor() as usize).min(rollout.steps() - 1);
+    let shape = |actor: usize, state: &ActorState, after_s: f64, turning: bool| {
+        let (track, pose) = (&rollout.actors[actor], state.pose());
+        let since_s = (time_s - step as f64 * STEP_S).max(1e-3);
+        let rate = if turning { wrap_angle(pose.heading - track.states[step].heading) / since_s } else { 0.0 };
+        // The chord of an arc is half turned.
+        let chord = Vec2::from_heading(pose.heading + 0.5 * rate * after_s) * (state.speed * after_s);
+        let pose = Pose { position: pose.position + chord, heading: pose.heading + rate * after_s };
+        OrientedBox::new(pose, track.length_m, track.width_m)
+    };
+    let deepest = |turning: bool| {
+        let depths = (0..=DEPTH_LOOKS).map(|look| {
+            let after_s = DEPTH_TIME_S * f64::from(look) / f64::from(DEPTH_LOOKS);
+            shape(0, &ego_state, after_s, turning).depth(&shape(other, &other_state, after_s, turning))
+        });
+        depths.fold(0.0, f64::max)
+    };
+    Some(deepest(true).min(deepest(false)))
 }
 
 fn hardest_partner_braking(rollout: &Rollout) -> f64 {

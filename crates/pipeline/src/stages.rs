@@ -6,7 +6,7 @@ use crate::error::PipelineError;
 use crate::failures::Failure;
 use crate::progress::{Progress, ProgressEvent};
 use crate::recording::RecordInput;
-use crate::scoring::Scoring;
+use crate::scoring::{Scoring, is_sound_contact};
 use crate::store::{to_compact_json, to_json};
 use crate::suite::{Files, Stage, Suite};
 use crate::triage::triage;
@@ -423,8 +423,8 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         let parameters = parameters(&draft, &narrative, suite.profile());
         let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), &simulator, &first);
         // A faithful contact as designed is what the search looks for, at no distance from the record.
-        let enough =
-            |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && first.metrics.contact.is_some();
+        let sound = is_sound_contact(&first.rollout);
+        let enough = |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && sound;
         let seed = case_seed(suite, cluster).child("tune");
         let search = || recrash_search::tune(id, &parameters, options, seed, |values| scoring.score(values), enough);
         let cast = &suite.options().cast;
