@@ -81,6 +81,7 @@ pub struct TuneLog {
 /// A pointer that is not in the scenario, or a value its place cannot hold: the pointer and what serde said.
 pub fn apply(draft: &ScenarioDraft, parameters: &[Parameter], values: &[f64]) -> Result<ScenarioDraft, String> {
     let mut document = serde_json::to_value(draft).map_err(|e| e.to_string())?;
+    let together = start_speeds(draft);
     for (parameter, &value) in parameters.iter().zip(values) {
         let place = document
             .pointer_mut(&parameter.pointer)
@@ -92,26 +93,32 @@ pub fn apply(draft: &ScenarioDraft, parameters: &[Parameter], values: &[f64]) ->
                 .ok_or_else(|| format!("{}: {value} is not a finite number", parameter.pointer))?
         };
         *place = serde_json::Value::Number(number.clone());
-        if let Some(start) = start_speed_at(draft, &parameter.pointer).and_then(|at| document.pointer_mut(&at)) {
+        let start = together.iter().find(|(_, target)| *target == parameter.pointer);
+        if let Some(start) = start.and_then(|(start, _)| document.pointer_mut(start)) {
             *start = serde_json::Value::Number(number);
         }
     }
     serde_json::from_value(document).map_err(|e| format!("scenario {}: {e}", draft.id))
 }
 
-/// Where the first speed of a vehicle stands whose target speed is at this pointer, where the two are equal.
-fn start_speed_at(draft: &ScenarioDraft, pointer: &str) -> Option<String> {
-    if pointer == "/ego/target_speed_mps" {
-        return (draft.ego.speed_mps == draft.ego.target_speed_mps).then(|| "/ego/speed_mps".to_owned());
+/// First speeds that are equal to the target speed of their vehicle, so that the two move together: JSON pointers of the
+/// first and of the target speed.
+pub fn start_speeds(draft: &ScenarioDraft) -> Vec<(String, String)> {
+    let mut list = Vec::new();
+    if draft.ego.speed_mps == draft.ego.target_speed_mps {
+        list.push(("/ego/speed_mps".to_owned(), "/ego/target_speed_mps".to_owned()));
     }
-    let (number, field) = pointer.strip_prefix("/partners/")?.split_once('/')?;
-    let partner = draft.partners.get(number.parse::<usize>().ok()?)?;
-    let target_mps = match (&partner.policy, field) {
-        (Policy::IdmNominal { target_speed_mps }, "policy/target_speed_mps") => *target_speed_mps,
-        (Policy::SuddenBrake { target_speed, .. }, "policy/target_speed") => *target_speed,
-        _ => return None,
-    };
-    (partner.speed_mps == target_mps).then(|| format!("/partners/{number}/speed_mps"))
+    for (number, partner) in draft.partners.iter().enumerate() {
+        let (target_mps, field) = match partner.policy {
+            Policy::IdmNominal { target_speed_mps } => (target_speed_mps, "target_speed_mps"),
+            Policy::SuddenBrake { target_speed, .. } => (target_speed, "target_speed"),
+            _ => continue,
+        };
+        if partner.speed_mps == target_mps {
+            list.push((format!("/partners/{number}/speed_mps"), format!("/partners/{number}/policy/{field}")));
+        }
+    }
+    list
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use crate::xml::{Element, parse};
 use origins::Origins;
 use recrash_model::rollout::EGO_ID;
 use recrash_model::scenario::SCENARIO_FORMAT;
+use recrash_model::tuning::start_speeds;
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
 use recrash_roads::Scenario;
 use serde_json::{Map, Number, Value};
@@ -51,6 +52,7 @@ fn read(root: &Element) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
     }
+    keep_together(&original, &declared, &mut current);
     let scenario = checked(&current).map_err(|list| origins.place(list))?;
     // What the numbers were when the file was written; an edit may have made them unfit, and then nothing is compared.
     if let Ok(original) = checked(&original) {
@@ -58,6 +60,19 @@ fn read(root: &Element) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
     }
     diagnostics.extend(origins.place(scenario.diagnostics));
     Ok(Outcome { value: scenario.value, diagnostics })
+}
+
+/// A first speed that has no declaration goes with its target speed.
+fn keep_together(original: &Value, declared: &[Declaration], current: &mut Value) {
+    let Ok(draft) = serde_json::from_value(original.clone()) else { return };
+    for (start, target) in start_speeds(&draft) {
+        let speed = current.pointer(&target).cloned();
+        if let (false, Some(speed)) = (declared.iter().any(|number| number.pointer == start), speed)
+            && let Some(slot) = current.pointer_mut(&start)
+        {
+            *slot = speed;
+        }
+    }
 }
 
 fn checked(scenario: &Value) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {

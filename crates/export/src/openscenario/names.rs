@@ -2,7 +2,7 @@
 
 use crate::xml::{Element, number};
 use recrash_model::scenario::ScenarioDraft;
-use recrash_model::tuning::Parameter;
+use recrash_model::tuning::{Parameter, start_speeds};
 use serde_json::Value;
 
 /// A declared parameter.
@@ -23,6 +23,8 @@ pub(crate) struct Declaration {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Declarations {
     pub list: Vec<Declaration>,
+    /// First speeds that go with a target speed, and have no name of their own.
+    together: Vec<(String, String)>,
 }
 
 impl Declarations {
@@ -33,6 +35,8 @@ impl Declarations {
         for part in ["ego", "partners", "duration_s"] {
             collect(&format!("/{part}"), &document[part], &mut list);
         }
+        let together = start_speeds(draft);
+        list.retain(|declaration| !together.iter().any(|(start, _)| *start == declaration.pointer));
         for parameter in tunable {
             if list.iter().any(|known: &Declaration| known.pointer == parameter.pointer) {
                 continue;
@@ -45,7 +49,7 @@ impl Declarations {
             let found = tunable.iter().find(|parameter| parameter.pointer == declaration.pointer);
             declaration.bounds = found.map(|parameter| (parameter.min, parameter.max));
         }
-        Self { list }
+        Self { list, together }
     }
 
     /// `$name` of the number at a pointer, or the number itself where it has no name.
@@ -56,7 +60,9 @@ impl Declarations {
         }
     }
 
+    /// The declaration of the number at a pointer, or of the one it goes with.
     pub fn find(&self, pointer: &str) -> Option<&Declaration> {
+        let pointer = self.together.iter().find(|(start, _)| start == pointer).map_or(pointer, |(_, target)| target);
         self.list.iter().find(|known| known.pointer == pointer)
     }
 
