@@ -474,6 +474,21 @@ impl Suite {
         hash.ok_or_else(|| PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() })
     }
 
+    /// Refuses a unit that was made of something else.
+    pub(crate) fn must_be_made_of(&self, stage: Stage, unit: &str, inputs: &[String]) -> Result<(), PipelineError> {
+        let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
+        match self.lock().units.get(unit) {
+            None => Err(PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() }),
+            Some(made) if made.inputs != hash_all(&inputs) => Err(self.stale(stage)),
+            Some(_) => Ok(()),
+        }
+    }
+
+    /// What a stage made is not of the options and files as they are now.
+    pub(crate) fn stale(&self, stage: Stage) -> PipelineError {
+        PipelineError::StaleStage { dir: self.store.dir().to_owned(), stage: stage.name() }
+    }
+
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
