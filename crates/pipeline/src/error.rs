@@ -48,6 +48,12 @@ pub enum PipelineError {
         /// The stage.
         stage: &'static str,
     },
+    /// Another run is at work in the folder.
+    #[error("another recrash is at work in {}; wait until it is done, or choose another --out", dir.display())]
+    Busy {
+        /// The suite.
+        dir: PathBuf,
+    },
     /// The output folder holds something else.
     #[error("{} holds files but no suite.json, so it is not overwritten; choose another --out, or empty it", dir.display())]
     NotASuite {
@@ -137,7 +143,12 @@ impl PipelineError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
-            Self::Io { .. } | Self::Fetch(_) | Self::Pull { .. } | Self::Threads(_) | Self::Ledger(_) => 1,
+            Self::Io { .. }
+            | Self::Busy { .. }
+            | Self::Fetch(_)
+            | Self::Pull { .. }
+            | Self::Threads(_)
+            | Self::Ledger(_) => 1,
             Self::MissingStage { .. } | Self::StaleStage { .. } | Self::NotASuite { .. } | Self::Usage(_) => 2,
             Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
