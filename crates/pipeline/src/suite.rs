@@ -566,9 +566,9 @@ fn is_empty(store: &Store) -> Result<bool, PipelineError> {
     Ok(entries.next().is_none())
 }
 
-/// One hash of several inputs and of the version of this program.
+/// One hash of several inputs and of the code of this program.
 fn hash_all(inputs: &[&[u8]]) -> String {
-    let mut all = env!("CARGO_PKG_VERSION").as_bytes().to_vec();
+    let mut all = concat!(env!("CARGO_PKG_VERSION"), " ", env!("RECRASH_CODE")).as_bytes().to_vec();
     for input in inputs {
         all.extend((input.len() as u64).to_le_bytes());
         all.extend_from_slice(input);
