@@ -11,7 +11,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = commands::Cli::parse();
-    on_interrupt();
+    on_interrupt(cli.command.goes_on());
     match commands::run(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -24,11 +24,12 @@ fn main() -> ExitCode {
     }
 }
 
-/// Ctrl-C stops at once: files are written whole, and every answer of a model is in the ledger as soon as it is there.
-fn on_interrupt() {
+/// Ctrl-C stops at once: files are written whole or taken away, and every answer of a model is in the ledger as soon as it is there.
+fn on_interrupt(goes_on: bool) {
     // Without a handler the system stops the program as well, only without a word.
-    let _ = ctrlc::set_handler(|| {
-        output::interrupted();
+    let _ = ctrlc::set_handler(move || {
+        recrash_pipeline::remove_unfinished();
+        output::interrupted(goes_on);
         std::process::exit(130);
     });
 }

@@ -59,10 +59,14 @@ pub fn go_on() {
     eprintln!("go on with: {}", words.join(" "));
 }
 
-/// Prints that the user stopped the program.
-pub fn interrupted() {
-    eprintln!("\ninterrupted; what is done is kept");
-    go_on();
+/// Prints that the user stopped the program, and how to go on where something was kept.
+pub fn interrupted(goes_on: bool) {
+    if goes_on {
+        eprintln!("\ninterrupted; what is done is kept");
+        go_on();
+    } else {
+        eprintln!("\ninterrupted");
+    }
 }
 
 /// A word as a shell takes it.

@@ -243,7 +243,8 @@ fn a_damaged_suite_file_is_named() {
     std::fs::write(out.join("suite.json"), "{\"format\": \"recr").unwrap();
     let (code, shown) = case.run(&["run", "--out", out.to_str().unwrap()]);
     assert_eq!(code, BAD_INPUT, "{shown}");
-    assert_says(&shown, &["suite.json", "remove the file"]);
+    // Without that file the folder would be refused as no suite: taking it away is no advice.
+    assert_says(&shown, &["suite.json", "choose another --out"]);
 }
 
 /// A profile whose templates go beyond what the rules can stage.
@@ -289,4 +290,26 @@ fn a_run_without_any_scenario_is_an_error() {
         case.run(&[&["run", "-q", "--profile", &profile, "--out", out.to_str().unwrap()], &filter[..]].concat());
     assert_eq!(code, BAD_INPUT, "{shown}");
     assert_says(&shown, &["no scenario could be run", "the rules cannot stage"]);
+}
+
+#[test]
+fn a_report_is_of_one_system_and_one_set_of_records() {
+    let case = Case::new();
+    let out = case.out();
+    let out = out.to_str().unwrap();
+    let with = |words: &[&str]| case.run(&[words, &["--quiet", "--out", out]].concat());
+    assert_eq!(with(&["run", "--budget", "2", "--tune-budget", "4"]).0, 0);
+    assert_eq!(with(&["simulate", "--ego", "idm"]).0, 0);
+    let told = std::fs::read(case.out().join("results.csv")).unwrap();
+    let (code, shown) = with(&["report"]);
+    assert_eq!(code, USAGE, "the tuned runs are of another ego: {shown}");
+    assert_says(&shown, &["\"design\"", "recrash design --out"]);
+    assert_eq!(std::fs::read(case.out().join("results.csv")).unwrap(), told);
+    for stage in ["design", "simulate", "tune", "report"] {
+        let (code, shown) = with(&[stage]);
+        assert_eq!(code, 0, "{stage}: {shown}");
+    }
+    let (code, shown) = with(&["report", "--records", case.file("other.csv", SAMPLE_CSV).to_str().unwrap()]);
+    assert_eq!(code, USAGE, "the records are of another file: {shown}");
+    assert_says(&shown, &["\"records\"", "recrash records --out"]);
 }

@@ -129,3 +129,15 @@ fn what_cannot_vary_is_refused_with_its_pointer() {
     let output = recrash(&["sweep", &crossing(), "--vary", "speed=1:2"]).output().expect("it runs");
     assert_eq!(output.status.code(), Some(2));
 }
+
+#[test]
+fn a_damaged_log_of_the_search_is_told_and_not_swept_around() {
+    let case = Case::new();
+    std::fs::copy(crossing(), case.out("x.json")).expect("copied");
+    std::fs::write(case.out("x.search.json"), "{\"format\": \"recr").expect("written");
+    let (file, out) = (case.out("x.json").display().to_string(), case.out("x.parquet").display().to_string());
+    let output = recrash(&["sweep", &file, "-n", "2", "--out", &out]).output().expect("it runs");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{error}");
+    assert!(error.contains("x.search.json") && !case.out("x.parquet").exists(), "{error}");
+}

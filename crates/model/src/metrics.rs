@@ -322,6 +322,14 @@ impl CheckKind {
             Self::ExcludedCollision => "excluded collisions",
         }
     }
+
+    /// What else a failure of this check may mean than a scenario that is not true to its record.
+    pub fn doubt(self) -> Option<&'static str> {
+        (self == Self::Order).then_some(
+            "Who comes first is up to the ego as well: one that gives way where the record's did not never gets into the \
+             record's crash. Then neither the scenario nor the ego is at fault, and the run says nothing about that crash.",
+        )
+    }
 }
 
 /// Result of a check.

@@ -40,6 +40,20 @@ pub enum PipelineError {
         /// The earlier stage.
         missing: &'static str,
     },
+    /// A stage was run with other options, or before something that it reads was changed.
+    #[error("{}: what stage \"{stage}\" made is not of the options and files as they are now; run `recrash {stage} --out {}` first", dir.display(), dir.display())]
+    StaleStage {
+        /// The suite.
+        dir: PathBuf,
+        /// The stage.
+        stage: &'static str,
+    },
+    /// Another run is at work in the folder.
+    #[error("another recrash is at work in {}; wait until it is done, or choose another --out", dir.display())]
+    Busy {
+        /// The suite.
+        dir: PathBuf,
+    },
     /// The output folder holds something else.
     #[error("{} holds files but no suite.json, so it is not overwritten; choose another --out, or empty it", dir.display())]
     NotASuite {
@@ -129,8 +143,13 @@ impl PipelineError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
-            Self::Io { .. } | Self::Fetch(_) | Self::Pull { .. } | Self::Threads(_) | Self::Ledger(_) => 1,
-            Self::MissingStage { .. } | Self::NotASuite { .. } | Self::Usage(_) => 2,
+            Self::Io { .. }
+            | Self::Busy { .. }
+            | Self::Fetch(_)
+            | Self::Pull { .. }
+            | Self::Threads(_)
+            | Self::Ledger(_) => 1,
+            Self::MissingStage { .. } | Self::StaleStage { .. } | Self::NotASuite { .. } | Self::Usage(_) => 2,
             Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
             Self::Missed { .. } => 5,

@@ -52,6 +52,9 @@ pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
     let folders: Vec<(Format, PathBuf)> =
         request.formats.iter().map(|&format| (format, target.join(format.name()))).collect();
     for (_, folder) in &folders {
+        if folder.is_dir() {
+            Store::at(folder).remove_leftovers()?;
+        }
         if !request.force && std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
             return Err(PipelineError::bad_input(format!(
                 "{} holds files already; add --force to overwrite them, or choose another --to-dir",

@@ -9,7 +9,7 @@ use recrash_model::diagnostic::{Location, Severity};
 use serde::{Deserialize, Serialize};
 
 /// The stages that work on one scenario at a time, in order.
-const CASE_STAGES: [Stage; 4] = [Stage::Narrate, Stage::Design, Stage::Simulate, Stage::Tune];
+pub(crate) const CASE_STAGES: [Stage; 4] = [Stage::Narrate, Stage::Design, Stage::Simulate, Stage::Tune];
 
 /// Why a scenario went no further.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

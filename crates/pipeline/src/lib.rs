@@ -73,7 +73,7 @@ pub use recrash_roads::scenario_schema as schema;
 pub use selecting::{SelectionStudy, StrategyStudy};
 pub use simulator::{Simulator, SimulatorKind};
 pub use stages::StageReport;
-pub use store::{Store, WriteFile};
+pub use store::{Store, WriteFile, remove_unfinished};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
 pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
 #[cfg(feature = "parquet")]

@@ -57,6 +57,19 @@ fn parse(text: &str, name: &str) -> Result<SystemProfile, PipelineError> {
             return Err(bad(format!("{key} is {value}; it must be a positive number")));
         }
     }
+    if !(0.0..=e.max_speed_mps).contains(&e.min_speed_mps) {
+        let (least, most) = (e.min_speed_mps, e.max_speed_mps);
+        return Err(bad(format!(
+            "expresses.min_speed_mps is {least}; it must be a number from 0 to max_speed_mps, {most}"
+        )));
+    }
+    if !(0.0..=1.0).contains(&e.max_traffic_density) {
+        let density = e.max_traffic_density;
+        return Err(bad(format!("expresses.max_traffic_density is {density}; it must be a number from 0 to 1")));
+    }
+    if f.oscillation_reversals == 0 {
+        return Err(bad("failure.oscillation_reversals is 0; every run has that many, so it must be 1 or more".into()));
+    }
     if profile.templates().is_empty() {
         return Err(bad("expresses no template: road_types, sv_movements and cp_movements each need a value".into()));
     }
@@ -85,6 +98,25 @@ mod tests {
         let PipelineError::BadInput { diagnostics, .. } = error else { panic!("{error:?}") };
         assert!(diagnostics[0].message.contains("min_gapp"), "{}", diagnostics[0].message);
         assert!(diagnostics[0].message.contains("line"), "{}", diagnostics[0].message);
+    }
+
+    #[test]
+    fn a_number_that_makes_no_sense_is_named() {
+        let paper = BUILT_IN[0].1;
+        for (key, from, to) in [
+            ("min_speed_mps", "min_speed_mps = 1.0", "min_speed_mps = nan"),
+            ("min_speed_mps", "min_speed_mps = 1.0", "min_speed_mps = -1.0"),
+            ("min_speed_mps", "min_speed_mps = 1.0", "min_speed_mps = 30.0"),
+            ("max_speed_mps", "max_speed_mps = 22.2", "max_speed_mps = inf"),
+            ("max_traffic_density", "max_traffic_density = 0.3", "max_traffic_density = nan"),
+            ("min_gap_m", "min_gap_m = 2.0", "min_gap_m = -2.0"),
+            ("oscillation_reversals", "oscillation_reversals = 4", "oscillation_reversals = 0"),
+        ] {
+            assert!(paper.contains(from), "{from}");
+            let error = parse(&paper.replace(from, to), "x.toml").unwrap_err();
+            let PipelineError::BadInput { diagnostics, .. } = error else { panic!("{error:?}") };
+            assert!(diagnostics[0].message.contains(key), "{to}: {}", diagnostics[0].message);
+        }
     }
 
     #[test]

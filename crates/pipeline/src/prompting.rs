@@ -56,7 +56,7 @@ pub struct Prompt {
 pub fn prompt(request: &PromptRequest) -> Result<Prompt, PipelineError> {
     let scratch = tempfile::tempdir();
     let suite = match Suite::saved_options(&request.dir)? {
-        Some(saved) => Suite::open(&request.dir, saved, Resources::default())?,
+        Some(_) => Suite::look(&request.dir)?,
         None => {
             let failed = |source| PipelineError::Io { action: "create", path: std::env::temp_dir(), source };
             let scratch = scratch.as_ref().map_err(|e| failed(std::io::Error::from(e.kind())))?;

@@ -161,29 +161,25 @@ impl StageWork<'_> {
         Ok(StageReport { done: usize::from(!skipped), skipped: usize::from(skipped), diagnostics: Vec::new() })
     }
 
-    /// A stage of one unit per cluster, in parallel, without those that failed before. `inputs` gives the hashes of what
-    /// goes into a unit.
+    /// A stage of one unit per cluster, in parallel, without those that failed before.
     fn per_case(
         &self,
-        selection: &Selection,
-        inputs: impl Fn(&Cluster) -> Result<Vec<String>, PipelineError> + Sync,
+        cases: &Cases,
         work: impl Fn(&Cluster) -> Result<Files, PipelineError> + Sync,
     ) -> Result<StageReport, PipelineError> {
         let stage = self.stage.name();
-        let unit_name = |cluster: &Cluster| format!("{stage}/{}", cluster.scenario_id);
-        let whole = |cluster: &&Cluster| failures::before(self.suite, &cluster.scenario_id, self.stage).is_none();
-        let clusters: Vec<&Cluster> = selection.clusters.iter().filter(whole).collect();
-        let names: Vec<String> = clusters.iter().map(|cluster| unit_name(cluster)).collect();
+        let clusters = cases.up_to(self.suite, self.stage);
+        let names: Vec<String> = clusters.iter().map(|cluster| unit_name(self.stage, cluster)).collect();
         self.suite.keep_only(self.stage, &names)?;
         self.progress.event(ProgressEvent::Started { stage, units: names.len() });
         let results: Vec<Result<bool, PipelineError>> = clusters
             .par_iter()
             .map(|&cluster| {
-                let inputs = inputs(cluster)?;
+                let inputs = case_inputs(self.suite, self.stage, cases, cluster)?;
                 let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
                 let id = &cluster.scenario_id;
                 let work = || failures::keep(self.stage, id, work(cluster));
-                let skipped = self.suite.unit(&unit_name(cluster), &inputs, work)?;
+                let skipped = self.suite.unit(&unit_name(self.stage, cluster), &inputs, work)?;
                 self.progress.event(ProgressEvent::Advanced { stage, unit: id, skipped });
                 Ok(skipped)
             })
@@ -204,30 +200,56 @@ impl StageWork<'_> {
         let diagnostics = clusters.iter().filter_map(failed).collect();
         Ok(StageReport { done: skipped.len() - there, skipped: there, diagnostics })
     }
+}
 
-    /// Names of the simulator and the ego: what goes into the hash of everything that is run.
-    fn system(&self) -> String {
-        format!("{} {}", self.suite.options().simulator.name(), self.suite.ego())
-    }
+/// Name of a unit of a stage that works scenario by scenario.
+fn unit_name(stage: Stage, cluster: &Cluster) -> String {
+    format!("{}/{}", stage.name(), cluster.scenario_id)
+}
 
-    /// Who plays a role, and with which prompts: what goes into the hash of everything that is written in it.
-    fn player(&self, name: &str) -> String {
-        match name {
-            RULES => RULES.to_owned(),
-            model => format!("{model} {} {}", self.suite.options().cast.repairs, prompts_version()),
-        }
-    }
+fn profile_json(suite: &Suite) -> String {
+    String::from_utf8(to_json(suite.profile())).unwrap_or_default()
+}
 
-    fn profile_json(&self) -> String {
-        String::from_utf8(to_json(self.suite.profile())).unwrap_or_default()
+/// Everything that decides what a stage makes of a scenario, as hashes and words.
+fn case_inputs(suite: &Suite, stage: Stage, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>, PipelineError> {
+    let (id, chosen) = (&cluster.scenario_id, suite.options());
+    let before = [
+        (Stage::Narrate, names::narrative(id)),
+        (Stage::Design, names::scenario(id)),
+        (Stage::Simulate, names::first_run(id)),
+    ];
+    let mut inputs = cases.inputs(cluster);
+    for (earlier, file) in before.iter().filter(|(earlier, _)| *earlier < stage) {
+        inputs.push(case_hash(suite, *earlier, cluster, file)?);
     }
+    inputs.push(profile_json(suite));
+    if stage > Stage::Narrate {
+        inputs.push(format!("{} {}", chosen.simulator.name(), suite.ego()));
+    }
+    // Who plays a role, and with which prompts.
+    let player = |name: &str| match name {
+        RULES => RULES.to_owned(),
+        model => format!("{model} {} {}", chosen.cast.repairs, prompts_version()),
+    };
+    match stage {
+        Stage::Narrate => inputs.extend([chosen.seed.to_string(), player(&chosen.cast.paraphrase)]),
+        Stage::Design => inputs.extend([chosen.seed.to_string(), player(&chosen.cast.design)]),
+        Stage::Tune => inputs.extend([
+            format!("{:?}", tune_options(suite)?),
+            chosen.seed.to_string(),
+            format!("{} {}", player(&chosen.cast.tune), chosen.cast.rounds),
+            TRIAGE_FORMAT.to_owned(),
+        ]),
+        Stage::Records | Stage::Select | Stage::Simulate | Stage::Report => {}
+    }
+    Ok(inputs)
 }
 
 fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let input = RecordInput::read(suite.options())?;
-    let mut inputs = vec![work.profile_json()];
-    inputs.extend(input.parts());
+    let inputs = record_inputs(suite, &input);
     let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
     let mut report = work.whole(&inputs, || {
         let Outcome { value, diagnostics } = input.ingest(suite.profile())?;
@@ -238,6 +260,10 @@ fn records(work: &StageWork) -> Result<StageReport, PipelineError> {
     })?;
     report.diagnostics = suite.store().read_json(names::RECORD_REMARKS)?;
     Ok(report)
+}
+
+fn record_inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
+    std::iter::once(profile_json(suite)).chain(input.parts()).collect()
 }
 
 /// What the stages after selection share.
@@ -256,11 +282,9 @@ impl Cases {
         let records: RecordSet = suite.store().read_json(names::RECORDS)?;
         let selection: Selection = suite.store().read_json(names::SELECTION)?;
         let bound = records.records.len();
-        if selection.clusters.iter().any(|c| c.pick_index >= bound || c.members.iter().any(|&m| m >= bound)) {
-            return Err(PipelineError::Damaged {
-                path: suite.store().path(names::SELECTION),
-                problem: "it names records that are not there".into(),
-            });
+        let named = |c: &Cluster| c.pick_index < bound && records.records[c.pick_index].id == c.pick;
+        if selection.clusters.iter().any(|c| !named(c) || c.members.iter().any(|&m| m >= bound)) {
+            return Err(suite.stale(Stage::Select));
         }
         Ok(Self { records, selection, records_hash })
     }
@@ -269,6 +293,12 @@ impl Cases {
     pub fn records_of(&self, cluster: &Cluster) -> Vec<&CrashRecord> {
         let others = cluster.members.iter().filter(|&&m| m != cluster.pick_index).take(MEMBERS_SHOWN);
         std::iter::once(&cluster.pick_index).chain(others).map(|&index| &self.records.records[index]).collect()
+    }
+
+    /// The clusters that no stage before this one failed on.
+    fn up_to(&self, suite: &Suite, stage: Stage) -> Vec<&Cluster> {
+        let whole = |cluster: &&Cluster| failures::before(suite, &cluster.scenario_id, stage).is_none();
+        self.selection.clusters.iter().filter(whole).collect()
     }
 
     /// Hashes that say which records a cluster stands for.
@@ -285,13 +315,7 @@ fn case_seed(suite: &Suite, cluster: &Cluster) -> Seed {
 fn narrate(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
-    let inputs = |cluster: &Cluster| {
-        let mut inputs = cases.inputs(cluster);
-        let player = work.player(&suite.options().cast.paraphrase);
-        inputs.extend([work.profile_json(), suite.options().seed.to_string(), player]);
-        Ok(inputs)
-    };
-    work.per_case(&cases.selection, inputs, |cluster| {
+    work.per_case(&cases, |cluster| {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
         let (narrative, log) = agents::paraphrase(suite.models(), &suite.options().cast, &brief)?;
@@ -330,14 +354,7 @@ fn design(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
     let simulator = suite.simulator()?;
-    let inputs = |cluster: &Cluster| {
-        let mut inputs = cases.inputs(cluster);
-        inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(&cluster.scenario_id))?);
-        let player = work.player(&suite.options().cast.design);
-        inputs.extend([work.profile_json(), work.system(), suite.options().seed.to_string(), player]);
-        Ok(inputs)
-    };
-    work.per_case(&cases.selection, inputs, |cluster| {
+    work.per_case(&cases, |cluster| {
         let records = cases.records_of(cluster);
         let brief = brief(suite, cluster, &records);
         let (narrative, expectation) = case_expectation(suite, &cases, cluster)?;
@@ -378,15 +395,7 @@ fn simulate(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
     let simulator = suite.simulator()?;
-    let inputs = |cluster: &Cluster| {
-        let id = &cluster.scenario_id;
-        let mut inputs = cases.inputs(cluster);
-        inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(id))?);
-        inputs.push(case_hash(suite, Stage::Design, cluster, &names::scenario(id))?);
-        inputs.extend([work.profile_json(), work.system()]);
-        Ok(inputs)
-    };
-    work.per_case(&cases.selection, inputs, |cluster| {
+    work.per_case(&cases, |cluster| {
         let id = &cluster.scenario_id;
         let (_, expectation) = case_expectation(suite, &cases, cluster)?;
         let checked = scenario(suite, &names::scenario(id))?;
@@ -395,27 +404,17 @@ fn simulate(work: &StageWork) -> Result<StageReport, PipelineError> {
     })
 }
 
+fn tune_options(suite: &Suite) -> Result<TuneOptions, PipelineError> {
+    let searcher = suite.options().searcher.parse().map_err(|e: String| PipelineError::bad_input(e))?;
+    Ok(TuneOptions { searcher, budget: suite.options().tune_budget })
+}
+
 fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
     let simulator = suite.simulator()?;
-    let options = TuneOptions {
-        searcher: suite.options().searcher.parse().map_err(|e: String| PipelineError::bad_input(e))?,
-        budget: suite.options().tune_budget,
-    };
-    let inputs = |cluster: &Cluster| {
-        let id = &cluster.scenario_id;
-        let mut inputs = cases.inputs(cluster);
-        inputs.push(case_hash(suite, Stage::Narrate, cluster, &names::narrative(id))?);
-        inputs.push(case_hash(suite, Stage::Design, cluster, &names::scenario(id))?);
-        inputs.push(case_hash(suite, Stage::Simulate, cluster, &names::first_run(id))?);
-        let chosen = suite.options();
-        inputs.extend([work.profile_json(), work.system(), format!("{options:?}"), chosen.seed.to_string()]);
-        inputs.push(format!("{} {}", work.player(&chosen.cast.tune), chosen.cast.rounds));
-        inputs.push(TRIAGE_FORMAT.to_owned());
-        Ok(inputs)
-    };
-    work.per_case(&cases.selection, inputs, |cluster| {
+    let options = tune_options(suite)?;
+    work.per_case(&cases, |cluster| {
         let id = &cluster.scenario_id;
         let (narrative, expectation) = case_expectation(suite, &cases, cluster)?;
         let draft = scenario(suite, &names::scenario(id))?.draft().clone();
@@ -516,10 +515,26 @@ pub struct Tuned {
     pub agent: AgentLog,
 }
 
+/// A report tells of one system and one set of records: what every stage made must be of the options and the files as
+/// they are now. Crash files that have gone since are taken as they were.
+fn refuse_stale(suite: &Suite, cases: &Cases) -> Result<(), PipelineError> {
+    if let Ok(input) = RecordInput::read(suite.options()) {
+        suite.must_be_made_of(Stage::Records, Stage::Records.name(), &record_inputs(suite, &input))?;
+    }
+    for stage in failures::CASE_STAGES {
+        for cluster in cases.up_to(suite, stage) {
+            let inputs = case_inputs(suite, stage, cases, cluster)?;
+            suite.must_be_made_of(stage, &unit_name(stage, cluster), &inputs)?;
+        }
+    }
+    Ok(())
+}
+
 fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let cases = Cases::read(suite)?;
-    let mut inputs = vec![cases.records_hash.clone(), work.profile_json(), suite.options().command()];
+    refuse_stale(suite, &cases)?;
+    let mut inputs = vec![cases.records_hash.clone(), profile_json(suite), suite.options().command()];
     inputs.push(suite.output_hash(Stage::Select, Stage::Select.name(), names::SELECTION)?);
     for cluster in &cases.selection.clusters {
         let id = &cluster.scenario_id;

@@ -4,15 +4,50 @@ use crate::error::PipelineError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Greatest size of a file of a suite that is read back. [bytes]
 const MAX_SUITE_FILE: u64 = 1 << 30;
 
 /// First letters of the names of files that are being written.
 const TEMPORARY_PREFIX: &str = ".recrash-";
+
+/// Files that are being written under another name.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every file that is being written, for a program that is interrupted and ends: nothing is begun afterwards.
+pub fn remove_unfinished() {
+    let files = unfinished();
+    for file in files.iter() {
+        // Whoever interrupts wants the end, not a word about a file.
+        let _ = fs::remove_file(file);
+    }
+    std::mem::forget(files);
+}
+
+/// A file that is being written, as long as this lives.
+pub(crate) struct Unfinished(PathBuf);
+
+impl Unfinished {
+    pub(crate) fn new(path: &Path) -> Self {
+        unfinished().insert(path.to_owned());
+        Self(path.to_owned())
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        unfinished().remove(&self.0);
+    }
+}
 
 /// Writes a whole file; a seam for tests of full disks.
 pub type WriteFile = fn(&Path, &[u8]) -> std::io::Result<()>;
@@ -34,7 +69,12 @@ impl Store {
         Ok(Self { dir: dir.to_owned(), write_file })
     }
 
-    /// Removes what a killed run was writing when it was killed, one folder deep.
+    /// A folder that is there already, and is only read.
+    pub fn at(dir: &Path) -> Self {
+        Self { dir: dir.to_owned(), write_file: write_file_whole }
+    }
+
+    /// Removes what a killed run was writing when it was killed, one folder deep. Links are not followed.
     ///
     /// # Errors
     /// The folder cannot be read.
@@ -43,13 +83,15 @@ impl Store {
             let entries = fs::read_dir(dir).and_then(Iterator::collect);
             entries.map_err(|source| io("read", dir, source))
         };
+        let is = |entry: &fs::DirEntry, wanted: fn(&fs::FileType) -> bool| entry.file_type().is_ok_and(|t| wanted(&t));
         let mut entries = list(&self.dir)?;
-        let folders: Vec<_> = entries.iter().map(fs::DirEntry::path).filter(|p| p.is_dir()).collect();
+        let folders: Vec<_> = entries.iter().filter(|e| is(e, fs::FileType::is_dir)).map(fs::DirEntry::path).collect();
         for folder in folders {
             entries.extend(list(&folder)?);
         }
         for entry in entries {
-            if entry.file_name().to_string_lossy().starts_with(TEMPORARY_PREFIX) {
+            let is_ours = entry.file_name().to_string_lossy().starts_with(TEMPORARY_PREFIX);
+            if is_ours && is(&entry, fs::FileType::is_file) {
                 fs::remove_file(entry.path()).map_err(|source| io("remove", &entry.path(), source))?;
             }
         }
@@ -93,8 +135,8 @@ impl Store {
     /// The file cannot be read, or is not what a stage wrote.
     pub fn read_json<T: DeserializeOwned>(&self, name: &str) -> Result<T, PipelineError> {
         let path = self.path(name);
-        let text = read_text(&path, MAX_SUITE_FILE)?;
-        let mut deserializer = serde_json::Deserializer::from_str(&text);
+        let text = read_bytes(&path, MAX_SUITE_FILE)?;
+        let mut deserializer = serde_json::Deserializer::from_slice(&text);
         serde_path_to_error::deserialize(&mut deserializer)
             .map_err(|e| PipelineError::Damaged { problem: format!("{}: {}", e.path(), e.inner()), path })
     }
@@ -142,6 +184,7 @@ pub(crate) fn write_file_whole(path: &Path, content: &[u8]) -> std::io::Result<(
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(dir)?;
+    let _unfinished = Unfinished::new(file.path());
     file.write_all(content)?;
     file.as_file().sync_data()?;
     file.persist(path).map_err(|e| e.error)?;

@@ -19,6 +19,7 @@ use recrash_model::{Diagnostic, Seed};
 use recrash_select::SelectOptions;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -264,6 +265,8 @@ pub struct Suite {
     patience: Patience,
     models: Option<Models>,
     remarks: Vec<Diagnostic>,
+    /// Keeps others from working in the folder at the same time.
+    _lock: Option<File>,
 }
 
 /// What a run may use of the machine. No byte of the results depends on it.
@@ -295,7 +298,7 @@ impl Suite {
         if !dir.join(SUITE_FILE).exists() {
             return Ok(None);
         }
-        Ok(Some(read_state(&Store::create(dir, write_file_whole)?)?.options))
+        Ok(Some(read_state(&Store::at(dir))?.options))
     }
 
     /// Opens the suite in a folder, or makes one.
@@ -316,9 +319,10 @@ impl Suite {
         resources: Resources,
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
-        let profile = options.system_profile()?;
+        options.system_profile()?;
         recording::read_filter(&options)?;
         let store = Store::create(dir, write_file)?;
+        let lock = lock_folder(dir)?;
         let units = if dir.join(SUITE_FILE).exists() {
             read_state(&store)?.units
         } else if is_empty(&store)? {
@@ -327,6 +331,29 @@ impl Suite {
             return Err(PipelineError::NotASuite { dir: dir.to_owned() });
         };
         store.remove_leftovers()?;
+        let suite = Self::set_up(store, options, resources, units, lock)?;
+        suite.save(&suite.lock())?;
+        Ok(suite)
+    }
+
+    /// Opens a suite to read what is in it: nothing is written, and others may work in it.
+    ///
+    /// # Errors
+    /// There is no suite in the folder, or its file is damaged.
+    pub(crate) fn look(dir: &Path) -> Result<Self, PipelineError> {
+        let store = Store::at(dir);
+        let State { options, units, .. } = read_state(&store)?;
+        Self::set_up(store, options, Resources::default(), units, None)
+    }
+
+    fn set_up(
+        store: Store,
+        options: Options,
+        resources: Resources,
+        units: BTreeMap<String, Unit>,
+        lock: Option<File>,
+    ) -> Result<Self, PipelineError> {
+        let profile = options.system_profile()?;
         let threads = thread_pool(resources.threads.unwrap_or(0))?;
         let state = State {
             format: SUITE_FORMAT.into(),
@@ -340,9 +367,7 @@ impl Suite {
         let asks = has_model && resources.models.mode == AnswerMode::Live;
         let askers = asks.then(|| thread_pool(resources.models.concurrency)).transpose()?;
         let (state, python, patience) = (Mutex::new(state), resources.python, resources.patience);
-        let suite = Self { store, profile, state, options, threads, askers, python, patience, models, remarks };
-        suite.save(&suite.lock())?;
-        Ok(suite)
+        Ok(Self { store, profile, state, options, threads, askers, python, patience, models, remarks, _lock: lock })
     }
 
     /// Runs one stage; the stages before must be finished.
@@ -474,6 +499,21 @@ impl Suite {
         hash.ok_or_else(|| PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() })
     }
 
+    /// Refuses a unit that was made of something else.
+    pub(crate) fn must_be_made_of(&self, stage: Stage, unit: &str, inputs: &[String]) -> Result<(), PipelineError> {
+        let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
+        match self.lock().units.get(unit) {
+            None => Err(PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() }),
+            Some(made) if made.inputs != hash_all(&inputs) => Err(self.stale(stage)),
+            Some(_) => Ok(()),
+        }
+    }
+
+    /// What a stage made is not of the options and files as they are now.
+    pub(crate) fn stale(&self, stage: Stage) -> PipelineError {
+        PipelineError::StaleStage { dir: self.store.dir().to_owned(), stage: stage.name() }
+    }
+
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -488,13 +528,30 @@ fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, PipelineError> {
     pool.map_err(|e| PipelineError::Threads(e.to_string()))
 }
 
+/// Takes the folder for this program alone. Where the system cannot lock a folder, nothing is said: files are written
+/// whole in any case.
+fn lock_folder(dir: &Path) -> Result<Option<File>, PipelineError> {
+    let Ok(folder) = File::open(dir) else { return Ok(None) };
+    match folder.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(PipelineError::Busy { dir: dir.to_owned() }),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(folder)),
+    }
+}
+
 fn read_state(store: &Store) -> Result<State, PipelineError> {
-    let state: State = store.read_json(SUITE_FILE)?;
+    let unusable = |problem: String| {
+        PipelineError::bad_input(format!(
+            "{}: {problem}; nothing can go on in this folder: choose another --out (with a copy of ledger/ in it, answers \
+             of models are kept)",
+            store.path(SUITE_FILE).display()
+        ))
+    };
+    let state: State = store.read_json(SUITE_FILE).map_err(|error| match error {
+        PipelineError::Damaged { problem, .. } => unusable(problem),
+        other => other,
+    })?;
     if state.format != SUITE_FORMAT {
-        return Err(PipelineError::Damaged {
-            path: store.path(SUITE_FILE),
-            problem: format!("format is \"{}\"; this version reads \"{SUITE_FORMAT}\"", state.format),
-        });
+        return Err(unusable(format!("format is \"{}\"; this version reads \"{SUITE_FORMAT}\"", state.format)));
     }
     Ok(state)
 }
@@ -509,9 +566,9 @@ fn is_empty(store: &Store) -> Result<bool, PipelineError> {
     Ok(entries.next().is_none())
 }
 
-/// One hash of several inputs and of the version of this program.
+/// One hash of several inputs and of the code of this program.
 fn hash_all(inputs: &[&[u8]]) -> String {
-    let mut all = env!("CARGO_PKG_VERSION").as_bytes().to_vec();
+    let mut all = concat!(env!("CARGO_PKG_VERSION"), " ", env!("RECRASH_CODE")).as_bytes().to_vec();
     for input in inputs {
         all.extend((input.len() as u64).to_le_bytes());
         all.extend_from_slice(input);

@@ -9,7 +9,7 @@ use crate::external::Patience;
 use crate::profiles::load_profile;
 use crate::simulator::{Simulator, SimulatorKind};
 use crate::stages::names;
-use crate::store::{read_text, write_file_whole};
+use crate::store::{Store, Unfinished, write_file_whole};
 use crate::suite::Suite;
 use rayon::prelude::*;
 use recrash_agents::parameters;
@@ -35,8 +35,6 @@ use std::path::{Path, PathBuf};
 const CHUNK: u64 = 2048;
 /// Rows of a row group, which is what is kept in memory.
 const GROUP_ROWS: usize = 32 * CHUNK as usize;
-/// Search logs larger than this are not read. [bytes]
-const MAX_LOG_FILE: u64 = 1 << 28;
 
 /// A number of the scenario that varies, as typed: `POINTER=MIN:MAX`.
 #[derive(Debug, Clone, PartialEq)]
@@ -186,6 +184,7 @@ impl Sweep {
         // Written under another name, which a killed run leaves and the next one overwrites.
         let name = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let part = out.with_file_name(format!(".{name}.part"));
+        let _unfinished = Unfinished::new(&part);
         let written = File::create(&part)
             .map_err(failed)
             .and_then(|file| self.write(BufWriter::new(file), &threads, &simulator, progress, &failed))
@@ -449,7 +448,7 @@ fn base(file: &Path, vary: &[Vary], profile: &SystemProfile) -> Result<Base, Pip
     let draft = scenario.draft().clone();
     let parameters = if !vary.is_empty() {
         varied(&draft, vary, file)?
-    } else if let Some(found) = searched(file) {
+    } else if let Some(found) = searched(file)? {
         found
     } else {
         parameters(&draft, &untold(&draft), profile)
@@ -461,12 +460,14 @@ fn base(file: &Path, vary: &[Vary], profile: &SystemProfile) -> Result<Base, Pip
 }
 
 /// What the search of a suite might move, where its log lies beside the scenario.
-fn searched(file: &Path) -> Option<Vec<Parameter>> {
-    let id = file.file_stem()?.to_string_lossy().into_owned();
-    let log = file.with_file_name(Path::new(&names::tune_log(&id)).file_name()?);
-    let text = read_text(&log, MAX_LOG_FILE).ok()?;
-    let log: TuneLog = serde_json::from_str(&text).ok()?;
-    Some(log.parameters)
+fn searched(file: &Path) -> Result<Option<Vec<Parameter>>, PipelineError> {
+    let id = file.file_stem().unwrap_or_default().to_string_lossy();
+    let log = names::tune_log(&id);
+    let (folder, log) = (Store::at(&file.with_file_name("")), log.rsplit('/').next().unwrap_or_default());
+    if !folder.path(log).exists() {
+        return Ok(None);
+    }
+    folder.read_json::<TuneLog>(log).map(|log| Some(log.parameters))
 }
 
 fn varied(draft: &ScenarioDraft, vary: &[Vary], file: &Path) -> Result<Vec<Parameter>, PipelineError> {

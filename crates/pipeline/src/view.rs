@@ -2,7 +2,7 @@
 
 use crate::agents::Cast;
 use crate::stages::{Case, Ran, names};
-use crate::suite::{RecordSource, Suite, quoted};
+use crate::suite::{Options, RecordSource, Suite, quoted};
 use crate::summary::{self, FallbackReason, simulator_name};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::metrics::Verdict;
@@ -86,6 +86,19 @@ fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
         findings: run.findings.clone(),
         verdict: run.verdict.clone().unwrap_or(Verdict { checks: Vec::new() }),
         series: run.series.clone(),
-        rerun_command: format!("recrash simulate {file} --ego {}", quoted(suite.ego())),
+        rerun_command: rerun_command(suite, file),
     }
+}
+
+/// The command that gives the run again, from the suite's folder.
+fn rerun_command(suite: &Suite, file: &str) -> String {
+    let (options, default) = (suite.options(), Options::default());
+    let mut command = format!("recrash simulate {file}");
+    if options.profile != default.profile {
+        command += &format!(" --profile {}", quoted(&options.profile));
+    }
+    if options.simulator != default.simulator {
+        command += &format!(" --sim {}", options.simulator.name());
+    }
+    command + &format!(" --ego {}", quoted(suite.ego()))
 }

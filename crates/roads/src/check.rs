@@ -20,8 +20,9 @@ use std::sync::Arc;
 pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
     let mut remarks = Remarks::default();
     let fit = numbers::check(&draft, &mut remarks);
-    // Geometry needs numbers it can be built from; what does not depend on it has been checked above in any case.
-    if !fit.map || !fit.ego {
+    // Geometry needs numbers it can be built from; what does not depend on it has been checked above in any case. And
+    // each is compared with each other, so that thousands of them would be compared for hours.
+    if !fit.counts || !fit.map || !fit.ego {
         return Err(remarks.list);
     }
     let network = Arc::new(RoadNetwork::build(&draft.map));

@@ -2,9 +2,12 @@
 
 use recrash_model::Diagnostic;
 
+/// Diagnostics that are given their line: each is looked for from the beginning of the text, and nobody mends more at once.
+const MOST_LINES: usize = 1000;
+
 /// Fills in the line of every diagnostic that has a JSON path, so that an editor can jump to it.
 pub fn add_lines(json: &str, diagnostics: &mut [Diagnostic]) {
-    for diagnostic in diagnostics {
+    for diagnostic in diagnostics.iter_mut().take(MOST_LINES) {
         if let (None, Some(path)) = (diagnostic.location.line, &diagnostic.location.path) {
             diagnostic.location.line = locate(json, path).map(|(line, _)| line);
         }

@@ -407,3 +407,18 @@ fn writing_and_reading_a_draft_gives_it_back() {
     assert_eq!(read.value, draft);
     assert_eq!(write_draft(&read.value), write_draft(&draft));
 }
+
+#[test]
+fn too_many_road_users_are_told_once_and_not_compared_with_each_other() {
+    let same = crossing()["partners"][0].clone();
+    let many: Vec<Value> = (0..100)
+        .map(|number| {
+            let mut partner = same.clone();
+            partner["id"] = json!(format!("cp{number}"));
+            partner
+        })
+        .collect();
+    refused(&[("/partners", json!(many))], "scenario.count", "partners");
+    let cone = crossing()["obstacles"][0].clone();
+    refused(&[("/obstacles", json!(vec![cone; 1000]))], "scenario.count", "obstacles");
+}

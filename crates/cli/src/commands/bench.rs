@@ -6,8 +6,14 @@ use crate::output::Output;
 use clap::{Args, Subcommand};
 use recrash_pipeline::PipelineError;
 
+const EXAMPLES: &str = "\
+Examples:
+  recrash bench sim                                      the native simulator on this machine
+  recrash bench embed --python .venv/bin/python          MiniLM beside sentence-transformers";
+
 /// Options of `bench`.
 #[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct BenchArgs {
     /// What to measure.
     #[command(subcommand)]

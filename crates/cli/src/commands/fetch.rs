@@ -6,8 +6,14 @@ use clap::Args;
 use recrash_pipeline::{CrashKind, FetchLimits, FetchRequest, Fetched, PipelineError, PublishedEdition};
 use std::path::PathBuf;
 
+const EXAMPLES: &str = "\
+Examples:
+  recrash fetch --edition archive                        June 2021 to June 2025
+  recrash fetch --kind adas --cache files                reports since June 2025 on driver assistance, into files/";
+
 /// Options of `fetch`.
 #[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct FetchArgs {
     /// Reports since June 2025 (current), or from June 2021 to June 2025 (archive).
     #[arg(long, value_name = "NAME", value_parser = ["current", "archive"], default_value = "current")]

@@ -40,6 +40,35 @@ Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the 
   4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached;
   5 a share or speed that is asked for was missed; 130 interrupted";
 
+const RUN_EXAMPLES: &str = "\
+Examples:
+  recrash run                                            the built-in sample, into suite/
+  recrash run --records ads.csv --profile paper --out paper-suite
+  recrash run --where 'road = intersection' --budget 10 --out crossings
+  recrash run --ego 'cmd:python3 my_ego.py'              a system of yours
+  recrash run --agent gpt-5-mini --max-cost 2            a language model in the roles
+
+The same command goes on where it was stopped.";
+const NARRATE_EXAMPLES: &str = "\
+Examples:
+  recrash narrate                                        the picks of suite/, by the rules
+  recrash narrate --out mini-suite --paraphrase gpt-5-mini";
+const DESIGN_EXAMPLES: &str = "\
+Examples:
+  recrash design                                         the narratives of suite/, by the rules
+  recrash design --out mini-suite --design gpt-5-mini --repairs 2";
+const TUNE_EXAMPLES: &str = "\
+Examples:
+  recrash tune                                           160 points for each scenario of suite/
+  recrash tune --out paper-suite --searcher halton --tune-budget 500";
+const REPORT_EXAMPLES: &str = "\
+Examples:
+  recrash report                                         of the suite in suite/
+  recrash report --out paper-suite --json";
+const SCHEMA_EXAMPLES: &str = "\
+Examples:
+  recrash schema > scenario.schema.json                  for an editor or a validator";
+
 /// Turns real crash records of automated vehicles into a simulation test suite for one system under test.
 #[derive(Debug, Parser)]
 #[command(name = "recrash", version, about, after_help = EXAMPLES, max_term_width = 110)]
@@ -59,20 +88,25 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Do everything: read, select, narrate, design, simulate, tune, report.
+    #[command(after_help = RUN_EXAMPLES)]
     Run(SuiteArgs),
     /// Stage 1: read crash files, and show what of them can be used.
     Records(records::RecordsArgs),
     /// Stage 2: choose a few records that stand for all.
     Select(select::SelectArgs),
     /// Stage 3: paraphrase the narratives of the picks.
+    #[command(after_help = NARRATE_EXAMPLES)]
     Narrate(SuiteArgs),
     /// Stage 4: design a scenario for each narrative, checked by running it.
+    #[command(after_help = DESIGN_EXAMPLES)]
     Design(SuiteArgs),
     /// Stage 5: run the scenarios of a suite; or run one scenario file and show its metrics.
     Simulate(simulate::SimulateArgs),
     /// Stage 6: search each scenario's parameters for the nearest failure that is still true to the record.
+    #[command(after_help = TUNE_EXAMPLES)]
     Tune(SuiteArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
+    #[command(after_help = REPORT_EXAMPLES)]
     Report(SuiteArgs),
     /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
     Export(export::ExportArgs),
@@ -98,7 +132,19 @@ pub enum Command {
     #[cfg(feature = "parquet")]
     Sweep(sweep::SweepArgs),
     /// Print the JSON Schema of scenario files.
+    #[command(after_help = SCHEMA_EXAMPLES)]
     Schema,
+}
+
+impl Command {
+    /// Whether the same command goes on where it was stopped: what works in a suite, or with a ledger.
+    pub fn goes_on(&self) -> bool {
+        use Command::{Design, Eval, Narrate, Records, Report, Run, Select, Simulate, Tune};
+        matches!(
+            self,
+            Run(_) | Records(_) | Select(_) | Narrate(_) | Design(_) | Simulate(_) | Tune(_) | Report(_) | Eval(_)
+        )
+    }
 }
 
 /// Runs a subcommand.
@@ -140,5 +186,15 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_has_examples() {
+        fn without(command: &clap::Command) -> Vec<String> {
+            let told = command.get_after_help().is_some_and(|help| help.to_string().contains("Examples:\n"));
+            let own = (!told).then(|| command.get_name().to_owned());
+            own.into_iter().chain(command.get_subcommands().flat_map(without)).collect()
+        }
+        assert_eq!(without(&Cli::command()), [""; 0]);
     }
 }

@@ -33,12 +33,14 @@ pub struct ModelArgs {
 #[derive(Debug, Clone, Subcommand)]
 pub enum What {
     /// Get all-MiniLM-L6-v2, whole or not at all.
+    #[command(after_help = EXAMPLES)]
     Pull {
         /// Folder to keep the model in. [default: recrash in the platform's folder for caches]
         #[arg(long, value_name = "DIR", env = "RECRASH_CACHE")]
         cache: Option<PathBuf>,
     },
     /// Show which files would be used.
+    #[command(after_help = EXAMPLES)]
     Show,
 }
 

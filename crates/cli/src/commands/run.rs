@@ -7,6 +7,7 @@ use crate::output::{self, Output, number, table, title};
 use anstream::{eprintln, println};
 use comfy_table::Cell;
 use owo_colors::OwoColorize;
+use recrash_model::metrics::CheckKind;
 use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary};
 use std::path::Path;
 
@@ -146,6 +147,10 @@ fn show(summary: &Summary, dir: &Path) {
         } else if let Some(run) = case.tuned.as_ref().filter(|run| !run.faithful) {
             println!("  {} {}: {}", "not faithful:".yellow(), case.id, run.unfaithful.join("; "));
         }
+    }
+    let doubted = |run: &RunSummary| run.unfaithful.iter().any(|why| why.starts_with(CheckKind::Order.label()));
+    if summary.cases.iter().filter_map(|case| case.tuned.as_ref()).any(doubted) {
+        println!("  order: {}", CheckKind::Order.doubt().unwrap_or_default());
     }
     models(&summary.models);
     let (total, run) = (summary.cases.len(), summary.run());

@@ -10,8 +10,15 @@ use owo_colors::OwoColorize;
 use recrash_pipeline::{FileRequest, FileRun, Options, PipelineError, Stage, simulate_file};
 use std::path::PathBuf;
 
+const EXAMPLES: &str = "\
+Examples:
+  recrash simulate                                       the scenarios of suite/, as designed
+  recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
+  recrash simulate scenario.json --rollout rollout.json --json";
+
 /// Options of `simulate`.
 #[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct SimulateArgs {
     /// One scenario file (JSON); without it, the scenarios of the suite are run.
     #[arg(value_name = "SCENARIO")]

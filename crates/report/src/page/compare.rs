@@ -20,6 +20,7 @@ pub fn checks(case: &CaseView) -> Markup {
                         thead { tr { th scope="col" { "Check" } th scope="col" { "Expected" } th scope="col" { "Observed" } th scope="col" { "Result" } } }
                         tbody { @for check in &run.verdict.checks { (check_row(check)) } }
                     } }
+                    @for doubt in run.verdict.failures().filter_map(|check| check.kind.doubt()) { p.muted { (doubt) } }
                     @if run.verdict.checks.is_empty() { p.empty { "Nothing was checked." } }
                 }
             }

@@ -89,7 +89,7 @@ pub fn files(case: &CaseView) -> Markup {
                 @let json = serde_json::to_string_pretty(&run.scenario).unwrap_or_default();
                 div {
                     h2 { (words::capital(name)) }
-                    p.muted { "Run it again:" }
+                    p.muted { "Run it again, in the folder of the suite:" }
                     (parts::command(&run.rerun_command))
                     p.muted.small { "Simulated by " (words::clean(&run.rollout.simulator, 60)) " with " (words::clean(&run.rollout.ego, 60)) "; states " code { (words::clean(&run.rollout.state_hash, 64)) } }
                     details.json open[order + 1 == runs.len()] {

@@ -15,6 +15,8 @@ const MIN_LANE_RADIUS_M: f64 = 5.0;
 
 /// Which parts of a draft have numbers that geometry can be built from.
 pub(super) struct Fit {
+    /// Whether there are no more road users and obstacles than may be compared with each other.
+    pub counts: bool,
     pub map: bool,
     pub ego: bool,
     pub partners: Vec<bool>,
@@ -37,8 +39,8 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
         let start = remarks.number("ego.s_m", draft.ego.s_m, 0.0, longest, "m");
         speed && target && start
     };
-    remarks.count("partners", draft.partners.len(), 16);
-    remarks.count("obstacles", draft.obstacles.len(), 64);
+    let partners_fit = remarks.count("partners", draft.partners.len(), 16);
+    let obstacles_fit = remarks.count("obstacles", draft.obstacles.len(), 64);
     remarks.number("traffic.density", draft.traffic.density, 0.0, 1.0, "");
     let mut ids = BTreeSet::new();
     let mut partners = Vec::with_capacity(draft.partners.len());
@@ -54,7 +56,7 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
         partners.push(partner(each, &path, remarks));
     }
     let obstacles = draft.obstacles.iter().enumerate().map(|(n, each)| obstacle(each, n, remarks)).collect();
-    Fit { map, ego, partners, obstacles }
+    Fit { counts: partners_fit && obstacles_fit, map, ego, partners, obstacles }
 }
 
 impl Remarks {
@@ -75,11 +77,12 @@ impl Remarks {
         true
     }
 
-    fn count(&mut self, path: &str, found: usize, most: usize) {
+    fn count(&mut self, path: &str, found: usize, most: usize) -> bool {
         if found > most {
             let message = format!("{found} {path}, at most {most} are allowed");
             self.error("scenario.count", path, message, "leave out those that the conflict does not need");
         }
+        found <= most
     }
 
     fn steps(&mut self, path: &str, value: u32) {
@@ -177,9 +180,7 @@ fn partner(partner: &Partner, path: &str, remarks: &mut Remarks) -> bool {
     for (position, step) in partner.lateral.iter().enumerate() {
         lateral(step, &format!("{path}.lateral[{position}]"), remarks);
     }
-    if partner.lateral.len() > 32 {
-        remarks.count(&format!("{path}.lateral"), partner.lateral.len(), 32);
-    }
+    remarks.count(&format!("{path}.lateral"), partner.lateral.len(), 32);
     policy(&partner.policy, &format!("{path}.policy"), remarks) && fit
 }
 
