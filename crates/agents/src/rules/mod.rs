@@ -4,6 +4,7 @@ mod actors;
 mod design;
 pub(crate) mod limits;
 mod paraphrase;
+mod pattern;
 mod reading;
 mod rehearsal;
 mod retry;
