@@ -206,6 +206,25 @@ pub enum PartnerKind {
     FixedObject,
 }
 
+impl PartnerKind {
+    /// Every kind.
+    pub const ALL: [Self; 13] = [
+        Self::PassengerCar,
+        Self::Suv,
+        Self::Van,
+        Self::PickupTruck,
+        Self::HeavyTruck,
+        Self::Bus,
+        Self::Motorcycle,
+        Self::Cyclist,
+        Self::Pedestrian,
+        Self::OtherNonMotorist,
+        Self::FirstResponder,
+        Self::Animal,
+        Self::FixedObject,
+    ];
+}
+
 /// One of the ten contact zones of a vehicle (the `... Contact Area - ...` columns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
