@@ -2,7 +2,7 @@
 
 use super::super::actors::Actor;
 use super::super::pattern::Pattern;
-use super::{MEETING, Sentence, details, is_front, is_rear, only, words};
+use super::{MEETING, Sentence, details, only, words};
 use recrash_model::narrative::{FactSource, LanePosition, Side};
 use recrash_model::record::{ContactZone, CrashRecord};
 use recrash_model::template::Movement;
@@ -114,7 +114,7 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
             None => (Relation::Crossing, source),
         },
         // Who came from behind and touched the side had come up beside it.
-        Relation::Behind if !record.sv_zones.is_empty() && !record.sv_zones.iter().any(|zone| is_rear(*zone)) => {
+        Relation::Behind if !record.sv_zones.is_empty() && !record.sv_zones.iter().any(|zone| zone.is_rear()) => {
             match side_from_zones(record) {
                 Some(side) if !record.sv_zones.contains(&ContactZone::Front) => (Relation::Beside(Some(side)), source),
                 _ => (Relation::Behind, source),
@@ -395,8 +395,12 @@ fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation,
         side @ (2 | 6) if (side + backwards) % 8 == 2 => Relation::From(Side::Left),
         2 | 6 => Relation::From(Side::Right),
         // Front and rear touch: one followed the other.
-        0 if only(&record.sv_zones, is_rear) && only(&record.cp_zones, is_front) => Relation::Behind,
-        0 if only(&record.sv_zones, is_front) && record.cp_zones == [ContactZone::Rear] => Relation::Behind,
+        0 if only(&record.sv_zones, ContactZone::is_rear) && only(&record.cp_zones, ContactZone::is_front) => {
+            Relation::Behind
+        }
+        0 if only(&record.sv_zones, ContactZone::is_front) && record.cp_zones == [ContactZone::Rear] => {
+            Relation::Behind
+        }
         0 => Relation::Beside(None),
         4 => Relation::Oncoming,
         _ => return None,

@@ -129,16 +129,6 @@ fn facts(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation
     facts
 }
 
-/// Front, front left or front right.
-pub fn is_front(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Front | ContactZone::FrontLeft | ContactZone::FrontRight)
-}
-
-/// Rear, rear left or rear right.
-pub fn is_rear(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Rear | ContactZone::RearLeft | ContactZone::RearRight)
-}
-
 /// Whether there are zones and all of them are of this sort.
 pub fn only(zones: &[ContactZone], sort: fn(ContactZone) -> bool) -> bool {
     !zones.is_empty() && zones.iter().all(|zone| sort(*zone))
@@ -180,7 +170,7 @@ fn collision(
             let by_partner = sentence.mentions.object_after(found.end()) == Some(Actor::Cp);
             let kind = match sentence.mentions.subject_at(found.start()) {
                 Some(Actor::Sv) => Some(CollisionKind::RearEndOfEgo),
-                _ if by_partner && !only(&record.sv_zones, is_front) => Some(CollisionKind::RearEndOfEgo),
+                _ if by_partner && !only(&record.sv_zones, ContactZone::is_front) => Some(CollisionKind::RearEndOfEgo),
                 Some(Actor::Cp) if !crosses && !beside => Some(CollisionKind::RearEndByEgo),
                 _ => None,
             };
@@ -212,10 +202,11 @@ fn collision(
         !matches!(did, Some(Movement::Backing | Movement::ParkingManeuver | Movement::EnteringTraffic))
     };
     if record.partner.known().is_some() && !crosses && !beside && follows(sv_did) && follows(cp_did) {
-        if (behind && sv.is_empty()) || (only(sv, is_rear) && (behind || only(cp, is_front))) {
+        if (behind && sv.is_empty()) || (only(sv, ContactZone::is_rear) && (behind || only(cp, ContactZone::is_front)))
+        {
             return Some((CollisionKind::RearEndOfEgo, zones()));
         }
-        if only(sv, is_front) && only(cp, is_rear) {
+        if only(sv, ContactZone::is_front) && only(cp, ContactZone::is_rear) {
             return Some((CollisionKind::RearEndByEgo, zones()));
         }
     }
@@ -223,7 +214,7 @@ fn collision(
         use Movement::{CrossingIntoOpposingLane, Stopped, Straight, WrongWay};
         matches!(did, Some(Straight | Stopped | WrongWay | CrossingIntoOpposingLane))
     };
-    let fronts = |zones: &[ContactZone]| zones.is_empty() || zones.iter().any(|zone| is_front(*zone));
+    let fronts = |zones: &[ContactZone]| zones.is_empty() || zones.iter().any(|zone| zone.is_front());
     let head_on = relation == Some(Relation::Oncoming) && ahead(sv_did) && ahead(cp_did) && fronts(sv) && fronts(cp);
     head_on.then(|| (CollisionKind::HeadOn, zones()))
 }
