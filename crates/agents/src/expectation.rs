@@ -1,7 +1,7 @@
 //! What a rollout must show to be true to a narrative.
 
 use crate::rules::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
-use crate::rules::staged::{Facts, Ground, ground, offset_side, staging_of, turn};
+use crate::rules::staged::{Facts, Ground, ground, staging_of, turn};
 use recrash_model::metrics::Expectation;
 use recrash_model::narrative::{FactSource, FactValue, Narrative, Origin};
 use recrash_model::profile::SystemProfile;
@@ -18,18 +18,7 @@ use recrash_model::template::RoadType;
 /// to that side (see `docs/models/rules.md` and `docs/models/faithfulness.md`).
 pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &SystemProfile) -> Expectation {
     let facts = Facts(&narrative.facts);
-    let approach = facts.find(|value| match value {
-        FactValue::Approach { approach } => Some(*approach),
-        _ => None,
-    });
-    let side = facts.find(|value| match value {
-        FactValue::CpLaneOffset { lanes } => offset_side(*lanes),
-        _ => None,
-    });
-    let order = facts.find(|value| match value {
-        FactValue::Order { first } => Some(*first),
-        _ => None,
-    });
+    let approach = facts.approach();
     let binds = narrative.origin == Origin::Record;
     // Side by side nobody is first at a place, and the partner keeps to the ego's speed.
     let crosses = approach.is_some_and(|approach| approach != Approach::Same);
@@ -37,11 +26,7 @@ pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &System
     let has_place = crosses && narrative.template.road != RoadType::TrafficCircle;
     let ground = staging_of(narrative, &facts).map_or(Ground::Junction, |way| ground(&narrative.template, &way));
     let most = |movement| most_speed(ground, turn(ground, movement)).min(profile.expresses.max_speed_mps);
-    let kind = facts.find(|value| match value {
-        FactValue::Partner { kind } => Some(*kind),
-        _ => None,
-    });
-    let most_of_partner = most(narrative.template.cp).min(kind.map_or(f64::INFINITY, most_speed_of));
+    let most_of_partner = most(narrative.template.cp).min(facts.partner().map_or(f64::INFINITY, most_speed_of));
     let sv_speed = told_speed(narrative, |value| match value {
         FactValue::SvSpeed { speed_mps } => Some(*speed_mps),
         _ => None,
@@ -53,8 +38,8 @@ pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &System
     Expectation {
         template: narrative.template,
         approach,
-        side,
-        order: order.filter(|_| binds && has_place),
+        side: facts.side(),
+        order: facts.first_mover().filter(|_| binds && has_place),
         sv_speed_mps: sv_speed.map(|told| told.min(most(narrative.template.sv))),
         cp_speed_mps: cp_speed.filter(|_| crosses).map(|told| told.min(most_of_partner)),
         sv_zones: if binds { record.sv_zones.clone() } else { Vec::new() },

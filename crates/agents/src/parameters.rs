@@ -1,6 +1,7 @@
 //! Which numbers of a scenario may move, and how far, while its narrative stays true.
 
 use crate::rules::limits::{ground_of, most_speed, most_speed_of};
+use crate::rules::staged::Facts;
 use recrash_model::narrative::{Fact, FactSource, FactValue, FirstMover, Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::scenario::{Approach, Partner, Policy, ScenarioDraft, Start};
@@ -33,15 +34,15 @@ pub fn parameters(draft: &ScenarioDraft, narrative: &Narrative, profile: &System
     let ground = ground_of(&draft.map);
     let least = profile.expresses.min_speed_mps;
     let most = most_speed(ground, draft.ego.turn).min(profile.expresses.max_speed_mps);
-    let told = |is: fn(&FactValue) -> bool| narrative.facts.iter().find(|fact| is(&fact.value));
-    let reason = speed_reason(told(|value| matches!(value, FactValue::SvSpeed { .. })));
+    let facts = Facts(&narrative.facts);
+    let reason = speed_reason(facts.find_fact(|value| matches!(value, FactValue::SvSpeed { .. })));
     list.speed("/ego/target_speed_mps", draft.ego.target_speed_mps, (least, most), &reason);
     for (number, partner) in draft.partners.iter().enumerate() {
         let at = format!("/partners/{number}");
         let most = most_speed(ground, partner.turn).min(profile.expresses.max_speed_mps);
         let most = most.min(most_speed_of(partner.kind));
         list.start(&at, partner, draft, narrative);
-        let reason = speed_reason(told(|value| matches!(value, FactValue::CpSpeed { .. })));
+        let reason = speed_reason(facts.find_fact(|value| matches!(value, FactValue::CpSpeed { .. })));
         list.policy(&at, partner, (0.5_f64.min(most), most), &reason);
         list.lateral(&at, partner, draft.map.carriageway().lane_width_m);
     }
@@ -104,13 +105,9 @@ impl List {
         match partner.start {
             Start::ArrivalGap { arrival_gap_s } => {
                 let (mut min, mut max) = (arrival_gap_s - GAP_TOLERANCE_S, arrival_gap_s + GAP_TOLERANCE_S);
-                let first = narrative.facts.iter().find_map(|fact| match fact.value {
-                    FactValue::Order { first } => Some(first),
-                    _ => None,
-                });
                 let mut reason = "about one vehicle length of time around the design's gap";
                 if narrative.origin == Origin::Record {
-                    match first {
+                    match Facts(&narrative.facts).first_mover() {
                         Some(FirstMover::Cp) => {
                             max = max.min(ORDER_TOLERANCE_S);
                             reason = "the record says that the partner was first";

@@ -8,33 +8,30 @@ use recrash_model::Diagnostic;
 use recrash_model::metrics::Check;
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
+use recrash_model::record::ContactZone::{self, Front, FrontLeft, FrontRight, Left, Rear, Right};
 use recrash_model::record::{Coded, CrashRecord, PartnerKind};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::template::{Movement, RoadType, Template};
 use recrash_sim::{Ego, simulate};
 
 /// A way a partner may come, in words, and the contact areas that go with it.
-const WAYS: [(&str, &[&str], &[&str]); 7] = [
-    ("A car came from the left and hit the AV.", &["left"], &["front"]),
-    ("A car came from the right and hit the AV.", &["right"], &["front"]),
-    ("An oncoming car struck the AV.", &["front_left"], &["front_right"]),
-    ("A car in the lane to the left of the AV came over and sideswiped it.", &["left"], &["front_right"]),
-    ("A car in the lane to the right of the AV came over and sideswiped it.", &["front_right"], &["left"]),
-    ("The AV was rear ended by a car.", &["rear"], &["front"]),
+const WAYS: [(&str, &[ContactZone], &[ContactZone]); 7] = [
+    ("A car came from the left and hit the AV.", &[Left], &[Front]),
+    ("A car came from the right and hit the AV.", &[Right], &[Front]),
+    ("An oncoming car struck the AV.", &[FrontLeft], &[FrontRight]),
+    ("A car in the lane to the left of the AV came over and sideswiped it.", &[Left], &[FrontRight]),
+    ("A car in the lane to the right of the AV came over and sideswiped it.", &[FrontRight], &[Left]),
+    ("The AV was rear ended by a car.", &[Rear], &[Front]),
     ("Nothing is known.", &[], &[]),
 ];
-
-fn owned(names: &[&str]) -> Vec<String> {
-    names.iter().map(|name| (*name).to_owned()).collect()
-}
 
 fn records() -> Vec<CrashRecord> {
     let mut records = Vec::new();
     for template in support::paper().templates() {
         for (text, sv, cp) in WAYS {
             let mut record = support::record(template, text);
-            record.sv_zones = support::zones(&owned(sv));
-            record.cp_zones = support::zones(&owned(cp));
+            record.sv_zones = sv.to_vec();
+            record.cp_zones = cp.to_vec();
             records.push(record);
         }
     }
@@ -212,7 +209,7 @@ fn all_kinds_of_partner_can_be_designed() {
     for kind in &profile.expresses.partner_kinds {
         let mut record = support::record(template, "It came from the left and hit the AV.");
         record.partner = Coded::Known(*kind);
-        record.sv_zones = support::zones(&owned(&["left"]));
+        record.sv_zones = vec![Left];
         let narrative = narrative(&record, &profile, 7);
         let draft = design(&record, &narrative, &profile, &[]);
         assert_eq!(draft.partners[0].kind, *kind);

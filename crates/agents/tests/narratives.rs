@@ -3,8 +3,8 @@
 mod support;
 
 use recrash_model::narrative::{FactSource, Narrative, Origin};
-use recrash_model::record::{Coded, CrashRecord, PartnerKind};
-use recrash_model::template::{Movement, RoadType, Template};
+use recrash_model::record::ContactZone;
+use recrash_model::template::{Movement, RoadType};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -12,22 +12,8 @@ use serde_json::Value;
 #[serde(deny_unknown_fields)]
 struct Case {
     name: String,
-    text: String,
-    #[serde(default = "intersection")]
-    road: RoadType,
-    #[serde(default = "straight")]
-    sv: Movement,
-    #[serde(default = "straight")]
-    cp: Movement,
-    #[serde(default)]
-    work_zone: bool,
-    #[serde(default)]
-    partner: PartnerKind,
-    #[serde(default)]
-    sv_zones: Vec<String>,
-    #[serde(default)]
-    cp_zones: Vec<String>,
-    sv_speed_mps: Option<f64>,
+    #[serde(flatten)]
+    told: support::Told,
     #[serde(default = "retold")]
     is: String,
     because: Option<String>,
@@ -37,12 +23,6 @@ struct Case {
     never: Vec<String>,
 }
 
-fn intersection() -> RoadType {
-    RoadType::Intersection
-}
-fn straight() -> Movement {
-    Movement::Straight
-}
 fn retold() -> String {
     "record".to_owned()
 }
@@ -54,18 +34,6 @@ struct Cases {
 
 fn cases() -> Vec<Case> {
     toml::from_str::<Cases>(include_str!("cases/narratives.toml")).expect("well-formed cases").case
-}
-
-impl Case {
-    fn record(&self) -> CrashRecord {
-        let template = Template { road: self.road, sv: self.sv, cp: self.cp, work_zone: self.work_zone };
-        let mut record = support::record(template, &self.text);
-        record.partner = Coded::Known(self.partner);
-        record.sv_zones = support::zones(&self.sv_zones);
-        record.cp_zones = support::zones(&self.cp_zones);
-        record.sv_speed_mps = self.sv_speed_mps;
-        record
-    }
 }
 
 /// Whether a narrative states a fact; numbers may differ in the sixth digit.
@@ -87,7 +55,7 @@ fn every_case_is_read_as_told() {
     let profile = support::paper();
     let mut wrong = Vec::new();
     for case in cases() {
-        let narrative = support::narrate(&case.record(), &profile).value;
+        let narrative = support::narrate(&case.told.record(), &profile).value;
         let (is, reason) = match &narrative.origin {
             Origin::Record => ("record", ""),
             Origin::Alternative { reason } => ("alternative", reason.as_str()),
@@ -115,7 +83,7 @@ fn words_stand_in_the_narrative_as_they_are() {
     let profile = support::paper();
     let mut quoted = 0;
     for case in cases() {
-        let record = case.record();
+        let record = case.told.record();
         for fact in support::narrate(&record, &profile).value.facts {
             if let FactSource::Words { record: from, words } = fact.source {
                 assert_eq!(from, record.id);
@@ -131,11 +99,11 @@ fn words_stand_in_the_narrative_as_they_are() {
 fn texts_are_two_to_five_sentences_of_our_own() {
     let profile = support::paper();
     for case in cases() {
-        let narrative = support::narrate(&case.record(), &profile).value;
+        let narrative = support::narrate(&case.told.record(), &profile).value;
         let sentences = narrative.text.matches(". ").count() + 1;
         assert!((2..=5).contains(&sentences), "{}: {}", case.name, narrative.text);
         assert!(narrative.text.ends_with('.'));
-        assert!(!narrative.text.contains(&case.text));
+        assert!(!narrative.text.contains(&case.told.text));
     }
 }
 
@@ -176,7 +144,7 @@ fn an_alternative_binds_no_contact_zones() {
     let template = support::template(RoadType::Intersection, Movement::Straight, Movement::Straight);
     let profile = support::paper();
     let mut record = support::record(template, "A car came from the left and hit the AV.");
-    record.sv_zones = support::zones(&["left".to_owned()]);
+    record.sv_zones = vec![ContactZone::Left];
     let retold = support::narrate(&record, &profile).value;
     assert_eq!(recrash_agents::expectation(&retold, &record, &profile).sv_zones, record.sv_zones);
     record.narrative = "The AV was rear ended by a car.".into();

@@ -10,22 +10,6 @@ use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{LateralMove, Policy, ScenarioDraft};
 use recrash_sim::{Ego, simulate};
 
-const KINDS: [PartnerKind; 13] = [
-    PartnerKind::PassengerCar,
-    PartnerKind::Suv,
-    PartnerKind::Van,
-    PartnerKind::PickupTruck,
-    PartnerKind::HeavyTruck,
-    PartnerKind::Bus,
-    PartnerKind::Motorcycle,
-    PartnerKind::Cyclist,
-    PartnerKind::Pedestrian,
-    PartnerKind::OtherNonMotorist,
-    PartnerKind::FirstResponder,
-    PartnerKind::Animal,
-    PartnerKind::FixedObject,
-];
-
 fn exported(draft: &ScenarioDraft, partners_as: PartnersAs) -> String {
     let scenario = recrash_roads::check(draft.clone()).unwrap().value;
     let rollout = straight_on(&scenario, 4);
@@ -216,7 +200,7 @@ proptest! {
         changed.ego.s_m = s;
         changed.partners.truncate(1);
         changed.partners[0].lane_offset = 0;
-        changed.partners[0].kind = KINDS[kind];
+        changed.partners[0].kind = PartnerKind::ALL[kind];
         if let recrash_model::scenario::Start::ArrivalGap { arrival_gap_s } = &mut changed.partners[0].start {
             *arrival_gap_s = gap;
         }

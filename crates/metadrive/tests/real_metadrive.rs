@@ -200,22 +200,7 @@ fn background_traffic_starts_where_it_is_placed_and_drives_when_the_ego_comes() 
 #[test]
 fn every_kind_of_road_user_drives_walks_or_stands() {
     let Some(metadrive) = start("every_kind_of_road_user_drives_walks_or_stands") else { return };
-    let kinds = [
-        PartnerKind::PassengerCar,
-        PartnerKind::Suv,
-        PartnerKind::Van,
-        PartnerKind::PickupTruck,
-        PartnerKind::HeavyTruck,
-        PartnerKind::Bus,
-        PartnerKind::Motorcycle,
-        PartnerKind::Cyclist,
-        PartnerKind::Pedestrian,
-        PartnerKind::OtherNonMotorist,
-        PartnerKind::FirstResponder,
-        PartnerKind::Animal,
-        PartnerKind::FixedObject,
-    ];
-    for kind in kinds {
+    for kind in PartnerKind::ALL {
         let mut draft = crossing();
         let fixed = kind == PartnerKind::FixedObject;
         let speed = if fixed { 0.0 } else { 2.0 };

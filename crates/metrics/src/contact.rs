@@ -8,9 +8,6 @@ use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::record::ContactZone;
 
-/// Part of the length, and of the width, that a corner zone takes at each end.
-const CORNER_SHARE: f64 = 0.25;
-
 /// Boxes that do not overlap are moved together along the nearest line until they overlap by this. [m]
 const TOUCH_DEPTH_M: f64 = 0.02;
 
@@ -49,38 +46,10 @@ pub fn contact_geometry(
 ) -> ContactGeometry {
     let moved = touching(ego, other);
     let point = ConvexPolygon::overlap(ego, &moved).centroid().unwrap_or(ego.centre);
-    let ego_zone = zone_at(ego, point);
-    let other_zone = zone_at(&moved, point);
+    let ego_zone = ContactZone::at(ego, point);
+    let other_zone = ContactZone::at(&moved, point);
     let kind = collision_kind(ego, ego_zone, other, other_zone, other_velocity - ego_velocity);
     ContactGeometry { ego_zone, other_zone, kind, point }
-}
-
-/// The zone of a box that a point on or near its edge belongs to.
-pub fn zone_at(outline: &OrientedBox, point: Vec2) -> ContactZone {
-    let local = outline.to_local(point);
-    let (x, y) = (local.x.abs() / outline.half_length, local.y.abs() / outline.half_width);
-    let corner_from = 1.0 - 2.0 * CORNER_SHARE;
-    let (at_end, at_side) = match (x >= corner_from, y >= corner_from) {
-        (true, true) => (true, true),
-        (true, false) => (true, false),
-        (false, true) => (false, true),
-        // Deep inside: the nearer edge.
-        (false, false) => {
-            let to_end = outline.half_length - local.x.abs();
-            let to_side = outline.half_width - local.y.abs();
-            (to_end < to_side, to_end >= to_side)
-        }
-    };
-    match (at_end, at_side, local.x >= 0.0, local.y >= 0.0) {
-        (true, true, true, true) => ContactZone::FrontLeft,
-        (true, true, true, false) => ContactZone::FrontRight,
-        (true, true, false, true) => ContactZone::RearLeft,
-        (true, true, false, false) => ContactZone::RearRight,
-        (true, false, true, _) => ContactZone::Front,
-        (true, false, false, _) => ContactZone::Rear,
-        (false, _, _, true) => ContactZone::Left,
-        (false, _, _, false) => ContactZone::Right,
-    }
 }
 
 /// `other` where it overlaps `ego` by at least a little: moved along the nearest line, or as it is.
@@ -116,13 +85,13 @@ fn collision_kind(
         let along = ego.half_length + other.half_length - offset.dot(ego.axis).abs();
         let in_line = share >= REAR_END_LATERAL_SHARE || (share > 0.0 && !sideways && along <= across);
         return match () {
-            () if in_line && is_front(ego_zone) && is_rear(other_zone) => CollisionKind::RearEndByEgo,
-            () if in_line && is_rear(ego_zone) && is_front(other_zone) => CollisionKind::RearEndOfEgo,
+            () if in_line && ego_zone.is_front() && other_zone.is_rear() => CollisionKind::RearEndByEgo,
+            () if in_line && ego_zone.is_rear() && other_zone.is_front() => CollisionKind::RearEndOfEgo,
             () => CollisionKind::Sideswipe,
         };
     }
     if turn >= math::PI - ALIGNED_RAD {
-        let fronts = is_front(ego_zone) && is_front(other_zone);
+        let fronts = ego_zone.is_front() && other_zone.is_front();
         let head_on = fronts && lateral_overlap_share(ego, other) >= HEAD_ON_LATERAL_SHARE;
         return if head_on { CollisionKind::HeadOn } else { CollisionKind::Sideswipe };
     }
@@ -135,14 +104,6 @@ fn lateral_overlap_share(ego: &OrientedBox, other: &OrientedBox) -> f64 {
     let apart = (other.centre - ego.centre).dot(ego.axis.left()).abs();
     let shared = (ego.half_width + other.half_width - apart).min(2.0 * ego.half_width.min(other.half_width));
     shared / (2.0 * ego.half_width.min(other.half_width))
-}
-
-fn is_front(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Front | ContactZone::FrontLeft | ContactZone::FrontRight)
-}
-
-fn is_rear(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Rear | ContactZone::RearLeft | ContactZone::RearRight)
 }
 
 #[cfg(test)]
@@ -183,17 +144,17 @@ mod tests {
             (2.0, -0.8, Z::FrontRight),
         ];
         for (x, y, zone) in around {
-            assert_eq!(zone_at(&car(0.0, 0.0, 0.0), Vec2::new(x, y)), zone, "({x}, {y})");
+            assert_eq!(ContactZone::at(&car(0.0, 0.0, 0.0), Vec2::new(x, y)), zone, "({x}, {y})");
             // The same on a box that lies elsewhere at another angle.
             let turned = car(30.0, -7.0, 130.0);
-            assert_eq!(zone_at(&turned, turned.to_world(Vec2::new(x, y))), zone, "({x}, {y}) turned");
+            assert_eq!(ContactZone::at(&turned, turned.to_world(Vec2::new(x, y))), zone, "({x}, {y}) turned");
         }
     }
 
     #[test]
     fn deep_inside_the_nearer_edge_decides() {
-        assert_eq!(zone_at(&car(0.0, 0.0, 0.0), Vec2::new(0.2, 0.3)), Z::Left);
-        assert_eq!(zone_at(&car(0.0, 0.0, 0.0), Vec2::new(0.2, -0.3)), Z::Right);
+        assert_eq!(ContactZone::at(&car(0.0, 0.0, 0.0), Vec2::new(0.2, 0.3)), Z::Left);
+        assert_eq!(ContactZone::at(&car(0.0, 0.0, 0.0), Vec2::new(0.2, -0.3)), Z::Right);
     }
 
     #[test]

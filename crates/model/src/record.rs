@@ -1,5 +1,6 @@
 //! Crash records: one version of one report, in SI units, with where it came from.
 
+use crate::geometry::{OrientedBox, Vec2};
 use crate::template::{Movement, RoadType, Template};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -206,6 +207,25 @@ pub enum PartnerKind {
     FixedObject,
 }
 
+impl PartnerKind {
+    /// Every kind.
+    pub const ALL: [Self; 13] = [
+        Self::PassengerCar,
+        Self::Suv,
+        Self::Van,
+        Self::PickupTruck,
+        Self::HeavyTruck,
+        Self::Bus,
+        Self::Motorcycle,
+        Self::Cyclist,
+        Self::Pedestrian,
+        Self::OtherNonMotorist,
+        Self::FirstResponder,
+        Self::Animal,
+        Self::FixedObject,
+    ];
+}
+
 /// One of the ten contact zones of a vehicle (the `... Contact Area - ...` columns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -232,6 +252,9 @@ pub enum ContactZone {
     Bottom,
 }
 
+/// Part of the length, and of the width, that a corner zone takes at each end (`docs/models/contact-zones.md`).
+const CORNER_SHARE: f64 = 0.25;
+
 impl ContactZone {
     /// Every zone: the eight around the box anticlockwise from the front, then top and bottom.
     pub const ALL: [Self; 10] = [
@@ -246,6 +269,37 @@ impl ContactZone {
         Self::Top,
         Self::Bottom,
     ];
+
+    /// The zone of a vehicle's outline that a point on or near its edge belongs to.
+    pub fn at(outline: &OrientedBox, point: Vec2) -> Self {
+        let local = outline.to_local(point);
+        let (x, y) = (local.x.abs() / outline.half_length, local.y.abs() / outline.half_width);
+        let corner_from = 1.0 - 2.0 * CORNER_SHARE;
+        let at_side = y >= corner_from;
+        // Deep inside, the nearer edge.
+        let nearer_end = outline.half_length - local.x.abs() < outline.half_width - local.y.abs();
+        let at_end = x >= corner_from || (!at_side && nearer_end);
+        match (at_end, at_side, local.x >= 0.0, local.y >= 0.0) {
+            (true, true, true, true) => Self::FrontLeft,
+            (true, true, true, false) => Self::FrontRight,
+            (true, true, false, true) => Self::RearLeft,
+            (true, true, false, false) => Self::RearRight,
+            (true, false, true, _) => Self::Front,
+            (true, false, false, _) => Self::Rear,
+            (false, _, _, true) => Self::Left,
+            (false, _, _, false) => Self::Right,
+        }
+    }
+
+    /// Front, front left or front right.
+    pub fn is_front(self) -> bool {
+        matches!(self, Self::Front | Self::FrontLeft | Self::FrontRight)
+    }
+
+    /// Rear, rear left or rear right.
+    pub fn is_rear(self) -> bool {
+        matches!(self, Self::Rear | Self::RearLeft | Self::RearRight)
+    }
 
     /// Steps around the box between two zones, 0 to 4; `None` with top or bottom.
     pub fn steps_apart(self, other: Self) -> Option<u8> {

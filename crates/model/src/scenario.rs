@@ -47,7 +47,7 @@ pub struct ScenarioDraft {
 }
 
 /// Where a scenario came from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
     /// Crash records; the pick is the first.

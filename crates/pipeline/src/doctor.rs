@@ -1,21 +1,18 @@
 //! What is installed of all that recrash can use, and how to get the rest.
 
 use crate::weights::{find_weights, is_published_model};
+use recrash_child::{printable, run};
 use recrash_metadrive::{INSTALL_HINT, METADRIVE_VERSION, inspect};
 use serde::Serialize;
-use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
 /// How long MetaDrive may take to be imported. [s]
 const METADRIVE_PATIENCE: Duration = Duration::from_secs(120);
 
 /// How long another program may take to say its version. [s]
 const PATIENCE: Duration = Duration::from_secs(20);
-
-/// Longest answer that is read of a program. [bytes]
-const LONGEST_ANSWER: u64 = 1 << 16;
 
 /// How it stands with something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -189,41 +186,17 @@ enum Silence {
 
 /// The first line a program prints.
 fn ask(program: &Path, arguments: &[&str]) -> Result<String, Silence> {
-    let mut child = Command::new(program)
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(|_| Silence::NotThere)?;
-    // Read aside: whoever prints without end must not hold us up.
-    let mut pipe = child.stdout.take().map(|pipe| pipe.take(LONGEST_ANSWER));
-    let reader = std::thread::spawn(move || {
-        let mut said = Vec::new();
-        if let Some(pipe) = &mut pipe {
-            let _ = pipe.read_to_end(&mut said);
-        }
-        said
-    });
-    let until = Instant::now() + PATIENCE;
-    let status = loop {
-        match child.try_wait() {
-            Ok(Some(status)) => break status,
-            Ok(None) if Instant::now() < until => std::thread::sleep(Duration::from_millis(10)),
-            _ => {
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(Silence::Said(format!("it did not answer within {} s", PATIENCE.as_secs())));
+    match run(Command::new(program).args(arguments), PATIENCE) {
+        Err(_) => Err(Silence::NotThere),
+        Ok(None) => Err(Silence::Said(format!("it did not answer within {} s", PATIENCE.as_secs()))),
+        Ok(Some(finished)) => {
+            let line = printable(finished.stdout.lines().next().unwrap_or_default(), 200).trim().to_owned();
+            if finished.status.success() && !line.is_empty() {
+                Ok(line)
+            } else {
+                Err(Silence::Said(format!("it ended with {}", finished.status)))
             }
         }
-    };
-    let said = reader.join().unwrap_or_default();
-    let text = String::from_utf8_lossy(&said);
-    let line: String = text.lines().next().unwrap_or_default().chars().filter(|c| !c.is_control()).take(200).collect();
-    if status.success() && !line.trim().is_empty() {
-        Ok(line.trim().to_owned())
-    } else {
-        Err(Silence::Said(format!("it ended with {status}")))
     }
 }
 

@@ -5,18 +5,17 @@ use crate::recording::read_records;
 use crate::suite::Options;
 use crate::weights::{find_weights, load};
 use rayon::prelude::*;
+use recrash_child::{Program, Silence};
 use recrash_model::record::Redaction;
 use serde::{Deserialize, Serialize};
-use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// What Python runs.
 const SCRIPT: &str = include_str!("embed_bench.py");
-/// Longest wait for one answer of Python: importing torch takes up to a minute on a cold disk. [s]
-const PATIENCE_S: u64 = 600;
+/// Longest wait for one answer of Python: importing torch takes up to a minute on a cold disk.
+const PATIENCE: Duration = Duration::from_secs(600);
 /// Longest answer: 2,000 rows of 384 numbers. [bytes]
 const MAX_ANSWER_BYTES: u64 = 64 << 20;
 /// Rest before each measurement, in which the other side's threads go to sleep. [s]
@@ -149,11 +148,8 @@ struct Task<'a> {
     texts: &'a [&'a str],
 }
 
-/// The other side, which ends with this value.
-struct Python {
-    child: Child,
-    lines: Receiver<String>,
-}
+/// The other side.
+struct Python(Program);
 
 impl Python {
     fn start(
@@ -163,24 +159,12 @@ impl Python {
         texts: &[&str],
     ) -> Result<(Self, BenchSide), PipelineError> {
         let mut command = Command::new(interpreter);
-        command.args(["-c", SCRIPT]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        command.args(["-c", SCRIPT]);
         command.env("OMP_NUM_THREADS", threads.to_string()).env("TOKENIZERS_PARALLELISM", "false");
-        let started = command.spawn();
-        let mut child = started
-            .map_err(|e| failed(&format!("cannot start {}: {e}; name another with --python", interpreter.display())))?;
-        let stdout = child.stdout.take();
-        let (sender, lines) = channel();
-        std::thread::spawn(move || {
-            let Some(mut reader) = stdout.map(BufReader::new) else { return };
-            loop {
-                let mut line = String::new();
-                let read = reader.by_ref().take(MAX_ANSWER_BYTES).read_line(&mut line);
-                if !read.is_ok_and(|bytes| bytes > 0) || sender.send(line).is_err() {
-                    return;
-                }
-            }
-        });
-        let mut this = Self { child, lines };
+        let started = Program::start(&mut command, MAX_ANSWER_BYTES);
+        let mut this = Self(started.map_err(|e| {
+            failed(&format!("cannot start {}: {e}; name another with --python", interpreter.display()))
+        })?);
         let task = serde_json::to_string(&Task { model, threads, texts }).unwrap_or_default();
         let hello = this.ask(&task)?;
         let name = hello.name.ok_or_else(|| failed("it did not tell its name"))?;
@@ -188,23 +172,17 @@ impl Python {
     }
 
     fn ask(&mut self, question: &str) -> Result<Answer, PipelineError> {
-        let stdin = self.child.stdin.as_mut().ok_or_else(|| failed("it does not listen"))?;
-        writeln!(stdin, "{question}").and_then(|()| stdin.flush()).map_err(|e| failed(&e.to_string()))?;
-        let line = self.lines.recv_timeout(Duration::from_secs(PATIENCE_S));
-        let line = line.map_err(|_| failed("it ended, or gave no answer in time"))?;
+        let line = self.0.ask(format!("{question}\n").into_bytes(), PATIENCE);
+        let line = line.map_err(|silence| match silence {
+            Silence::Hung => failed("it gave no answer in time"),
+            Silence::TooLong => failed("its answer has no end"),
+            Silence::Ended { complaint, .. } => failed(&format!("it ended, saying: {complaint}")),
+        })?;
         let answer: Answer = serde_json::from_str(&line).map_err(|e| failed(&format!("its answer is none: {e}")))?;
         match answer.error {
             Some(error) => Err(failed(&error)),
             None => Ok(answer),
         }
-    }
-}
-
-impl Drop for Python {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 

@@ -3,13 +3,13 @@
 use crate::caches::{Variable, cache_folder, no_cache_folder, variable};
 use crate::error::PipelineError;
 use crate::store::read_bytes;
+use recrash_child::run;
 use recrash_embed::{Embedder, MINILM_NAME, MODEL_FILES, ModelFiles};
 use serde::Serialize;
 use std::ffi::OsStr;
-use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
 /// Model files larger than this are refused. [bytes]
 const MAX_MODEL_FILE: u64 = 1 << 30;
@@ -217,34 +217,13 @@ fn python(interpreter: &Path, folder: &Path, words: &[&str], paths: &[&OsStr]) -
     let by_path = interpreter.components().count() > 1;
     let absolute = if by_path { std::path::absolute(interpreter).ok() } else { None };
     let mut command = Command::new(absolute.as_deref().unwrap_or(interpreter));
-    command.args(words).args(paths).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    command.args(words).args(paths);
     // A module of the user's called pip or zipfile must not be taken for Python's.
     command.env("PYTHONSAFEPATH", "1").current_dir(folder);
-    let started = command.spawn();
-    let mut child = started.map_err(|e| failed(&format!("cannot start {}: {e}", interpreter.display())))?;
-    let stderr = child.stderr.take();
-    let complaint = std::thread::spawn(move || {
-        let mut text = Vec::new();
-        // What cannot be read is left out of the message.
-        let _ = stderr.map(|stderr| stderr.take(1 << 16).read_to_end(&mut text));
-        String::from_utf8_lossy(&text).into_owned()
-    });
-    let begun = Instant::now();
-    let status = loop {
-        match child.try_wait() {
-            Ok(Some(status)) => break status,
-            Ok(None) if begun.elapsed() < Duration::from_secs(PULL_TIMEOUT_S) => {
-                std::thread::sleep(Duration::from_millis(50));
-            }
-            _ => {
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(failed(&format!("no end within {PULL_TIMEOUT_S} s")));
-            }
-        }
-    };
-    let complaint = complaint.join().unwrap_or_default();
-    if status.success() { Ok(()) } else { Err(failed(&why(&complaint))) }
+    let finished = run(&mut command, Duration::from_secs(PULL_TIMEOUT_S))
+        .map_err(|e| failed(&format!("cannot start {}: {e}", interpreter.display())))?
+        .ok_or_else(|| failed(&format!("no end within {PULL_TIMEOUT_S} s")))?;
+    if finished.status.success() { Ok(()) } else { Err(failed(&why(&finished.stderr))) }
 }
 
 /// The one line of a complaint that tells why.

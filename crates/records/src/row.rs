@@ -10,7 +10,7 @@ use recrash_model::record::{Coded, CrashRecord, Engagement, Provenance, RecordRe
 use std::borrow::Cow;
 
 /// NHTSA's mark for a narrative, or a part of one, withheld as confidential business information.
-pub const REDACTED: &str = "[REDACTED, MAY CONTAIN CONFIDENTIAL BUSINESS INFORMATION]";
+const REDACTED: &str = "[REDACTED, MAY CONTAIN CONFIDENTIAL BUSINESS INFORMATION]";
 
 /// A record, and what only this crate needs to know about it.
 #[derive(Debug)]
@@ -30,6 +30,17 @@ pub fn record_ref(row: &ByteRecord, columns: &Columns) -> Option<RecordRef> {
     plausible.then_some(RecordRef { report_id, version })
 }
 
+/// How much of a narrative may be read.
+pub fn redaction_of(narrative: &str) -> Redaction {
+    if narrative.contains(REDACTED) {
+        Redaction::Redacted
+    } else if narrative.is_empty() {
+        Redaction::Empty
+    } else {
+        Redaction::Open
+    }
+}
+
 /// Reads a row of the right width; an error says what makes it no record.
 pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes: &mut Notes) -> Result<Draft, String> {
     let id = record_ref(row, columns)
@@ -39,13 +50,7 @@ pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes:
     let entity = cells.owned(columns.entity);
     let operator = cells.text(columns.operator);
     let narrative = cells.narrative(columns.narrative);
-    let redaction = if narrative.contains(REDACTED) {
-        Redaction::Redacted
-    } else if narrative.is_empty() {
-        Redaction::Empty
-    } else {
-        Redaction::Open
-    };
+    let redaction = redaction_of(&narrative);
     let record = CrashRecord {
         id,
         incident_id: Some(cells.owned(columns.incident_id)).filter(|text| !text.is_empty()),

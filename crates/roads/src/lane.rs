@@ -1,6 +1,7 @@
 //! Lanes: a straight or circular centre line with a width.
 
 use crate::network::RoadId;
+use crate::path::SegmentShape;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 
@@ -70,19 +71,7 @@ impl Lane {
 
     /// (s, t) of a point. On an arc, s is continuous around the lane's middle.
     pub fn local(&self, point: Vec2) -> (f64, f64) {
-        match self.centreline {
-            Centreline::Straight { start, heading } => {
-                let forward = Vec2::from_heading(heading);
-                let d = point - start;
-                (d.dot(forward), -forward.cross(d))
-            }
-            Centreline::Arc { centre, radius, start_angle, turn } => {
-                let middle = Vec2::from_heading(start_angle + turn * 0.5 * self.length_m / radius);
-                let d = point - centre;
-                let angle = math::atan2(middle.cross(d), middle.dot(d));
-                (0.5 * self.length_m + turn * angle * radius, turn * (d.length() - radius))
-            }
-        }
+        SegmentShape::of(self).local(point)
     }
 
     /// Curvature of the centre line, positive to the left. [1/m]

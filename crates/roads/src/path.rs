@@ -119,7 +119,8 @@ impl Conflict {
 }
 
 impl SegmentShape {
-    fn of(lane: &Lane) -> Self {
+    /// That of a lane.
+    pub fn of(lane: &Lane) -> Self {
         match lane.centreline {
             Centreline::Straight { start, heading } => {
                 Self::Straight { start, forward: Vec2::from_heading(heading), heading }
@@ -138,9 +139,10 @@ impl SegmentShape {
         }
     }
 
-    /// Position, direction and heading on the centre line, `s` from the segment's beginning.
+    /// Position, direction and heading on the centre line, `s` from the segment's beginning; an arc is continued as a
+    /// circle. The heading is not wrapped. [m, rad]
     #[inline]
-    pub(crate) fn frame(&self, s: f64) -> (Vec2, Vec2, f64) {
+    pub fn frame(&self, s: f64) -> (Vec2, Vec2, f64) {
         match *self {
             Self::Straight { start, forward, heading } => (start + forward * s, forward, heading),
             Self::Arc { centre, radius, middle, middle_heading, half_length, turn } => {
@@ -152,9 +154,20 @@ impl SegmentShape {
         }
     }
 
-    /// (s, t) of a point, `s` from the segment's beginning; an arc is continued as a circle.
+    /// Heading of the centre line, as in [`Self::frame`]. [rad]
     #[inline]
-    pub(crate) fn local(&self, point: Vec2) -> (f64, f64) {
+    pub fn heading(&self, s: f64) -> f64 {
+        match *self {
+            Self::Straight { heading, .. } => heading,
+            Self::Arc { radius, middle_heading, half_length, turn, .. } => {
+                middle_heading + turn * (s - half_length) / radius
+            }
+        }
+    }
+
+    /// (s, t) of a point, `s` from the segment's beginning; an arc is continued as a circle. [m]
+    #[inline]
+    pub fn local(&self, point: Vec2) -> (f64, f64) {
         match *self {
             Self::Straight { start, forward, .. } => {
                 let d = point - start;

@@ -6,8 +6,8 @@
 //! reproduced here.
 
 use recrash_model::geometry::Vec2;
-use recrash_model::math;
 use recrash_model::scenario::MapSpec;
+use recrash_roads::path::SegmentShape;
 use recrash_roads::{Centreline, RoadId, RoadNetwork};
 
 /// Position of a lane in the network.
@@ -26,7 +26,9 @@ const BODY_MARGIN_M: f64 = 0.04;
 /// A lane with what would otherwise be computed again at every look-up.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PreparedLane {
-    shape: Shape,
+    shape: SegmentShape,
+    /// `None` where it is straight: its body is as straight.
+    hull: Option<Hull>,
     pub(crate) length_m: f64,
     half_width_m: f64,
     /// Where the lane's collision body ends, along the lane. [m]
@@ -38,27 +40,17 @@ pub(crate) struct PreparedLane {
     pub(crate) number: u8,
 }
 
+/// What the convex hull of an arc is bounded by.
 #[derive(Debug, Clone, Copy)]
-enum Shape {
-    Straight {
-        start: Vec2,
-        forward: Vec2,
-        heading: f64,
-    },
-    Arc {
-        centre: Vec2,
-        radius: f64,
-        middle: Vec2,
-        middle_heading: f64,
-        half_length: f64,
-        turn: f64,
-        /// Directions of travel at both ends.
-        start_forward: Vec2,
-        end_forward: Vec2,
-        /// The hull's straight inner edge: a point on it and its unit vector.
-        chord: Vec2,
-        chord_forward: Vec2,
-    },
+struct Hull {
+    /// +1 anticlockwise (a left curve), -1 clockwise.
+    turn: f64,
+    /// Directions of travel at both ends.
+    start_forward: Vec2,
+    end_forward: Vec2,
+    /// The straight inner edge: a point on it and its unit vector.
+    chord: Vec2,
+    chord_forward: Vec2,
 }
 
 impl PreparedLane {
@@ -67,34 +59,21 @@ impl PreparedLane {
         let (start, end) = (lane.position(0.0, 0.0), lane.position(lane.length_m, 0.0));
         // numpy's arange(0, length + 1, 1) ends with the length rounded up.
         let body_end_m = (lane.length_m / BODY_SAMPLE_M - 1e-9).ceil() * BODY_SAMPLE_M;
-        let shape = match lane.centreline {
-            Centreline::Straight { start, heading } => {
-                Shape::Straight { start, forward: Vec2::from_heading(heading), heading }
-            }
-            Centreline::Arc { centre, radius, start_angle, turn } => {
-                let half_length = 0.5 * lane.length_m;
+        let hull = match lane.centreline {
+            Centreline::Straight { .. } => None,
+            Centreline::Arc { turn, .. } => {
                 let start_forward = Vec2::from_heading(lane.heading(0.0));
                 let end_forward = Vec2::from_heading(lane.heading(lane.length_m));
                 let inner = -turn * 0.5 * lane.width_m;
                 let chord = lane.position(0.0, inner) - start_forward * BODY_SAMPLE_M;
                 let chord_end = lane.position(body_end_m, inner) + end_forward * BODY_SAMPLE_M;
                 let along = chord_end - chord;
-                Shape::Arc {
-                    centre,
-                    radius,
-                    middle: Vec2::from_heading(start_angle + turn * half_length / radius),
-                    middle_heading: lane.heading(half_length),
-                    half_length,
-                    turn,
-                    start_forward,
-                    end_forward,
-                    chord,
-                    chord_forward: along * (1.0 / along.length()),
-                }
+                Some(Hull { turn, start_forward, end_forward, chord, chord_forward: along * (1.0 / along.length()) })
             }
         };
         Self {
-            shape,
+            shape: SegmentShape::of(lane),
+            hull,
             length_m: lane.length_m,
             half_width_m: 0.5 * lane.width_m,
             body_end_m,
@@ -108,28 +87,13 @@ impl PreparedLane {
     /// (s, t) of a point; the lane is continued at both ends. [m]
     #[inline]
     pub(crate) fn local(&self, point: Vec2) -> (f64, f64) {
-        match self.shape {
-            Shape::Straight { start, forward, .. } => {
-                let d = point - start;
-                (d.dot(forward), -forward.cross(d))
-            }
-            Shape::Arc { centre, radius, middle, half_length, turn, .. } => {
-                let d = point - centre;
-                let angle = math::atan2(middle.cross(d), middle.dot(d));
-                (half_length + turn * angle * radius, turn * (d.length() - radius))
-            }
-        }
+        self.shape.local(point)
     }
 
     /// Heading of the centre line; an arc is continued as a circle. Not wrapped. [rad]
     #[inline]
     pub(crate) fn heading(&self, s: f64) -> f64 {
-        match self.shape {
-            Shape::Straight { heading, .. } => heading,
-            Shape::Arc { radius, middle_heading, half_length, turn, .. } => {
-                middle_heading + turn * (s - half_length) / radius
-            }
-        }
+        self.shape.heading(s)
     }
 
     /// Width. [m]
@@ -142,8 +106,8 @@ impl PreparedLane {
     #[inline]
     pub(crate) fn radius(&self) -> Option<f64> {
         match self.shape {
-            Shape::Straight { .. } => None,
-            Shape::Arc { radius, .. } => Some(radius),
+            SegmentShape::Straight { .. } => None,
+            SegmentShape::Arc { radius, .. } => Some(radius),
         }
     }
 
@@ -162,18 +126,18 @@ impl PreparedLane {
     /// Whether a point lies on the lane's collision body.
     fn body_holds(&self, point: Vec2) -> bool {
         let (s, t) = self.local(point);
-        match self.shape {
-            Shape::Straight { .. } => {
+        match &self.hull {
+            None => {
                 s >= -BODY_MARGIN_M
                     && s <= self.body_end_m + BODY_MARGIN_M
                     && t.abs() <= self.half_width_m + BODY_MARGIN_M
             }
-            Shape::Arc { turn, start_forward, end_forward, chord, chord_forward, .. } => {
+            Some(hull) => {
                 let beyond_end = self.body_end_m - self.length_m + BODY_SAMPLE_M;
-                turn * t <= self.half_width_m + BODY_MARGIN_M
-                    && (point - self.start).dot(start_forward) >= -BODY_SAMPLE_M - BODY_MARGIN_M
-                    && (point - self.end).dot(end_forward) <= beyond_end + BODY_MARGIN_M
-                    && turn * chord_forward.cross(point - chord) <= BODY_MARGIN_M
+                hull.turn * t <= self.half_width_m + BODY_MARGIN_M
+                    && (point - self.start).dot(hull.start_forward) >= -BODY_SAMPLE_M - BODY_MARGIN_M
+                    && (point - self.end).dot(hull.end_forward) <= beyond_end + BODY_MARGIN_M
+                    && hull.turn * hull.chord_forward.cross(point - hull.chord) <= BODY_MARGIN_M
             }
         }
     }

@@ -29,22 +29,6 @@ fn assert_sound(rollout: &Rollout) {
     assert!(rollout.events.is_sorted_by(|a, b| a.time_s <= b.time_s));
 }
 
-const KINDS: [PartnerKind; 13] = [
-    PartnerKind::PassengerCar,
-    PartnerKind::Suv,
-    PartnerKind::Van,
-    PartnerKind::PickupTruck,
-    PartnerKind::HeavyTruck,
-    PartnerKind::Bus,
-    PartnerKind::Motorcycle,
-    PartnerKind::Cyclist,
-    PartnerKind::Pedestrian,
-    PartnerKind::OtherNonMotorist,
-    PartnerKind::FirstResponder,
-    PartnerKind::Animal,
-    PartnerKind::FixedObject,
-];
-
 fn surfaces() -> impl Strategy<Value = Surface> {
     prop_oneof![Just(Surface::Dry), Just(Surface::Wet), Just(Surface::SnowIce)]
 }
@@ -60,7 +44,7 @@ proptest! {
                 draft.traffic.seed = seed;
             }
             for (position, partner) in draft.partners.iter_mut().enumerate() {
-                partner.kind = KINDS[(kind + position) % KINDS.len()];
+                partner.kind = PartnerKind::ALL[(kind + position) % PartnerKind::ALL.len()];
             }
             draft.environment.surface = surface;
             // Another kind may be too large or too fast for where it is: then the check says so.
@@ -243,7 +227,7 @@ fn golden_scenarios() -> Vec<Scenario> {
     for number in 0..500 {
         let Some(mut draft) = random_draft(31, number) else { continue };
         for (position, partner) in draft.partners.iter_mut().enumerate() {
-            partner.kind = KINDS[(number as usize + position) % KINDS.len()];
+            partner.kind = PartnerKind::ALL[(number as usize + position) % PartnerKind::ALL.len()];
         }
         draft.environment.surface = [Surface::Dry, Surface::Wet, Surface::SnowIce][number as usize % 3];
         drafts.push(draft);

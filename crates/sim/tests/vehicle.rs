@@ -178,20 +178,7 @@ fn wet_and_icy_roads_lengthen_the_way_to_a_stop() {
 
 #[test]
 fn every_kind_accelerates_steers_and_stops_within_its_limits() {
-    for kind in [
-        PartnerKind::PassengerCar,
-        PartnerKind::Suv,
-        PartnerKind::Van,
-        PartnerKind::PickupTruck,
-        PartnerKind::HeavyTruck,
-        PartnerKind::Bus,
-        PartnerKind::Motorcycle,
-        PartnerKind::Cyclist,
-        PartnerKind::Pedestrian,
-        PartnerKind::OtherNonMotorist,
-        PartnerKind::FirstResponder,
-        PartnerKind::Animal,
-    ] {
+    for kind in PartnerKind::ALL.into_iter().filter(|kind| *kind != PartnerKind::FixedObject) {
         let spec = VehicleSpec::of(kind);
         let mut drive = Drive::new(kind, Surface::Dry, 0.0);
         drive.steps(300, 0.0, 1.0);

@@ -1,5 +1,6 @@
 //! Who a sentence speaks of: where it mentions the ego, the crash partner and others, and which of them a cue is about.
 
+use super::pattern::Pattern;
 use recrash_model::record::{CrashRecord, PartnerKind};
 use regex::Regex;
 use std::ops::Range;
@@ -64,29 +65,20 @@ static MENTION: LazyLock<Regex> = LazyLock::new(|| {
 const OBLIQUE_WINDOW_BYTES: usize = 60;
 
 /// What stands before a mention that is no subject.
-static OBLIQUE_BEFORE: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(
-        r"(?i)\b(?:of|with|behind|to|toward|towards|by|near|past|into|onto|at|for|in front|ahead|beside|alongside|left|right|approach(?:ed|es)?|passed|passing|overtook|overtaking|struck|hit|striking|hitting|following|trailing|contacted|sideswiped|sideswiping|clipped|avoid|in|across|from|next to)(?: of)?(?: the| a| an| another| our| its)?(?: (?:side|stopped|stationary|slowing|moving|turning))?\s*$",
-    )
-    .expect("constant pattern")
-});
+static OBLIQUE_BEFORE: Pattern = Pattern::new(
+    r"(?i)\b(?:of|with|behind|to|toward|towards|by|near|past|into|onto|at|for|in front|ahead|beside|alongside|left|right|approach(?:ed|es)?|passed|passing|overtook|overtaking|struck|hit|striking|hitting|following|trailing|contacted|sideswiped|sideswiping|clipped|avoid|in|across|from|next to)(?: of)?(?: the| a| an| another| our| its)?(?: (?:side|stopped|stationary|slowing|moving|turning))?\s*$",
+);
 
 /// A participle behind a mention: what follows is about that mention, whatever stands before it (`for a motorcyclist
 /// travelling north`).
-static PARTICIPLE_AFTER: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(
-        r"(?i)^,? (?:that (?:was |were |had been )?|in the process of |which (?:was |were |had been )?|who (?:was |were )?|also )?(?:travell?ing|approaching|heading|driving|proceeding|coming|moving|going|turning|making|entering|facing|signall?ing|following|stopped (?:at|in|behind)|in the (?:left|right|adjacent|number|next)|operating)\b",
-    )
-    .expect("constant pattern")
-});
+static PARTICIPLE_AFTER: Pattern = Pattern::new(
+    r"(?i)^,? (?:that (?:was |were |had been )?|in the process of |which (?:was |were |had been )?|who (?:was |were )?|also )?(?:travell?ing|approaching|heading|driving|proceeding|coming|moving|going|turning|making|entering|facing|signall?ing|following|stopped (?:at|in|behind)|in the (?:left|right|adjacent|number|next)|operating)\b",
+);
 
 /// A part of somebody that acts in its place: `the front of the ...` at the beginning of a clause.
-static PART_ACTS: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(
-        r"(?i)(?:^|, |\b(?:and|when|as|while|where|then|before|after|that)\s+)(?:the |its )(?:[\w']+[ -]){0,4}?(?:front|rear|back|side|corner|bumper|mirror|door|fender|edge|part|portion|end|panel|trailer|tire|wheel)s? of (?:the|a|an|another)(?: (?:other|stopped|moving))?\s*$",
-    )
-    .expect("constant pattern")
-});
+static PART_ACTS: Pattern = Pattern::new(
+    r"(?i)(?:^|, |\b(?:and|when|as|while|where|then|before|after|that)\s+)(?:the |its )(?:[\w']+[ -]){0,4}?(?:front|rear|back|side|corner|bumper|mirror|door|fender|edge|part|portion|end|panel|trailer|tire|wheel)s? of (?:the|a|an|another)(?: (?:other|stopped|moving))?\s*$",
+);
 
 /// Words that may mean either vehicle.
 const EITHER: [&str; 4] = ["vehicle", "car", "driver", "motorist"];
@@ -155,7 +147,7 @@ impl Cast {
     pub fn mentions(&self, sentence: &str) -> Mentions {
         let mut list: Vec<Mention> = Vec::new();
         for capture in MENTION.captures_iter(sentence) {
-            let whole = capture.get(0).expect("group 0");
+            let whole = capture.get_match();
             let actor = if capture.name("nobody").is_some() || (self.kind_named && means_either(sentence, &whole)) {
                 continue;
             } else if capture.name("ego").is_some() {

@@ -58,14 +58,7 @@ pub fn design(brief: &Brief, narrative: &Narrative, feedback: &[Feedback]) -> Re
 /// The staging the facts name, or the template's most typical one.
 pub fn staging_of(narrative: &Narrative, facts: &Facts) -> Option<Staging> {
     let ways = stagings(&narrative.template);
-    let approach = facts.find(|value| match value {
-        FactValue::Approach { approach } => Some(*approach),
-        _ => None,
-    });
-    let side = facts.find(|value| match value {
-        FactValue::CpLaneOffset { lanes } => super::paraphrase::offset_side(*lanes),
-        _ => None,
-    });
+    let (approach, side) = (facts.approach(), facts.side());
     ways.iter()
         .find(|way| Some(way.approach) == approach && (way.beside.is_none() || side.is_none() || way.beside == side))
         .or_else(|| ways.first())
@@ -96,11 +89,7 @@ impl<'a> Stage<'a> {
         told_zones: (&'a [ContactZone], &'a [ContactZone]),
     ) -> Self {
         let facts = Facts(&narrative.facts);
-        let kind = facts.find(|value| match value {
-            FactValue::Partner { kind } => Some(*kind),
-            _ => None,
-        });
-        let kind = kind.unwrap_or_default();
+        let kind = facts.partner().unwrap_or_default();
         let ground = ground(&narrative.template, &staging);
         let record = brief.records.first().copied();
         let told = |pick: fn(&FactValue) -> Option<f64>| facts.find(pick).filter(|v| *v >= LEAST_TOLD_SPEED_MPS);
@@ -287,10 +276,7 @@ impl<'a> Stage<'a> {
     }
 
     fn map(&self, lanes: u8, approach_m: f64, arm_m: f64) -> MapSpec {
-        let missing = self.facts.find(|value| match value {
-            FactValue::ThreeWay { missing } => Some(*missing),
-            _ => None,
-        });
+        let missing = self.facts.missing_arm();
         match self.ground {
             Ground::Circle => MapSpec::O(RoundaboutMap {
                 lanes,
@@ -321,11 +307,7 @@ impl<'a> Stage<'a> {
 
     /// Who comes first where neither words nor contact areas tell: drawn by the seed.
     fn partner_first(&self) -> bool {
-        let told = self.facts.find(|value| match value {
-            FactValue::Order { first } => Some(*first),
-            _ => None,
-        });
-        match told {
+        match self.facts.first_mover() {
             Some(FirstMover::Cp) => true,
             Some(FirstMover::Sv) => false,
             Some(FirstMover::Both) | None => {

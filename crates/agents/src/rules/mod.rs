@@ -4,6 +4,7 @@ mod actors;
 mod design;
 pub(crate) mod limits;
 mod paraphrase;
+mod pattern;
 mod reading;
 mod rehearsal;
 mod retry;
@@ -15,7 +16,6 @@ mod writing;
 /// What of the rules tells how a narrative is staged.
 pub(crate) mod staged {
     pub(crate) use super::design::{staging_of, turn};
-    pub(crate) use super::paraphrase::offset_side;
     pub(crate) use super::staging::{Ground, ground};
     pub(crate) use super::writing::Facts;
 }

@@ -3,7 +3,7 @@
 
 use super::reading::{Reading, Relation, read, relation_from_zones};
 use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
-use super::writing;
+use super::writing::{self, Facts};
 use crate::{AgentError, Brief, narrative_contradictions};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side};
@@ -270,11 +270,7 @@ pub fn offset_side(lanes: i8) -> Option<Side> {
 
 /// A partner the profile cannot simulate as itself becomes a passenger car, and that is said.
 fn replace_partner(facts: &mut Vec<Fact>, brief: &Brief, diagnostics: &mut Vec<Diagnostic>) {
-    let known = facts.iter().find_map(|fact| match fact.value {
-        FactValue::Partner { kind } => Some(kind),
-        _ => None,
-    });
-    let why = match known {
+    let why = match Facts(facts).partner() {
         Some(kind) if brief.profile.expresses.partner_kinds.contains(&kind) => return,
         Some(kind) => {
             format!("the profile \"{}\" cannot simulate a partner of the kind {kind:?}", brief.profile.name)

@@ -12,9 +12,7 @@ use recrash_roads::{LanePath, RoadNetwork};
 const STEP_S: f64 = 0.05;
 /// Farther apart than this the gap is not looked at. [m]
 const FAR_M: f64 = 25.0;
-/// Part of the length, and of the width, that a corner zone takes at each end (`docs/models/contact-zones.md`).
-const CORNER_SHARE: f64 = 0.25;
-/// Headings this near to each other, or to opposite, are in line (same page). [rad]
+/// Headings this near to each other, or to opposite, are in line (`docs/models/contact-zones.md`). [rad]
 const ALIGNED_RAD: f64 = 30.0 * math::PI / 180.0;
 
 /// How one of the two moves along its path.
@@ -119,7 +117,7 @@ pub fn rehearse(network: &RoadNetwork, ego: &Motion, partner: &Motion, from_s: f
             (on_ego, on_partner)
         }
     };
-    let (ego_zone, partner_zone) = (zone_of(&a, on_ego), zone_of(&b, on_partner));
+    let (ego_zone, partner_zone) = (ContactZone::at(&a, on_ego), ContactZone::at(&b, on_partner));
     let turned = |from: &OrientedBox, to: &OrientedBox| math::atan2(from.axis.cross(to.axis), from.axis.dot(to.axis));
     Some(Meeting {
         time_s,
@@ -162,46 +160,24 @@ fn middle_of_overlap(a: &OrientedBox, b: &OrientedBox) -> Option<Vec2> {
     Some(sum * (1.0 / shared.len() as f64))
 }
 
-/// The zone of a point on a box's edge.
-fn zone_of(outline: &OrientedBox, point: Vec2) -> ContactZone {
-    let local = outline.to_local(point);
-    let end = local.x.abs() >= outline.half_length * (1.0 - 2.0 * CORNER_SHARE);
-    let side = local.y.abs() >= outline.half_width * (1.0 - 2.0 * CORNER_SHARE);
-    match (end, side, local.x >= 0.0, local.y >= 0.0) {
-        (true, true, true, true) => ContactZone::FrontLeft,
-        (true, true, true, false) => ContactZone::FrontRight,
-        (true, true, false, true) => ContactZone::RearLeft,
-        (true, true, false, false) => ContactZone::RearRight,
-        (true, false, true, _) => ContactZone::Front,
-        (true, false, false, _) => ContactZone::Rear,
-        // Deep inside, the nearer edge counts.
-        (false, false, front, _) if outline.half_length - local.x.abs() < outline.half_width - local.y.abs() => {
-            if front { ContactZone::Front } else { ContactZone::Rear }
-        }
-        (false, _, _, true) => ContactZone::Left,
-        (false, _, _, false) => ContactZone::Right,
-    }
-}
-
 fn kind_of(
     ego: &OrientedBox,
     ego_zone: ContactZone,
     partner: &OrientedBox,
     partner_zone: ContactZone,
 ) -> Option<CollisionKind> {
-    use super::reading::{is_front, is_rear};
     let turn = math::atan2(ego.axis.cross(partner.axis), ego.axis.dot(partner.axis)).abs();
     let apart = (partner.centre - ego.centre).dot(ego.axis.left()).abs();
     let in_line = apart < ego.half_width + partner.half_width - 0.4 * ego.half_width;
     if turn <= ALIGNED_RAD && in_line {
-        if is_front(ego_zone) && is_rear(partner_zone) {
+        if ego_zone.is_front() && partner_zone.is_rear() {
             return Some(CollisionKind::RearEndByEgo);
         }
-        if is_rear(ego_zone) && is_front(partner_zone) {
+        if ego_zone.is_rear() && partner_zone.is_front() {
             return Some(CollisionKind::RearEndOfEgo);
         }
     }
-    let head_on = turn >= math::PI - ALIGNED_RAD && is_front(ego_zone) && is_front(partner_zone) && in_line;
+    let head_on = turn >= math::PI - ALIGNED_RAD && ego_zone.is_front() && partner_zone.is_front() && in_line;
     head_on.then_some(CollisionKind::HeadOn)
 }
 

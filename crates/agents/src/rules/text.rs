@@ -1,8 +1,7 @@
 //! Narratives as sentences, without the boilerplate. Every sentence is a slice of the narrative, so whatever is found in
 //! it stands in the record word for word.
 
-use regex::Regex;
-use std::sync::LazyLock;
+use super::pattern::Pattern;
 
 /// No more of a narrative than this is read. The longest of the real file has about 6 kB. [bytes]
 pub const MAX_NARRATIVE_BYTES: usize = 20_000;
@@ -12,7 +11,8 @@ const MAX_SENTENCE_BYTES: usize = 2_000;
 
 /// Turns of phrase that are about the report and not about the crash: who files it and why, copies and updates of other
 /// reports, who was informed, what was engaged. The preamble that names the parties and the place is among them.
-const BOILERPLATE: &str = r"(?ix)
+static BOILERPLATE: Pattern = Pattern::new(
+    r"(?ix)
       \bis\ reporting\ this\ (?:crash|collision|incident|event)
     | \bmay\ supplement\ or\ correct\b
     | \bwas\ submitted\ from\ the\ \w+\ time\ zone\b
@@ -32,14 +32,13 @@ const BOILERPLATE: &str = r"(?ix)
     | \b(?:was|were)\ (?:involved\ )?in\ an?\ (?:\w+\ )?(?:collision|crash|accident|incident)\ (?:involving|with)\b
     | \b(?:police|law\ enforcement)\ (?:were|was|responded|did)\b
     | \bno\ (?:reported\ )?injur | \breported\ injur | \binjuries\ were\ reported
-    | \bnotice\ of\b";
-
-static BOILERPLATE_PATTERN: LazyLock<Regex> = LazyLock::new(|| Regex::new(BOILERPLATE).expect("constant pattern"));
+    | \bnotice\ of\b",
+);
 
 /// The sentences that tell about the crash, in order.
 pub fn telling_sentences(narrative: &str) -> Vec<&str> {
     let mut kept = sentences(head(narrative, MAX_NARRATIVE_BYTES));
-    kept.retain(|sentence| !BOILERPLATE_PATTERN.is_match(sentence));
+    kept.retain(|sentence| !BOILERPLATE.is_match(sentence));
     kept
 }
 

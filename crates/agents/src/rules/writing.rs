@@ -39,6 +39,46 @@ impl<'a> Facts<'a> {
         self.0.iter().find_map(|fact| Some((pick(&fact.value)?, &fact.source)))
     }
 
+    /// From where the partner comes.
+    pub fn approach(&self) -> Option<Approach> {
+        self.find(|value| match value {
+            FactValue::Approach { approach } => Some(*approach),
+            _ => None,
+        })
+    }
+
+    /// On which side of the ego the partner drives.
+    pub fn side(&self) -> Option<Side> {
+        self.find(|value| match value {
+            FactValue::CpLaneOffset { lanes } => offset_side(*lanes),
+            _ => None,
+        })
+    }
+
+    /// What the partner is.
+    pub fn partner(&self) -> Option<PartnerKind> {
+        self.find(|value| match value {
+            FactValue::Partner { kind } => Some(*kind),
+            _ => None,
+        })
+    }
+
+    /// Who is first where their paths meet.
+    pub fn first_mover(&self) -> Option<FirstMover> {
+        self.find(|value| match value {
+            FactValue::Order { first } => Some(*first),
+            _ => None,
+        })
+    }
+
+    /// The arm that a three-way intersection lacks.
+    pub fn missing_arm(&self) -> Option<MissingArm> {
+        self.find(|value| match value {
+            FactValue::ThreeWay { missing } => Some(*missing),
+            _ => None,
+        })
+    }
+
     /// Whether the partner did this.
     pub fn cp_did(&self, action: LongitudinalAction) -> bool {
         self.0.iter().any(|fact| fact.value == FactValue::CpAction { action })
@@ -46,11 +86,7 @@ impl<'a> Facts<'a> {
 }
 
 fn place(narrative: &Narrative, facts: &Facts) -> String {
-    let three_way = facts.find(|value| match value {
-        FactValue::ThreeWay { missing } => Some(*missing),
-        _ => None,
-    });
-    match (narrative.template.road, three_way) {
+    match (narrative.template.road, facts.missing_arm()) {
         (RoadType::Intersection, Some(missing)) => {
             let arm = match missing {
                 MissingArm::Right => "to the right",
@@ -134,11 +170,7 @@ fn ego_sentence(narrative: &Narrative, facts: &Facts) -> String {
 
 /// The partner's kind with its article.
 fn partner(facts: &Facts) -> &'static str {
-    let kind = facts.find(|value| match value {
-        FactValue::Partner { kind } => Some(*kind),
-        _ => None,
-    });
-    match kind.unwrap_or_default() {
+    match facts.partner().unwrap_or_default() {
         PartnerKind::PassengerCar => "A passenger car",
         PartnerKind::Suv => "An SUV",
         PartnerKind::Van => "A van",
@@ -156,14 +188,8 @@ fn partner(facts: &Facts) -> &'static str {
 }
 
 fn partner_sentence(narrative: &Narrative, facts: &Facts) -> String {
-    let approach = facts.find(|value| match value {
-        FactValue::Approach { approach } => Some(*approach),
-        _ => None,
-    });
-    let side = facts.find(|value| match value {
-        FactValue::CpLaneOffset { lanes } => offset_side(*lanes),
-        _ => None,
-    });
+    let approach = facts.approach();
+    let side = facts.side();
     let from = match (approach, side) {
         (Some(Approach::Left), _) => "comes from the left",
         (Some(Approach::Right), _) => "comes from the right",
@@ -204,11 +230,7 @@ fn conflict_sentence(facts: &Facts) -> Option<String> {
             LateralKind::WideTurn => format!("The partner does not hold its lane in the turn and comes to the {side}."),
         });
     }
-    let first = facts.find(|value| match value {
-        FactValue::Order { first } => Some(*first),
-        _ => None,
-    })?;
-    Some(match first {
+    Some(match facts.first_mover()? {
         FirstMover::Sv => "The ego reaches the place where their paths meet first.".to_owned(),
         FirstMover::Cp => "The partner reaches the place where their paths meet first.".to_owned(),
         FirstMover::Both => "Both reach the place where their paths meet at about the same time.".to_owned(),

@@ -10,6 +10,7 @@ use recrash_model::record::{
 };
 use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::{Outcome, Seed};
+use serde::Deserialize;
 
 /// The profile of the paper.
 pub fn paper() -> SystemProfile {
@@ -62,10 +63,44 @@ pub fn narrate(record: &CrashRecord, profile: &SystemProfile) -> Outcome<Narrati
     Rules.paraphrase(&brief("01-test", &[record], profile, 7)).expect("a narrative")
 }
 
-/// Zones by their names in the model's JSON.
-pub fn zones(names: &[String]) -> Vec<ContactZone> {
-    names
-        .iter()
-        .map(|name| serde_json::from_value(serde_json::Value::String(name.clone())).expect("a contact zone"))
-        .collect()
+/// What a case file says of a record; where it says nothing, two cars go straight on at an intersection.
+#[derive(Deserialize)]
+pub struct Told {
+    pub text: String,
+    #[serde(default = "intersection")]
+    road: RoadType,
+    #[serde(default = "straight")]
+    sv: Movement,
+    #[serde(default = "straight")]
+    cp: Movement,
+    #[serde(default)]
+    work_zone: bool,
+    #[serde(default)]
+    partner: PartnerKind,
+    #[serde(default)]
+    sv_zones: Vec<ContactZone>,
+    #[serde(default)]
+    cp_zones: Vec<ContactZone>,
+    sv_speed_mps: Option<f64>,
+}
+
+fn intersection() -> RoadType {
+    RoadType::Intersection
+}
+fn straight() -> Movement {
+    Movement::Straight
+}
+
+impl Told {
+    /// The record.
+    pub fn record(&self) -> CrashRecord {
+        let template = Template { road: self.road, sv: self.sv, cp: self.cp, work_zone: self.work_zone };
+        CrashRecord {
+            partner: Coded::Known(self.partner),
+            sv_zones: self.sv_zones.clone(),
+            cp_zones: self.cp_zones.clone(),
+            sv_speed_mps: self.sv_speed_mps,
+            ..record(template, &self.text)
+        }
+    }
 }

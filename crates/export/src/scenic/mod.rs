@@ -6,7 +6,6 @@ use crate::ExportFile;
 use crate::opendrive::DriveMap;
 use crate::openscenario::names::Declarations;
 use crate::xml::{number, rounded};
-use recrash_model::math;
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{ObstacleKind, Start};
 use recrash_model::tuning::Parameter;
@@ -253,21 +252,9 @@ fn stations(path: &LanePath) -> Vec<(usize, f64)> {
 }
 
 fn point_of(path: &LanePath, segment: usize, s: f64) -> (f64, f64) {
-    use recrash_roads::path::SegmentShape;
     let piece = &path.segments[segment];
-    let along = s - piece.start_m;
-    match piece.shape {
-        SegmentShape::Straight { start, forward, .. } => {
-            let point = start + forward * along;
-            (point.x, point.y)
-        }
-        SegmentShape::Arc { centre, radius, middle, half_length, turn, .. } => {
-            let (sin, cos) = math::sincos(turn * (along - half_length) / radius);
-            let outward = middle * cos + middle.left() * sin;
-            let point = centre + outward * radius;
-            (point.x, point.y)
-        }
-    }
+    let point = piece.shape.frame(s - piece.start_m).0;
+    (point.x, point.y)
 }
 
 fn millimetres(value: f64) -> f64 {

@@ -4,9 +4,8 @@ use recrash_model::Seed;
 use recrash_model::narrative::Side;
 use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::scenario::{
-    Approach, Author, CrossMap, CurveMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle,
-    ObstacleKind, Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap,
-    Traffic, Turn,
+    Approach, CrossMap, CurveMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind,
+    Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
 };
 use recrash_model::seed::Rng;
 use recrash_model::vehicle::VehicleSpec;
@@ -95,13 +94,7 @@ fn random_draft(rng: &mut Rng, number: usize) -> ScenarioDraft {
     ScenarioDraft {
         format: SCENARIO_FORMAT.to_owned(),
         id: format!("random-{number:04}"),
-        source: Source {
-            records: Vec::new(),
-            template: None,
-            narrative: String::new(),
-            author: Author::Rules,
-            seed: 0,
-        },
+        source: Source::default(),
         map,
         ego,
         partners,

@@ -9,7 +9,7 @@ use recrash_model::Seed;
 use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::SUBSTEPS;
 use recrash_model::scenario::{
-    Author, EgoSpec, Environment, MapSpec, SCENARIO_FORMAT, ScenarioDraft, Source, StraightMap, Traffic, Turn,
+    EgoSpec, Environment, MapSpec, SCENARIO_FORMAT, ScenarioDraft, Source, StraightMap, Traffic, Turn,
 };
 use recrash_model::seed::Rng;
 use recrash_model::vehicle::VehicleSpec;
@@ -143,13 +143,7 @@ fn plain_road(speed_mps: f64) -> Scenario {
     let draft = ScenarioDraft {
         format: SCENARIO_FORMAT.to_owned(),
         id: "open-loop".to_owned(),
-        source: Source {
-            records: Vec::new(),
-            template: None,
-            narrative: String::new(),
-            author: Author::Rules,
-            seed: 0,
-        },
+        source: Source::default(),
         map: MapSpec::S(StraightMap { lanes: 4, lane_width_m: 3.5, approach_m: 60.0, length_m: 200.0 }),
         ego: EgoSpec { turn: Turn::Straight, lane: 1, s_m: 5.0, speed_mps, target_speed_mps: speed_mps },
         partners: Vec::new(),

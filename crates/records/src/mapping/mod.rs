@@ -6,6 +6,9 @@ mod rules;
 
 pub(crate) use read::read_mapped;
 
+use crate::fields::Field;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
 use std::collections::BTreeMap;
 
 /// The mapping files' format tag.
@@ -81,7 +84,7 @@ enum Piece {
 }
 
 /// Unit of a speed column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 enum Unit {
     #[serde(rename = "mph")]
     MilesPerHour,
@@ -92,7 +95,7 @@ enum Unit {
 }
 
 /// What a mapping can fill.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Target {
     Report,
@@ -124,25 +127,50 @@ enum Target {
 }
 
 impl Target {
+    /// Its name in a mapping file.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Report => "report",
+            Self::Version => "version",
+            Self::Incident => "incident",
+            Self::Entity => "entity",
+            Self::Vehicle => "vehicle",
+            Self::Place => "place",
+            Self::Narrative => "narrative",
+            Self::Date => "date",
+            Self::Year => "year",
+            Self::Month => "month",
+            Self::Hour => "hour",
+            Self::Minute => "minute",
+            Self::PostedSpeed => "posted_speed",
+            Self::SvSpeed => "sv_speed",
+            Self::Road => "road",
+            Self::SvMovement => "sv_movement",
+            Self::CpMovement => "cp_movement",
+            Self::Partner => "partner",
+            Self::Severity => "severity",
+            Self::Engagement => "engagement",
+            Self::Surface => "surface",
+            Self::Lighting => "lighting",
+            Self::Weather => "weather",
+            Self::SvZones => "sv_zones",
+            Self::CpZones => "cp_zones",
+            Self::WorkZone => "work_zone",
+        }
+    }
+
+    /// The target with a name.
+    fn named(name: &str) -> Result<Self, serde::de::value::Error> {
+        Self::deserialize(name.into_deserializer())
+    }
+
     /// The names its values can have; `None` where it holds a text or a number.
     fn codes(self) -> Option<Vec<String>> {
-        use crate::fields::Field;
-        let field = match self {
-            Self::Road => Field::Road,
-            Self::SvMovement => Field::SvMovement,
-            Self::CpMovement => Field::CpMovement,
-            Self::Partner => Field::Partner,
-            Self::Severity => Field::Severity,
-            Self::Engagement => Field::Engagement,
-            Self::Surface => Field::Surface,
-            Self::Lighting => Field::Lighting,
-            Self::Weather => Field::Weather,
-            Self::SvZones => Field::SvZones,
-            Self::CpZones => Field::CpZones,
-            Self::WorkZone => return Some(["yes", "no", "unknown"].map(str::to_owned).to_vec()),
-            _ => return None,
-        };
-        let mut codes = field.codes()?;
+        if self == Self::WorkZone {
+            return Some(["yes", "no", "unknown"].map(str::to_owned).to_vec());
+        }
+        // What is coded has the name that the record's field has.
+        let mut codes = Field::named(self.name())?.codes()?;
         codes.push("other".to_owned());
         Some(codes)
     }

@@ -6,13 +6,12 @@ use crate::error::IngestError;
 use crate::fields::{UNKNOWN, code_named};
 use crate::file::{FileContent, RawTable, raw_table};
 use crate::notes::{Notes, Remark};
-use crate::row::{Draft, REDACTED};
+use crate::row::{Draft, redaction_of};
 use crate::text::{decode, excerpt, header_key};
 use crate::{MAX_FILE_BYTES, SourceText, file};
 use csv::ByteRecord;
 use recrash_model::record::{
-    Coded, CrashRecord, Edition, MPS_PER_MPH, Provenance, RecordRef, Redaction, Reject, RejectReason, SourceFile,
-    YearMonth,
+    Coded, CrashRecord, Edition, MPS_PER_MPH, Provenance, RecordRef, Reject, RejectReason, SourceFile, YearMonth,
 };
 use recrash_model::{Diagnostic, Location, Severity};
 use serde::de::DeserializeOwned;
@@ -160,7 +159,7 @@ fn read_main(source: &SourceText<'_>, mapping: &Mapping, joined: &[Joined<'_>]) 
     for (target, rule) in &mapping.rules {
         let Source::Column { join, column } = &rule.source else { continue };
         let of = join.map_or(&table, |join| joined[join].table);
-        let key = || format!("fields.{}.column", name_of(*target));
+        let key = || format!("fields.{}.column", target.name());
         let position = of.column(column).ok_or_else(|| no_column(mapping, rule.line, key(), column, of))?;
         positions.insert(*target, position);
     }
@@ -197,38 +196,6 @@ fn read_main(source: &SourceText<'_>, mapping: &Mapping, joined: &[Joined<'_>]) 
     Ok(content)
 }
 
-/// The name of a target, as the mapping file has it.
-fn name_of(target: Target) -> &'static str {
-    match target {
-        Target::Report => "report",
-        Target::Version => "version",
-        Target::Incident => "incident",
-        Target::Entity => "entity",
-        Target::Vehicle => "vehicle",
-        Target::Place => "place",
-        Target::Narrative => "narrative",
-        Target::Date => "date",
-        Target::Year => "year",
-        Target::Month => "month",
-        Target::Hour => "hour",
-        Target::Minute => "minute",
-        Target::PostedSpeed => "posted_speed",
-        Target::SvSpeed => "sv_speed",
-        Target::Road => "road",
-        Target::SvMovement => "sv_movement",
-        Target::CpMovement => "cp_movement",
-        Target::Partner => "partner",
-        Target::Severity => "severity",
-        Target::Engagement => "engagement",
-        Target::Surface => "surface",
-        Target::Lighting => "lighting",
-        Target::Weather => "weather",
-        Target::SvZones => "sv_zones",
-        Target::CpZones => "cp_zones",
-        Target::WorkZone => "work_zone",
-    }
-}
-
 struct MappedRow<'a> {
     mapping: &'a Mapping,
     positions: &'a BTreeMap<Target, usize>,
@@ -246,13 +213,7 @@ impl MappedRow<'_> {
         }
         let version = self.whole(Target::Version).unwrap_or(1);
         let narrative = self.value(Target::Narrative);
-        let redaction = if narrative.contains(REDACTED) {
-            Redaction::Redacted
-        } else if narrative.is_empty() {
-            Redaction::Empty
-        } else {
-            Redaction::Open
-        };
+        let redaction = redaction_of(&narrative);
         let hour: Option<u16> = self.whole(Target::Hour).filter(|hour| *hour <= 24);
         let minute: u16 = self.whole(Target::Minute).filter(|minute| *minute < 60).unwrap_or(0);
         let record = CrashRecord {
@@ -326,7 +287,7 @@ impl MappedRow<'_> {
         match code_named(&name) {
             Some(value) => Coded::Known(value),
             None => {
-                self.notes.add(Remark::UnlistedCode, name_of(target), &name, self.number);
+                self.notes.add(Remark::UnlistedCode, target.name(), &name, self.number);
                 Coded::Unlisted(name)
             }
         }
@@ -336,7 +297,7 @@ impl MappedRow<'_> {
         let text = self.value(target);
         let number = text.parse().ok();
         if number.is_none() && !text.is_empty() {
-            self.notes.add(Remark::Unreadable, name_of(target), &text, self.number);
+            self.notes.add(Remark::Unreadable, target.name(), &text, self.number);
         }
         number
     }
@@ -374,7 +335,7 @@ impl MappedRow<'_> {
         let speed = text.parse::<f64>().ok().filter(|_| plain).map(|speed| speed * factor);
         let speed = speed.filter(|speed| (0.0..=GREATEST_SPEED_MPS).contains(speed));
         if speed.is_none() {
-            self.notes.add(Remark::Unreadable, name_of(target), &text, self.number);
+            self.notes.add(Remark::Unreadable, target.name(), &text, self.number);
         }
         speed
     }

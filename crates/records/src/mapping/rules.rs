@@ -88,23 +88,17 @@ pub fn compile(text: &str, name: &str) -> Result<Mapping, MappingError> {
     let mut rules = BTreeMap::new();
     for (field, table) in &file.fields {
         let key = format!("fields.{field}");
-        let target = Target::deserialize(serde::de::value::StrDeserializer::<serde::de::value::Error>::new(field))
+        let target = Target::named(field)
             .map_err(|e| error(problem(table.span(), &key, e.to_string().replace("variant", "field"))))?;
         let mut rule = rule(target, table, &key, &joins, &file.fields).map_err(error)?;
         rule.line = lines.at(table.span().start);
         rules.insert(target, rule);
     }
-    for (needed, field) in [
-        (Target::Report, "report"),
-        (Target::Road, "road"),
-        (Target::SvMovement, "sv_movement"),
-        (Target::CpMovement, "cp_movement"),
-        (Target::Narrative, "narrative"),
-    ] {
+    for needed in [Target::Report, Target::Road, Target::SvMovement, Target::CpMovement, Target::Narrative] {
         if !rules.contains_key(&needed) {
             let message = "a record needs this field and no rule fills it; \
                            where the database has no such column, write text = \"...\" or otherwise = \"unknown\"";
-            return Err(error(Problem { at: None, key: format!("fields.{field}"), message: message.into() }));
+            return Err(error(Problem { at: None, key: format!("fields.{}", needed.name()), message: message.into() }));
         }
     }
     Ok(Mapping { file: name.to_owned(), name: file.name, main: file.file, joins, rules })
@@ -177,7 +171,7 @@ fn pieces(
         let Some((name, behind)) = behind.split_once('}') else {
             return Err(problem(text.span(), key, "a brace { is never closed"));
         };
-        let target = Target::deserialize(serde::de::value::StrDeserializer::<serde::de::value::Error>::new(name));
+        let target = Target::named(name);
         let column = fields.get(name).is_some_and(|table| table.get_ref().column.is_some());
         match target {
             Ok(target) if column => all.push(Piece::Field(target)),

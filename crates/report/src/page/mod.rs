@@ -21,6 +21,7 @@ use crate::summary::Summary;
 use crate::view::SuiteView;
 use crate::{data, words};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 const STYLE: &str = concat!(
@@ -58,33 +59,42 @@ pub struct Context<'a> {
 /// The page.
 pub fn render(suite: &SuiteView) -> String {
     let context = Context { suite, summary: Summary::of(suite), anchors: Anchors::of(suite) };
+    let title = format!("{} \u{b7} recrash report", words::clean(&suite.title, 200));
+    let body = html! {
+        a.skip href="#main" { "Skip to the content" }
+        (top(&context))
+        main #main tabindex="-1" {
+            (overview::section(&context))
+            (records::section(&context))
+            (findings::section(&context))
+            @for (position, case) in suite.cases.iter().enumerate() { (case::section(&context, position, case)) }
+            (about::section(&context))
+        }
+        (keyboard_help())
+    };
+    document(&title, &suite.generated_by, &body, &data::suite(suite, &context.anchors), SCRIPT)
+}
+
+/// A page with its head, its data and its script.
+fn document(title: &str, generated_by: &str, body: &Markup, data: &Value, script: &str) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(content_security_policy(SCRIPT));
+                meta http-equiv="Content-Security-Policy" content=(content_security_policy(script));
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                meta name="generator" content=(words::clean(&suite.generated_by, 80));
-                title { (words::clean(&suite.title, 200)) " \u{b7} recrash report" }
+                meta name="generator" content=(words::clean(generated_by, 80));
+                title { (title) }
                 link rel="icon" href="data:,";
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                a.skip href="#main" { "Skip to the content" }
-                (top(&context))
-                main #main tabindex="-1" {
-                    (overview::section(&context))
-                    (records::section(&context))
-                    (findings::section(&context))
-                    @for (position, case) in suite.cases.iter().enumerate() { (case::section(&context, position, case)) }
-                    (about::section(&context))
-                }
-                (keyboard_help())
+                (body)
                 #live.hidden-text role="status" aria-live="polite" {}
-                script type="application/json" id="suite-data" { (PreEscaped(data::embed(&data::suite(suite, &context.anchors)))) }
-                script { (PreEscaped(SCRIPT)) }
+                script type="application/json" id="suite-data" { (PreEscaped(data::embed(data))) }
+                script { (PreEscaped(script)) }
             }
         }
     };

@@ -1,9 +1,9 @@
 //! The page of runs side by side: tables, then one replay after the other.
 
-use super::{STYLE, case, content_security_policy, parts};
+use super::{case, document, parts};
 use crate::pairs::{PairView, PairsView, TableView};
 use crate::{data, words};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 use serde_json::json;
 
 const SCRIPT: &str = concat!(
@@ -19,35 +19,18 @@ const SCRIPT: &str = concat!(
 /// The page.
 pub fn render(view: &PairsView) -> String {
     let limits = json!({ "minGap": view.criteria.min_gap_m, "hardBraking": view.criteria.hard_braking_mps2 });
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(content_security_policy(SCRIPT));
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                meta name="generator" content=(words::clean(&view.generated_by, 80));
-                title { (words::clean(&view.title, 200)) }
-                link rel="icon" href="data:,";
-                style { (PreEscaped(STYLE)) }
+    let title = words::clean(&view.title, 200);
+    let body = html! {
+        main #main {
+            header.page-head {
+                h1 { (title) }
+                (parts::command(&view.command))
             }
-            body {
-                main #main {
-                    header.page-head {
-                        h1 { (words::clean(&view.title, 200)) }
-                        (parts::command(&view.command))
-                    }
-                    @for table in &view.tables { (table_of(table)) }
-                    @for (position, pair) in view.pairs.iter().enumerate() { (section(view, position, pair)) }
-                }
-                #live.hidden-text role="status" aria-live="polite" {}
-                script type="application/json" id="suite-data" { (PreEscaped(data::embed(&limits))) }
-                script { (PreEscaped(SCRIPT)) }
-            }
+            @for table in &view.tables { (table_of(table)) }
+            @for (position, pair) in view.pairs.iter().enumerate() { (section(view, position, pair)) }
         }
     };
-    page.into_string()
+    document(&title, &view.generated_by, &body, &limits, SCRIPT)
 }
 
 fn table_of(table: &TableView) -> Markup {

@@ -5,8 +5,9 @@ use recrash_model::Seed;
 use recrash_model::narrative::Side;
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{
-    Approach, CrossMap, CurveMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind,
-    Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
+    Approach, Author, CrossMap, CurveMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle,
+    ObstacleKind, Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap,
+    Traffic, Turn,
 };
 use recrash_model::seed::Rng;
 use recrash_roads::{Scenario, check};
@@ -61,13 +62,7 @@ pub fn alone(map: MapSpec, turn: Turn, lane: u8, speed_mps: f64, target_speed_mp
     ScenarioDraft {
         format: SCENARIO_FORMAT.to_owned(),
         id: "test".to_owned(),
-        source: Source {
-            records: Vec::new(),
-            template: None,
-            narrative: String::new(),
-            author: recrash_model::scenario::Author::Person,
-            seed: 0,
-        },
+        source: Source { author: Author::Person, ..Source::default() },
         map,
         ego: EgoSpec { turn, lane, s_m: 5.0, speed_mps, target_speed_mps },
         partners: Vec::new(),

@@ -3,7 +3,7 @@
 use super::super::actors::Actor;
 use super::order::{Met, first};
 use super::zones::zones;
-use super::{Relation, is_front, is_rear, movement, only, read_sentences, reading_of, relation_from_zones, road};
+use super::{Relation, movement, only, read_sentences, reading_of, relation_from_zones, road};
 use recrash_model::account::{Account, RoadGroup};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::Side;
@@ -102,8 +102,8 @@ fn likely_approach(record: &CrashRecord, account: &Account) -> Option<Approach> 
     if account.road == Some(RoadGroup::Highway) || account.cp_movement == Some(Stopped) {
         return Some(Approach::Same);
     }
-    let ends =
-        (only(sv, is_rear) && !cp.iter().any(|zone| is_rear(*zone))) || (only(sv, is_front) && only(cp, is_rear));
+    let ends = (only(sv, ContactZone::is_rear) && !cp.iter().any(|zone| zone.is_rear()))
+        || (only(sv, ContactZone::is_front) && only(cp, ContactZone::is_rear));
     if ends {
         return Some(Approach::Same);
     }
@@ -113,7 +113,7 @@ fn likely_approach(record: &CrashRecord, account: &Account) -> Option<Approach> 
     if flank && straight && cp.contains(&ContactZone::Front) {
         return relation_from_zones(record).map(approach_from);
     }
-    if flank && !cp.iter().any(|zone| is_front(*zone)) && account.cp_movement != Some(Backing) && !cp.is_empty() {
+    if flank && !cp.iter().any(|zone| zone.is_front()) && account.cp_movement != Some(Backing) && !cp.is_empty() {
         return Some(Approach::Same);
     }
     None

@@ -1,12 +1,12 @@
 //! From where the partner came, seen from the ego before any turn.
 
 use super::super::actors::Actor;
-use super::{MEETING, Sentence, details, is_front, is_rear, only, words};
+use super::super::pattern::Pattern;
+use super::{MEETING, Sentence, details, only, words};
 use recrash_model::narrative::{FactSource, LanePosition, Side};
 use recrash_model::record::{ContactZone, CrashRecord};
 use recrash_model::template::Movement;
 use regex::Regex;
-use std::sync::LazyLock;
 
 /// How the partner stood to the ego before the conflict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,102 +23,66 @@ pub enum Relation {
     Behind,
 }
 
-fn pattern(text: &str) -> Regex {
-    Regex::new(text).expect("constant pattern")
-}
-
-static FROM: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:(?:approach\w*|com(?:e|ing)|came|enter\w*|proceed\w*|travel\w*|driv\w+|emerg\w+|mov(?:ed|ing))(?: \w+){0,6}? )?from (?:the|its|their)(?: [\w']+ ?\w*'s?)? (?P<side>left|right)(?:[- ]hand)?(?: side| cross street)?\b",
-    )
-});
+static FROM: Pattern = Pattern::new(
+    r"(?i)\b(?:(?:approach\w*|com(?:e|ing)|came|enter\w*|proceed\w*|travel\w*|driv\w+|emerg\w+|mov(?:ed|ing))(?: \w+){0,6}? )?from (?:the|its|their)(?: [\w']+ ?\w*'s?)? (?P<side>left|right)(?:[- ]hand)?(?: side| cross street)?\b",
+);
 /// What makes `from the left` a lane's place: `second lane from the left`, `from the left lane`.
-static LANE_BEFORE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:second|third|fourth|2nd|3rd|4th|lanes?|one|two|three|\d)(?: (?:lane|most))? from the (?:left|right)",
-    )
-});
-static LANE_AFTER: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)^(?:[- ](?:hand|most))?(?: \w+){0,2} (?:lanes?|turn)\b"));
-static BESIDE_SIDED: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?P<a>left|right)(?:[- ]hand)?[ -]adjacent\b|\badjacent (?:\w+ )?lanes?,? (?:directly |immediately )?(?:to|on) (?:the|its) (?:\w+ \w*'s )?(?P<b>left|right)\b|\badjacent (?P<c>left|right)\b|\blanes? (?:\w+ ){0,2}(?:to|on) (?:the|its) (?P<d>left|right)\b|\b(?:to|on) the (?P<e>left|right)(?:[- ]hand)?(?: side)? of the\b|\b(?:to|on) its (?P<f>left|right)\b|\b(?:pass\w*|overt\w+)\b[^.]{0,40}?\bon (?:the|its) (?P<g>left|right)\b|\bfrom the (?P<h>left|right)(?:most)?(?:[- ]hand)? (?:\w+ )?lane\b|\b(?:pass\w*|overt\w+) to the (?P<i>left|right)\b",
-    )
-});
-static BESIDE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\badjacent (?:\w+ )?lanes?\b|\badjacent to\b|\bparallel\b|\b(?:next|neighbou?ring) lane\b|\bnext to\b|\balongside\b|\bside[- ]by[- ]side\b|\bside-?swip\w+|\bchang(?:ed|ing) lanes\b|\blane change\b|\bmerg(?:ed|ing)\b|\bcut(?:ting)? (?:in|off)\b|\bdrift\w*|\bencroach\w*|\binto (?:the )?[^.]{1,30}'s? lane\b",
-    )
-});
-static ONCOMING: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b|\bfrom the front\b|\bwrong side of the (?:street|road)\b|\bagainst (?:the flow of )?traffic\b",
-    )
-});
-static BEHIND: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:from|directly|closely|immediately|travell?ing|following|stopped|driving|waiting|queued|was|vehicle|car|suv|truck|van|bus|right) behind\b|\bfollowing (?:closely |directly )?(?:the|behind)\b|\btrailing\b|\bfrom the rear\b|\brear[- ]?end(?:ed|ing)?\b",
-    )
-});
-static CROSSING: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\bcross(?:ing)? (?:traffic|street|road)\b|\bperpendicular\b|\b(?:against|ran|running|through|disregard\w*|violat\w+) (?:a|the|its|their) (?:\w+ )?(?:red|stop)\b|\b(?:entered|entering|into|through|past)\b[^.]{0,60}? without (?:first )?stopping\b|\b(?:failed to|did not) (?:first )?stop (?:at|for)\b",
-    )
-});
+static LANE_BEFORE: Pattern = Pattern::new(
+    r"(?i)\b(?:second|third|fourth|2nd|3rd|4th|lanes?|one|two|three|\d)(?: (?:lane|most))? from the (?:left|right)",
+);
+static LANE_AFTER: Pattern = Pattern::new(r"(?i)^(?:[- ](?:hand|most))?(?: \w+){0,2} (?:lanes?|turn)\b");
+static BESIDE_SIDED: Pattern = Pattern::new(
+    r"(?i)\b(?P<a>left|right)(?:[- ]hand)?[ -]adjacent\b|\badjacent (?:\w+ )?lanes?,? (?:directly |immediately )?(?:to|on) (?:the|its) (?:\w+ \w*'s )?(?P<b>left|right)\b|\badjacent (?P<c>left|right)\b|\blanes? (?:\w+ ){0,2}(?:to|on) (?:the|its) (?P<d>left|right)\b|\b(?:to|on) the (?P<e>left|right)(?:[- ]hand)?(?: side)? of the\b|\b(?:to|on) its (?P<f>left|right)\b|\b(?:pass\w*|overt\w+)\b[^.]{0,40}?\bon (?:the|its) (?P<g>left|right)\b|\bfrom the (?P<h>left|right)(?:most)?(?:[- ]hand)? (?:\w+ )?lane\b|\b(?:pass\w*|overt\w+) to the (?P<i>left|right)\b",
+);
+static BESIDE: Pattern = Pattern::new(
+    r"(?i)\badjacent (?:\w+ )?lanes?\b|\badjacent to\b|\bparallel\b|\b(?:next|neighbou?ring) lane\b|\bnext to\b|\balongside\b|\bside[- ]by[- ]side\b|\bside-?swip\w+|\bchang(?:ed|ing) lanes\b|\blane change\b|\bmerg(?:ed|ing)\b|\bcut(?:ting)? (?:in|off)\b|\bdrift\w*|\bencroach\w*|\binto (?:the )?[^.]{1,30}'s? lane\b",
+);
+static ONCOMING: Pattern = Pattern::new(
+    r"(?i)\b(?:came|coming|come|traveling) the other way\b|^oncoming,|\boncoming (?:\w+ )?(?:vehicle|car|suv|van|truck|pickup|sedan|motorcycl\w+|bus|cyclist|driver|lane)\b|\b(?:from|in|on) the (?:opposite|oncoming|opposing)(?: (?:direction|side|lane|approach|road))?|\bopposite (?:side|direction)\b|\bopposing (?:direction|vehicle|lane|car)\b|\btowards? the (?:ego|av|waymo|zoox|cruise)\b|\bfrom the front\b|\bwrong side of the (?:street|road)\b|\bagainst (?:the flow of )?traffic\b",
+);
+static BEHIND: Pattern = Pattern::new(
+    r"(?i)\b(?:from|directly|closely|immediately|travell?ing|following|stopped|driving|waiting|queued|was|vehicle|car|suv|truck|van|bus|right) behind\b|\bfollowing (?:closely |directly )?(?:the|behind)\b|\btrailing\b|\bfrom the rear\b|\brear[- ]?end(?:ed|ing)?\b",
+);
+static CROSSING: Pattern = Pattern::new(
+    r"(?i)\bcross(?:ing)? (?:traffic|street|road)\b|\bperpendicular\b|\b(?:against|ran|running|through|disregard\w*|violat\w+) (?:a|the|its|their) (?:\w+ )?(?:red|stop)\b|\b(?:entered|entering|into|through|past)\b[^.]{0,60}? without (?:first )?stopping\b|\b(?:failed to|did not) (?:first )?stop (?:at|for)\b",
+);
 /// Out of a driveway or a parking place: across the ego's way.
-static FROM_PROPERTY: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:exit\w*|leav\w+|out|pull\w*|revers\w+|emerg\w+|enter\w*)(?: \w+){0,4}? (?:of|from|the|a|an|its) (?:\w+ ){0,3}?(?:driveway|parking (?:lot|stall|space|spot|garage)|alley(?:way)?|gas station)\b",
-    )
-});
+static FROM_PROPERTY: Pattern = Pattern::new(
+    r"(?i)\b(?:exit\w*|leav\w+|out|pull\w*|revers\w+|emerg\w+|enter\w*)(?: \w+){0,4}? (?:of|from|the|a|an|its) (?:\w+ ){0,3}?(?:driveway|parking (?:lot|stall|space|spot|garage)|alley(?:way)?|gas station)\b",
+);
 /// The side of the street the partner came from, as a compass point.
-static STREET_SIDE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:from|on|off|at|in a [\w ]{3,30}? on) the (?P<side>north|south|east|west)(?:ern)?(?: \w+)? (?:side|curb|corner|sidewalk)\b",
-    )
-});
-static CROSSES: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:cross(?:ed|ing|es)?|step\w*|walk\w*|ran|darted|emerg\w+|entered|entering|pull\w* (?:out|away))\b",
-    )
-});
+static STREET_SIDE: Pattern = Pattern::new(
+    r"(?i)\b(?:from|on|off|at|in a [\w ]{3,30}? on) the (?P<side>north|south|east|west)(?:ern)?(?: \w+)? (?:side|curb|corner|sidewalk)\b",
+);
+static CROSSES: Pattern = Pattern::new(
+    r"(?i)\b(?:cross(?:ed|ing|es)?|step\w*|walk\w*|ran|darted|emerg\w+|entered|entering|pull\w* (?:out|away))\b",
+);
 /// The side of the street the partner came from, as a hand.
-static STREET_HAND: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\bfrom (?:the|its|an?) (?:adjacent )?(?P<a>left|right)(?:[- ]hand)? (?:curb|sidewalk|shoulder|side of)\b|\b(?:driveway|alley(?:way)?|side street|parking (?:lot|space|stall|spot)) (?:on|to) (?:the|its) (?P<b>left|right)\b",
-    )
-});
+static STREET_HAND: Pattern = Pattern::new(
+    r"(?i)\bfrom (?:the|its|an?) (?:adjacent )?(?P<a>left|right)(?:[- ]hand)? (?:curb|sidewalk|shoulder|side of)\b|\b(?:driveway|alley(?:way)?|side street|parking (?:lot|space|stall|spot)) (?:on|to) (?:the|its) (?P<b>left|right)\b",
+);
 /// The ego about the partner: it is beside it.
-static BESIDE_IT: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:adjacent to|next to|alongside|passing|passed|overtaking|to pass|past) ?$"));
+static BESIDE_IT: Pattern =
+    Pattern::new(r"(?i)\b(?:adjacent to|next to|alongside|passing|passed|overtaking|to pass|past) ?$");
 /// The ego about the partner: it is behind it.
-static AFTER_IT: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:stopped|travell?ing|waiting|driving|following|slowed|slowing|queued|directly)?(?: in traffic| directly)? (?:behind|following) ?$",
-    )
-});
+static AFTER_IT: Pattern = Pattern::new(
+    r"(?i)\b(?:stopped|travell?ing|waiting|driving|following|slowed|slowing|queued|directly)?(?: in traffic| directly)? (?:behind|following) ?$",
+);
 /// The partner about the ego: it is ahead of it.
-static AHEAD: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:directly |immediately )?(?:in front of|ahead of)\b|\b(?:vehicle|car|truck|suv|van|motorcycle) (?:directly )?ahead\b",
-    )
-});
-static UNPROTECTED: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\bunprotected left\b|\byield\w* (?:to|for) oncoming\b|\boncoming traffic\b"));
-static COMPASS: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:(?P<a>north|south)[- ]?)?(?P<b>north|south|east|west)(?P<bound>[- ]?bound)?(?:ly)?\b")
-});
-static COMPASS_GOAL: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:onto|on to|toward|towards|to|into|for)(?: the| go| head| proceed| travel| continue)*\s*$")
-});
-static COMPASS_VERB: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:travel\w*|head\w*|driv\w+|proceed\w*|going|coming|moving|facing|straight|oriented|continu\w+|approach\w*)(?: (?:in an?|in the|due|straight))?\s*$",
-    )
-});
+static AHEAD: Pattern = Pattern::new(
+    r"(?i)\b(?:directly |immediately )?(?:in front of|ahead of)\b|\b(?:vehicle|car|truck|suv|van|motorcycle) (?:directly )?ahead\b",
+);
+static UNPROTECTED: Pattern =
+    Pattern::new(r"(?i)\bunprotected left\b|\byield\w* (?:to|for) oncoming\b|\boncoming traffic\b");
+static COMPASS: Pattern =
+    Pattern::new(r"(?i)\b(?:(?P<a>north|south)[- ]?)?(?P<b>north|south|east|west)(?P<bound>[- ]?bound)?(?:ly)?\b");
+static COMPASS_GOAL: Pattern =
+    Pattern::new(r"(?i)\b(?:onto|on to|toward|towards|to|into|for)(?: the| go| head| proceed| travel| continue)*\s*$");
+static COMPASS_VERB: Pattern = Pattern::new(
+    r"(?i)\b(?:travel\w*|head\w*|driv\w+|proceed\w*|going|coming|moving|facing|straight|oriented|continu\w+|approach\w*)(?: (?:in an?|in the|due|straight))?\s*$",
+);
 
-static COMPASS_LEAVES: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:proceeded|continued|fled|left|departed|drove|drove off)\s*$"));
+static COMPASS_LEAVES: Pattern = Pattern::new(r"(?i)\b(?:proceeded|continued|fled|left|departed|drove|drove off)\s*$");
 
 /// The relation the narrative states, with the words. A side that is told outright comes before compass directions, a
 /// crossing or opposite compass direction before words on lanes, and words on lanes before `from behind`, because the
@@ -150,7 +114,7 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
             None => (Relation::Crossing, source),
         },
         // Who came from behind and touched the side had come up beside it.
-        Relation::Behind if !record.sv_zones.is_empty() && !record.sv_zones.iter().any(|zone| is_rear(*zone)) => {
+        Relation::Behind if !record.sv_zones.is_empty() && !record.sv_zones.iter().any(|zone| zone.is_rear()) => {
             match side_from_zones(record) {
                 Some(side) if !record.sv_zones.contains(&ContactZone::Front) => (Relation::Beside(Some(side)), source),
                 _ => (Relation::Behind, source),
@@ -219,7 +183,7 @@ fn other(side: Side) -> Side {
 fn from_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     sentences.iter().find_map(|sentence| {
         FROM.captures_iter(sentence.text).find_map(|found| {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let named = found.name("side").or_else(|| found.name("place"))?;
             let lane = LANE_BEFORE.find_iter(sentence.text).any(|lane| lane.end() == named.end())
                 || LANE_AFTER.is_match(&sentence.text[named.end()..]);
@@ -234,7 +198,7 @@ fn from_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, 
 fn beside_sided(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     sentences.iter().find_map(|sentence| {
         BESIDE_SIDED.captures_iter(sentence.text).find_map(|found| {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             if LANE_BEFORE.find_iter(sentence.text).any(|lane| lane.start() < whole.end() && whole.start() < lane.end())
             {
                 return None;
@@ -257,15 +221,15 @@ fn beside_sided(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relatio
     })
 }
 
-static LANE_NUMBER: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\blane (?:# ?|number |no\. ?)?(?P<n>[1-6])\b|\b(?:number|#) ?(?P<m>[1-6]) lane\b"));
+static LANE_NUMBER: Pattern =
+    Pattern::new(r"(?i)\blane (?:# ?|number |no\. ?)?(?P<n>[1-6])\b|\b(?:number|#) ?(?P<m>[1-6]) lane\b");
 
 /// Lanes by number, counted from the left as on American roads.
 fn by_lane_numbers(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, FactSource)> {
     let mut lanes: [Option<(u32, &str)>; 2] = [None, None];
     for sentence in sentences {
         for found in LANE_NUMBER.captures_iter(sentence.text) {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let number = found.name("n").or_else(|| found.name("m")).and_then(|m| m.as_str().parse().ok());
             let who = match sentence.mentions.subject_at(whole.start()) {
                 Some(Actor::Sv) => 0,
@@ -338,7 +302,7 @@ fn from_street_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Rel
     let by_hand = sentences.iter().find_map(|sentence| {
         let found = STREET_HAND.captures(sentence.text)?;
         let hand = found.name("a").or_else(|| found.name("b"))?;
-        let whole = found.get(0).expect("group 0");
+        let whole = found.get_match();
         (sentence.mentions.subject_at(whole.start()) == Some(Actor::Cp))
             .then(|| (Relation::From(side(hand.as_str())), words(record, whole.as_str())))
     });
@@ -349,7 +313,7 @@ fn from_street_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Rel
             .filter(|sentence| FROM_PROPERTY.is_match(sentence.text) || CROSSES.is_match(sentence.text))
             .find_map(|sentence| {
                 let found = STREET_SIDE.captures(sentence.text)?;
-                let whole = found.get(0).expect("group 0");
+                let whole = found.get_match();
                 if sentence.mentions.subject_at(whole.start()) != Some(Actor::Cp) {
                     return None;
                 }
@@ -394,7 +358,7 @@ fn headings<'a>(sentences: &[Sentence<'a>]) -> [Option<Heading<'a>>; 2] {
     for (number, sentence) in sentences.iter().enumerate() {
         let meeting = MEETING.find(sentence.text).map(|found| found.end());
         for found in COMPASS.captures_iter(sentence.text) {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let before = &sentence.text[..whole.start()];
             let travels = found.name("bound").is_some() || COMPASS_VERB.is_match(before);
             let afterwards = met || meeting.is_some_and(|meeting| meeting <= whole.start());
@@ -431,8 +395,12 @@ fn by_compass(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation,
         side @ (2 | 6) if (side + backwards) % 8 == 2 => Relation::From(Side::Left),
         2 | 6 => Relation::From(Side::Right),
         // Front and rear touch: one followed the other.
-        0 if only(&record.sv_zones, is_rear) && only(&record.cp_zones, is_front) => Relation::Behind,
-        0 if only(&record.sv_zones, is_front) && record.cp_zones == [ContactZone::Rear] => Relation::Behind,
+        0 if only(&record.sv_zones, ContactZone::is_rear) && only(&record.cp_zones, ContactZone::is_front) => {
+            Relation::Behind
+        }
+        0 if only(&record.sv_zones, ContactZone::is_front) && record.cp_zones == [ContactZone::Rear] => {
+            Relation::Behind
+        }
         0 => Relation::Beside(None),
         4 => Relation::Oncoming,
         _ => return None,

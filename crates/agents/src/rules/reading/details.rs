@@ -1,66 +1,45 @@
 //! Partner, lanes, signals, speeds, actions and sideways moves.
 
 use super::super::actors::Actor;
+use super::super::pattern::Pattern;
 use super::approach::Relation;
 use super::{Sentence, column, words};
 use recrash_model::narrative::{FactSource, FactValue, LanePosition, LateralKind, LongitudinalAction, Side, Signal};
 use recrash_model::record::{CrashRecord, MPS_PER_MPH};
 use recrash_model::scenario::{MissingArm, ObstacleKind};
-use regex::Regex;
-use std::sync::LazyLock;
 
 /// Faster than this is a misreading. [m/s]
 const GREATEST_SPEED_MPS: f64 = 70.0;
 
-fn pattern(text: &str) -> Regex {
-    Regex::new(text).expect("constant pattern")
-}
-
-static LANE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:(?P<far>far )?(?P<side>left|right)(?P<most>[- ]?most)?(?:[- ]hand)?|(?P<mid>middle|cent(?:er|re)|(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?))(?P<kind>(?: (?:dedicated|through|thru|travel|traffic|left|right|turn|turning|only|straight|driving))*) lanes?\b",
-    )
-});
-static SECOND_LANE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?(?: lane)?\b")
-});
-static SIGNAL: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\bon (?:a )?(?P<d>green|red|yellow)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",
-    )
-});
-static SPEED: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?P<n>\d{1,3}(?:\.\d{1,3})?) ?(?P<unit>mph|miles per hour|miles an hour|m\.p\.h|km/h|kph|mps|m/s|meters per second)",
-    )
-});
-static SPEED_LIMIT: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\b(?:limit|posted|zone)\b"));
-static AT_IMPACT: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:impact|contact|collision|reducing|reduced|slowed|decelerat\w+|brak\w+)\b"));
-static ACTION: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:(?P<hard>(?:brak\w+|stopp\w+) (?:hard|suddenly|abruptly|sharply)|hard[- ]brak\w+|(?:suddenly|abruptly) (?:brak\w+|stopp\w+)|slammed (?:on )?(?:the |its )?brakes)|(?P<halt>(?:came|coming|come|slowed|braked) to (?:a|an) (?:\w+ ){0,2}?(?:stop|halt))|(?P<stood>(?:was|were|been|previously|remained|fully) (?:\w+ )?stopped|stopped (?:at|for|in|behind|and|facing|before)|stationary|at rest|at a (?:complete |full )?stop|waiting)|(?P<yielded>yield\w*)|(?P<faster>accelerat\w+|sped up|speeding up|began (?:to )?(?:mov\w+|proceed\w*|go|driv\w+)|started (?:to )?(?:mov\w+|proceed\w*|forward)|set off)|(?P<slower>brak\w+|slow(?:ed|ing|s)?|decelerat\w+))\b",
-    )
-});
-static LATERAL: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:(?P<wide>wide(?:ly)?)|(?P<cut>cut(?:s|ting)? (?:in|into|off|across|in front)|swerv\w+ (?:in front|into))|(?P<change>(?:chang\w+|switch\w+) (?:\w+ )?lanes?|lane[- ]chang\w+|merg(?:e|ed|es|ing)|(?:moved?|moving|mov\w+ over|entered|entering|came over|coming over|cross(?:ed|es|ing)(?: over)?|turn\w+) (?:partially )?into (?:the )?[^.]{0,30}?lane)|(?P<drift>drift\w*|encroach\w*|veer\w*|swerv\w+|(?:partially|over) (?:\w+ )?(?:the )?(?:line|lane marking)))\b",
-    )
-});
-static TOWARDS: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)^[^.]{0,30}?\b(?:to(?:wards?)? (?:the|its) )?(?P<side>left|right)\b"));
-static THREE_WAY: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"\bT[- ](?:[Ii]ntersection|[Jj]unction)|(?i:\bthree[- ]way (?:intersection|junction|stop)|\bthree[- ]legged|\b3[- ]way (?:intersection|junction|stop))",
-    )
-});
-static SIDE_STREET: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:intersects|joins|meets)(?: \w+){0,3} from the (?P<side>left|right)\b"));
-static CLOSED: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?P<a>left|right)(?:most)?(?: \w+){0,2} lanes? (?:was|were|is|are)(?: \w+)? closed\b|\bcones?[^.]{0,40}?\bon (?:the|its) (?P<b>left|right)\b",
-    )
-});
+static LANE: Pattern = Pattern::new(
+    r"(?i)\b(?:(?P<far>far )?(?P<side>left|right)(?P<most>[- ]?most)?(?:[- ]hand)?|(?P<mid>middle|cent(?:er|re)|(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?))(?P<kind>(?: (?:dedicated|through|thru|travel|traffic|left|right|turn|turning|only|straight|driving))*) lanes?\b",
+);
+static SECOND_LANE: Pattern =
+    Pattern::new(r"(?i)\b(?:second|third|2nd|3rd)(?: lane)? (?:from|to) the (?:left|right)(?:most)?(?: lane)?\b");
+static SIGNAL: Pattern = Pattern::new(
+    r"(?i)\b(?P<a>green|yellow|amber|red)(?: \w+){0,2}? (?:light|signal|arrow|phase)\b|\b(?:light|signal)(?: \w+){0,5}? (?:turned|changed|changing|was|had turned)(?: to)? (?P<b>green|yellow|amber|red)\b|\bon (?:a )?(?P<d>green|red|yellow)\b|\b(?P<c>stop sign|yield sign|four-way stop|all-way stop)\b",
+);
+static SPEED: Pattern = Pattern::new(
+    r"(?i)\b(?P<n>\d{1,3}(?:\.\d{1,3})?) ?(?P<unit>mph|miles per hour|miles an hour|m\.p\.h|km/h|kph|mps|m/s|meters per second)",
+);
+static SPEED_LIMIT: Pattern = Pattern::new(r"(?i)\b(?:limit|posted|zone)\b");
+static AT_IMPACT: Pattern =
+    Pattern::new(r"(?i)\b(?:impact|contact|collision|reducing|reduced|slowed|decelerat\w+|brak\w+)\b");
+static ACTION: Pattern = Pattern::new(
+    r"(?i)\b(?:(?P<hard>(?:brak\w+|stopp\w+) (?:hard|suddenly|abruptly|sharply)|hard[- ]brak\w+|(?:suddenly|abruptly) (?:brak\w+|stopp\w+)|slammed (?:on )?(?:the |its )?brakes)|(?P<halt>(?:came|coming|come|slowed|braked) to (?:a|an) (?:\w+ ){0,2}?(?:stop|halt))|(?P<stood>(?:was|were|been|previously|remained|fully) (?:\w+ )?stopped|stopped (?:at|for|in|behind|and|facing|before)|stationary|at rest|at a (?:complete |full )?stop|waiting)|(?P<yielded>yield\w*)|(?P<faster>accelerat\w+|sped up|speeding up|began (?:to )?(?:mov\w+|proceed\w*|go|driv\w+)|started (?:to )?(?:mov\w+|proceed\w*|forward)|set off)|(?P<slower>brak\w+|slow(?:ed|ing|s)?|decelerat\w+))\b",
+);
+static LATERAL: Pattern = Pattern::new(
+    r"(?i)\b(?:(?P<wide>wide(?:ly)?)|(?P<cut>cut(?:s|ting)? (?:in|into|off|across|in front)|swerv\w+ (?:in front|into))|(?P<change>(?:chang\w+|switch\w+) (?:\w+ )?lanes?|lane[- ]chang\w+|merg(?:e|ed|es|ing)|(?:moved?|moving|mov\w+ over|entered|entering|came over|coming over|cross(?:ed|es|ing)(?: over)?|turn\w+) (?:partially )?into (?:the )?[^.]{0,30}?lane)|(?P<drift>drift\w*|encroach\w*|veer\w*|swerv\w+|(?:partially|over) (?:\w+ )?(?:the )?(?:line|lane marking)))\b",
+);
+static TOWARDS: Pattern = Pattern::new(r"(?i)^[^.]{0,30}?\b(?:to(?:wards?)? (?:the|its) )?(?P<side>left|right)\b");
+static THREE_WAY: Pattern = Pattern::new(
+    r"\bT[- ](?:[Ii]ntersection|[Jj]unction)|(?i:\bthree[- ]way (?:intersection|junction|stop)|\bthree[- ]legged|\b3[- ]way (?:intersection|junction|stop))",
+);
+static SIDE_STREET: Pattern =
+    Pattern::new(r"(?i)\b(?:intersects|joins|meets)(?: \w+){0,3} from the (?P<side>left|right)\b");
+static CLOSED: Pattern = Pattern::new(
+    r"(?i)\b(?P<a>left|right)(?:most)?(?: \w+){0,2} lanes? (?:was|were|is|are)(?: \w+)? closed\b|\bcones?[^.]{0,40}?\bon (?:the|its) (?P<b>left|right)\b",
+);
 
 /// Reads everything but approach, collision and contact areas.
 pub(super) fn read(
@@ -84,7 +63,7 @@ fn speeds(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fac
     let (mut sv, mut cp) = (None, None);
     for sentence in sentences {
         for found in SPEED.captures_iter(sentence.text) {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let before = &sentence.text[..whole.start()];
             let clause = &before[before.rfind([',', ';', '(']).unwrap_or(0)..];
             let Some(speed_mps) = speed(&found["n"], &found["unit"]) else { continue };
@@ -130,7 +109,7 @@ pub(super) fn told_lanes<'a>(sentences: &[Sentence<'a>]) -> (ToldLane<'a>, ToldL
     let (mut sv, mut cp) = (None, None);
     for sentence in sentences {
         let plain = LANE.captures_iter(sentence.text).filter_map(|found| {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let turn_lane = found.name("kind").is_some_and(|kind| kind.as_str().to_lowercase().contains("turn"));
             let outermost = found.name("far").is_some() || found.name("most").is_some();
             let lane = match found.name("side").map(|side| side.as_str().to_lowercase()) {
@@ -172,7 +151,7 @@ fn signals(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fa
     let (mut sv, mut cp) = (None, None);
     for sentence in sentences {
         for found in SIGNAL.captures_iter(sentence.text) {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let named = ["a", "b", "c", "d"].iter().find_map(|group| found.name(group));
             let signal = match named.map(|m| m.as_str().to_ascii_lowercase()).as_deref() {
                 Some("green") => Signal::Green,
@@ -201,7 +180,7 @@ fn actions(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fa
     let mut known: Vec<(Actor, LongitudinalAction)> = Vec::new();
     for sentence in sentences {
         for found in ACTION.captures_iter(sentence.text) {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let action = if found.name("hard").is_some() {
                 LongitudinalAction::BrakedHard
             } else if found.name("halt").is_some() {
@@ -239,7 +218,7 @@ fn lateral(
     let Some(Relation::Beside(beside)) = relation else { return };
     let moved = sentences.iter().find_map(|sentence| {
         LATERAL.captures_iter(sentence.text).find_map(|found| {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let kind = if found.name("wide").is_some() {
                 LateralKind::WideTurn
             } else if found.name("cut").is_some() {
@@ -272,7 +251,7 @@ fn layout(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fac
     let side_street = sentences.iter().find_map(|sentence| {
         let found = SIDE_STREET.captures(sentence.text)?;
         let missing = if found["side"].eq_ignore_ascii_case("left") { MissingArm::Right } else { MissingArm::Left };
-        Some((missing, found.get(0).expect("group 0").as_str()))
+        Some((missing, found.get_match().as_str()))
     });
     let three_way =
         || sentences.iter().find_map(|s| THREE_WAY.find(s.text)).map(|found| (MissingArm::Ahead, found.as_str()));
@@ -284,7 +263,7 @@ fn layout(record: &CrashRecord, sentences: &[Sentence], add: &mut impl FnMut(Fac
             let found = CLOSED.captures(sentence.text)?;
             let side = found.name("a").or_else(|| found.name("b"))?;
             let side = if side.as_str().eq_ignore_ascii_case("left") { Side::Left } else { Side::Right };
-            Some((side, found.get(0).expect("group 0").as_str()))
+            Some((side, found.get_match().as_str()))
         });
         match closed {
             Some((side, text)) => {

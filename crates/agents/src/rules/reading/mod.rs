@@ -13,13 +13,12 @@ pub use account::account;
 pub use approach::{Relation, relation_from_zones};
 
 use super::actors::{Actor, Cast, Mentions};
+use super::pattern::Pattern;
 use super::text::telling_sentences;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue};
 use recrash_model::record::{ContactZone, CrashRecord};
 use recrash_model::template::Movement;
-use regex::Regex;
-use std::sync::LazyLock;
 
 /// A sentence and whom it mentions.
 #[derive(Debug, Clone)]
@@ -45,28 +44,20 @@ pub struct Reading<'a> {
     pub facts: Vec<Fact>,
 }
 
-pub(super) static MEETING: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(
-        r"(?i)\b(?:contact\w*|struck|strik\w+|hit|hitting|collid\w+|sideswip\w+|side-swip\w+|clipped|scrap\w+|impacted|impacting|rear[- ]?end\w*|ran into|crash\w+ into|bumped)\b",
-    )
-    .expect("constant pattern")
-});
+pub(super) static MEETING: Pattern = Pattern::new(
+    r"(?i)\b(?:contact\w*|struck|strik\w+|hit|hitting|collid\w+|sideswip\w+|side-swip\w+|clipped|scrap\w+|impacted|impacting|rear[- ]?end\w*|ran into|crash\w+ into|bumped)\b",
+);
 
-static TURN: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(
-        r"(?i)\b(?:making|made|makes?|initiat\w+|execut\w+|complet\w+|perform\w+|attempt\w+|began|beginning) (?:\w+ ){0,4}?(?P<a>left|right)(?:[- ]hand)?[- ]turn\b|\b(?:turned|turning|turns) (?:\w+ )?(?P<b>left|right)\b",
-    )
-    .expect("constant pattern")
-});
+static TURN: Pattern = Pattern::new(
+    r"(?i)\b(?:making|made|makes?|initiat\w+|execut\w+|complet\w+|perform\w+|attempt\w+|began|beginning) (?:\w+ ){0,4}?(?P<a>left|right)(?:[- ]hand)?[- ]turn\b|\b(?:turned|turning|turns) (?:\w+ )?(?P<b>left|right)\b",
+);
 
 /// Before a turn: it was over before anything happened.
-static DONE_BEFORE: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(r"(?i)\b(?:having|had|after|following)(?: just| recently)?\s*$").expect("constant pattern")
-});
+static DONE_BEFORE: Pattern = Pattern::new(r"(?i)\b(?:having|had|after|following)(?: just| recently)?\s*$");
 
-static STRAIGHT: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection|\bthrough traffic|\bwith the flow of traffic|\bright of way").expect("constant pattern")
-});
+static STRAIGHT: Pattern = Pattern::new(
+    r"(?i)\bstraight\b|\bthrough (?:the|an|its) (?:\w+ )?(?:intersection|light|signal)|\bproceed\w* (?:into|through|across)|\bcontinu\w+|\bcross(?:ed|ing) the intersection|\bentered the intersection|\bthrough traffic|\bwith the flow of traffic|\bright of way",
+);
 
 /// Reads a record.
 pub fn read(record: &CrashRecord) -> Reading<'_> {
@@ -138,34 +129,20 @@ fn facts(record: &CrashRecord, sentences: &[Sentence], relation: Option<Relation
     facts
 }
 
-/// Front, front left or front right.
-pub fn is_front(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Front | ContactZone::FrontLeft | ContactZone::FrontRight)
-}
-
-/// Rear, rear left or rear right.
-pub fn is_rear(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Rear | ContactZone::RearLeft | ContactZone::RearRight)
-}
-
 /// Whether there are zones and all of them are of this sort.
 pub fn only(zones: &[ContactZone], sort: fn(ContactZone) -> bool) -> bool {
     !zones.is_empty() && zones.iter().all(|zone| sort(*zone))
 }
 
-static REAR_END: LazyLock<Regex> =
-    LazyLock::new(|| Regex::new(r"(?i)\brear[- ]?end(?:ed|ing|s)?\b").expect("constant pattern"));
-static REAR_ENDED_BY: LazyLock<Regex> =
-    LazyLock::new(|| Regex::new(r"(?i)^rear[- ]?ended(?: \w+)? by\b").expect("constant pattern"));
-static STRUCK_FROM_BEHIND: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(r"(?i)\b(?:struck|hit|impacted|contacted|bumped) (?:from|in|on|at)(?: the| its)? (?:behind|rear|back)\b")
-        .expect("constant pattern")
-});
-static HEAD_ON: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"(?i)\bhead[- ]on\b").expect("constant pattern"));
-static HIT_REAR_OF: LazyLock<Regex> = LazyLock::new(|| {
-    Regex::new(r"(?i)\b(?:contact\w*|struck|hit|collided|impacted|bumped)\b(?: with)?(?: into)? (?:the )?(?:rear|back)(?:[- ]end| bumper)?(?: bumper)?(?: of)?")
-        .expect("constant pattern")
-});
+static REAR_END: Pattern = Pattern::new(r"(?i)\brear[- ]?end(?:ed|ing|s)?\b");
+static REAR_ENDED_BY: Pattern = Pattern::new(r"(?i)^rear[- ]?ended(?: \w+)? by\b");
+static STRUCK_FROM_BEHIND: Pattern = Pattern::new(
+    r"(?i)\b(?:struck|hit|impacted|contacted|bumped) (?:from|in|on|at)(?: the| its)? (?:behind|rear|back)\b",
+);
+static HEAD_ON: Pattern = Pattern::new(r"(?i)\bhead[- ]on\b");
+static HIT_REAR_OF: Pattern = Pattern::new(
+    r"(?i)\b(?:contact\w*|struck|hit|collided|impacted|bumped)\b(?: with)?(?: into)? (?:the )?(?:rear|back)(?:[- ]end| bumper)?(?: bumper)?(?: of)?",
+);
 
 /// The kind of collision, where it is one of those a profile may exclude.
 fn collision(
@@ -193,7 +170,7 @@ fn collision(
             let by_partner = sentence.mentions.object_after(found.end()) == Some(Actor::Cp);
             let kind = match sentence.mentions.subject_at(found.start()) {
                 Some(Actor::Sv) => Some(CollisionKind::RearEndOfEgo),
-                _ if by_partner && !only(&record.sv_zones, is_front) => Some(CollisionKind::RearEndOfEgo),
+                _ if by_partner && !only(&record.sv_zones, ContactZone::is_front) => Some(CollisionKind::RearEndOfEgo),
                 Some(Actor::Cp) if !crosses && !beside => Some(CollisionKind::RearEndByEgo),
                 _ => None,
             };
@@ -225,10 +202,11 @@ fn collision(
         !matches!(did, Some(Movement::Backing | Movement::ParkingManeuver | Movement::EnteringTraffic))
     };
     if record.partner.known().is_some() && !crosses && !beside && follows(sv_did) && follows(cp_did) {
-        if (behind && sv.is_empty()) || (only(sv, is_rear) && (behind || only(cp, is_front))) {
+        if (behind && sv.is_empty()) || (only(sv, ContactZone::is_rear) && (behind || only(cp, ContactZone::is_front)))
+        {
             return Some((CollisionKind::RearEndOfEgo, zones()));
         }
-        if only(sv, is_front) && only(cp, is_rear) {
+        if only(sv, ContactZone::is_front) && only(cp, ContactZone::is_rear) {
             return Some((CollisionKind::RearEndByEgo, zones()));
         }
     }
@@ -236,7 +214,7 @@ fn collision(
         use Movement::{CrossingIntoOpposingLane, Stopped, Straight, WrongWay};
         matches!(did, Some(Straight | Stopped | WrongWay | CrossingIntoOpposingLane))
     };
-    let fronts = |zones: &[ContactZone]| zones.is_empty() || zones.iter().any(|zone| is_front(*zone));
+    let fronts = |zones: &[ContactZone]| zones.is_empty() || zones.iter().any(|zone| zone.is_front());
     let head_on = relation == Some(Relation::Oncoming) && ahead(sv_did) && ahead(cp_did) && fronts(sv) && fronts(cp);
     head_on.then(|| (CollisionKind::HeadOn, zones()))
 }
@@ -246,7 +224,7 @@ fn told_turns(sentences: &[Sentence], actor: Actor) -> (bool, bool, bool) {
     let (mut left, mut right, mut straight) = (false, false, false);
     for sentence in sentences {
         for found in TURN.captures_iter(sentence.text) {
-            let at = found.get(0).expect("group 0").start();
+            let at = found.get_match().start();
             if DONE_BEFORE.is_match(&sentence.text[..at]) {
                 continue;
             }

@@ -1,51 +1,40 @@
 //! What each of the two was doing just before they met: the column, unless the narrative plainly says otherwise.
 
 use super::super::actors::Actor;
+use super::super::pattern::Pattern;
 use super::{MEETING, Relation, Sentence, told_turns};
 use recrash_model::template::Movement;
-use regex::Regex;
-use std::sync::LazyLock;
-
-fn pattern(text: &str) -> Regex {
-    Regex::new(text).expect("constant pattern")
-}
 
 /// Words about the state of motion. Who is "slowing to a stop" still rolls; who is "stopped for" somebody does not.
-static STATE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(concat!(
-        r"(?i)\b(?:(?P<parked>(?:legally |illegally |double[- ])?parked)",
-        r"|(?P<stood>(?:was|were|been|is|remain(?:ed|ing)|fully|while|being|had|already|previously|completely)",
-        r"(?: \w+ly| already| also)? stopped",
-        r"|stopped (?:at|for|in|behind|and|facing|before|due|on|to|because|with|waiting|while|short|again|directly|prior)",
-        r"|(?:came|come|slowed|braked|brought|decelerated)(?: \w+ly| itself| down)? to an? (?:\w+ ){0,2}?(?:stop|halt)",
-        r"|stopped$|stopped[,.]|stationary|at rest|at an? (?:complete |full )?(?:stop|standstill)",
-        r"|(?:remained|was|while) (?:\w+ )?waiting)",
-        r"|(?P<back>revers(?:ed|es|ing)|back(?:ed|ing)(?: up| out| into)?|in reverse)",
-        r"|(?P<go>began|begun|start(?:ed|ing)|proceed\w*|continu\w+|accelerat\w+|resum\w+|inch\w+|crept|creep\w*",
-        r"|advanc\w+|mov(?:ed|ing)|enter(?:ed|ing)|travel\w*|driv(?:ing|en)|drove|set off|pull(?:ed|ing) \w+",
-        r"|pass(?:ed|ing)|turn(?:ed|ing) (?:left|right)|made|making|merg(?:ed|ing)|chang(?:ed|ing) lanes|overt\w+",
-        r"|approach(?:ed|ing)|cross(?:ed|ing)|swerv\w+|edg(?:ed|ing)|roll(?:ed|ing)))\b",
-    ))
-});
+static STATE: Pattern = Pattern::new(concat!(
+    r"(?i)\b(?:(?P<parked>(?:legally |illegally |double[- ])?parked)",
+    r"|(?P<stood>(?:was|were|been|is|remain(?:ed|ing)|fully|while|being|had|already|previously|completely)",
+    r"(?: \w+ly| already| also)? stopped",
+    r"|stopped (?:at|for|in|behind|and|facing|before|due|on|to|because|with|waiting|while|short|again|directly|prior)",
+    r"|(?:came|come|slowed|braked|brought|decelerated)(?: \w+ly| itself| down)? to an? (?:\w+ ){0,2}?(?:stop|halt)",
+    r"|stopped$|stopped[,.]|stationary|at rest|at an? (?:complete |full )?(?:stop|standstill)",
+    r"|(?:remained|was|while) (?:\w+ )?waiting)",
+    r"|(?P<back>revers(?:ed|es|ing)|back(?:ed|ing)(?: up| out| into)?|in reverse)",
+    r"|(?P<go>began|begun|start(?:ed|ing)|proceed\w*|continu\w+|accelerat\w+|resum\w+|inch\w+|crept|creep\w*",
+    r"|advanc\w+|mov(?:ed|ing)|enter(?:ed|ing)|travel\w*|driv(?:ing|en)|drove|set off|pull(?:ed|ing) \w+",
+    r"|pass(?:ed|ing)|turn(?:ed|ing) (?:left|right)|made|making|merg(?:ed|ing)|chang(?:ed|ing) lanes|overt\w+",
+    r"|approach(?:ed|ing)|cross(?:ed|ing)|swerv\w+|edg(?:ed|ing)|roll(?:ed|ing)))\b",
+));
 
 /// Before a mention: the one mentioned stands.
-static STANDING_BEFORE: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:stationary|stopped|parked|standing|motionless)(?: \w+)?\s*$"));
+static STANDING_BEFORE: Pattern = Pattern::new(r"(?i)\b(?:stationary|stopped|parked|standing|motionless)(?: \w+)?\s*$");
 
 /// The beginning of a sentence that goes back.
-static BEFORE: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)^(?:prior to|before|at the time of|moments? before|just before|immediately before|leading up to)\b")
-});
+static BEFORE: Pattern = Pattern::new(
+    r"(?i)^(?:prior to|before|at the time of|moments? before|just before|immediately before|leading up to)\b",
+);
 
 /// What makes a meeting's subject the one that was met.
-static PASSIVE_BEFORE: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:was|were|been|being|got|is)(?: \w+ly)? $"));
+static PASSIVE_BEFORE: Pattern = Pattern::new(r"(?i)\b(?:was|were|been|being|got|is)(?: \w+ly)? $");
 
-static PASSING: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:(?:attempt\w* to|tried to|trying to|began to) (?:pass|overtake|go around)|pass(?:ed|ing)(?: by)?|overtook|overtaking|went around|drove around|maneuver\w* around)\b",
-    )
-});
+static PASSING: Pattern = Pattern::new(
+    r"(?i)\b(?:(?:attempt\w* to|tried to|trying to|began to) (?:pass|overtake|go around)|pass(?:ed|ing)(?: by)?|overtook|overtaking|went around|drove around|maneuver\w* around)\b",
+);
 /// A state of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
@@ -112,7 +101,7 @@ fn story(sentences: &[Sentence], actor: Actor) -> Story {
         let meeting = MEETING.find_iter(sentence.text).find(|found| tells_meeting(sentence, found));
         let until = meeting.map_or(sentence.text.len(), |found| found.start());
         for found in STATE.captures_iter(sentence.text) {
-            let whole = found.get(0).expect("group 0");
+            let whole = found.get_match();
             let after = &sentence.text[whole.end()..];
             if whole.start() >= until || after.starts_with(" sign") {
                 continue;

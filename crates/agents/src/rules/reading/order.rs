@@ -1,6 +1,6 @@
 //! Who was at the place of the conflict first.
 
-use super::{Relation, is_front, is_rear, only};
+use super::{Relation, only};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::FirstMover;
 use recrash_model::record::ContactZone;
@@ -29,7 +29,7 @@ pub(super) fn first(met: &Met) -> Option<FirstMover> {
     match (met.relation, met.collision) {
         (_, Some(CollisionKind::RearEndOfEgo)) => return Some(FirstMover::Sv),
         (_, Some(CollisionKind::RearEndByEgo)) => return Some(FirstMover::Cp),
-        (Some(Relation::Behind), _) if only(sv, is_rear) => return Some(FirstMover::Sv),
+        (Some(Relation::Behind), _) if only(sv, ContactZone::is_rear) => return Some(FirstMover::Sv),
         // Who turns off across the other's way cannot be beside it then.
         (Some(Relation::Beside(_)), _) if !turns(met.movements.0) && !turns(met.movements.1) => {
             return Some(FirstMover::Both);
@@ -37,7 +37,7 @@ pub(super) fn first(met: &Met) -> Option<FirstMover> {
         _ => {}
     }
     let flank = |zones: &[ContactZone]| zones.iter().any(|zone| is_flank(*zone));
-    match (only(sv, is_front), only(cp, is_front)) {
+    match (only(sv, ContactZone::is_front), only(cp, ContactZone::is_front)) {
         (true, true) => Some(FirstMover::Both),
         (true, false) if flank(cp) => Some(FirstMover::Cp),
         (false, true) if flank(sv) => Some(FirstMover::Sv),
@@ -54,7 +54,7 @@ fn turns(movement: Option<Movement>) -> bool {
 }
 
 fn is_flank(zone: ContactZone) -> bool {
-    matches!(zone, ContactZone::Left | ContactZone::Right) || is_rear(zone)
+    matches!(zone, ContactZone::Left | ContactZone::Right) || zone.is_rear()
 }
 
 #[cfg(test)]

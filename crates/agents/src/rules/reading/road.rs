@@ -1,36 +1,25 @@
 //! Where it happened: the column, unless the narrative plainly says otherwise.
 
+use super::super::pattern::Pattern;
 use super::{MEETING, Relation, Sentence};
 use recrash_model::account::RoadGroup;
 use recrash_model::record::CrashRecord;
 use recrash_model::template::{Movement, RoadType};
-use regex::Regex;
-use std::sync::LazyLock;
 
-fn pattern(text: &str) -> Regex {
-    Regex::new(text).expect("constant pattern")
-}
-
-static IN_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:enter(?:ed|ing|s)?|through|into|within|inside|in the middle of|cross(?:ed|ing)|block(?:ed|ing)) (?:the|an|its) (?:\w+ )?intersection\b",
-    )
-});
+static IN_JUNCTION: Pattern = Pattern::new(
+    r"(?i)\b(?:enter(?:ed|ing|s)?|through|into|within|inside|in the middle of|cross(?:ed|ing)|block(?:ed|ing)) (?:the|an|its) (?:\w+ )?intersection\b",
+);
 /// Where one crosses the way of a moving other, that there is a junction is enough. Who stands still waits before it.
-static JUNCTION: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bintersection\b"));
+static JUNCTION: Pattern = Pattern::new(r"(?i)\bintersection\b");
 /// Short of the junction, or already out of it: the contact was not inside.
-static SHORT_OF_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(r"(?i)\b(?:before|prior to|without) (?:enter|cross|block)ing (?:the|an|its) (?:\w+ )?intersection\b")
-});
-static PAST_JUNCTION: LazyLock<Regex> = LazyLock::new(|| {
-    pattern(
-        r"(?i)\b(?:after (?:passing|driving|traveling|proceeding|going) through (?:the|an|its) (?:\w+ )?intersection|through (?:the|an|its) (?:\w+ )?intersection\b.*\btowards? the curb)\b",
-    )
-});
+static SHORT_OF_JUNCTION: Pattern =
+    Pattern::new(r"(?i)\b(?:before|prior to|without) (?:enter|cross|block)ing (?:the|an|its) (?:\w+ )?intersection\b");
+static PAST_JUNCTION: Pattern = Pattern::new(
+    r"(?i)\b(?:after (?:passing|driving|traveling|proceeding|going) through (?:the|an|its) (?:\w+ )?intersection|through (?:the|an|its) (?:\w+ )?intersection\b.*\btowards? the curb)\b",
+);
 /// Who comes out of one of these does not cross at the junction that the narrative names.
-static BY_THE_STREET: LazyLock<Regex> =
-    LazyLock::new(|| pattern(r"(?i)\b(?:driveway|parking (?:lot|stall|space|garage))\b"));
-static GARAGE: LazyLock<Regex> = LazyLock::new(|| pattern(r"(?i)\bparking (?:garage|structure)\b"));
+static BY_THE_STREET: Pattern = Pattern::new(r"(?i)\b(?:driveway|parking (?:lot|stall|space|garage))\b");
+static GARAGE: Pattern = Pattern::new(r"(?i)\bparking (?:garage|structure)\b");
 
 /// The kind of road of a record, given from where the partner came and what the ego did.
 pub(super) fn road(
@@ -75,14 +64,12 @@ fn in_junction(text: &str) -> bool {
     IN_JUNCTION.is_match(text) && !SHORT_OF_JUNCTION.is_match(text) && !PAST_JUNCTION.is_match(text)
 }
 
-static WORDS: LazyLock<[(Regex, RoadGroup); 4]> = LazyLock::new(|| {
-    [
-        (pattern(r"(?i)\b(?:parking lot|parking area|parking stall)\b"), RoadGroup::Parking),
-        (pattern(r"(?i)\b(?:highway|freeway|interstate|motorway|I-\d+)\b"), RoadGroup::Highway),
-        (pattern(r"(?i)\b(?:roundabout|traffic circle)\b"), RoadGroup::Circle),
-        (pattern(r"(?i)\bintersection\b"), RoadGroup::Intersection),
-    ]
-});
+static WORDS: [(Pattern, RoadGroup); 4] = [
+    (Pattern::new(r"(?i)\b(?:parking lot|parking area|parking stall)\b"), RoadGroup::Parking),
+    (Pattern::new(r"(?i)\b(?:highway|freeway|interstate|motorway|I-\d+)\b"), RoadGroup::Highway),
+    (Pattern::new(r"(?i)\b(?:roundabout|traffic circle)\b"), RoadGroup::Circle),
+    (Pattern::new(r"(?i)\bintersection\b"), RoadGroup::Intersection),
+];
 
 /// Where the column does not say, the first kind of road that the narrative names; a street where it names none.
 fn by_words(sentences: &[Sentence]) -> Option<RoadGroup> {

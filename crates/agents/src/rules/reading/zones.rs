@@ -58,7 +58,7 @@ fn told(sentences: &[Sentence], actor: Actor) -> Vec<Place> {
     let meets = |sentence: &&Sentence| sentence.mentions.includes(Actor::Sv) && MEETING.is_match(sentence.text);
     for sentence in sentences.iter().filter(meets) {
         for found in PART_OF.captures_iter(sentence.text) {
-            let end = found.get(0).expect("group 0").end();
+            let end = found.get_match().end();
             if sentence.mentions.object_after(end) == Some(actor) {
                 places.extend(place(&found));
             }
@@ -67,7 +67,7 @@ fn told(sentences: &[Sentence], actor: Actor) -> Vec<Place> {
             places.extend(PART_AFTER.captures(&sentence.text[at..]).as_ref().and_then(place));
         }
         for found in PART_HIT.captures_iter(sentence.text).filter(|found| found.name("owner").is_none()) {
-            let start = found.get(0).expect("group 0").start();
+            let start = found.get_match().start();
             if sentence.mentions.subject_at(start) == Some(other) {
                 places.extend(place(&found));
             }
