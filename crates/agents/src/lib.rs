@@ -14,6 +14,7 @@
 mod account;
 mod contradiction;
 mod expectation;
+mod expressible;
 pub mod llm;
 mod parameters;
 mod rules;
@@ -21,6 +22,7 @@ mod rules;
 pub use account::account_of;
 pub use contradiction::narrative_contradictions;
 pub use expectation::expectation;
+pub use expressible::inexpressible;
 pub use parameters::parameters;
 pub use rules::Rules;
 

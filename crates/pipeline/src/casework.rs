@@ -6,7 +6,7 @@ use crate::external::Patience;
 use crate::profiles::load_profile;
 use crate::simulator::{Simulator, SimulatorKind};
 use crate::store::{read_text, to_compact_json, write_file_whole};
-use recrash_agents::{Brief, Design, Feedback, Problem};
+use recrash_agents::{Brief, Design, Feedback, Problem, inexpressible};
 use recrash_metrics::{faithfulness, findings, measure, series};
 use recrash_model::metrics::{Check, Expectation, Finding, Metrics, Series, Verdict};
 use recrash_model::narrative::Narrative;
@@ -196,7 +196,9 @@ fn design_by(
             Ok(draft) => draft,
             Err(error) => return unusable(error).map(Course::GaveUp),
         };
-        let (attempt, problem) = match recrash_roads::check(draft.clone()) {
+        let beyond = inexpressible(&draft, brief.profile);
+        let checked = if beyond.is_empty() { recrash_roads::check(draft.clone()) } else { Err(beyond) };
+        let (attempt, problem) = match checked {
             Err(diagnostics) => (
                 DesignAttempt { draft: draft.clone(), diagnostics: diagnostics.clone(), unfaithful: None },
                 Some(Problem::NotRunnable { diagnostics }),

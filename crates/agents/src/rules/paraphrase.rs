@@ -1,7 +1,7 @@
 //! From records to a narrative: the pick where it can be retold, else another record of its cluster, else an alternative
 //! of the same template.
 
-use super::reading::{Reading, Relation, read, relation_from_zones};
+use super::reading::{Reading, Relation, read, side_from_zones};
 use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
 use super::writing::{self, Facts};
 use crate::{AgentError, Brief, narrative_contradictions};
@@ -186,7 +186,7 @@ fn stage(relation: Relation, brief: &Brief, ways: &[Staging]) -> Option<Staging>
 /// The staging the contact areas suggest: on which side of the ego the partner was, and from where a partner of this
 /// template typically comes there.
 fn from_zones(reading: &Reading, ways: &[Staging]) -> Option<Staging> {
-    let side = relation_from_zones(reading.record)?;
+    let side = side_from_zones(reading.record)?;
     let arm = match side {
         Side::Left => Approach::Left,
         Side::Right => Approach::Right,

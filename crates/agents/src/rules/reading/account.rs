@@ -3,7 +3,7 @@
 use super::super::actors::Actor;
 use super::order::{Met, first};
 use super::zones::zones;
-use super::{Relation, movement, only, read_sentences, reading_of, relation_from_zones, road};
+use super::{Relation, movement, only, read_sentences, reading_of, road, side_from_zones};
 use recrash_model::account::{Account, RoadGroup};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::Side;
@@ -79,7 +79,7 @@ fn told_approach(record: &CrashRecord, relation: Option<Relation>) -> Option<App
         Relation::From(side) => Some(approach_from(side)),
         Relation::Oncoming => Some(Approach::Opposite),
         Relation::Beside(_) | Relation::Behind => Some(Approach::Same),
-        Relation::Crossing => relation_from_zones(record).map(approach_from),
+        Relation::Crossing => side_from_zones(record).map(approach_from),
     }
 }
 
@@ -95,7 +95,7 @@ fn likely_approach(record: &CrashRecord, account: &Account) -> Option<Approach> 
     }
     match account.cp_movement {
         Some(Parked | Passing | ChangingLanes | Merging | LaneDeparture) => return Some(Approach::Same),
-        Some(EnteringTraffic) => return relation_from_zones(record).map(approach_from),
+        Some(EnteringTraffic) => return side_from_zones(record).map(approach_from),
         _ => {}
     }
     let (sv, cp) = (&account.sv_zones, &account.cp_zones);
@@ -111,7 +111,7 @@ fn likely_approach(record: &CrashRecord, account: &Account) -> Option<Approach> 
     let flank = sv.contains(&ContactZone::Left) != sv.contains(&ContactZone::Right);
     let straight = matches!(account.sv_movement, Some(Straight | Stopped)) && account.cp_movement == Some(Straight);
     if flank && straight && cp.contains(&ContactZone::Front) {
-        return relation_from_zones(record).map(approach_from);
+        return side_from_zones(record).map(approach_from);
     }
     if flank && !cp.iter().any(|zone| zone.is_front()) && account.cp_movement != Some(Backing) && !cp.is_empty() {
         return Some(Approach::Same);

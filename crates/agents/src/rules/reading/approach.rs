@@ -124,14 +124,9 @@ pub(super) fn relation(record: &CrashRecord, sentences: &[Sentence]) -> Option<(
     })
 }
 
-/// The relation the contact areas suggest, where the narrative says nothing.
-pub fn relation_from_zones(record: &CrashRecord) -> Option<Side> {
-    side_from_zones(record)
-}
-
 /// On which side of the ego the partner was: the side of the ego that was touched; where it was its front, the side of
 /// the partner tells (a partner from the left shows its right side).
-fn side_from_zones(record: &CrashRecord) -> Option<Side> {
+pub fn side_from_zones(record: &CrashRecord) -> Option<Side> {
     use ContactZone::{FrontLeft, FrontRight, Left, RearLeft, RearRight, Right};
     let count = |zones: &[ContactZone], of: [ContactZone; 3]| zones.iter().filter(|z| of.contains(z)).count();
     let lefts = |zones: &[ContactZone]| count(zones, [FrontLeft, Left, RearLeft]);
@@ -184,7 +179,7 @@ fn from_side(record: &CrashRecord, sentences: &[Sentence]) -> Option<(Relation, 
     sentences.iter().find_map(|sentence| {
         FROM.captures_iter(sentence.text).find_map(|found| {
             let whole = found.get_match();
-            let named = found.name("side").or_else(|| found.name("place"))?;
+            let named = found.name("side")?;
             let lane = LANE_BEFORE.find_iter(sentence.text).any(|lane| lane.end() == named.end())
                 || LANE_AFTER.is_match(&sentence.text[named.end()..]);
             let from = sentence.text[..named.start()].rfind("from").unwrap_or(whole.start());

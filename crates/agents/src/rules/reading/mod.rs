@@ -10,7 +10,7 @@ mod zones;
 
 pub use account::account;
 
-pub use approach::{Relation, relation_from_zones};
+pub use approach::{Relation, side_from_zones};
 
 use super::actors::{Actor, Cast, Mentions};
 use super::pattern::Pattern;
