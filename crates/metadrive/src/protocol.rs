@@ -10,9 +10,7 @@ use recrash_model::rollout::{
 };
 use recrash_model::scenario::{DEFAULT_SPEED_KP, LateralMove, MapSpec, ObstacleKind, Policy, ScenarioDraft};
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
-use recrash_roads::{
-    Footprint, LanePath, RoadNetwork, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic,
-};
+use recrash_roads::{Footprint, LanePath, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -207,7 +205,7 @@ pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> RunSpec {
             spec.policy = Some(policy_value(&partner.policy));
             spec.lateral.clone_from(&partner.lateral);
             if matches!(partner.policy, Policy::Yielding { .. }) {
-                spec.crossings = crossings(scenario.network(), &ways, number);
+                spec.crossings = crossings(&ways, number);
             }
             spec
         });
@@ -321,16 +319,16 @@ fn actor(scenario: &Scenario, way: &Way<'_>, t_m: f64, speed_mps: f64, target_sp
 }
 
 /// Where the way of an actor meets the others', see `docs/models/policies.md`.
-fn crossings(network: &RoadNetwork, ways: &[Way<'_>], me: usize) -> Vec<CrossingSpec> {
+fn crossings(ways: &[Way<'_>], me: usize) -> Vec<CrossingSpec> {
     let own = &ways[me];
     let size = VehicleSpec::of(own.kind);
     let mut found = Vec::new();
     for (other, way) in ways.iter().enumerate().filter(|(other, _)| *other != me) {
         let other_size = VehicleSpec::of(way.kind);
-        let meets = own.path.conflict(way.path, network, size.width_m, other_size.width_m);
+        let meets = own.path.conflict(way.path, size.width_m, other_size.width_m);
         let Some(conflict) = meets else { continue };
         let (reach, other_reach) =
-            conflict.reaches(network, (own.path, Footprint::of(own.kind)), (way.path, Footprint::of(way.kind)));
+            conflict.reaches((own.path, Footprint::of(own.kind)), (way.path, Footprint::of(way.kind)));
         // JSON has no infinity; no map is this long.
         let stretch = |s: f64, reach: f64| (s - reach, if conflict.merges { 1e9 } else { s + reach });
         let mine = stretch(conflict.s_a - own.begins_m(), reach);

@@ -256,7 +256,7 @@ fn in_lane(way: &EgoWay<'_>, outline: &OrientedBox, along: &Along) -> Option<InL
     let (mut over_left_m, mut over_right_m) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     for corner in outline.corners() {
         // From the segment before on: the rear may still be there.
-        let place = way.path.project(way.network, corner, along.segment.saturating_sub(1));
+        let place = way.path.project(corner, along.segment.saturating_sub(1));
         if is_unmarked(way, place.segment) {
             continue;
         }

@@ -150,7 +150,7 @@ fn forward_at(way: &EgoWay<'_>, point: Vec2, place: PathPoint) -> Vec2 {
             let length = outward.length();
             if length > 1e-9 { outward.left() * (turn / length) } else { outward }
         }
-        SegmentShape::Arc { .. } => Vec2::from_heading(way.path.pose(way.network, place.s, 0.0).heading),
+        SegmentShape::Arc { .. } => Vec2::from_heading(way.path.pose(place.s, 0.0).heading),
     }
 }
 
@@ -174,7 +174,7 @@ pub struct Along {
 impl Along {
     /// A box on a way, looked for from segment `hint` on.
     pub fn of(way: &EgoWay<'_>, outline: &OrientedBox, hint: usize) -> Self {
-        let place = way.path.project(way.network, outline.centre, hint);
+        let place = way.path.project(outline.centre, hint);
         let forward = forward_at(way, outline.centre, place);
         let (cos, sin) = (outline.axis.dot(forward), outline.axis.cross(forward).abs());
         Self {

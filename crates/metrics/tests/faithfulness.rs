@@ -47,11 +47,11 @@ fn observed(verdict: &Verdict, kind: CheckKind) -> &str {
 fn meeting(network: &RoadNetwork, ego: (Turn, u8), other: (Approach, Turn, u8), speed: f64, late_s: f64) -> Rollout {
     let way = path(network, Approach::Same, ego.0, ego.1);
     let other_way = path(network, other.0, other.1, other.2);
-    let conflict = way.conflict(&other_way, network, WIDTH_M, WIDTH_M).expect("the paths meet");
+    let conflict = way.conflict(&other_way, WIDTH_M, WIDTH_M).expect("the paths meet");
     let start = |s: f64, at_s: f64| s - speed * at_s;
     rollout(
-        drive(network, &way, start(conflict.s_a, 6.0), 140, |_| speed),
-        vec![drive(network, &other_way, start(conflict.s_b, 6.0 + late_s), 140, |_| speed)],
+        drive(&way, start(conflict.s_a, 6.0), 140, |_| speed),
+        vec![drive(&other_way, start(conflict.s_b, 6.0 + late_s), 140, |_| speed)],
     )
 }
 
@@ -112,8 +112,8 @@ fn the_partners_movement_is_read_from_its_path_for_every_way_through_a_junction(
                 let Some(roads) = network.route(approach, turn) else { continue };
                 let way = recrash_roads::LanePath::new(&network, roads, 1);
                 // The ego stays far behind.
-                let ego = drive(&network, &ego_way, 5.0, 110, |_| 1.0);
-                let rollout = rollout(ego, vec![drive(&network, &way, 20.0, 110, |_| 8.0)]);
+                let ego = drive(&ego_way, 5.0, 110, |_| 1.0);
+                let rollout = rollout(ego, vec![drive(&way, 20.0, 110, |_| 8.0)]);
                 for expected in [Straight, LeftTurn, RightTurn] {
                     let mut expectation = expecting(RoadType::Intersection, Straight, expected);
                     expectation.approach = Some(approach);
@@ -133,7 +133,7 @@ fn a_turn_not_yet_begun_is_not_shown() {
     let network = cross();
     let way = path(&network, Approach::Same, Turn::Left, 1);
     // Stops 10 m before the junction (60 m).
-    let ego = drive(&network, &way, 5.0, 60, |time| (9.0 - 9.0 * time / 10.0).max(0.0));
+    let ego = drive(&way, 5.0, 60, |time| (9.0 - 9.0 * time / 10.0).max(0.0));
     let rollout = rollout(ego, vec![glide(55.0, 3.5, 0.0, 1.0, 60)]);
     let verdict =
         verdict(&network, &rollout, &expecting(RoadType::Intersection, Movement::LeftTurn, Movement::Straight));
@@ -144,7 +144,7 @@ fn a_turn_not_yet_begun_is_not_shown() {
 fn standing_is_not_going_straight() {
     let network = cross();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let rollout = rollout(drive(&network, &way, 20.0, 60, |_| 8.0), vec![glide(70.0, 20.0, -FRAC_PI_2, 0.0, 60)]);
+    let rollout = rollout(drive(&way, 20.0, 60, |_| 8.0), vec![glide(70.0, 20.0, -FRAC_PI_2, 0.0, 60)]);
     let straight = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
     assert_eq!(result(&verdict(&network, &rollout, &straight), CheckKind::CpMovement), CheckResult::Fail);
     let stopped = expecting(RoadType::Intersection, Movement::Straight, Movement::Stopped);
@@ -157,8 +157,8 @@ fn following_a_curve_is_going_straight() {
         let network = curve(direction);
         let way = path(&network, Approach::Same, Turn::Straight, 1);
         let oncoming = path(&network, Approach::Opposite, Turn::Straight, 1);
-        for partner in [drive(&network, &way, 30.0, 120, |_| 9.0), drive(&network, &oncoming, 5.0, 120, |_| 9.0)] {
-            let rollout = rollout(drive(&network, &way, 5.0, 120, |_| 10.0), vec![partner]);
+        for partner in [drive(&way, 30.0, 120, |_| 9.0), drive(&oncoming, 5.0, 120, |_| 9.0)] {
+            let rollout = rollout(drive(&way, 5.0, 120, |_| 10.0), vec![partner]);
             let straight = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
             let shown = verdict(&network, &rollout, &straight);
             assert_eq!(result(&shown, CheckKind::SvMovement), CheckResult::Pass, "{shown:#?}");
@@ -176,8 +176,8 @@ fn on_a_highway_a_move_into_the_next_lane_shows_the_turn_to_that_side() {
     let network = straight();
     let cut_in = |time: f64| 3.5 - 3.5 * ((time - 1.0) / 3.0).clamp(0.0, 1.0);
     let left_way = path(&network, Approach::Same, Turn::Straight, 0);
-    let ego = drive(&network, &left_way, 5.0, 60, |_| 14.0);
-    let rollout = rollout(ego, vec![drive_at(&network, &left_way, 22.0, 60, |_| 14.0, cut_in)]);
+    let ego = drive(&left_way, 5.0, 60, |_| 14.0);
+    let rollout = rollout(ego, vec![drive_at(&left_way, 22.0, 60, |_| 14.0, cut_in)]);
     for (movement, wanted) in [
         (Movement::LeftTurn, CheckResult::Pass),
         (Movement::RightTurn, CheckResult::Fail),
@@ -199,7 +199,7 @@ fn on_a_roundabout_the_way_around_counts() {
         let way = path(&network, Approach::Same, turn, 1);
         // All the way out, and beyond the end of the map.
         let steps = ((way.length_m + 5.0) / 0.8) as usize;
-        let rollout = rollout(drive(&network, &way, 5.0, steps, |_| 8.0), vec![far()]);
+        let rollout = rollout(drive(&way, 5.0, steps, |_| 8.0), vec![far()]);
         for expected in [Straight, LeftTurn, RightTurn] {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, expected, Straight));
             let wanted = if expected == shown { CheckResult::Pass } else { CheckResult::Fail };
@@ -229,7 +229,7 @@ fn on_the_ring_a_left_turn_is_shown_until_it_leaves_and_straight_until_the_secon
     ] {
         let steps = ((driven_m - 5.0) / 0.8) as usize;
         let far = glide(-500.0, 0.0, 0.0, 1.0, 400);
-        let rollout = rollout(drive(&network, &way, 5.0, steps, |_| 8.0), vec![far]);
+        let rollout = rollout(drive(&way, 5.0, steps, |_| 8.0), vec![far]);
         for (expected, wanted) in wanted {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, expected, Straight));
             assert_eq!(result(&verdict, CheckKind::SvMovement), wanted, "{driven_m} {expected:?}: {verdict:#?}");
@@ -244,8 +244,8 @@ fn who_starts_on_the_ring_turns_as_seen_from_the_egos_entry() {
     for (turn, shown) in [(Turn::Right, RightTurn), (Turn::Straight, Straight), (Turn::Left, LeftTurn)] {
         let way = path(&network, Approach::Ring, turn, 1);
         let steps = ((way.length_m - 10.0) / 0.8) as usize;
-        let ego = drive(&network, &path(&network, Approach::Same, Turn::Straight, 1), 5.0, steps, |_| 0.2);
-        let rollout = rollout(ego, vec![drive(&network, &way, 5.0, steps, |_| 8.0)]);
+        let ego = drive(&path(&network, Approach::Same, Turn::Straight, 1), 5.0, steps, |_| 0.2);
+        let rollout = rollout(ego, vec![drive(&way, 5.0, steps, |_| 8.0)]);
         for expected in [Straight, LeftTurn, RightTurn] {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, Straight, expected));
             let wanted = if expected == shown { CheckResult::Pass } else { CheckResult::Fail };
@@ -259,8 +259,8 @@ fn two_side_by_side_on_the_ring_both_turn_left() {
     let network = circle();
     let way = path(&network, Approach::Same, Turn::Left, 0);
     let outer = path(&network, Approach::Ring, Turn::Left, 1);
-    let ego = drive(&network, &way, 40.0, 90, |_| 7.0);
-    let partner = drive(&network, &outer, 20.0, 90, |_| 7.0);
+    let ego = drive(&way, 40.0, 90, |_| 7.0);
+    let partner = drive(&outer, 20.0, 90, |_| 7.0);
     let rollout = rollout(ego, vec![partner]);
     let mut expectation = expecting(RoadType::TrafficCircle, Movement::LeftTurn, Movement::LeftTurn);
     expectation.approach = Some(Approach::Ring);
@@ -278,18 +278,13 @@ fn the_road_is_where_the_encounter_was() {
     let at_junction = meeting(&cross, (Turn::Straight, 1), (Approach::Left, Turn::Straight, 1), 8.0, 0.2);
     let way = path(&cross, Approach::Same, Turn::Straight, 1);
     // Overtaken at the beginning of the approach, 55 m before the junction.
-    let before =
-        rollout(drive(&cross, &way, 5.0, 40, |_| 1.0), vec![drive_at(&cross, &way, 0.0, 40, |_| 5.0, |_| -3.5)]);
+    let before = rollout(drive(&way, 5.0, 40, |_| 1.0), vec![drive_at(&way, 0.0, 40, |_| 5.0, |_| -3.5)]);
     let straight = straight();
     let plain_way = path(&straight, Approach::Same, Turn::Straight, 1);
-    let plain = rollout(
-        drive(&straight, &plain_way, 5.0, 40, |_| 10.0),
-        vec![drive_at(&straight, &plain_way, 0.0, 40, |_| 14.0, |_| -3.5)],
-    );
+    let plain = rollout(drive(&plain_way, 5.0, 40, |_| 10.0), vec![drive_at(&plain_way, 0.0, 40, |_| 14.0, |_| -3.5)]);
     let circle = circle();
     let ring_way = path(&circle, Approach::Same, Turn::Left, 1);
-    let ring =
-        rollout(drive(&circle, &ring_way, 40.0, 80, |_| 7.0), vec![drive(&circle, &ring_way, 55.0, 80, |_| 6.0)]);
+    let ring = rollout(drive(&ring_way, 40.0, 80, |_| 7.0), vec![drive(&ring_way, 55.0, 80, |_| 6.0)]);
     use RoadType::{Highway, Intersection, ParkingLot, Street, TrafficCircle};
     for (network, rollout, pass, fail) in [
         (&cross, &at_junction, vec![Intersection], vec![Highway, Street, TrafficCircle, ParkingLot]),
@@ -314,7 +309,7 @@ fn the_road_is_where_the_encounter_was() {
 fn obstacles_are_there_where_and_only_where_they_belong() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let mut rollout = rollout(drive(&network, &way, 5.0, 60, |_| 10.0), vec![drive(&network, &way, 45.0, 60, |_| 9.0)]);
+    let mut rollout = rollout(drive(&way, 5.0, 60, |_| 10.0), vec![drive(&way, 45.0, 60, |_| 9.0)]);
     let mut expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
     let check = |rollout: &Rollout, expectation: &Expectation| {
         result(&verdict(&network, rollout, expectation), CheckKind::WorkZone)
@@ -339,8 +334,7 @@ fn the_approach_is_where_the_partner_starts_and_heads() {
     let ego_way = path(&network, Same, Turn::Straight, 1);
     for approach in [Same, Opposite, Left, Right] {
         let way = path(&network, approach, Turn::Straight, 0);
-        let rollout =
-            rollout(drive(&network, &ego_way, 5.0, 30, |_| 5.0), vec![drive(&network, &way, 20.0, 30, |_| 5.0)]);
+        let rollout = rollout(drive(&ego_way, 5.0, 30, |_| 5.0), vec![drive(&way, 20.0, 30, |_| 5.0)]);
         for stated in [Same, Opposite, Left, Right, Ring] {
             let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
             expectation.approach = Some(stated);
@@ -354,8 +348,8 @@ fn the_approach_is_where_the_partner_starts_and_heads() {
     let network = curve(Side::Left);
     let ego_way = path(&network, Same, Turn::Straight, 1);
     let rollout = rollout(
-        drive(&network, &ego_way, 5.0, 30, |_| 5.0),
-        vec![drive(&network, &path(&network, Opposite, Turn::Straight, 0), 5.0, 30, |_| 5.0)],
+        drive(&ego_way, 5.0, 30, |_| 5.0),
+        vec![drive(&path(&network, Opposite, Turn::Straight, 0), 5.0, 30, |_| 5.0)],
     );
     let mut expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
     expectation.approach = Some(Opposite);
@@ -383,8 +377,7 @@ fn the_order_is_that_of_the_arrivals_where_the_paths_cross() {
     assert_eq!(check(4.0, Both), CheckResult::Fail);
     // Side by side there is no crossing, so an order that is told is not shown.
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let beside =
-        rollout(drive(&network, &way, 5.0, 60, |_| 5.0), vec![drive_at(&network, &way, 9.0, 60, |_| 5.0, |_| -3.5)]);
+    let beside = rollout(drive(&way, 5.0, 60, |_| 5.0), vec![drive_at(&way, 9.0, 60, |_| 5.0, |_| -3.5)]);
     let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
     expectation.order = Some(Sv);
     assert_eq!(result(&verdict(&network, &beside, &expectation), CheckKind::Order), CheckResult::Fail);
@@ -416,10 +409,7 @@ fn told_speeds_are_driven_within_a_tolerance() {
 fn a_partner_beside_the_ego_is_on_the_side_that_is_told() {
     for network in [straight(), cross(), curve(Side::Left)] {
         let way = path(&network, Approach::Same, Turn::Straight, 0);
-        let on_right = rollout(
-            drive(&network, &way, 5.0, 40, |_| 8.0),
-            vec![drive_at(&network, &way, 12.0, 40, |_| 8.0, |_| 3.5)],
-        );
+        let on_right = rollout(drive(&way, 5.0, 40, |_| 8.0), vec![drive_at(&way, 12.0, 40, |_| 8.0, |_| 3.5)]);
         let check = |side: Option<Side>| {
             let mut expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
             (expectation.approach, expectation.side) = (Some(Approach::Same), side);
@@ -450,8 +440,8 @@ fn the_encounter_is_with_the_partner() {
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     let expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
     let check = |rollout: &Rollout| result(&verdict(&network, rollout, &expectation), CheckKind::Encounter);
-    let ego = |speed: f64| drive(&network, &way, 5.0, 60, |_| speed);
-    let ahead = |s: f64, speed: f64| drive(&network, &way, s, 60, |_| speed);
+    let ego = |speed: f64| drive(&way, 5.0, 60, |_| speed);
+    let ahead = |s: f64, speed: f64| drive(&way, s, 60, |_| speed);
     assert_eq!(check(&rollout(ego(10.0), vec![ahead(30.0, 8.0)])), CheckResult::Pass);
     assert_eq!(check(&rollout(ego(10.0), vec![ahead(200.0, 8.0)])), CheckResult::Fail, "never close");
     assert_eq!(check(&rollout(ego(10.0), vec![ahead(14.0, 12.0)])), CheckResult::Fail, "closest at the start");
@@ -472,7 +462,7 @@ fn the_encounter_is_with_the_partner() {
 fn contact_zones_agree_within_one_step_around_the_box() {
     use ContactZone::{Front, FrontLeft, Left, Rear, Right, Top};
     let network = cross();
-    let ego = || drive(&network, &path(&network, Approach::Same, Turn::Straight, 1), 30.0, 90, |_| 8.0);
+    let ego = || drive(&path(&network, Approach::Same, Turn::Straight, 1), 30.0, 90, |_| 8.0);
     let reach = 0.5 * (LENGTH_M + WIDTH_M);
     // Into the middle of the ego's left side at 5 s; then one that passes 1 m behind; then one far behind.
     let hit = rollout(ego(), vec![glide(70.0, reach - 0.1 + 25.0, -FRAC_PI_2, 5.0, 90)]);
@@ -505,15 +495,15 @@ fn excluded_kinds_of_collision_are_found_in_contacts_and_near_misses() {
     use CollisionKind::{Angle, HeadOn, RearEndByEgo, RearEndOfEgo, Sideswipe};
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let ego = |speed: f64| drive(&network, &way, 40.0, 40, |_| speed);
+    let ego = |speed: f64| drive(&way, 40.0, 40, |_| speed);
     let slowing = |to: f64| move |time: f64| (14.0 - 3.0 * time).max(to);
-    let rear_end = rollout(ego(14.0), vec![drive(&network, &way, 60.0, 40, |_| 8.0)]);
-    let hit_from_behind = rollout(ego(8.0), vec![drive(&network, &way, 20.0, 40, |_| 14.0)]);
-    let nearly: Vec<ActorState> = drive(&network, &way, 46.0, 40, slowing(13.0));
-    let nearly_rear_end = rollout(drive(&network, &way, 40.0, 40, slowing(13.0)), vec![nearly]);
+    let rear_end = rollout(ego(14.0), vec![drive(&way, 60.0, 40, |_| 8.0)]);
+    let hit_from_behind = rollout(ego(8.0), vec![drive(&way, 20.0, 40, |_| 14.0)]);
+    let nearly: Vec<ActorState> = drive(&way, 46.0, 40, slowing(13.0));
+    let nearly_rear_end = rollout(drive(&way, 40.0, 40, slowing(13.0)), vec![nearly]);
     let head_on = rollout(ego(10.0), vec![glide(80.0, 0.5, PI, 8.0, 40)]);
-    let passing = rollout(ego(10.0), vec![drive_at(&network, &way, 30.0, 40, |_| 14.0, |_| -3.5)]);
-    let free = rollout(ego(10.0), vec![drive(&network, &way, 90.0, 40, |_| 10.0)]);
+    let passing = rollout(ego(10.0), vec![drive_at(&way, 30.0, 40, |_| 14.0, |_| -3.5)]);
+    let free = rollout(ego(10.0), vec![drive(&way, 90.0, 40, |_| 10.0)]);
     let check = |rollout: &Rollout, excluded: &[CollisionKind]| {
         let mut expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
         expectation.excluded = excluded.to_vec();

@@ -19,8 +19,8 @@ fn closing_in_on_a_slower_leader() {
     // 20 m/s behind 15 m/s, 40 m between the bumpers, for 4 s: 20 m are left.
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let ego = drive(&network, &way, 5.0, 41, |_| 20.0);
-    let leader = drive(&network, &way, 45.0 + LENGTH_M, 41, |_| 15.0);
+    let ego = drive(&way, 5.0, 41, |_| 20.0);
+    let leader = drive(&way, 45.0 + LENGTH_M, 41, |_| 15.0);
     let metrics = measure(&network, &way, 20.0, &rollout(ego, vec![leader]));
     let partner = &metrics.partners[0];
     close(partner.min_gap.value, 20.0, 1e-9);
@@ -44,11 +44,11 @@ fn crossing_paths_that_miss() {
     let network = cross();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     let other_way = path(&network, Approach::Left, Turn::Straight, 1);
-    let crossing = way.conflict(&other_way, &network, WIDTH_M, WIDTH_M).expect("they cross");
+    let crossing = way.conflict(&other_way, WIDTH_M, WIDTH_M).expect("they cross");
     close(crossing.point.x, 70.0, 1e-9);
     // The ego's centre at the crossing at 5.0 s, the other's 1.5 s later, both at 8 m/s.
-    let ego = drive(&network, &way, crossing.s_a - 40.0, 90, |_| 8.0);
-    let other = drive(&network, &other_way, crossing.s_b - 52.0, 90, |_| 8.0);
+    let ego = drive(&way, crossing.s_a - 40.0, 90, |_| 8.0);
+    let other = drive(&other_way, crossing.s_b - 52.0, 90, |_| 8.0);
     let metrics = measure(&network, &way, 8.0, &rollout(ego, vec![other]));
     let partner = &metrics.partners[0];
     // Out: half a length and half the other's width behind the crossing. In: as much before it.
@@ -64,7 +64,7 @@ fn a_contact_at_a_crossing() {
     // The other's front meets the middle of the ego's left side.
     let network = cross();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let ego = drive(&network, &way, 30.0, 90, |_| 8.0);
+    let ego = drive(&way, 30.0, 90, |_| 8.0);
     // At 5.0 s the ego's centre is at x = 70. There the other's front has gone 0.1 m into its side.
     let reach = 0.5 * (LENGTH_M + WIDTH_M) - 0.1;
     let other = glide(70.0, reach + 5.0 * 5.0, -FRAC_PI_2, 5.0, 90);
@@ -92,8 +92,8 @@ fn nothing_after_the_contact_counts() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     // Full braking from the step after the contact on.
-    let ego = drive(&network, &way, 5.0, 60, |time| if time < 2.05 { 20.0 } else { 5.0 });
-    let leader = drive(&network, &way, 5.0 + LENGTH_M + 19.9, 60, |_| 10.0);
+    let ego = drive(&way, 5.0, 60, |time| if time < 2.05 { 20.0 } else { 5.0 });
+    let leader = drive(&way, 5.0 + LENGTH_M + 19.9, 60, |_| 10.0);
     let metrics = measure(&network, &way, 20.0, &rollout(ego, vec![leader]));
     close(metrics.contact.unwrap().time_s, 2.0, 1e-9);
     assert_eq!(metrics.ego.max_deceleration.value, 0.0);
@@ -105,8 +105,8 @@ fn a_near_miss_side_by_side_is_a_failure_and_wider_is_none() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     for (offset, expected) in [(-3.5, vec![FindingKind::NearMiss]), (-3.9, vec![])] {
-        let ego = drive(&network, &way, 40.0, 60, |_| 12.0);
-        let other = drive_at(&network, &way, 20.0, 60, |_| 20.0, |_| offset);
+        let ego = drive(&way, 40.0, 60, |_| 12.0);
+        let other = drive_at(&way, 20.0, 60, |_| 20.0, |_| offset);
         let rollout = rollout(ego, vec![other]);
         let metrics = measure(&network, &way, 12.0, &rollout);
         close(metrics.min_gap.unwrap().value, -offset - WIDTH_M, 1e-9);
@@ -120,8 +120,8 @@ fn hard_braking_behind_a_stopped_car_is_hard_but_no_phantom() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     // 5 m/s^2 from 15 m/s: stands after 3 s and 22.5 m, 2.5 m behind the car 25 m ahead.
-    let ego = drive(&network, &way, 5.0, 60, |time| (15.0 - 5.0 * time).max(0.0));
-    let parked = drive(&network, &way, 30.0 + LENGTH_M, 60, |_| 0.0);
+    let ego = drive(&way, 5.0, 60, |time| (15.0 - 5.0 * time).max(0.0));
+    let parked = drive(&way, 30.0 + LENGTH_M, 60, |_| 0.0);
     let rollout = rollout(ego, vec![parked]);
     let metrics = measure(&network, &way, 15.0, &rollout);
     close(metrics.ego.max_deceleration.value, 5.0, 1e-6);
@@ -135,17 +135,17 @@ fn braking_on_an_empty_road_is_phantom_braking() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     let braking = |time: f64| if time < 1.95 { 15.0 } else { (15.0 - 3.5 * (time - 2.0)).max(8.0) };
-    let ego = drive(&network, &way, 5.0, 60, braking);
+    let ego = drive(&way, 5.0, 60, braking);
     // One in the next lane, and one 70 m ahead at the same speed: neither is in the way.
-    let beside = drive_at(&network, &way, 25.0, 60, |_| 15.0, |_| -3.5);
-    let far = drive(&network, &way, 75.0 + LENGTH_M, 60, |_| 15.0);
+    let beside = drive_at(&way, 25.0, 60, |_| 15.0, |_| -3.5);
+    let far = drive(&way, 75.0 + LENGTH_M, 60, |_| 15.0);
     let rollout_free = rollout(ego.clone(), vec![beside, far]);
     let metrics = measure(&network, &way, 15.0, &rollout_free);
     let phantom = metrics.ego.phantom_braking.unwrap();
     close(phantom.value, 3.5, 1e-6);
     assert!(kinds(&rollout_free, &metrics).contains(&FindingKind::PhantomBraking));
     // The same with a reason each: a leader 30 m ahead that brakes as well, a cone ahead, one that is about to cross.
-    let leader = rollout(ego.clone(), vec![drive(&network, &way, 35.0 + LENGTH_M, 60, braking)]);
+    let leader = rollout(ego.clone(), vec![drive(&way, 35.0 + LENGTH_M, 60, braking)]);
     assert_eq!(measure(&network, &way, 15.0, &leader).ego.phantom_braking, None);
     let mut coned = rollout(ego.clone(), vec![]);
     coned.obstacles.push(cone(75.0, 0.3));
@@ -171,7 +171,7 @@ fn speed_lost_without_the_brake_is_no_braking() {
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     // Down and up by 0.5 m/s every second step, as steered wheels do.
     let wobble = |time: f64| if ((time / 0.2).round() as u32).is_multiple_of(2) { 10.0 } else { 9.5 };
-    let mut states = drive(&network, &way, 5.0, 60, wobble);
+    let mut states = drive(&way, 5.0, 60, wobble);
     let unknown = measure(&network, &way, 12.0, &rollout(states.clone(), vec![])).ego;
     close(unknown.max_deceleration.value, 5.0, 1e-9);
     assert!(unknown.max_reversals > 10, "without commands every deceleration is braking");
@@ -189,15 +189,15 @@ fn a_lane_change_cut_short_by_a_contact_is_no_departure() {
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     // Into the left lane over 3 s, and into the car there after 2 s.
     let change = |time: f64| -3.5 * (time / 3.0).min(1.0);
-    let ego = drive_at(&network, &way, 40.0, 60, |_| 10.0, change);
-    let beside = drive_at(&network, &way, 40.0, 60, |_| 10.0, |_| -3.5);
+    let ego = drive_at(&way, 40.0, 60, |_| 10.0, change);
+    let beside = drive_at(&way, 40.0, 60, |_| 10.0, |_| -3.5);
     let metrics = measure(&network, &way, 10.0, &rollout(ego.clone(), vec![beside]));
     assert!(metrics.contact.is_some_and(|contact| contact.time_s < 2.0));
     assert_eq!(metrics.ego.max_lane_departure.value, 0.0);
     // The same to the right, where there is no lane.
     let off = |time: f64| 3.5 * (time / 3.0).min(1.0);
-    let ego = drive_at(&network, &way, 40.0, 60, |_| 10.0, off);
-    let beside = drive_at(&network, &way, 40.0, 60, |_| 10.0, |_| 3.5);
+    let ego = drive_at(&way, 40.0, 60, |_| 10.0, off);
+    let beside = drive_at(&way, 40.0, 60, |_| 10.0, |_| 3.5);
     let metrics = measure(&network, &way, 10.0, &rollout(ego, vec![beside]));
     assert!(metrics.ego.max_lane_departure.value > 0.5);
 }
@@ -208,7 +208,7 @@ fn slowing_for_a_turn_is_no_phantom() {
     let slowing = |time: f64| (12.0 - 3.5 * time).max(6.0);
     for (turn, phantom) in [(Turn::Right, false), (Turn::Straight, true)] {
         let way = path(&network, Approach::Same, turn, 1);
-        let ego = drive(&network, &way, 35.0, 40, slowing);
+        let ego = drive(&way, 35.0, 40, slowing);
         let metrics = measure(&network, &way, 12.0, &rollout(ego, vec![]));
         assert_eq!(metrics.ego.phantom_braking.is_some(), phantom, "{turn:?}");
     }
@@ -223,11 +223,11 @@ fn oscillation_counts_changes_within_the_window() {
         let phase = (time / 2.0).fract();
         10.0 + if phase < 0.5 { 4.0 * phase } else { 4.0 * (1.0 - phase) }
     };
-    let metrics = measure(&network, &way, 14.0, &rollout(drive(&network, &way, 5.0, 101, triangle), vec![]));
+    let metrics = measure(&network, &way, 14.0, &rollout(drive(&way, 5.0, 101, triangle), vec![]));
     // Changes at 1, 2, ..., 9 s; six of them lie within 5 s.
     assert_eq!(metrics.ego.max_reversals, 6);
     let slow = |time: f64| 10.0 + 0.2 * triangle(time);
-    let metrics = measure(&network, &way, 14.0, &rollout(drive(&network, &way, 5.0, 101, slow), vec![]));
+    let metrics = measure(&network, &way, 14.0, &rollout(drive(&way, 5.0, 101, slow), vec![]));
     assert_eq!(metrics.ego.max_reversals, 0, "0.4 m/s^2 is neither braking nor accelerating");
 }
 
@@ -237,19 +237,18 @@ fn leaving_the_lane_counts_and_changing_it_does_not() {
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     let weave = |time: f64| if (2.0..4.0).contains(&time) { -1.5 } else { 0.0 };
     let steps = 80;
-    let drift = drive_at(&network, &way, 5.0, steps, |_| 10.0, weave);
+    let drift = drive_at(&way, 5.0, steps, |_| 10.0, weave);
     let mut level = drift.clone();
     level.iter_mut().for_each(|state| state.heading = 0.0);
     let metrics = measure(&network, &way, 10.0, &rollout(level, vec![]));
     close(metrics.ego.max_lane_departure.value, 1.5 + 0.5 * WIDTH_M - 1.75, 1e-9);
     // Into the left lane within 3 s, and on in it: a lane change.
     let change = |time: f64| -3.5 * (time / 3.0).min(1.0);
-    let metrics =
-        measure(&network, &way, 10.0, &rollout(drive_at(&network, &way, 5.0, steps, |_| 10.0, change), vec![]));
+    let metrics = measure(&network, &way, 10.0, &rollout(drive_at(&way, 5.0, steps, |_| 10.0, change), vec![]));
     assert!(metrics.ego.max_lane_departure.value < 0.1, "{:?}", metrics.ego.max_lane_departure);
     // Off the road on the right: no lane there to change to.
     let off = |time: f64| 3.0 * (time / 3.0).min(1.0);
-    let metrics = measure(&network, &way, 10.0, &rollout(drive_at(&network, &way, 5.0, steps, |_| 10.0, off), vec![]));
+    let metrics = measure(&network, &way, 10.0, &rollout(drive_at(&way, 5.0, steps, |_| 10.0, off), vec![]));
     close(metrics.ego.max_lane_departure.value, 3.0 + 0.5 * WIDTH_M - 1.75, 0.2);
 }
 
@@ -257,7 +256,7 @@ fn leaving_the_lane_counts_and_changing_it_does_not() {
 fn cones_hit_and_missed() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let mut rollout = rollout(drive(&network, &way, 5.0, 60, |_| 10.0), vec![]);
+    let mut rollout = rollout(drive(&way, 5.0, 60, |_| 10.0), vec![]);
     // A cone 2 m to the right of the centre of the lane, one in the middle of it.
     rollout.obstacles = vec![cone(30.0, -2.0), cone(50.0, 0.0)];
     let state = rollout.actors[0].states[43];
@@ -274,10 +273,8 @@ fn cones_hit_and_missed() {
 fn scripted_partners_count_before_background_traffic() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let mut rollout = rollout(
-        drive(&network, &way, 5.0, 20, |_| 10.0),
-        vec![drive(&network, &way, 45.0, 20, |_| 10.0), drive(&network, &way, 25.0, 20, |_| 10.0)],
-    );
+    let mut rollout =
+        rollout(drive(&way, 5.0, 20, |_| 10.0), vec![drive(&way, 45.0, 20, |_| 10.0), drive(&way, 25.0, 20, |_| 10.0)]);
     rollout.actors[2].role = Role::Traffic;
     let metrics = measure(&network, &way, 10.0, &rollout);
     close(metrics.min_gap.unwrap().value, 40.0 - LENGTH_M, 1e-9);
@@ -291,7 +288,7 @@ fn scripted_partners_count_before_background_traffic() {
 fn stuck_and_off_road_are_failures() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let mut rollout = rollout(drive(&network, &way, 5.0, 121, |time| if time < 1.95 { 10.0 } else { 0.0 }), vec![]);
+    let mut rollout = rollout(drive(&way, 5.0, 121, |time| if time < 1.95 { 10.0 } else { 0.0 }), vec![]);
     rollout.termination.kind = TerminationKind::Stuck;
     let metrics = measure(&network, &way, 10.0, &rollout);
     let found = findings_of(&rollout, &metrics, &CRITERIA);
@@ -306,8 +303,8 @@ fn stuck_and_off_road_are_failures() {
 fn series_have_one_value_per_step() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let ego = drive(&network, &way, 5.0, 31, |time| 20.0 - 2.0 * time);
-    let leader = drive(&network, &way, 45.0 + LENGTH_M, 31, |_| 15.0);
+    let ego = drive(&way, 5.0, 31, |time| 20.0 - 2.0 * time);
+    let leader = drive(&way, 45.0 + LENGTH_M, 31, |_| 15.0);
     let series = series(&rollout(ego, vec![leader]));
     assert_eq!(series.time_s.len(), 31);
     close(series.time_s[30], 3.0, 1e-12);
@@ -327,7 +324,7 @@ fn series_have_one_value_per_step() {
 fn broken_rollouts_do_not_panic() {
     let network = straight();
     let way = path(&network, Approach::Same, Turn::Straight, 1);
-    let mut none = rollout(drive(&network, &way, 5.0, 5, |_| 10.0), vec![drive(&network, &way, 45.0, 3, |_| 10.0)]);
+    let mut none = rollout(drive(&way, 5.0, 5, |_| 10.0), vec![drive(&way, 45.0, 3, |_| 10.0)]);
     let metrics = measure(&network, &way, 10.0, &none);
     assert_eq!(metrics.partners.len(), 1);
     none.actors[0].states[2].x = f64::NAN;

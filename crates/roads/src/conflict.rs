@@ -1,7 +1,6 @@
 //! Where two paths meet: crossings of lines and circles, and merges into one lane.
 
 use crate::lane::LaneId;
-use crate::network::RoadNetwork;
 use crate::path::{Conflict, LanePath, PathSegment, SegmentShape};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
@@ -17,7 +16,7 @@ const MARCH_M: f64 = 0.25;
 const HALVINGS: usize = 40;
 
 /// The first conflict, see [`LanePath::conflict`]; `touching` is half the sum of the widths. [m]
-pub(crate) fn first_conflict(a: &LanePath, b: &LanePath, network: &RoadNetwork, touching: f64) -> Option<Conflict> {
+pub(crate) fn first_conflict(a: &LanePath, b: &LanePath, touching: f64) -> Option<Conflict> {
     let shared = a.segments.iter().zip(&b.segments).take_while(|(x, y)| x.lane == y.lane).count();
     if shared == a.segments.len() || shared == b.segments.len() {
         return None;
@@ -36,11 +35,11 @@ pub(crate) fn first_conflict(a: &LanePath, b: &LanePath, network: &RoadNetwork, 
                 if s_a < after || at_merge || first.is_some_and(|first| first.s_a <= s_a) {
                     continue;
                 }
-                first = Some(Conflict { s_a, s_b, point: a.pose(network, s_a, 0.0).position, merges: false });
+                first = Some(Conflict { s_a, s_b, point: a.pose(s_a, 0.0).position, merges: false });
             }
         }
     }
-    first.or_else(|| merge.map(|(index_a, index_b)| merge_conflict(a, b, network, touching, shared, index_a, index_b)))
+    first.or_else(|| merge.map(|(index_a, index_b)| merge_conflict(a, b, touching, shared, index_a, index_b)))
 }
 
 /// Positions in both paths of the first lane they share after having run apart.
@@ -56,7 +55,6 @@ fn merge_position(a: &LanePath, b: &LanePath, shared: usize) -> Option<(usize, u
 fn merge_conflict(
     a: &LanePath,
     b: &LanePath,
-    network: &RoadNetwork,
     touching: f64,
     shared: usize,
     index_a: usize,
@@ -67,7 +65,7 @@ fn merge_conflict(
     let earliest = if shared > 0 { a.segments[shared].start_m } else { 0.0 };
     // Distance of a's centre line at s from b's, and where on b, before the place where they join.
     let distance = |s: f64| -> (f64, f64) {
-        let point = a.pose(network, s, 0.0).position;
+        let point = a.pose(s, 0.0).position;
         nearest_before(b, index_b, point)
     };
     let mut inside = joined_a;
@@ -87,7 +85,7 @@ fn merge_conflict(
         }
     }
     let s_b = if inside >= joined_a { joined_b } else { distance(inside).1 };
-    Conflict { s_a: inside, s_b, point: a.pose(network, inside, 0.0).position, merges: true }
+    Conflict { s_a: inside, s_b, point: a.pose(inside, 0.0).position, merges: true }
 }
 
 /// Distance of a point from the path before segment `end`, and the path's s there. [m]

@@ -107,8 +107,8 @@ const REACH_MARGIN_M: f64 = 0.5;
 impl Conflict {
     /// How far before the conflict, and behind it where the paths cross, the centre of each vehicle can touch the other: half
     /// of the other's width cut at an angle, and half of its own length (`docs/models/policies.md`). [m]
-    pub fn reaches(&self, network: &RoadNetwork, a: (&LanePath, Footprint), b: (&LanePath, Footprint)) -> (f64, f64) {
-        let angle = a.0.pose(network, self.s_a, 0.0).heading - b.0.pose(network, self.s_b, 0.0).heading;
+    pub fn reaches(&self, a: (&LanePath, Footprint), b: (&LanePath, Footprint)) -> (f64, f64) {
+        let angle = a.0.pose(self.s_a, 0.0).heading - b.0.pose(self.s_b, 0.0).heading;
         let (sin, cos) = math::sincos(angle);
         let (sin, cos) = (sin.abs().max(0.5), cos.abs());
         let reach = |mine: Footprint, theirs: Footprint| {
@@ -208,7 +208,7 @@ impl LanePath {
 
     /// Pose at (s, t), heading along the path. Before its beginning and behind its end the path goes straight on.
     #[inline]
-    pub fn pose(&self, _network: &RoadNetwork, s: f64, t: f64) -> Pose {
+    pub fn pose(&self, s: f64, t: f64) -> Pose {
         let segment = &self.segments[self.segment_at(s)];
         // Only the first and the last segment can be left; there the excess is driven along the tangent.
         let along = s - segment.start_m;
@@ -241,7 +241,7 @@ impl LanePath {
 
     /// Coordinates of a point, looked for from segment `hint` on (a vehicle never goes back).
     #[inline]
-    pub fn project(&self, _network: &RoadNetwork, point: Vec2, hint: usize) -> PathPoint {
+    pub fn project(&self, point: Vec2, hint: usize) -> PathPoint {
         let last = self.segments.len() - 1;
         let mut position = hint.min(last);
         loop {
@@ -267,7 +267,7 @@ impl LanePath {
     /// What both paths share from their very beginning is not a conflict: vehicles there follow each other. Behind it,
     /// the first of: a crossing of the centre lines (exact, from lines and circles), and the place from which on this
     /// path stays within `(width + other_width) / 2` of the other until both go on in one lane.
-    pub fn conflict(&self, other: &Self, network: &RoadNetwork, width: f64, other_width: f64) -> Option<Conflict> {
-        crate::conflict::first_conflict(self, other, network, 0.5 * (width + other_width))
+    pub fn conflict(&self, other: &Self, width: f64, other_width: f64) -> Option<Conflict> {
+        crate::conflict::first_conflict(self, other, 0.5 * (width + other_width))
     }
 }

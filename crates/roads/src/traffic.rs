@@ -78,7 +78,7 @@ pub fn background_traffic(scenario: &Scenario) -> Vec<TrafficPlacement> {
         let Some(route) = candidates.get(rng.below(candidates.len())) else { continue };
         let Some(start) = route.iter().position(|&other| other == road) else { continue };
         let path = LanePath::new(network, route[start..].to_vec(), lane);
-        let pose = path.pose(network, s, 0.0);
+        let pose = path.pose(s, 0.0);
         let spec = VehicleSpec::of(kind);
         let outline = OrientedBox::new(pose, spec.length_m + 2.0 * FREE_ROOM_M, spec.width_m);
         if taken.iter().any(|other| other.overlaps(&outline)) {

@@ -194,8 +194,8 @@ fn pose_and_project_are_inverse_and_continue_straight_beyond_the_ends() {
                 let mut hint = 0;
                 let mut s = -20.0;
                 while s < path.length_m + 20.0 {
-                    let pose = path.pose(&network, s, 1.25);
-                    let found = path.project(&network, pose.position, hint);
+                    let pose = path.pose(s, 1.25);
+                    let found = path.project(pose.position, hint);
                     assert!((found.s - s).abs() < 1e-9 && (found.t - 1.25).abs() < 1e-9, "{map:?}: {s} {found:?}");
                     assert!(found.segment >= hint);
                     hint = found.segment;
@@ -210,9 +210,9 @@ fn pose_and_project_are_inverse_and_continue_straight_beyond_the_ends() {
 fn projection_never_goes_back_behind_the_hint() {
     let network = RoadNetwork::build(&cross(2));
     let path = path(&network, Approach::Same, Turn::Left, 0);
-    let start = path.pose(&network, 5.0, 0.0).position;
-    assert_eq!(path.project(&network, start, 0).segment, 0);
-    let found = path.project(&network, start, 2);
+    let start = path.pose(5.0, 0.0).position;
+    assert_eq!(path.project(start, 0).segment, 0);
+    let found = path.project(start, 2);
     assert_eq!(found.segment, 2);
     assert!(close(found.s, 5.0), "along the tangent of the connector's beginning: {found:?}");
 }
@@ -222,12 +222,12 @@ fn crossing_straight_paths_conflict_where_their_lines_cross() {
     let network = RoadNetwork::build(&cross(2));
     let ego = path(&network, Approach::Same, Turn::Straight, 1);
     let from_left = path(&network, Approach::Left, Turn::Straight, 1);
-    let conflict = ego.conflict(&from_left, &network, 1.852, 1.852).expect("they cross");
+    let conflict = ego.conflict(&from_left, 1.852, 1.852).expect("they cross");
     assert!(!conflict.merges);
     assert!(conflict.point.distance(Vec2::new(70.0, 0.0)) < 1e-9);
     assert!(close(conflict.s_a, 70.0) && close(conflict.s_b, 60.0 + 20.5), "{conflict:?}");
     let from_right = path(&network, Approach::Right, Turn::Straight, 1);
-    let conflict = ego.conflict(&from_right, &network, 1.852, 1.852).expect("they cross");
+    let conflict = ego.conflict(&from_right, 1.852, 1.852).expect("they cross");
     assert!(conflict.point.distance(Vec2::new(80.5, 0.0)) < 1e-9);
 }
 
@@ -236,11 +236,11 @@ fn an_oncoming_left_turn_crosses_on_its_arc() {
     let network = RoadNetwork::build(&cross(1));
     let ego = path(&network, Approach::Same, Turn::Straight, 0);
     let turning = path(&network, Approach::Opposite, Turn::Left, 0);
-    let conflict = ego.conflict(&turning, &network, 1.852, 1.852).expect("they cross");
+    let conflict = ego.conflict(&turning, 1.852, 1.852).expect("they cross");
     // The oncoming lane ends at (83.5, 3.5); its arc has radius 13.5 around (83.5, -10): y = 0 at 10 above the centre.
     let x = 83.5 - (13.5_f64 * 13.5 - 100.0).sqrt();
     assert!(conflict.point.distance(Vec2::new(x, 0.0)) < 1e-9, "{conflict:?}");
-    let on_other = turning.pose(&network, conflict.s_b, 0.0).position;
+    let on_other = turning.pose(conflict.s_b, 0.0).position;
     assert!(on_other.distance(conflict.point) < 1e-9);
 }
 
@@ -249,13 +249,13 @@ fn a_merge_begins_where_the_lateral_distance_is_half_of_both_widths() {
     let network = RoadNetwork::build(&cross(1));
     let ego = path(&network, Approach::Same, Turn::Right, 0);
     let from_left = path(&network, Approach::Left, Turn::Straight, 0);
-    let conflict = ego.conflict(&from_left, &network, 1.8, 2.2).expect("they merge");
+    let conflict = ego.conflict(&from_left, 1.8, 2.2).expect("they merge");
     assert!(conflict.merges);
     // The arc has radius 10 around (60, -10); the straight is x = 70. Distance 2 at an angle with 10 cos = 8.
     let angle = (conflict.s_a - 60.0) / 10.0;
     assert!((conflict.point.x - 68.0).abs() < 1e-9, "{conflict:?}");
     assert!(angle > 0.0 && angle < FRAC_PI_2);
-    assert!((from_left.pose(&network, conflict.s_b, 0.0).position.y - conflict.point.y).abs() < 1e-9);
+    assert!((from_left.pose(conflict.s_b, 0.0).position.y - conflict.point.y).abs() < 1e-9);
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn a_ring_vehicle_conflicts_with_the_ego_s_entry_in_the_same_lane() {
     for turn in TURNS {
         let ego = path(&network, Approach::Same, Turn::Straight, 1);
         let ring = path(&network, Approach::Ring, turn, 1);
-        let conflict = ego.conflict(&ring, &network, 1.852, 1.852).expect("they merge");
+        let conflict = ego.conflict(&ring, 1.852, 1.852).expect("they merge");
         assert!(conflict.merges);
         let entry_end = ego.segments[3].start_m;
         assert!(conflict.s_a < entry_end && conflict.s_a > entry_end - 10.48, "{turn:?} {conflict:?}");
@@ -275,13 +275,13 @@ fn a_ring_vehicle_conflicts_with_the_ego_s_entry_in_the_same_lane() {
 fn paths_that_share_their_lane_or_run_side_by_side_do_not_conflict() {
     let network = RoadNetwork::build(&cross(2));
     let ego = path(&network, Approach::Same, Turn::Straight, 1);
-    assert_eq!(ego.conflict(&ego, &network, 1.852, 1.852), None);
+    assert_eq!(ego.conflict(&ego, 1.852, 1.852), None);
     let beside = path(&network, Approach::Same, Turn::Straight, 0);
-    assert_eq!(ego.conflict(&beside, &network, 1.852, 1.852), None);
+    assert_eq!(ego.conflict(&beside, 1.852, 1.852), None);
     let oncoming = path(&network, Approach::Opposite, Turn::Straight, 0);
-    assert_eq!(ego.conflict(&oncoming, &network, 1.852, 1.852), None);
+    assert_eq!(ego.conflict(&oncoming, 1.852, 1.852), None);
     let turns_off = path(&network, Approach::Same, Turn::Right, 1);
-    assert_eq!(ego.conflict(&turns_off, &network, 1.852, 1.852), None);
+    assert_eq!(ego.conflict(&turns_off, 1.852, 1.852), None);
 }
 
 #[test]
@@ -289,7 +289,7 @@ fn a_left_turn_from_the_outer_lane_crosses_a_straight_path_in_the_inner_one() {
     let network = RoadNetwork::build(&cross(2));
     let ego = path(&network, Approach::Same, Turn::Straight, 0);
     let turning = path(&network, Approach::Same, Turn::Left, 1);
-    let conflict = ego.conflict(&turning, &network, 1.852, 1.852).expect("they cross");
+    let conflict = ego.conflict(&turning, 1.852, 1.852).expect("they cross");
     assert!((conflict.point.y - 3.5).abs() < 1e-9 && !conflict.merges);
 }
 
@@ -308,17 +308,17 @@ fn crossings_agree_with_a_numeric_search() {
                     for turn in TURNS {
                         let Some(route) = network.route(approach, turn) else { continue };
                         let other = LanePath::new(&network, route, lane);
-                        let Some(found) = ego.conflict(&other, &network, 1.852, 1.852) else {
-                            assert!(least_distance(&network, &ego, &other) > 0.3, "{ego_turn:?} {approach:?} {turn:?}");
+                        let Some(found) = ego.conflict(&other, 1.852, 1.852) else {
+                            assert!(least_distance(&ego, &other) > 0.3, "{ego_turn:?} {approach:?} {turn:?}");
                             continue;
                         };
                         if found.merges {
                             continue;
                         }
                         crossings += 1;
-                        let on_other = other.pose(&network, found.s_b, 0.0).position;
+                        let on_other = other.pose(found.s_b, 0.0).position;
                         assert!(on_other.distance(found.point) < 1e-6);
-                        let on_ego = ego.pose(&network, found.s_a, 0.0).position;
+                        let on_ego = ego.pose(found.s_a, 0.0).position;
                         assert!(on_ego.distance(found.point) < 1e-6);
                     }
                 }
@@ -328,12 +328,12 @@ fn crossings_agree_with_a_numeric_search() {
     assert!(crossings >= 16, "{crossings}");
 }
 
-fn least_distance(network: &RoadNetwork, a: &LanePath, b: &LanePath) -> f64 {
+fn least_distance(a: &LanePath, b: &LanePath) -> f64 {
     let mut least = f64::INFINITY;
     for i in 0..(a.length_m as usize) {
-        let p = a.pose(network, i as f64, 0.0).position;
+        let p = a.pose(i as f64, 0.0).position;
         for j in 0..(b.length_m as usize * 2) {
-            least = least.min(p.distance(b.pose(network, 0.5 * j as f64, 0.0).position));
+            least = least.min(p.distance(b.pose(0.5 * j as f64, 0.0).position));
         }
     }
     least

@@ -1,7 +1,7 @@
 //! Giving way where paths cross or merge: who may go first, and where the other waits.
 
 use crate::scene::Scene;
-use recrash_roads::{Conflict, Footprint, LanePath, RoadNetwork};
+use recrash_roads::{Conflict, Footprint, LanePath};
 
 /// A place where an actor's path meets another's.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,12 +26,11 @@ pub(crate) struct Stretch {
 impl Crossing {
     /// The crossing of two paths, from their conflict.
     pub(crate) fn new(
-        network: &RoadNetwork,
         (me, path, size): (usize, &LanePath, Footprint),
         (other, other_path, other_size): (usize, &LanePath, Footprint),
         conflict: Conflict,
     ) -> Self {
-        let (reach, other_reach) = conflict.reaches(network, (path, size), (other_path, other_size));
+        let (reach, other_reach) = conflict.reaches((path, size), (other_path, other_size));
         let stretch = |s: f64, reach: f64| Stretch {
             from: s - reach,
             to: if conflict.merges { f64::INFINITY } else { s + reach },

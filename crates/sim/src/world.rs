@@ -210,11 +210,9 @@ impl World {
                     Footprint { length_m: member.length_m, width_m: member.width_m }
                 };
                 let (mine, theirs) = (size(me), size(other));
-                let network = scenario.network();
-                let conflict = path(me).conflict(path(other), network, mine.width_m, theirs.width_m);
+                let conflict = path(me).conflict(path(other), mine.width_m, theirs.width_m);
                 if let Some(conflict) = conflict {
                     self.setting.crossings.push(Crossing::new(
-                        network,
                         (me, path(me), mine),
                         (other, path(other), theirs),
                         conflict,

@@ -355,12 +355,12 @@ mod partners {
             riding.start = Start::Offset { delta_s_m: 20.0, delta_t_m: 1.2 };
             draft.partners.push(riding);
             let scenario = checked(draft);
-            let (path, network) = (scenario.partners()[0].path.clone(), scenario.network().clone());
+            let path = scenario.partners()[0].path.clone();
             let rollout = simulate(&scenario, Ego::Idm);
             assert!(!touches(&rollout));
             let mut segment = 0;
             for state in &rollout.actors[1].states {
-                let point = path.project(&network, state.position(), segment);
+                let point = path.project(state.position(), segment);
                 segment = point.segment;
                 if point.s < path.length_m {
                     near(point.t, 1.2, 0.3);

@@ -6,7 +6,7 @@ use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::record::ContactZone;
 use recrash_model::scenario::LateralMove;
-use recrash_roads::{LanePath, RoadNetwork};
+use recrash_roads::LanePath;
 
 /// Time step: at 20 m/s a metre. [s]
 const STEP_S: f64 = 0.05;
@@ -56,9 +56,9 @@ impl Motion<'_> {
         (self.start_t_m + share * (step.to_t_m - self.start_t_m), rate)
     }
 
-    fn outline(&self, network: &RoadNetwork, time_s: f64) -> OrientedBox {
+    fn outline(&self, time_s: f64) -> OrientedBox {
         let (t, rate) = self.offset(time_s);
-        let pose = self.path.pose(network, self.start_m + self.driven(time_s), t);
+        let pose = self.path.pose(self.start_m + self.driven(time_s), t);
         let drift = math::atan2(-rate, self.target_mps.max(1.0));
         let pose = Pose { heading: pose.heading + drift, ..pose };
         OrientedBox::new(pose, 2.0 * self.half_length_m, 2.0 * self.half_width_m)
@@ -89,13 +89,13 @@ pub struct Meeting {
 }
 
 /// Lets both drive and tells how they meet between two times.
-pub fn rehearse(network: &RoadNetwork, ego: &Motion, partner: &Motion, from_s: f64, until_s: f64) -> Option<Meeting> {
-    let at_start = (ego.outline(network, 0.0), partner.outline(network, 0.0));
+pub fn rehearse(ego: &Motion, partner: &Motion, from_s: f64, until_s: f64) -> Option<Meeting> {
+    let at_start = (ego.outline(0.0), partner.outline(0.0));
     let mut closest: Option<(f64, f64)> = None;
     let steps = ((until_s - from_s) / STEP_S).ceil().clamp(0.0, 2000.0) as u32;
     for step in 0..=steps {
         let time_s = from_s.max(0.0) + f64::from(step) * STEP_S;
-        let (a, b) = (ego.outline(network, time_s), partner.outline(network, time_s));
+        let (a, b) = (ego.outline(time_s), partner.outline(time_s));
         if a.centre.distance(b.centre) > FAR_M {
             continue;
         }
@@ -109,7 +109,7 @@ pub fn rehearse(network: &RoadNetwork, ego: &Motion, partner: &Motion, from_s: f
     }
     let (gap_m, time_s) = closest?;
     let moment = time_s;
-    let (a, b) = (ego.outline(network, moment), partner.outline(network, moment));
+    let (a, b) = (ego.outline(moment), partner.outline(moment));
     let (on_ego, on_partner) = match middle_of_overlap(&a, &b) {
         Some(middle) => (middle, middle),
         None => {
@@ -185,6 +185,7 @@ fn kind_of(
 mod tests {
     use super::*;
     use recrash_model::scenario::{Approach, CrossMap, MapSpec, Turn};
+    use recrash_roads::RoadNetwork;
 
     const SPEED: f64 = 10.0;
 
@@ -214,10 +215,10 @@ mod tests {
     fn crossing(gap_s: f64) -> Meeting {
         let network = network();
         let (ego, other) = (path(&network, Approach::Same), path(&network, Approach::Left));
-        let conflict = ego.conflict(&other, &network, 2.0, 2.0).expect("they cross");
+        let conflict = ego.conflict(&other, 2.0, 2.0).expect("they cross");
         let ego = motion(&ego, conflict.s_a - 30.0);
         let partner = motion(&other, conflict.s_b - 30.0 - gap_s * SPEED);
-        rehearse(&network, &ego, &partner, 0.0, 6.0).expect("they come near")
+        rehearse(&ego, &partner, 0.0, 6.0).expect("they come near")
     }
 
     #[test]
@@ -256,7 +257,7 @@ mod tests {
         let network = network();
         let path = path(&network, Approach::Same);
         let slow = Motion { start_mps: 5.0, target_mps: 5.0, ..motion(&path, 20.0) };
-        let meeting = rehearse(&network, &motion(&path, 5.0), &slow, 0.0, 6.0).expect("they come near");
+        let meeting = rehearse(&motion(&path, 5.0), &slow, 0.0, 6.0).expect("they come near");
         assert_eq!(meeting.kind, Some(CollisionKind::RearEndByEgo));
         // 15 m apart, 4 m of cars, 5 m/s faster: 2.2 s.
         assert!((meeting.time_s - 2.2).abs() <= 0.05 + 1e-9, "{meeting:?}");

@@ -161,7 +161,7 @@ fn time_paths(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
     let spec = VehicleSpec::of(task.kind);
     let ego_spec = VehicleSpec::of(PartnerKind::PassengerCar);
     let (ego_path, path) = (&course.ego.path, &course.partner.path);
-    let conflict = ego_path.conflict(path, &course.network, ego_spec.width_m, spec.width_m)?;
+    let conflict = ego_path.conflict(path, ego_spec.width_m, spec.width_m)?;
     let meets_s = (conflict.s_a - task.ego_start_m) / task.ego_mps;
     let ego = plain(ego_path, ego_spec, task.ego_start_m, task.ego_mps);
     // Who sets off arrives later than the arrival gap says, which counts with the target speed.
@@ -180,7 +180,7 @@ fn time_paths(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
         .map(|n| {
             let gap_s = -WIDEST_GAP_S - lost_s + GAP_STEP_S * n as f64;
-            (gap_s, rehearse(&course.network, &ego, &motion(gap_s), from_s, until_s))
+            (gap_s, rehearse(&ego, &motion(gap_s), from_s, until_s))
         })
         .collect();
     let (start, score) = choose(task, course, plan, &tries, -lost_s, 0.3)?;
@@ -267,7 +267,7 @@ fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
         .map(|n| {
             let shift_m = -WIDEST_SHIFT_M + SHIFT_STEP_M * n as f64;
-            let meeting = rehearse(&course.network, &ego, &motion(shift_m), lateral.start_s - 1.0, until_s);
+            let meeting = rehearse(&ego, &motion(shift_m), lateral.start_s - 1.0, until_s);
             // Where the two come closest elsewhere, on the way out say, it is another conflict.
             (ahead(shift_m), meeting.filter(|meeting| (meeting.time_s - meets_s).abs() < 3.0))
         })

@@ -164,7 +164,7 @@ fn planning_problem(scenario: &Scenario) -> Element {
     let carriageway = draft.map.carriageway();
     // Any of the road's lanes will do: the middle of them all, seen from the ego's.
     let t = (0.5 * (f64::from(carriageway.lanes) - 1.0) - f64::from(draft.ego.lane)) * carriageway.lane_width_m;
-    let goal = ego.path.pose(scenario.network(), ego.path.length_m - ARRIVED_M, t);
+    let goal = ego.path.pose(ego.path.length_m - ARRIVED_M, t);
     let width = f64::from(carriageway.lanes) * carriageway.lane_width_m;
     let steps = (draft.duration_s / STEP_S).ceil().max(1.0);
     let area =

@@ -37,7 +37,7 @@ impl Driven {
             track.states[..until].iter().map(|state| reference_point(track.kind, state.pose())).collect();
         let mut segment = 0;
         let places = poses.iter().map(|pose| {
-            let place = path.project(context.scenario.network(), pose.position, segment);
+            let place = path.project(pose.position, segment);
             segment = place.segment;
             place
         });

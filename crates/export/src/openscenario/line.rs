@@ -26,11 +26,11 @@ pub(super) fn line(context: &Context<'_>, position: usize, driven: &Driven, name
         return None;
     }
     // From the beginning of the way, so that a start may be moved along it, to its end.
-    let (path, network) = (&placement.path, context.scenario.network());
+    let path = &placement.path;
     let (first_s, last_s) = (driven.places[0].s, driven.places[driven.places.len() - 1].s);
     let stations = |from: f64, to: f64| {
         let count = ((to - from) / SPACING_M).max(0.0) as usize;
-        (0..=count).map(move |step| path.pose(network, from + step as f64 * SPACING_M, 0.0))
+        (0..=count).map(move |step| path.pose(from + step as f64 * SPACING_M, 0.0))
     };
     let mut poses: Vec<Pose> = Vec::new();
     if first_s > SPACING_M {

@@ -33,7 +33,7 @@ pub fn straight_on(scenario: &Scenario, steps: usize) -> Rollout {
         let spec = VehicleSpec::of(placement.kind);
         let states = (0..=steps).map(|step| {
             let s = placement.s_m + placement.speed_mps * STEP_S * step as f64;
-            let pose = placement.path.pose(scenario.network(), s, placement.t_m);
+            let pose = placement.path.pose(s, placement.t_m);
             ActorState {
                 x: pose.position.x,
                 y: pose.position.y,

@@ -65,9 +65,9 @@ impl Layout {
     }
 
     /// Heading of the road at a point, in the direction the ego comes from; nil where the road has no one direction. [rad]
-    pub fn road_heading(&self, network: &RoadNetwork, point: Vec2) -> f64 {
+    pub fn road_heading(&self, point: Vec2) -> f64 {
         match self {
-            Self::Plain { along } => along.pose(network, along.project(network, point, 0).s, 0.0).heading,
+            Self::Plain { along } => along.pose(along.project(point, 0).s, 0.0).heading,
             Self::Junction { .. } | Self::Circle { .. } => 0.0,
         }
     }

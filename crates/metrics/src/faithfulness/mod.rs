@@ -204,8 +204,8 @@ impl Witness<'_> {
     fn side_of(&self, ego: &OrientedBox, other: &OrientedBox) -> Option<Side> {
         let left_m = match &self.layout {
             Layout::Plain { along } => {
-                let t = |outline: &OrientedBox| along.project(self.network, outline.centre, 0).t;
-                let road = self.layout.road_heading(self.network, ego.centre);
+                let t = |outline: &OrientedBox| along.project(outline.centre, 0).t;
+                let road = self.layout.road_heading(ego.centre);
                 let with_road = Vec2::from_heading(road).dot(ego.axis) >= 0.0;
                 if with_road { t(ego) - t(other) } else { t(other) - t(ego) }
             }
@@ -267,7 +267,7 @@ impl Witness<'_> {
                 return Some(Approach::Ring);
             }
         }
-        let road = |outline: &OrientedBox| self.layout.road_heading(self.network, outline.centre);
+        let road = |outline: &OrientedBox| self.layout.road_heading(outline.centre);
         let relative = math::atan2(ego.axis.cross(other.axis), ego.axis.dot(other.axis));
         let turned = degrees(math::wrap_angle(relative - (road(other) - road(ego))));
         let on_left = ego.to_local(other.centre).y > 0.0;

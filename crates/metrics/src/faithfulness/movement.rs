@@ -81,8 +81,7 @@ pub fn driven(layout: &Layout, network: &RoadNetwork, track: &[OrientedBox]) -> 
     let (Some(first), Some(last)) = (track.first(), track.last()) else {
         return Driven { kind: DrivenKind::Stood, turned_deg: 0.0, shifted_m: 0.0, distance_m, on_plain_road };
     };
-    let road_turned_rad =
-        math::wrap_angle(layout.road_heading(network, last.centre) - layout.road_heading(network, first.centre));
+    let road_turned_rad = math::wrap_angle(layout.road_heading(last.centre) - layout.road_heading(first.centre));
     let turned_deg = degrees(turned_rad - road_turned_rad);
     let mut driven = Driven { kind: DrivenKind::Stood, turned_deg, shifted_m: 0.0, distance_m, on_plain_road };
     if distance_m < STOOD_M {
@@ -94,7 +93,7 @@ pub fn driven(layout: &Layout, network: &RoadNetwork, track: &[OrientedBox]) -> 
     }
     driven.kind = turn_kind(layout, track, turned_deg);
     if driven.kind == DrivenKind::Straight {
-        driven.shifted_m = shift(layout, network, first, last);
+        driven.shifted_m = shift(layout, first, last);
         let lane_width_m = network.map.carriageway().lane_width_m;
         if driven.shifted_m.abs() >= LANE_CHANGE_WIDTHS * lane_width_m {
             driven.kind = DrivenKind::LaneChange;
@@ -135,11 +134,11 @@ fn curvature_at_end(track: &[OrientedBox]) -> f64 {
 }
 
 /// Shift to the left across the road between two boxes, seen along the first one's heading. [m]
-fn shift(layout: &Layout, network: &RoadNetwork, first: &OrientedBox, last: &OrientedBox) -> f64 {
+fn shift(layout: &Layout, first: &OrientedBox, last: &OrientedBox) -> f64 {
     match layout {
         Layout::Plain { along } => {
-            let t = |outline: &OrientedBox| along.project(network, outline.centre, 0).t;
-            let road = Vec2::from_heading(layout.road_heading(network, first.centre));
+            let t = |outline: &OrientedBox| along.project(outline.centre, 0).t;
+            let road = Vec2::from_heading(layout.road_heading(first.centre));
             let same_way = road.dot(first.axis) >= 0.0;
             if same_way { t(first) - t(last) } else { t(last) - t(first) }
         }

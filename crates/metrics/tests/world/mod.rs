@@ -71,19 +71,12 @@ pub fn path(network: &RoadNetwork, approach: Approach, turn: Turn, lane: u8) -> 
 }
 
 /// States of one that follows `path` from `s_m` on: `speed(t)` is integrated exactly for constant and linear speeds.
-pub fn drive(
-    network: &RoadNetwork,
-    path: &LanePath,
-    s_m: f64,
-    steps: usize,
-    speed: impl Fn(f64) -> f64,
-) -> Vec<ActorState> {
-    drive_at(network, path, s_m, steps, speed, |_| 0.0)
+pub fn drive(path: &LanePath, s_m: f64, steps: usize, speed: impl Fn(f64) -> f64) -> Vec<ActorState> {
+    drive_at(path, s_m, steps, speed, |_| 0.0)
 }
 
 /// The same with an offset to the right of the lane over time; the heading follows the path driven.
 pub fn drive_at(
-    network: &RoadNetwork,
     path: &LanePath,
     s_m: f64,
     steps: usize,
@@ -94,7 +87,7 @@ pub fn drive_at(
     (0..steps)
         .map(|step| {
             let time = step as f64 * STEP_S;
-            let here = path.pose(network, s, offset(time));
+            let here = path.pose(s, offset(time));
             let rate = (offset(time + 1e-4) - offset(time)) / 1e-4;
             let v = speed(time);
             let slant = if v > 0.5 { -math::atan(rate / v) } else { 0.0 };

@@ -145,7 +145,7 @@ impl<'a> Reset<'a> {
         let (draft, network, ego) = (scenario.draft(), scenario.network(), scenario.ego());
         let spec = VehicleSpec::of(ego.kind);
         let pieces = (ego.path.length_m / ROUTE_SPACING_M).ceil().max(1.0);
-        let point = |piece: usize| ego.path.pose(network, ego.path.length_m * piece as f64 / pieces, 0.0).position;
+        let point = |piece: usize| ego.path.pose(ego.path.length_m * piece as f64 / pieces, 0.0).position;
         let actors = cast.iter().enumerate().skip(1).map(|(position, member)| Actor {
             id: member.id(draft, position),
             kind: member.kind,

@@ -27,7 +27,7 @@ pub(super) fn place(
         remarks.error("scenario.obstacle-place", format!("obstacles[{position}].s_m"), message, hint);
         return None;
     }
-    let pose = ego.path.pose(network, obstacle.s_m, obstacle.t_m);
+    let pose = ego.path.pose(obstacle.s_m, obstacle.t_m);
     let (length_m, width_m) = obstacle_size(obstacle.kind);
     let lane = network.lane_at(pose.position, pose.heading).unwrap_or_else(|| nearest_lane(network, pose.position));
     Some(ObstaclePlacement { placed: PlacedObstacle { kind: obstacle.kind, pose, length_m, width_m }, lane })

@@ -51,7 +51,7 @@ pub(super) fn ego(draft: &ScenarioDraft, network: &RoadNetwork, remarks: &mut Re
         return None;
     }
     let path = LanePath::new(network, route, draft.ego.lane);
-    let pose = path.pose(network, draft.ego.s_m, 0.0);
+    let pose = path.pose(draft.ego.s_m, 0.0);
     Some(Placement {
         kind: PartnerKind::PassengerCar,
         path,
@@ -94,7 +94,7 @@ pub(super) fn partner(
     };
     let way = LanePath::new(network, route, lane?);
     let width = VehicleSpec::of(PartnerKind::PassengerCar).width_m;
-    let conflict = ego.path.conflict(&way, network, width, VehicleSpec::of(partner.kind).width_m);
+    let conflict = ego.path.conflict(&way, width, VehicleSpec::of(partner.kind).width_m);
     let (s_m, t_m) = match partner.start {
         Start::Offset { delta_s_m, delta_t_m } => {
             (offset_start(draft, partner, path, network, ego, &way, delta_s_m, remarks)?, delta_t_m)
@@ -103,7 +103,7 @@ pub(super) fn partner(
             (timed_start(draft, partner, path, network, ego, &way, conflict, arrival_gap_s, remarks)?, 0.0)
         }
     };
-    let pose = way.pose(network, s_m, t_m);
+    let pose = way.pose(s_m, t_m);
     let speed_mps = partner.speed_mps;
     Some(Placement { kind: partner.kind, path: way, s_m, t_m, pose, speed_mps, conflict })
 }
@@ -127,7 +127,7 @@ fn offset_start(
             // Lanes of one approach are equally long; behind it, beside the ego's own way, as far as that is the same.
             let beside = along > draft.map.carriageway().approach_m && way.roads == ego.path.roads;
             let s = if beside && along <= ego.path.length_m {
-                way.project(network, ego.path.pose(network, along, 0.0).position, 0).s
+                way.project(ego.path.pose(along, 0.0).position, 0).s
             } else {
                 along
             };
@@ -135,11 +135,11 @@ fn offset_start(
         }
         Approach::Opposite => {
             if matches!(draft.map, MapSpec::S(_) | MapSpec::C(_)) {
-                let beside = ego.path.pose(network, along, 0.0).position;
-                (way.project(network, beside, 0).s, way.length_m)
+                let beside = ego.path.pose(along, 0.0).position;
+                (way.project(beside, 0).s, way.length_m)
             } else {
                 // The arm ahead lies in line with the approach: there the distance is that along the x axis.
-                (way.pose(network, 0.0, 0.0).position.x - along, arm_length(network, way))
+                (way.pose(0.0, 0.0).position.x - along, arm_length(network, way))
             }
         }
         Approach::Left | Approach::Right | Approach::Ring => {
@@ -378,7 +378,7 @@ fn meeting_turns(partner: &Partner, network: &RoadNetwork, ego: &Placement) -> S
         let lanes = network.road(route[0]).lanes.len();
         (0..lanes).find(|lane| {
             let lane = u8::try_from(*lane).unwrap_or(0);
-            ego.path.conflict(&LanePath::new(network, route.clone(), lane), network, width, other_width).is_some()
+            ego.path.conflict(&LanePath::new(network, route.clone(), lane), width, other_width).is_some()
         })
     };
     let found: Vec<&str> = TURNS.iter().filter(|(turn, _)| meets(*turn).is_some()).map(|(_, name)| *name).collect();
