@@ -74,6 +74,23 @@ impl Element {
         self.children.iter().find_map(|child| if child.name == name { Some(child) } else { child.deep(name) })
     }
 
+    /// A hash of names, attributes, text and children (FNV-1a, 64 bits), whatever the layout of the file they are in.
+    pub fn fingerprint(&self) -> String {
+        fn add(hash: u64, text: &str) -> u64 {
+            let bytes = text.bytes().chain([0]);
+            bytes.fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+        }
+        fn walk(element: &Element, hash: u64) -> u64 {
+            let mut hash = add(add(hash, &element.name), &element.text);
+            for (name, value) in &element.attributes {
+                hash = add(add(hash, name), &allowed(value));
+            }
+            hash = element.children.iter().fold(add(hash, "<"), |hash, child| walk(child, hash));
+            add(hash, ">")
+        }
+        format!("{:016x}", walk(self, 0xcbf2_9ce4_8422_2325))
+    }
+
     /// The document with this root, a comment above it.
     pub fn document(&self, comment: &str) -> Vec<u8> {
         let mut writer = Writer::new(Vec::new());

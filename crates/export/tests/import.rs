@@ -128,6 +128,20 @@ fn a_change_that_is_not_read_is_told_with_its_place() {
 }
 
 #[test]
+fn a_changed_speed_or_recording_is_told_although_only_a_rollout_knows_it() {
+    for (partners_as, what) in [(PartnersAs::Actions, "SpeedProfileEntry"), (PartnersAs::Trajectory, "Vertex")] {
+        let text = exported(&draft(CASES[2].1), partners_as);
+        let at = text.find(&format!("<{what} ")).unwrap();
+        let time = at + text[at..].find("time=\"").unwrap() + "time=\"".len();
+        let changed = format!("{}9{}", &text[..time], &text[time..]);
+        let read = import(&changed).unwrap();
+        assert_eq!(read.value.draft(), &draft(CASES[2].1));
+        let told: Vec<_> = read.diagnostics.iter().map(|d| (d.code.as_str(), d.location.path.as_deref())).collect();
+        assert_eq!(told, [("openscenario.edited", Some("OpenSCENARIO/Storyboard"))], "{what}");
+    }
+}
+
+#[test]
 fn a_partner_that_was_taken_out_is_gone() {
     let two = draft(CASES[1].1);
     let text = exported(&two, PartnersAs::Actions);

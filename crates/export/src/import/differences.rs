@@ -1,7 +1,7 @@
 //! Where a file says something else than recrash would write for the scenario it describes: told, and not read.
 
-use crate::openscenario::LANES;
 use crate::openscenario::names::Declaration;
+use crate::openscenario::{LANES, STORYBOARD};
 use crate::xml::Element;
 use crate::{ExportOptions, Format};
 use recrash_model::tuning::Parameter;
@@ -45,6 +45,16 @@ pub(super) fn differences(root: &Element, original: &Scenario, declared: &[Decla
         if let (Some(found), Some(expected)) = (root.find(part), expected.find(part)) {
             compare(found, expected, &format!("OpenSCENARIO/{part}"), &mut list);
         }
+    }
+    // What depends on a rollout cannot be compared, but whether it is as it was written can be told.
+    let written = root.find("FileHeader").and_then(|header| header.find("Properties")).and_then(|properties| {
+        properties.all("Property").find(|property| property.attribute("name") == Some(STORYBOARD))?.attribute("value")
+    });
+    if let (Some(storyboard), Some(written), true) = (root.find("Storyboard"), written, list.is_empty())
+        && storyboard.fingerprint() != written
+    {
+        let message = "what a partner does was changed since recrash wrote it; this is not read".to_owned();
+        list.push(edited(storyboard, "OpenSCENARIO/Storyboard", message));
     }
     list
 }

@@ -86,8 +86,9 @@ fn document(context: &Context<'_>, title: &str, map_file: &str) -> Element {
         ("recrash.traffic", json(serde_json::to_string(&draft.traffic))),
         ("recrash.environment", json(serde_json::to_string(&draft.environment))),
     ];
-    let properties =
-        Element::new("Properties").children(carried.iter().map(|(name, value)| entities::property(name, value)));
+    let storyboard = storyboard::storyboard(context);
+    let carried = carried.into_iter().chain([(STORYBOARD, storyboard.fingerprint())]);
+    let properties = Element::new("Properties").children(carried.map(|(name, value)| entities::property(name, &value)));
     Element::new("OpenSCENARIO").children([
         header(context, title).child(properties),
         storyboard::parameters(&context.names),
@@ -95,7 +96,7 @@ fn document(context: &Context<'_>, title: &str, map_file: &str) -> Element {
         Element::new("CatalogLocations"),
         Element::new("RoadNetwork").child(Element::new("LogicFile").with("filepath", map_file)),
         entities::entities(context),
-        storyboard::storyboard(context),
+        storyboard,
     ])
 }
 
@@ -116,6 +117,9 @@ pub(crate) fn scenario_element(scenario: &Scenario, parameters: &[Parameter], op
     let context = Context { scenario, map, names, parameters, tracks: Vec::new(), rollout: None, options };
     document(&context, &crate::title(draft), &format!("{}.xodr", draft.id))
 }
+
+/// The property of the header that holds the storyboard's fingerprint.
+pub(crate) const STORYBOARD: &str = "recrash.storyboard";
 
 /// How the maneuvers end that say where across its lane a partner is.
 pub(crate) const LANES: &str = ": lanes";
