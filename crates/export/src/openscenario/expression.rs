@@ -55,7 +55,7 @@ impl Sum {
             match (factor, text.is_empty()) {
                 (0.0, _) => {}
                 (1.0, true) => text = size,
-                (_, true) => text = format!("{name} * {}", number(factor)),
+                (_, true) => text = format!("{} * {name}", number(factor)),
                 _ => text += &format!(" {} {size}", if factor < 0.0 { "-" } else { "+" }),
             }
         }
@@ -79,9 +79,9 @@ mod tests {
         assert_eq!(Sum::constant(-2.0).attribute(), "-2");
         assert_eq!(of("7").attribute(), "1.5");
         assert_eq!(of("$a").attribute(), "$a");
-        assert_eq!(of("$a").times(-1.0).attribute(), "${$a * -1}");
+        assert_eq!(of("$a").times(-1.0).attribute(), "${-1 * $a}");
         assert_eq!(of("$a").plus(&of("$b").times(-0.25)).attribute(), "${$a - $b * 0.25}");
-        assert_eq!(of("$a").plus(&of("$a")).plus(&Sum::constant(-3.0)).attribute(), "${$a * 2 - 3}");
+        assert_eq!(of("$a").plus(&of("$a")).plus(&Sum::constant(-3.0)).attribute(), "${2 * $a - 3}");
         assert_eq!(of("$a").times(0.0).plus(&of("$b")).attribute(), "$b");
     }
 }

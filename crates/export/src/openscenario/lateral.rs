@@ -220,7 +220,8 @@ fn turning_points(t: &[f64]) -> Vec<usize> {
 
 /// The shape that a curve goes from its first place to `goal` in, and when it begins and ends [s]; `None` where it
 /// stays. The best is the one in which the centre of the vehicle is nearest, which goes sideways `lever_s` ahead of the
-/// curve; at the end five times as near where the vehicle touches something there. Found by smaller and smaller steps of begin and end from where the first and the last tenth of the way are.
+/// curve; at the end five times as near where the vehicle touches something there. Found by smaller and smaller steps of
+/// begin and end, from where the first and the last tenth of the way are.
 fn fit(t: &[f64], goal: f64, lever_s: f64, touches: bool) -> Option<(Shape, f64, f64)> {
     let (from, covered) = (t[0], t[t.len() - 1] - t[0]);
     if covered.abs() < SWAY_M {
