@@ -128,12 +128,12 @@ fn broken() -> SuiteView {
     spoil(&mut suite.cases[2], |run| {
         run.series.partners.clear();
         run.run.rollout.actors[1].states[3].x = f64::NAN;
-        run.metrics.min_gap = Some(Timed { value: f64::NAN, time_s: f64::INFINITY });
+        run.run.judgement.metrics.min_gap = Some(Timed { value: f64::NAN, time_s: f64::INFINITY });
     });
     spoil(&mut suite.cases[3], |run| {
-        run.verdict.checks.clear();
-        run.metrics.partners.clear();
-        run.metrics.min_gap = None;
+        run.run.judgement.verdict.checks.clear();
+        run.run.judgement.metrics.partners.clear();
+        run.run.judgement.metrics.min_gap = None;
         run.series.partners[0].gap_m.iter_mut().for_each(|gap| *gap = f64::NAN);
         run.series.partners[0].actor = 77;
     });
@@ -228,7 +228,7 @@ fn broken_and_empty_suites_are_rendered() {
 fn a_run_in_which_nothing_was_checked_is_not_called_faithful() {
     let mut suite = suite::demo();
     for case in &mut suite.cases {
-        case.before.iter_mut().chain(&mut case.after).for_each(|run| run.verdict.checks.clear());
+        case.before.iter_mut().chain(&mut case.after).for_each(|run| run.run.judgement.verdict.checks.clear());
     }
     let page = html(&suite);
     assert!(page.contains("not checked") && !page.contains("</svg>faithful<"));
