@@ -1,54 +1,67 @@
-//! Work on one case: the loop of design, check, rollout and verdict; and one run of one scenario.
+//! Narratives to scenarios: the loop of design, check, rollout and verdict.
 
+use super::cases::{brief, text_of};
+use super::{Bench, CaseStage, names, player};
 use crate::agents::{RULES, unusable};
 use crate::error::PipelineError;
-use crate::external::Patience;
-use crate::profiles::load_profile;
-use crate::simulator::{Simulator, SimulatorKind, start_simulator};
-use crate::store::{read_text, to_compact_json, write_file_whole};
-use recrash_agents::{Brief, Design, Feedback, Problem, inexpressible};
-use recrash_metrics::{faithfulness, findings, measure};
+use crate::judging::run_scenario;
+use crate::simulator::Simulator;
+use crate::store::to_json;
+use crate::suite::{Files, Stage};
+use recrash_agents::{Brief, Design, Feedback, Problem, Rules, inexpressible, narrative_contradictions};
 use recrash_model::metrics::{Check, Expectation};
 use recrash_model::narrative::Narrative;
-use recrash_model::profile::SystemProfile;
-use recrash_model::rollout::Rollout;
-use recrash_model::run::JudgedRun;
 use recrash_model::scenario::{Author, ScenarioDraft};
+use recrash_model::selection::Cluster;
 use recrash_model::{Diagnostic, Outcome};
-use recrash_roads::Scenario;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::cell::Cell;
 
-/// Scenario files larger than this are refused. [bytes]
-const MAX_SCENARIO_FILE: u64 = 1 << 20;
 /// Designs of the rules that are tried before the best so far is taken.
-pub const MAX_DESIGNS: usize = 6;
+const MAX_DESIGNS: usize = 6;
 
-/// Runs a scenario and computes everything from its rollout.
-///
-/// # Errors
-/// The simulator failed; the native one cannot.
-pub fn run_scenario(
-    scenario: &Scenario,
-    simulator: &dyn Simulator,
-    profile: &SystemProfile,
-    expectation: Option<&Expectation>,
-) -> Result<JudgedRun, PipelineError> {
-    let rollout = simulator.run(scenario).map_err(|error| PipelineError::not_run(&error))?;
-    Ok(judge(scenario, rollout, profile, expectation))
+/// The stage.
+pub(super) const DECLARED: CaseStage = CaseStage {
+    stage: Stage::Design,
+    reads: |id| vec![(Stage::Narrate, names::narrative(id))],
+    editable: |id| vec![names::scenario(id)],
+    decides: |suite| {
+        let chosen = suite.options();
+        Ok(vec![text_of(&chosen.seed), player(suite, &chosen.cast.design)])
+    },
+    runs_ego: true,
+    work: design,
+};
+
+fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let suite = bench.suite;
+    let records = bench.cases.records_of(cluster);
+    let brief = brief(suite, cluster, &records);
+    let (narrative, expectation) = bench.cases.expectation(suite, cluster)?;
+    refuse_contradictions(&narrative, &brief)?;
+    let cast = &suite.options().cast;
+    let (name, repairs) = (&cast.design, Cell::new(0));
+    let model = suite.models().filter(|_| name != RULES).map(|models| models.model(name, cast, &repairs));
+    let by_model = model.as_ref().map(|agent| Designer { name, agent, tries: cast.repairs + 1 });
+    let by_rules = Designer { name: RULES, agent: &Rules, tries: MAX_DESIGNS };
+    let designers: Vec<Designer> = by_model.into_iter().chain([by_rules]).collect();
+    let (draft, log) = design_case(&designers, &brief, &narrative, &expectation, bench.simulator())?;
+    let log = DesignLog { repairs: repairs.get(), ..log };
+    let id = &cluster.scenario_id;
+    Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
 }
 
-/// Computes everything from a rollout of a scenario, whichever simulator it comes from.
-pub(crate) fn judge(
-    scenario: &Scenario,
-    rollout: Rollout,
-    profile: &SystemProfile,
-    expectation: Option<&Expectation>,
-) -> JudgedRun {
-    let metrics = measure(scenario, &rollout, &profile.failure);
-    let found = findings(scenario, &rollout, &metrics, &profile.failure);
-    let verdict = expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)).unwrap_or_default();
-    JudgedRun::new(rollout, metrics, found, verdict)
+/// Nothing runs for a narrative that contradicts its template: agents mend theirs, so that such a one was edited by hand.
+fn refuse_contradictions(narrative: &Narrative, brief: &Brief) -> Result<(), PipelineError> {
+    let contradictions = narrative_contradictions(&narrative.facts, brief.template, brief.profile);
+    if contradictions.is_empty() {
+        return Ok(());
+    }
+    let why = contradictions.join("; ");
+    Err(PipelineError::scenario(
+        brief.scenario_id,
+        format!("the narrative contradicts its template ({why}); mend it, or remove its file"),
+    ))
 }
 
 /// What became of the designs of one scenario.
@@ -97,13 +110,13 @@ impl DesignAttempt {
 }
 
 /// A designer and how often it may try.
-pub struct Designer<'a> {
+struct Designer<'a> {
     /// Name: `rules` or a model.
-    pub name: &'a str,
+    name: &'a str,
     /// The agent.
-    pub agent: &'a dyn Design,
+    agent: &'a dyn Design,
     /// Tries.
-    pub tries: usize,
+    tries: usize,
 }
 
 /// What became of one designer's tries.
@@ -121,7 +134,7 @@ enum Course {
 ///
 /// # Errors
 /// An answer is still to come, or none of the designs can be run.
-pub fn design_case(
+fn design_case(
     designers: &[Designer],
     brief: &Brief,
     narrative: &Narrative,
@@ -188,80 +201,4 @@ fn design_by(
         }
     }
     Ok(Course::UsedUp)
-}
-
-/// One scenario file, run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FileRun {
-    /// The run.
-    pub run: JudgedRun,
-    /// Remarks on the file.
-    pub diagnostics: Vec<Diagnostic>,
-}
-
-/// How one scenario file is run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FileRequest<'a> {
-    /// The file.
-    pub scenario: &'a Path,
-    /// Profile with the failure criteria, and the ego where none is named.
-    pub profile: &'a str,
-    /// Ego.
-    pub ego: Option<&'a str>,
-    /// Simulator.
-    pub simulator: SimulatorKind,
-    /// Python interpreter for MetaDrive.
-    pub python: &'a Path,
-    /// How long answers of an external ego are waited for.
-    pub patience: Patience,
-    /// Where to write the rollout.
-    pub rollout: Option<&'a Path>,
-}
-
-/// Reads, checks and runs one scenario file.
-///
-/// # Errors
-/// The file cannot be read, is no scenario, or cannot be run: every problem with its place.
-pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
-    let profile = load_profile(request.profile)?;
-    let (scenario, diagnostics) = read_scenario(request.scenario)?;
-    let ego = request.ego.unwrap_or(&profile.ego);
-    let simulator = start_simulator(request.simulator, ego, request.python, 1, request.patience)?;
-    let run = run_scenario(&scenario, &simulator, &profile, None)?;
-    if let Some(target) = request.rollout {
-        write_file_whole(target, &to_compact_json(&run.rollout)).map_err(|source| PipelineError::Io {
-            action: "write",
-            path: target.to_owned(),
-            source,
-        })?;
-    }
-    Ok(FileRun { run, diagnostics })
-}
-
-/// Reads and checks a scenario file.
-///
-/// # Errors
-/// As [`simulate_file`].
-pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
-    let text = read_text(path, MAX_SCENARIO_FILE)?;
-    match scenario_from(&text) {
-        Ok(read) => Ok((read.value, read.diagnostics)),
-        Err(diagnostics) => Err(not_runnable(path, diagnostics)),
-    }
-}
-
-/// Reads and checks a scenario's JSON: recrash's own, or the paper's dialect.
-pub(crate) fn scenario_from(json: &str) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
-    let draft = recrash_roads::read_draft(json)?;
-    let with_lines = |mut list: Vec<Diagnostic>| {
-        recrash_roads::add_lines(json, &mut list);
-        list
-    };
-    let mut checked = recrash_roads::check(draft.value).map_err(with_lines)?;
-    checked.diagnostics = draft.diagnostics.into_iter().chain(with_lines(checked.diagnostics)).collect();
-    Ok(checked)
-}
-
-pub(crate) fn not_runnable(path: &Path, diagnostics: Vec<Diagnostic>) -> PipelineError {
-    PipelineError::BadInput { what: format!("{} is not a scenario that can be run", path.display()), diagnostics }
 }

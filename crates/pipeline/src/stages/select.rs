@@ -1,10 +1,10 @@
 //! The second stage: records to picks; and studies of the choice.
 
+use super::{StageReport, StageWork, cases, names};
 use crate::embedding::{Embeds, KeptRows, for_strategy};
 use crate::error::PipelineError;
-use crate::stages::{StageReport, StageWork, names};
 use crate::store::to_json;
-use crate::suite::{Stage, Suite};
+use crate::suite::{Stage, Suite, Work};
 use rayon::prelude::*;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::{BudgetRow, Stability, Strategy};
@@ -69,13 +69,9 @@ impl<'a> Choice<'a> {
             weighting: chosen.weighting,
             restarts: chosen.restarts,
         };
-        let profile = String::from_utf8(to_json(suite.profile())).unwrap_or_default();
+        let profile = cases::text_of(suite.profile());
         let inputs = vec![records, profile, format!("{options:?}"), embeds.fingerprint().to_owned()];
         Ok(Self { suite, embeds, remarks, options, inputs })
-    }
-
-    fn inputs(&self) -> Vec<&[u8]> {
-        self.inputs.iter().map(String::as_bytes).collect()
     }
 
     /// Records, the rows of their narratives, and the rows to keep.
@@ -93,9 +89,9 @@ fn bad_choice(error: SelectError) -> PipelineError {
 }
 
 /// Runs the stage.
-pub fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
+pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let choice = Choice::new(work.suite)?;
-    let mut report = work.whole(&choice.inputs(), || {
+    let mut report = work.whole(&choice.inputs, || {
         let (records, embedding, kept) = choice.read()?;
         let embedding = for_strategy(&embedding, &records, choice.options.strategy);
         let outcome = select_with(&records, work.suite.profile(), &choice.options, &embedding);
@@ -119,11 +115,10 @@ impl Suite {
     /// As of the stages records and select, and where `seeds` is below 2.
     pub fn study_selection(&self, seeds: usize) -> Result<SelectionStudy, PipelineError> {
         let choice = Choice::new(self)?;
-        let seeds_text = seeds.to_string();
-        let mut inputs = choice.inputs();
-        inputs.push(seeds_text.as_bytes());
+        let mut inputs = choice.inputs.clone();
+        inputs.push(seeds.to_string());
         self.in_pool(|| {
-            self.unit("study", &inputs, || {
+            self.unit(&Work { name: "study", inputs: &inputs, editable: &[] }, || {
                 let study = choice.study(seeds)?;
                 Ok(vec![(names::SELECTION_STUDY.into(), to_json(&study))])
             })

@@ -1,14 +1,16 @@
 //! What a person is told at the end of a run.
 
+use super::failures::Failure;
+use super::report::Case;
+use super::{Cases, DesignLog};
 use crate::agents::{AgentLog, Cast, RULES};
-use crate::failures::Failure;
-use crate::stages::Case;
-use crate::suite::{RecordSource, Suite};
+use crate::options::RecordSource;
+use crate::suite::Suite;
 use recrash_model::metrics::{Answer, Check};
 use recrash_model::narrative::Origin;
-use recrash_model::record::{FunnelStep, RecordSet};
+use recrash_model::record::{FunnelStep, RecordRef};
 use recrash_model::run::JudgedRun;
-use recrash_model::selection::{Coverage, EmbeddingInfo, Selection, StageTables, Strategy, TemplateCount};
+use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
 use serde::{Deserialize, Serialize};
@@ -97,6 +99,19 @@ impl ModelSummary {
     }
 }
 
+/// The rules took over from a model.
+const FALLBACK: &str = "fallback";
+
+/// How a role was played in one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RoleSummary {
+    /// `rules`, `first answer`, `after repair`, `fallback` or `not asked` (a contact as designed needs no tuning).
+    pub outcome: String,
+    /// Why the rules took over, where they did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
 /// One scenario in numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseSummary {
@@ -104,15 +119,18 @@ pub struct CaseSummary {
     pub id: String,
     /// Template.
     pub template: Template,
-    /// How the narrative came about: `rules`, `first answer`, `after repair` or `fallback`.
-    pub narrated: Option<String>,
-    /// How the design came about, in the same words.
-    pub designed: Option<String>,
-    /// How the tuned one came about, in the same words, or `not asked` where a contact as designed needs no tuning.
-    #[serde(default)]
-    pub tuned_by: Option<String>,
+    /// How the narrative came about.
+    pub narrated: Option<RoleSummary>,
+    /// How the design came about.
+    pub designed: Option<RoleSummary>,
+    /// How the tuned one came about.
+    pub tuned_by: Option<RoleSummary>,
     /// Whose crash it tells, and why not the picked record's.
     pub origin: Option<Origin>,
+    /// The record that is told; none where the crash is invented.
+    pub told: Option<RecordRef>,
+    /// Files that a person edited.
+    pub edited: Vec<String>,
     /// As designed.
     pub first: Option<RunSummary>,
     /// As tuned.
@@ -168,15 +186,17 @@ impl RunSummary {
 }
 
 impl Summary {
-    /// Scenarios whose tuned run gives this answer to whether it is true to its record.
-    pub fn faithful(&self, answer: Answer) -> usize {
-        self.cases.iter().filter(|case| case.tuned.as_ref().is_some_and(|run| run.faithful == answer)).count()
+    /// Scenarios of their own record, and of another one, whose tuned run gives this answer to whether it is true to it.
+    /// An invented one has no record to be true to.
+    pub fn faithful(&self, answer: Answer) -> [usize; 2] {
+        let answers = |case: &&CaseSummary| case.faithful() == Some(answer);
+        let told = |name| self.cases.iter().filter(answers).filter(|case| case.is_told(name)).count();
+        ["own", "other"].map(told)
     }
 
     /// Scenarios that tell their own record, another one, and nobody's crash.
     pub fn origins(&self) -> [usize; 3] {
-        let named = |name| move |case: &&CaseSummary| case.origin.as_ref().is_some_and(|o| o.name() == name);
-        ["own", "other", "invented"].map(|name| self.cases.iter().filter(named(name)).count())
+        ["own", "other", "invented"].map(|name| self.cases.iter().filter(|case| case.is_told(name)).count())
     }
 
     /// Scenarios that went all the way.
@@ -201,15 +221,54 @@ impl Summary {
     }
 }
 
+impl CaseSummary {
+    /// Whether it tells the crash of an `own` record, an `other` one, or an `invented` one.
+    fn is_told(&self, name: &str) -> bool {
+        self.origin.as_ref().is_some_and(|origin| origin.name() == name)
+    }
+
+    /// Whether the tuned run is true to the record that is told; no answer where it was not run, or nobody's crash is told.
+    pub fn faithful(&self) -> Option<Answer> {
+        self.tuned.as_ref().filter(|_| !self.is_told("invented")).map(|run| run.faithful)
+    }
+
+    /// Of a case.
+    pub(super) fn of(case: &Case) -> Self {
+        let id = &case.cluster.scenario_id;
+        let agent = |log: &AgentLog| RoleSummary { outcome: log.outcome().to_owned(), why: log.fallback.clone() };
+        let design = |log: &DesignLog| {
+            let outcome = log.outcome();
+            let why = (outcome == FALLBACK).then(|| log.gave_up.join("; "));
+            RoleSummary { outcome: outcome.to_owned(), why }
+        };
+        Self {
+            id: id.clone(),
+            template: case.cluster.template,
+            narrated: case.narrative.as_ref().map(|(_, log)| agent(log)),
+            designed: case.design.as_ref().map(design),
+            tuned_by: case.tuned.as_ref().map(|tuned| agent(&tuned.agent)),
+            origin: case.narrative.as_ref().map(|(narrative, _)| narrative.origin.clone()),
+            told: case.narrative.as_ref().and_then(|(narrative, _)| narrative.told_record().cloned()),
+            edited: case.edited.clone(),
+            first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
+            tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
+            triage: case.triage.clone(),
+            failure: case.failure.clone(),
+            points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
+        }
+    }
+}
+
 /// Puts a run in numbers.
-pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, cases: &[Case]) -> Summary {
+pub(super) fn summarise(suite: &Suite, cases: &Cases, summaries: Vec<CaseSummary>, simulator: String) -> Summary {
+    let (records, selection) = (&cases.records, &cases.selection);
     Summary {
-        format: "recrash.summary/1".into(),
+        format: "recrash.summary/2".into(),
         command: suite.options().command(),
         sample: suite.options().records == RecordSource::Sample,
         profile: suite.profile().name.clone(),
         ego: suite.ego().to_owned(),
-        simulator: simulator_name(cases),
+        simulator,
         rows: records.files.iter().map(|file| file.rows).sum(),
         funnel: records.funnel.clone(),
         usable: records.usable.len(),
@@ -218,61 +277,37 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
         tables: selection.tables.clone(),
         templates: selection.templates.clone(),
         coverage: selection.coverage.clone(),
-        models: models(&suite.options().cast, cases),
-        cases: cases
-            .iter()
-            .map(|case| CaseSummary {
-                id: case.cluster.scenario_id.clone(),
-                template: case.cluster.template,
-                narrated: case.narrative.as_ref().map(|(_, log)| log.outcome().to_owned()),
-                designed: case.design.as_ref().map(|log| log.outcome().to_owned()),
-                tuned_by: case.tuned.as_ref().map(|tuned| tuned.agent.outcome().to_owned()),
-                origin: case.narrative.as_ref().map(|(narrative, _)| narrative.origin.clone()),
-                first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
-                tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
-                triage: case.triage.clone(),
-                failure: case.failure.clone(),
-                points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
-            })
-            .collect(),
+        models: models(&suite.options().cast, &summaries),
+        cases: summaries,
     }
 }
 
 /// How the models of a cast did.
-pub fn models(cast: &Cast, cases: &[Case]) -> Vec<ModelSummary> {
-    type Told = Option<(&'static str, String)>;
-    type Role<'a> = (&'static str, &'a String, &'a dyn Fn(&Case) -> Told);
-    let of_agent = |log: &AgentLog| (log.outcome(), log.fallback.clone().unwrap_or_default());
-    let narrated = |case: &Case| -> Told { case.narrative.as_ref().map(|(_, log)| of_agent(log)) };
-    let designed = |case: &Case| -> Told { case.design.as_ref().map(|log| (log.outcome(), log.gave_up.join("; "))) };
-    let tuned = |case: &Case| -> Told { case.tuned.as_ref().map(|tuned| of_agent(&tuned.agent)) };
+fn models(cast: &Cast, cases: &[CaseSummary]) -> Vec<ModelSummary> {
+    type Role<'a> = (&'static str, &'a String, fn(&CaseSummary) -> Option<&RoleSummary>);
     let roles: [Role; 3] = [
-        ("paraphrase", &cast.paraphrase, &narrated),
-        ("design", &cast.design, &designed),
-        ("tune", &cast.tune, &tuned),
+        ("paraphrase", &cast.paraphrase, |case| case.narrated.as_ref()),
+        ("design", &cast.design, |case| case.designed.as_ref()),
+        ("tune", &cast.tune, |case| case.tuned_by.as_ref()),
     ];
     let by_model = roles.into_iter().filter(|(_, model, _)| *model != RULES);
     by_model
         .map(|(role, model, told)| {
-            let count = |word: &str| cases.iter().filter(|case| told(case).is_some_and(|(is, _)| is == word)).count();
-            let reason = |case: &Case| {
-                let why = told(case).filter(|(is, _)| *is == "fallback")?.1;
-                Some(FallbackReason { id: case.cluster.scenario_id.clone(), why })
+            let count =
+                |word: &str| cases.iter().filter(|case| told(case).is_some_and(|is| is.outcome == word)).count();
+            let reason = |case: &CaseSummary| {
+                let why = told(case).filter(|is| is.outcome == FALLBACK)?.why.clone().unwrap_or_default();
+                Some(FallbackReason { id: case.id.clone(), why })
             };
             ModelSummary {
                 role: role.to_owned(),
                 model: model.clone(),
                 first_answer: count("first answer"),
                 after_repair: count("after repair"),
-                fallback: count("fallback"),
+                fallback: count(FALLBACK),
                 not_asked: count("not asked"),
                 reasons: cases.iter().filter_map(reason).collect(),
             }
         })
         .collect()
-}
-
-/// The simulator that ran the scenarios, with its version.
-pub fn simulator_name(cases: &[Case]) -> String {
-    cases.iter().find_map(|case| case.first.as_ref()).map_or_else(String::new, |ran| ran.run.rollout.simulator.clone())
 }

@@ -1,15 +1,12 @@
 //! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
 
+use super::{CASE_STAGES, names};
 use crate::error::PipelineError;
-use crate::stages::names;
 use crate::store::to_json;
 use crate::suite::{Files, Stage, Suite};
 use recrash_model::Diagnostic;
 use recrash_model::diagnostic::{Location, Severity};
 use serde::{Deserialize, Serialize};
-
-/// The stages that work on one scenario at a time, in order.
-pub(crate) const CASE_STAGES: [Stage; 4] = [Stage::Narrate, Stage::Design, Stage::Simulate, Stage::Tune];
 
 /// Why a scenario went no further.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,13 +37,17 @@ pub(crate) fn keep(stage: Stage, id: &str, result: Result<Files, PipelineError>)
 
 /// Where a scenario failed, in the stages before `end`.
 pub(crate) fn before(suite: &Suite, id: &str, end: Stage) -> Option<Failure> {
-    CASE_STAGES.into_iter().filter(|stage| *stage < end).find_map(|stage| at(suite, id, stage))
+    CASE_STAGES
+        .iter()
+        .map(|declared| declared.stage)
+        .filter(|stage| *stage < end)
+        .find_map(|stage| at(suite, id, stage))
 }
 
 /// How a scenario failed in one stage.
 pub(crate) fn at(suite: &Suite, id: &str, stage: Stage) -> Option<Failure> {
     let file = names::failure(stage, id);
-    suite.store().path(&file).exists().then(|| {
+    suite.store().stamp(&file).is_some().then(|| {
         suite.store().read_json(&file).unwrap_or_else(|e| Failure { stage: stage.name().into(), why: e.to_string() })
     })
 }
