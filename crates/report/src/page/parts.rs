@@ -2,10 +2,12 @@
 
 use super::icon;
 use crate::summary::Result;
-use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};
-use recrash_model::metrics::{Answer, CheckResult, FindingKind, Timed};
+use recrash_model::metrics::{Answer, Check, CheckResult, FindingKind, Timed};
+use recrash_model::narrative::Origin;
+use recrash_model::record::RecordRef;
+use recrash_model::run::Judgement;
 use recrash_model::triage::FailureClass;
 
 /// A dash that says why there is no value.
@@ -49,16 +51,41 @@ pub fn result_chip(result: Result) -> Markup {
     html! { span.chip.(class) { (sign) (result.label()) } }
 }
 
-/// Whether a run is faithful, with the checks that failed.
-pub fn faithful_chip(run: Option<&RunView>) -> Markup {
+/// Whether a run is true to its record, with the checks that say otherwise. Nobody's crash has no record to be true to.
+pub fn faithful_chip(run: Option<&Judgement>, origin: Option<&Origin>) -> Markup {
     let Some(run) = run else { return missing("it was not run") };
-    match run.faithful() {
-        Answer::Unchecked => return html! { span.chip.odd { (icon::bang()) "not all checked" } },
-        Answer::Yes => return html! { span.chip.good { (icon::tick()) "faithful" } },
-        Answer::No => {}
+    if matches!(origin, Some(Origin::Invented { .. })) {
+        return html! { span.chip.none { (icon::dash()) "no record" } };
     }
-    let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
-    html! { span.chip.bad { (icon::cross()) "not faithful" } span.why { (why.join(", ")) } }
+    let listed = |checks: Vec<&Check>| {
+        html! { @if !checks.is_empty() { span.why { (checks.iter().map(|check| check.kind.label()).collect::<Vec<_>>().join(", ")) } } }
+    };
+    match run.faithful() {
+        Answer::Yes => html! { span.chip.good { (icon::tick()) "faithful" } },
+        Answer::Unchecked => html! { span.chip.odd { (icon::bang()) "unchecked" } (listed(run.verdict.unchecked().collect())) },
+        Answer::No => html! { span.chip.bad { (icon::cross()) "not faithful" } (listed(run.verdict.failures().collect())) },
+    }
+}
+
+/// Whose crash is told, where it is not the picked record's own.
+pub fn origin_chip(origin: Option<&Origin>, told: Option<&RecordRef>) -> Markup {
+    let why = words::provenance(origin, told);
+    html! {
+        @match origin {
+            None | Some(Origin::Own) => "",
+            Some(Origin::Other { .. }) => span.chip.odd title=(words::clean(&why, 200)) { (icon::bang()) "another record" },
+            Some(Origin::Invented { .. }) => span.chip.odd title=(words::clean(&why, 200)) { (icon::bang()) "invented" },
+        }
+    }
+}
+
+/// That a person edited files of a scenario, and which.
+pub fn edited_chip(files: &[String]) -> Markup {
+    html! {
+        @if !files.is_empty() {
+            span.chip.odd { (icon::pen()) "edited by hand" } span.why { (words::clean(&files.join(", "), 300)) }
+        }
+    }
 }
 
 /// The result of a check.
