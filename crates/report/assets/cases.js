@@ -56,6 +56,7 @@ function caseSection(anchor, filled) {
       section.innerHTML = markup;
       section.dataset.filled = '';
       setUpTabs(section);
+      nameCells(section);
       filled(section);
     },
     () => {

@@ -11,6 +11,19 @@ function svg(name, attributes = {}, text) {
   return element;
 }
 
+/** Names every cell of tables with a head, for windows too narrow for columns. */
+function nameCells(root) {
+  for (const table of all('table.plain:has(thead)', root)) {
+    const names = all('thead tr > *', table).map((head) => head.textContent);
+    table.classList.add('folds');
+    for (const row of all('tbody tr', table)) {
+      [...row.cells].forEach((cell, i) => {
+        if (names[i] && cell.tagName === 'TD') cell.dataset.label = names[i];
+      });
+    }
+  }
+}
+
 const readBlock = (id) => JSON.parse(document.getElementById(id).textContent);
 const suite = readBlock('suite-data');
 

@@ -127,6 +127,7 @@ function onKey(event) {
 }
 
 readColours();
+nameCells(document);
 setUpTable();
 setUpMap();
 setUpFacts();

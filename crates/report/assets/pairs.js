@@ -2,6 +2,7 @@
 
 const rawCase = (position) => readBlock(`case-data-${position}`);
 readColours();
+nameCells(document);
 const replays = new Map();
 const observer = new IntersectionObserver((entries) => {
   for (const { target, isIntersecting } of entries) {

@@ -64,8 +64,9 @@ fn rows(context: &Context) -> Value {
     let told = |position: usize| context.told.at(position);
     let texts = |of: &dyn Fn(&CrashRecord) -> String| {
         let mut names: Vec<String> = Vec::new();
-        let of: Vec<Option<usize>> =
-            cases().map(|(i, _)| told(i).map(|record| index_of(&mut names, words::clean(&of(record), 80).into_owned()))).collect();
+        let of: Vec<Option<usize>> = cases()
+            .map(|(i, _)| told(i).map(|record| index_of(&mut names, words::clean(&of(record), 80).into_owned())))
+            .collect();
         json!([names, of])
     };
     let numbers = |of: &dyn Fn(&CaseRow) -> Option<f64>| {

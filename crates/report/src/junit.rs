@@ -100,9 +100,8 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         .min_gap_m()
         .and_then(|gap| fixed(gap, 2))
         .map_or("no gap was measured".to_owned(), |gap| format!("{gap} m"));
-    let checked = |check: &Check| {
-        format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed)
-    };
+    let checked =
+        |check: &Check| format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed);
     let listed = |answer: Answer, checks: Vec<&Check>| {
         format!("{} ({})", answer.label(), checks.into_iter().map(checked).collect::<Vec<_>>().join("; "))
     };

@@ -7,7 +7,7 @@ use recrash_model::record::{Coded, CrashRecord, RecordRef};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Longest list of words of one case: a suite of thousands stays small. [bytes]
-const LONGEST_LIST: usize = 900;
+const LONGEST_LIST: usize = 700;
 /// Shortest word that is kept. [characters]
 const SHORTEST_WORD: usize = 3;
 

@@ -78,9 +78,7 @@ impl Summary {
     /// Of a suite.
     pub fn of(suite: &SuiteView) -> Self {
         let count = |holds: &dyn Fn(&CaseRow) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
-        let tells = |case: &CaseRow, name: &str| {
-            case.origin.as_ref().is_some_and(|origin| origin.name() == name)
-        };
+        let tells = |case: &CaseRow, name: &str| case.origin.as_ref().is_some_and(|origin| origin.name() == name);
         let answers = |case: &CaseRow, answer| case.faithful() == Some(answer);
         let gaps = |of: &dyn Fn(&CaseRow) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
         Self {

@@ -65,8 +65,8 @@ fn push(points: &mut Vec<[i16; 2]>, point: [i16; 2]) {
         return;
     }
     if let [.., a, b] = points[..] {
-        let [(ux, uy), (vx, vy)] = [(b, a), (point, a)]
-            .map(|(to, from)| (f64::from(to[0] - from[0]), f64::from(to[1] - from[1])));
+        let [(ux, uy), (vx, vy)] =
+            [(b, a), (point, a)].map(|(to, from)| (f64::from(to[0] - from[0]), f64::from(to[1] - from[1])));
         let aside = (ux * vy - uy * vx).abs() / (vx * vx + vy * vy).sqrt().max(1.0);
         if aside < 0.6 && ux * vx + uy * vy > 0.0 {
             points.pop();

@@ -13,7 +13,9 @@ use recrash_model::metrics::Timed;
 use recrash_model::narrative::{FactSource, Origin};
 use recrash_model::record::Coded;
 use recrash_model::run::Judgement;
-use recrash_report::{CaseRow, CaseView, RunRow, RunView, SuiteView, case_file, case_file_name, html, junit, results_csv};
+use recrash_report::{
+    CaseRow, CaseView, RunRow, RunView, SuiteView, case_file, case_file_name, html, junit, results_csv,
+};
 use suite::Demo;
 
 const HOSTILE: &str = "</script></style></title><img src=x onerror=alert(1)><!--\" ' ` ../../etc/passwd {{7*7}} ]]> \u{202e}\u{1f697} \u{0} &lt;b&gt;";
@@ -145,7 +147,8 @@ fn broken() -> Demo {
     suite.cases[0].told = None;
     driven[0].narrative = None;
     driven[0].tune_log = None;
-    let spoil_rows = |case: &mut CaseRow, of: fn(&mut RunRow)| case.before.iter_mut().chain(&mut case.after).for_each(of);
+    let spoil_rows =
+        |case: &mut CaseRow, of: fn(&mut RunRow)| case.before.iter_mut().chain(&mut case.after).for_each(of);
     spoil_rows(&mut suite.cases[2], |run| {
         run.judgement.metrics.min_gap = Some(Timed { value: f64::NAN, time_s: f64::INFINITY });
         if let Some(contact) = &mut run.judgement.metrics.contact {
@@ -349,7 +352,9 @@ fn only_a_yes_is_called_faithful() {
 fn the_first_screen_tells_its_denominators_and_nobodys_crash_is_true_to_no_record() {
     let demo = suite::demo();
     let page = html(&demo.suite);
-    assert!(page.contains("<b>16 of 20 scenarios</b> tell their own record; <b>11 of those 16</b> show every told fact."));
+    assert!(
+        page.contains("<b>16 of 20 scenarios</b> tell their own record; <b>11 of those 16</b> show every told fact.")
+    );
     // The sixth tells nobody's crash, and its run shows what it should.
     assert!(demo.suite.cases[5].last_run().is_some_and(|run| run.faithful() == recrash_model::metrics::Answer::Yes));
     assert_eq!(demo.suite.cases[5].faithful(), None);

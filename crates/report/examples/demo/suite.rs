@@ -418,10 +418,8 @@ pub fn demo() -> Demo {
 
 fn row(case: &CaseView, cluster: &Cluster, position: usize) -> CaseRow {
     let row = |run: &Option<RunView>| {
-        run.as_ref().map(|run| RunRow {
-            judgement: run.run.judgement.clone(),
-            rerun_command: run.rerun_command.clone(),
-        })
+        run.as_ref()
+            .map(|run| RunRow { judgement: run.run.judgement.clone(), rerun_command: run.rerun_command.clone() })
     };
     let mut records = cluster.members.clone();
     records.truncate(4);

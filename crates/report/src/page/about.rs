@@ -134,7 +134,10 @@ fn glossary() -> Markup {
             "Faithful",
             "Every told fact was checked and is shown by what was driven. Computed from the paths, never from the scenario's labels.",
         ),
-        ("Unchecked", "Nothing speaks against the run, and not every told fact could be checked. It is not called faithful."),
+        (
+            "Unchecked",
+            "Nothing speaks against the run, and not every told fact could be checked. It is not called faithful.",
+        ),
         (
             "Own, another, invented",
             "Whose crash is told: the picked record's, another real record's in its place, or nobody's. Nobody's crash has no record to be true to.",

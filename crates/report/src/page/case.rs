@@ -183,7 +183,7 @@ fn numbers(case: &CaseView) -> Markup {
                 dt { (name) }
                 dd.value {
                     @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, unit, why)) }
-                    @if let Some(after) = &case.after { @if case.before.is_some() { span.arrow { "\u{2192}" } } (parts::quantity(of(after), decimals, unit, why)) }
+                    @if let Some(after) = &case.after { @if case.before.is_some() { " " span.arrow { "\u{2192}" } " " } (parts::quantity(of(after), decimals, unit, why)) }
                 }
             }
         }

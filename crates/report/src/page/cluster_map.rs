@@ -104,7 +104,7 @@ pub fn map(context: &Context) -> Markup {
                             @if picks <= MOST_LABELS {
                                 circle.{ "c" (template_of(point) % COLOURS) } r="10" {}
                                 text y="3.6" text-anchor="middle" { (cluster.number) }
-                            } @else { circle.{ "c" (template_of(point) % COLOURS) } r="6" {} }
+                            } @else { circle.{ "c" (template_of(point) % COLOURS) } r="5" {} }
                         }
                     }
                 }

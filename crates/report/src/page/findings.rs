@@ -93,7 +93,8 @@ fn meaning(kind: FindingKind, context: &Context) -> String {
 }
 
 fn every(context: &Context) -> Markup {
-    let runs = context.suite.cases.iter().flat_map(|case| case.runs().into_iter().map(move |(name, run)| (case, name, run)));
+    let runs =
+        context.suite.cases.iter().flat_map(|case| case.runs().into_iter().map(move |(name, run)| (case, name, run)));
     let rows: Vec<_> =
         runs.flat_map(|(case, name, run)| run.judgement.findings.iter().map(move |f| (case, name, f))).collect();
     html! {

@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 
 /// Name, whether it is filled (drawn with a stroke otherwise), and path.
-const PICTURES: [(&str, bool, &str); 18] = [
+const PICTURES: [(&str, bool, &str); 15] = [
     ("left", false, "M10 3 5 8l5 5"),
     ("right", false, "M6 3l5 5-5 5"),
     ("to-start", true, "M3 3h2v10H3zM14 3v10L6 8z"),
@@ -15,11 +15,8 @@ const PICTURES: [(&str, bool, &str); 18] = [
     ("plus", false, "M8 3v10M3 8h10"),
     ("minus", false, "M3 8h10"),
     ("copy", false, "M6 6h7v8H6zM3 10V2h7"),
-    ("tick", false, "M3 8.5 6.5 12 13 4.5"),
     ("cross", false, "M4 4l8 8M12 4l-8 8"),
-    ("dash", false, "M4 8h8"),
     ("bang", false, "M8 3v6.2M8 12.6v.2"),
-    ("pen", false, "M3 13l1-3.5L11 2.5l2.5 2.5-7 7z"),
     ("search", false, "M7 2.5a4.5 4.5 0 1 0 .01 0M10.5 10.5 14 14"),
     ("event-back", false, "M12 3v10M8 8h-6M5 5 2 8l3 3"),
     ("event-on", false, "M4 3v10M8 8h6M11 5l3 3-3 3"),
@@ -112,19 +109,9 @@ pub fn copy() -> Markup {
     of("copy")
 }
 
-/// Good.
-pub fn tick() -> Markup {
-    of("tick")
-}
-
 /// Bad.
 pub fn cross() -> Markup {
     of("cross")
-}
-
-/// Neither.
-pub fn dash() -> Markup {
-    of("dash")
 }
 
 /// Look here.
@@ -140,11 +127,6 @@ pub fn event_back() -> Markup {
 /// To the next event.
 pub fn event_on() -> Markup {
     of("event-on")
-}
-
-/// Written over by hand.
-pub fn pen() -> Markup {
-    of("pen")
 }
 
 /// Look for.

@@ -74,7 +74,7 @@ fn tiles(context: &Context) -> Markup {
             }
         }
     };
-    let arrow = || html! { span.arrow { "\u{2192}" } };
+    let arrow = || html! { " " span.arrow { "\u{2192}" } " " };
     html! {
         dl.tiles {
             (tile(
@@ -119,7 +119,7 @@ fn tiles(context: &Context) -> Markup {
             ))
             (tile(
                 "Median least gap",
-                html! { (gap(s.median_before_m)) (arrow()) (gap(s.median_after_m)) span.of { " m" } },
+                html! { (gap(s.median_before_m)) (arrow()) (gap(s.median_after_m)) span.of { "\u{a0}m" } },
                 html! { "as designed, after tuning" },
                 None,
             ))
@@ -175,7 +175,12 @@ fn table(context: &Context) -> Markup {
         ("what", "Scenario", Some("order"), "its id and template"),
         ("crash", "Crash told", Some("operator"), "the record that is told: id, operator, city, kind of partner"),
         ("gap", "Least gap", Some("after"), "box to box, as designed and after tuning"),
-        ("impact", "Impact", Some("impact"), "relative speed at the ego's contact in the last run, and the speed of each"),
+        (
+            "impact",
+            "Impact",
+            Some("impact"),
+            "relative speed at the ego's contact in the last run, and the speed of each",
+        ),
         ("injury", "Injury", Some("harm"), "highest injury that the record alleges"),
         ("ego", "Ego", Some("findings"), "what it did in the last run"),
         ("true", "True to record", Some("faithful"), "computed from the paths driven in the last run"),
@@ -212,14 +217,14 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
             td.crash { (crash(context, position, case)) }
             td.gap {
                 @if last.is_none() { (missing(not_run)) } @else {
-                    (parts::quantity(case.before.as_ref().and_then(|run| run.min_gap_m()), 2, "m", "no partner took part"))
-                    @if let Some(after) = &case.after { span.arrow { "\u{2192}" } b { (parts::quantity(after.min_gap_m(), 2, "m", "no partner took part")) } }
+                    (metres(case.before.as_ref()))
+                    @if let Some(after) = &case.after { " \u{2192} " b { (metres(Some(after))) } }
                 }
             }
             td.impact {
                 @match contact {
                     Some(contact) => {
-                        b { (parts::quantity(Some(contact.relative_speed_mps), 1, "m/s", "")) }
+                        b { (fixed(contact.relative_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
                         .muted { "ego " (fixed(contact.ego_speed_mps, 1).unwrap_or_default()) ", other " (fixed(contact.other_speed_mps, 1).unwrap_or_default()) }
                     },
                     None => (missing(if last.is_some() { "no contact" } else { not_run })),
@@ -229,6 +234,13 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
             td.ego { (ego(case, not_run)) }
             td.true { (parts::faithful_chip(last.map(|run| &run.judgement), case.origin.as_ref())) }
         }
+    }
+}
+
+fn metres(run: Option<&RunRow>) -> Markup {
+    match run.and_then(|run| run.min_gap_m()).and_then(|gap| fixed(gap, 2)) {
+        Some(gap) => html! { (gap) "\u{a0}m" },
+        None => missing("no gap"),
     }
 }
 

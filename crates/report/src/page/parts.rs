@@ -41,29 +41,29 @@ pub fn text_or(value: Option<&str>, why: &str) -> Markup {
     }
 }
 
-/// Whether the ego failed: a sign, a word and a colour.
+/// Whether the ego failed: a word, a colour, and the sign that the style gives to every chip of its class.
 pub fn result_chip(result: Result) -> Markup {
-    let (class, sign) = match result {
-        Result::Failed => ("bad", icon::cross()),
-        Result::Passed => ("good", icon::tick()),
-        Result::Missing => ("none", icon::dash()),
+    let class = match result {
+        Result::Failed => "bad",
+        Result::Passed => "good",
+        Result::Missing => "none",
     };
-    html! { span.chip.(class) { (sign) (result.label()) } }
+    html! { span.chip.(class) { (result.label()) } }
 }
 
 /// Whether a run is true to its record, with the checks that say otherwise. Nobody's crash has no record to be true to.
 pub fn faithful_chip(run: Option<&Judgement>, origin: Option<&Origin>) -> Markup {
     let Some(run) = run else { return missing("it was not run") };
     if matches!(origin, Some(Origin::Invented { .. })) {
-        return html! { span.chip.none { (icon::dash()) "no record" } };
+        return html! { span.chip.none { "no record" } };
     }
     let listed = |checks: Vec<&Check>| {
         html! { @if !checks.is_empty() { span.why { (checks.iter().map(|check| check.kind.label()).collect::<Vec<_>>().join(", ")) } } }
     };
     match run.faithful() {
-        Answer::Yes => html! { span.chip.good { (icon::tick()) "faithful" } },
-        Answer::Unchecked => html! { span.chip.odd { (icon::bang()) "unchecked" } (listed(run.verdict.unchecked().collect())) },
-        Answer::No => html! { span.chip.bad { (icon::cross()) "not faithful" } (listed(run.verdict.failures().collect())) },
+        Answer::Yes => html! { span.chip.good { "faithful" } },
+        Answer::Unchecked => html! { span.chip.odd { "unchecked" } (listed(run.verdict.unchecked().collect())) },
+        Answer::No => html! { span.chip.bad { "not faithful" } (listed(run.verdict.failures().collect())) },
     }
 }
 
@@ -73,8 +73,8 @@ pub fn origin_chip(origin: Option<&Origin>, told: Option<&RecordRef>) -> Markup 
     html! {
         @match origin {
             None | Some(Origin::Own) => "",
-            Some(Origin::Other { .. }) => span.chip.odd title=(words::clean(&why, 200)) { (icon::bang()) "another record" },
-            Some(Origin::Invented { .. }) => span.chip.odd title=(words::clean(&why, 200)) { (icon::bang()) "invented" },
+            Some(Origin::Other { .. }) => span.chip.odd title=(words::clean(&why, 200)) { "another record" },
+            Some(Origin::Invented { .. }) => span.chip.odd title=(words::clean(&why, 200)) { "invented" },
         }
     }
 }
@@ -83,7 +83,7 @@ pub fn origin_chip(origin: Option<&Origin>, told: Option<&RecordRef>) -> Markup 
 pub fn edited_chip(files: &[String]) -> Markup {
     html! {
         @if !files.is_empty() {
-            span.chip.odd { (icon::pen()) "edited by hand" } span.why { (words::clean(&files.join(", "), 300)) }
+            span.chip.odd { "edited by hand" } span.why { (words::clean(&files.join(", "), 300)) }
         }
     }
 }
@@ -91,27 +91,27 @@ pub fn edited_chip(files: &[String]) -> Markup {
 /// The result of a check.
 pub fn check_chip(result: CheckResult) -> Markup {
     match result {
-        CheckResult::Shown => html! { span.chip.good { (icon::tick()) "shown" } },
-        CheckResult::NotShown => html! { span.chip.bad { (icon::cross()) "not shown" } },
-        CheckResult::CannotBeShown => html! { span.chip.odd { (icon::bang()) "cannot be shown" } },
-        CheckResult::NotTold => html! { span.chip.none { (icon::dash()) "not told" } },
+        CheckResult::Shown => html! { span.chip.good { "shown" } },
+        CheckResult::NotShown => html! { span.chip.bad { "not shown" } },
+        CheckResult::CannotBeShown => html! { span.chip.odd { "cannot be shown" } },
+        CheckResult::NotTold => html! { span.chip.none { "not told" } },
     }
 }
 
 /// A kind of finding.
 pub fn finding_chip(kind: FindingKind) -> Markup {
-    let (class, sign) = if kind.is_failure() { ("bad", icon::cross()) } else { ("odd", icon::bang()) };
-    html! { span.chip.(class) { (sign) (kind.label()) } }
+    let class = if kind.is_failure() { "bad" } else { "odd" };
+    html! { span.chip.(class) { (kind.label()) } }
 }
 
 /// What a failure is worth.
 pub fn class_chip(class: FailureClass) -> Markup {
-    let (kind, sign) = match class {
-        FailureClass::Avoidable | FailureClass::Quirk => ("bad", icon::bang()),
-        FailureClass::BeyondReference => ("odd", icon::bang()),
-        FailureClass::Unavoidable => ("none", icon::dash()),
+    let kind = match class {
+        FailureClass::Avoidable | FailureClass::Quirk => "bad",
+        FailureClass::BeyondReference => "odd",
+        FailureClass::Unavoidable => "none",
     };
-    html! { span.chip.(kind) title=(class.meaning()) { (sign) (class.label()) } }
+    html! { span.chip.(kind) { (class.label()) } }
 }
 
 /// A command with a button that copies it.

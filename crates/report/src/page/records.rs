@@ -1,9 +1,9 @@
 //! The records: funnel, the paper's tables for this run, the cluster map, and what the picks cover.
 
 use super::{Context, cluster_map, coverage, parts};
+use crate::anchor;
 use crate::view::CaseRow;
 use crate::words::{self, thousands};
-use crate::anchor;
 use maud::{Markup, html};
 use recrash_model::record::RejectReason;
 
@@ -140,7 +140,7 @@ fn templates(context: &Context) -> Markup {
                                 a.tag href={ "#" (anchor::anchor(&case.scenario_id)) } title=(words::clean(&case.scenario_id, 80)) { (position + 1) } " "
                             }
                             @if cases.len() > LONGEST_LIST { "and " (cases.len() - LONGEST_LIST) " more" }
-                            @if count.picks == 0 { span.chip.bad { (super::icon::cross()) "no pick" } }
+                            @if count.picks == 0 { span.chip.bad { "no pick" } }
                         }
                     }
                 } }

@@ -18,7 +18,7 @@ pub fn by_class(context: &Context) -> Markup {
     let failures = context.summary.failed_after;
     let share = |n: usize| if failures == 0 { 0.0 } else { n as f64 / failures as f64 };
     html! {
-        table.plain {
+        .table-wrap { table.plain {
             caption.hidden-text { "Failures after tuning by what they are worth" }
             thead { tr { th scope="col" { "Failure" } th scope="col" { "What it means" } th.right scope="col" { "Scenarios" } td {} th scope="col" { "Which" } } }
             tbody { @for class in FailureClass::ALL {
@@ -37,7 +37,7 @@ pub fn by_class(context: &Context) -> Markup {
                     }
                 }
             } }
-        }
+        } }
         p.muted { "Of the " (failures) " scenarios the ego fails at last. The other egos drive the same scenario on the native simulator." }
     }
 }
