@@ -565,12 +565,17 @@ fn report(work: &StageWork) -> Result<StageReport, PipelineError> {
         let summary = summary::summarise(suite, &cases.records, &cases.selection, &all);
         let remarks = suite.store().read_json(names::RECORD_REMARKS)?;
         let view = view::view(suite, &cases.records, &cases.selection, &all, remarks);
-        Ok(vec![
+        let mut files = vec![
             (names::SUMMARY.into(), to_json(&summary)),
             (names::REPORT.into(), recrash_report::html(&view).into_bytes()),
             (names::JUNIT.into(), recrash_report::junit(&view).into_bytes()),
             (names::RESULTS.into(), recrash_report::results_csv(&view).into_bytes()),
-        ])
+        ];
+        for (case, row) in all.iter().zip(&view.cases) {
+            let text = recrash_report::case_file(&view.context(row), &view::case_view(suite, case), row);
+            files.push((recrash_report::case_file_name(&row.scenario_id), text.into_bytes()));
+        }
+        Ok(files)
     })
 }
 

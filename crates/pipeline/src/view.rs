@@ -1,14 +1,14 @@
 //! The suite as the report sees it.
 
 use crate::agents::Cast;
-use crate::stages::{Case, Ran, names};
+use crate::stages::{Case, Ran, Tuned, names};
 use crate::suite::{Options, RecordSource, Suite, quoted};
 use crate::summary::{self, FallbackReason, simulator_name};
 use recrash_metrics::series;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
-use recrash_report::{CaseView, RunTrace, RunView, SuiteView};
+use recrash_report::{CaseRow, CaseView, RunRow, RunTrace, RunView, SuiteView, Thumbnail};
 
 /// Puts together what the report shows.
 pub fn view(
@@ -32,7 +32,7 @@ pub fn view(
         sample: options.records == RecordSource::Sample,
         records: records.clone(),
         selection: selection.clone(),
-        cases: cases.iter().enumerate().map(|(index, case)| case_view(suite, records, index, case)).collect(),
+        cases: cases.iter().enumerate().map(|(index, case)| case_row(suite, records, index, case)).collect(),
         diagnostics: model_remarks(&options.cast, cases).into_iter().chain(remarks).collect(),
     }
 }
@@ -53,20 +53,48 @@ fn model_remarks(cast: &Cast, cases: &[Case]) -> Vec<Diagnostic> {
     remarks
 }
 
-fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseView {
+/// What the tables say of a scenario.
+fn case_row(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> CaseRow {
     let id = &case.cluster.scenario_id;
     let positions =
         case.records.iter().filter_map(|shown| records.records.iter().position(|r| std::ptr::eq(r, *shown)));
-    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0);
-    CaseView {
+    let narrative = case.narrative.as_ref().map(|(narrative, _)| narrative);
+    let row = |ran: &Ran, file: &str| RunRow {
+        judgement: ran.run.judgement.clone(),
+        rerun_command: rerun_command(suite, file),
+    };
+    let moved = moved(case);
+    CaseRow {
         scenario_id: id.clone(),
         template: case.cluster.template,
         cluster: Some(index),
         records: positions.collect(),
+        origin: narrative.map(|narrative| narrative.origin.clone()),
+        told: narrative.and_then(|narrative| narrative.told_record().cloned()),
+        narrative: narrative.map_or_else(String::new, |narrative| narrative.text.clone()),
+        before: case.first.as_ref().map(|ran| row(ran, &names::scenario(id))),
+        after: moved.map(|tuned| row(&tuned.ran, &names::tuned(id))),
+        triage: case.triage.clone(),
+        refused: case.failure.as_ref().map(ToString::to_string),
+        edited: Vec::new(),
+        thumbnail: moved.map(|tuned| &tuned.ran).or(case.first.as_ref()).and_then(|ran| Thumbnail::of(&ran.run)),
+    }
+}
+
+/// The tuned scenario, where tuning kept another point.
+fn moved<'a>(case: &'a Case) -> Option<&'a Tuned> {
+    case.tuned.as_ref().filter(|tuned| tuned.log.best != 0)
+}
+
+/// Everything behind a scenario.
+pub fn case_view(suite: &Suite, case: &Case) -> CaseView {
+    let id = &case.cluster.scenario_id;
+    CaseView {
+        scenario_id: id.clone(),
         narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
         drawing: case.first.as_ref().map(|ran| ran.scenario.network().drawing()).unwrap_or_default(),
         before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
-        after: moved.map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
+        after: moved(case).map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
         triage: case.triage.clone(),
         reference: case.reference.as_ref().map(|run| RunTrace { run: run.clone(), series: series(&run.rollout) }),
         tune_log: case.tuned.as_ref().map(|tuned| tuned.log.clone()),

@@ -63,6 +63,7 @@ async function open(settings, hash = '') {
   const page = await context.newPage();
   page.asked = [];
   page.setDefaultTimeout(10_000);
+  page.setDefaultNavigationTimeout(60_000);
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && problems.push(`console: ${message.text()}`));
   page.on('pageerror', (error) => problems.push(`script: ${error.message}`));
   page.on('request', (request) => {
