@@ -1,12 +1,13 @@
 //! What a point of a search scores, and which points are refused. Described in `docs/models/tuning.md`.
 
-use crate::casework::{CaseRun, run_scenario};
+use crate::casework::run_scenario;
 use crate::simulator::Simulator;
 use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::math::wrap_angle;
 use recrash_model::metrics::Expectation;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Role, Rollout, STEP_S};
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::{Parameter, Score, apply};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -59,7 +60,7 @@ impl<'a> Scoring<'a> {
         expectation: &'a Expectation,
         profile: &'a SystemProfile,
         simulator: &'a dyn Simulator,
-        first: &CaseRun,
+        first: &JudgedRun,
     ) -> Self {
         let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
         let faults = AtomicUsize::new(0);
@@ -112,11 +113,10 @@ impl<'a> Scoring<'a> {
     }
 
     /// Why a run is refused: unfaithful, degenerate or implausible. Empty for an accepted one.
-    fn refusals(&self, run: &CaseRun) -> Vec<String> {
+    fn refusals(&self, run: &JudgedRun) -> Vec<String> {
         let mut why: Vec<String> = run
             .verdict
-            .iter()
-            .flat_map(|v| v.failures())
+            .failures()
             .map(|c| format!("unfaithful: {} is {}, not {}", c.kind.label(), c.observed, c.expected))
             .collect();
         if let Some(gap) = run.metrics.min_gap {
