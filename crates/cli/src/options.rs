@@ -103,6 +103,9 @@ pub struct SuiteArgs {
     /// Make anew what was edited by hand; without it, edited files are kept and the stages after them go on from there.
     #[arg(long, help_heading = "What is there already")]
     pub discard_edits: bool,
+    /// Choose the picks anew; without it, those of the last choice stay when records come in.
+    #[arg(long, help_heading = "What is there already")]
+    pub reselect: bool,
     /// Start the program that the suite names as its ego; without it, only one named with --ego.
     #[arg(long, help_heading = "What is there already")]
     pub trust: bool,
@@ -191,8 +194,8 @@ impl SuiteArgs {
 
     /// What may be done with a suite that is there already.
     pub fn permissions(&self) -> Permissions {
-        let Self { replace, discard_edits, .. } = *self;
-        Permissions { replace, discard_edits, trust: self.trust || self.ego.is_some() }
+        let Self { replace, discard_edits, reselect, .. } = *self;
+        Permissions { replace, discard_edits, reselect, trust: self.trust || self.ego.is_some() }
     }
 
     /// How long a program that is the ego is waited for.

@@ -118,6 +118,8 @@ pub struct Permissions {
     pub replace: bool,
     /// Takes back what people edited.
     pub discard_edits: bool,
+    /// Chooses the picks anew; without it, those of the last choice stay when records come in.
+    pub reselect: bool,
     /// Starts programs that the suite names; without it only those that the caller names.
     pub trust: bool,
 }
@@ -312,6 +314,11 @@ impl Suite {
     /// Name of the ego to run.
     pub fn ego(&self) -> &str {
         self.options.ego.as_deref().unwrap_or(&self.profile.ego)
+    }
+
+    /// What the caller allows.
+    pub(crate) fn permissions(&self) -> Permissions {
+        self.permissions
     }
 
     /// The suite's folder.

@@ -12,6 +12,8 @@ pub const SELECTION: &str = "2-selection.json";
 pub const SELECTION_REMARKS: &str = "2-selection.diagnostics.json";
 /// How the selection depends on seed, strategy and budget.
 pub const SELECTION_STUDY: &str = "2-selection.study.json";
+/// The groups by the records' names, which the next choice goes on from.
+pub const SELECTION_GROUPS: &str = "2-selection.groups.json";
 /// Rows of the embedding model, by content.
 pub const EMBEDDING: &str = "2-embedding.json";
 /// The page.

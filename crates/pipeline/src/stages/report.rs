@@ -143,7 +143,7 @@ fn inputs(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>
     let id = &cluster.scenario_id;
     let mut inputs = cases.inputs(cluster);
     let members: Vec<&RecordRef> = cluster.members.iter().map(|&at| &cases.records.records[at].id).collect();
-    inputs.push(cases::text_of(&(members, cluster.number, cluster.radius)));
+    inputs.push(cases::text_of(&(members, cluster.number)));
     inputs.push(cases::text_of(suite.profile()));
     inputs.push(view::rerun_command(suite, ""));
     inputs.push(cases::text_of(&edited_files(suite, id)));

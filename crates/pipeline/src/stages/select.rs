@@ -3,17 +3,21 @@
 use super::{StageReport, StageWork, cases, names};
 use crate::embedding::{Embeds, KeptRows, for_strategy};
 use crate::error::PipelineError;
-use crate::store::to_json;
+use crate::store::{sha256, to_compact_json, to_json};
 use crate::suite::{Stage, Suite, Work};
 use rayon::prelude::*;
-use recrash_model::record::RecordSet;
-use recrash_model::selection::{BudgetRow, Stability, Strategy};
+use recrash_model::record::{CrashRecord, RecordSet};
+use recrash_model::selection::{BudgetRow, Cluster, Selection, Stability, Strategy};
 use recrash_model::{Diagnostic, Outcome};
-use recrash_select::{Embedding, SelectError, SelectOptions, budget_table, elbow, select_with, stability};
+use recrash_select::{Embedding, SelectError, SelectOptions, budget_table, elbow, select_onward, stability};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Format tag of [`SelectionStudy`].
 const STUDY_FORMAT: &str = "recrash.selection-study/1";
+
+/// Format tag of the kept groups.
+const GROUPS_FORMAT: &str = "recrash.selection-groups/1";
 
 /// Budgets that a study tries, as far as there are records for them; the suite's own is always among them.
 const BUDGETS: [usize; 18] = [2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 25, 30, 40, 50, 60, 80, 100, 150];
@@ -84,6 +88,65 @@ impl<'a> Choice<'a> {
     }
 }
 
+/// The groups of a choice by the records' names, for the next one to go on from (`2-selection.groups.json`).
+#[derive(Serialize, Deserialize)]
+struct Groups {
+    /// Always [`GROUPS_FORMAT`].
+    format: String,
+    /// What was chosen by: groups of another choice are no beginning.
+    chosen_by: String,
+    /// Names of the records of each group, the pick first.
+    groups: Vec<Vec<String>>,
+}
+
+impl Choice<'_> {
+    /// Profile and options.
+    fn chosen_by(&self) -> String {
+        sha256(self.inputs[1..].join("\n").as_bytes())
+    }
+
+    fn groups(&self, records: &RecordSet, selection: &Selection) -> Groups {
+        let names = names_of(records);
+        let of = |cluster: &Cluster| {
+            // The pick stands first; the others stay in their order.
+            let others = cluster.members.iter().filter(|&&at| at != cluster.pick_index);
+            std::iter::once(&cluster.pick_index).chain(others).map(|&at| names[at].clone()).collect()
+        };
+        let groups = selection.clusters.iter().map(of).collect();
+        Groups { format: GROUPS_FORMAT.to_owned(), chosen_by: self.chosen_by(), groups }
+    }
+
+    /// Where the records of the last choice's groups stand today; nothing where there is none of this kind, or the caller
+    /// wants a new one.
+    fn earlier(&self, records: &RecordSet) -> Vec<Vec<usize>> {
+        let kept: Option<Groups> =
+            serde_json::from_slice(&self.suite.store().read_or_empty(names::SELECTION_GROUPS)).ok();
+        let is_of_this = |kept: &Groups| kept.format == GROUPS_FORMAT && kept.chosen_by == self.chosen_by();
+        let Some(kept) = kept.filter(is_of_this).filter(|_| !self.suite.permissions().reselect) else {
+            return Vec::new();
+        };
+        let at: BTreeMap<String, usize> = names_of(records).into_iter().zip(0..).collect();
+        // A pick that is gone stays as a place that no record has, which ends the earlier choice.
+        let place = |(number, name): (usize, &String)| match at.get(name) {
+            None if number == 0 => Some(usize::MAX),
+            found => found.copied(),
+        };
+        kept.groups.iter().map(|group| group.iter().enumerate().filter_map(place).collect()).collect()
+    }
+}
+
+/// A name for each record: its reference, and which of those that share it.
+fn names_of(records: &RecordSet) -> Vec<String> {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    let mut name = |record: &CrashRecord| {
+        let id = record.id.to_string();
+        let times = seen.entry(id.clone()).or_default();
+        *times += 1;
+        format!("{id}#{times}")
+    };
+    records.records.iter().map(&mut name).collect()
+}
+
 fn bad_choice(error: SelectError) -> PipelineError {
     PipelineError::bad_input(error.to_string())
 }
@@ -94,10 +157,14 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let mut report = work.whole(&choice.inputs, || {
         let (records, embedding, kept) = choice.read()?;
         let embedding = for_strategy(&embedding, &records, choice.options.strategy);
-        let outcome = select_with(&records, work.suite.profile(), &choice.options, &embedding);
+        let earlier = choice.earlier(&records);
+        let outcome = select_onward(&records, work.suite.profile(), &choice.options, &embedding, &earlier);
         let Outcome { value, diagnostics } = outcome.map_err(bad_choice)?;
-        let mut files =
-            vec![(names::SELECTION.into(), to_json(&value)), (names::SELECTION_REMARKS.into(), to_json(&diagnostics))];
+        let mut files = vec![
+            (names::SELECTION.into(), to_json(&value)),
+            (names::SELECTION_REMARKS.into(), to_json(&diagnostics)),
+            (names::SELECTION_GROUPS.into(), to_compact_json(&choice.groups(&records, &value))),
+        ];
         files.extend(kept.write().map(|bytes| (names::EMBEDDING.into(), bytes)));
         Ok(files)
     })?;
