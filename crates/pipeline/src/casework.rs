@@ -7,11 +7,12 @@ use crate::profiles::load_profile;
 use crate::simulator::{Simulator, SimulatorKind};
 use crate::store::{read_text, to_compact_json, write_file_whole};
 use recrash_agents::{Brief, Design, Feedback, Problem, inexpressible};
-use recrash_metrics::{faithfulness, findings, measure, series};
-use recrash_model::metrics::{Check, Expectation, Finding, Metrics, Series, Verdict};
+use recrash_metrics::{faithfulness, findings, measure};
+use recrash_model::metrics::{Check, Expectation};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::Rollout;
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::{Author, ScenarioDraft};
 use recrash_model::{Diagnostic, Outcome};
 use recrash_roads::Scenario;
@@ -23,35 +24,6 @@ const MAX_SCENARIO_FILE: u64 = 1 << 20;
 /// Designs of the rules that are tried before the best so far is taken.
 pub const MAX_DESIGNS: usize = 6;
 
-/// One run of one scenario, with all that was computed from it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CaseRun {
-    /// Always `recrash.run/1`.
-    pub format: String,
-    /// What was measured.
-    pub metrics: Metrics,
-    /// What that says about the ego.
-    pub findings: Vec<Finding>,
-    /// Whether the rollout is true to its record; absent for a scenario without one.
-    pub verdict: Option<Verdict>,
-    /// What happened.
-    pub rollout: Rollout,
-    /// Gaps, speeds and accelerations over time.
-    pub series: Series,
-}
-
-impl CaseRun {
-    /// Whether the ego failed, by the profile's criteria.
-    pub fn failed(&self) -> bool {
-        self.findings.iter().any(|finding| finding.kind.is_failure())
-    }
-
-    /// Whether every check of faithfulness passed; true where nothing was checked.
-    pub fn faithful(&self) -> bool {
-        self.verdict.as_ref().is_none_or(Verdict::faithful)
-    }
-}
-
 /// Runs a scenario and computes everything from its rollout.
 ///
 /// # Errors
@@ -61,7 +33,7 @@ pub fn run_scenario(
     simulator: &Simulator,
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
-) -> Result<CaseRun, PipelineError> {
+) -> Result<JudgedRun, PipelineError> {
     Ok(judge(scenario, simulator.run(scenario)?, profile, expectation))
 }
 
@@ -71,16 +43,11 @@ pub(crate) fn judge(
     rollout: Rollout,
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
-) -> CaseRun {
+) -> JudgedRun {
     let metrics = measure(scenario, &rollout, &profile.failure);
-    CaseRun {
-        format: "recrash.run/1".into(),
-        findings: findings(scenario, &rollout, &metrics, &profile.failure),
-        verdict: expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)),
-        series: series(&rollout),
-        metrics,
-        rollout,
-    }
+    let found = findings(scenario, &rollout, &metrics, &profile.failure);
+    let verdict = expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)).unwrap_or_default();
+    JudgedRun::new(rollout, metrics, found, verdict)
 }
 
 /// What became of the designs of one scenario.
@@ -205,9 +172,11 @@ fn design_by(
             ),
             Ok(Outcome { value: scenario, diagnostics }) => {
                 let run = run_scenario(&scenario, simulator, brief.profile, Some(expectation))?;
-                let failures: Vec<Check> = run.verdict.iter().flat_map(|v| v.failures().cloned()).collect();
-                let problem = (!failures.is_empty())
-                    .then(|| Problem::NotFaithful { failures: failures.clone(), metrics: Box::new(run.metrics) });
+                let failures: Vec<Check> = run.verdict.failures().cloned().collect();
+                let problem = (!failures.is_empty()).then(|| Problem::NotFaithful {
+                    failures: failures.clone(),
+                    metrics: Box::new(run.judgement.metrics),
+                });
                 (DesignAttempt { draft: draft.clone(), diagnostics, unfaithful: Some(failures) }, problem)
             }
         };
@@ -224,7 +193,7 @@ fn design_by(
 #[derive(Debug, Clone, PartialEq)]
 pub struct FileRun {
     /// The run.
-    pub run: CaseRun,
+    pub run: JudgedRun,
     /// Remarks on the file.
     pub diagnostics: Vec<Diagnostic>,
 }

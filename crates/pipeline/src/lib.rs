@@ -42,9 +42,7 @@ mod weights;
 
 pub use agents::{AgentLog, Cast};
 pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
-pub use casework::{
-    CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
-};
+pub use casework::{DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file};
 pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use embedding::EmbeddingKind;
@@ -68,6 +66,7 @@ pub use recording::{TableFormat, read_records, write_records};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
+pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
 pub use selecting::{SelectionStudy, StrategyStudy};

@@ -500,7 +500,7 @@ fn untold(draft: &ScenarioDraft) -> Narrative {
         records: Vec::new(),
         text: String::new(),
         facts: Vec::new(),
-        origin: Origin::Alternative { reason: String::new() },
+        origin: Origin::Invented { reason: String::new() },
         author: Author::Person,
     }
 }
