@@ -2,6 +2,7 @@
 
 mod behaviour;
 mod common;
+mod driven;
 mod parity;
 mod reference;
 mod runs;

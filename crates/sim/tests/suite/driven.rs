@@ -7,8 +7,7 @@ use recrash_model::scenario::{Approach, Start, Turn};
 use recrash_roads::Scenario;
 use recrash_sim::{Controls, Ego, Run, Seat, Snapshot, simulate};
 
-mod common;
-use common::{alone, checked, random_draft, roundabout, steady, wide_cross};
+use crate::common::{alone, checked, random_draft, roundabout, steady, wide_cross};
 
 /// What one step shows to whoever drives.
 #[derive(Debug, Clone, PartialEq)]
