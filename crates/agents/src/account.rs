@@ -49,7 +49,7 @@ fn plain(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT};
+    use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT, Origin};
     use recrash_model::scenario::{Approach, Author};
     use recrash_model::template::{Movement, RoadType, Template};
 

@@ -4,7 +4,7 @@ use crate::agents::{RULES, unusable};
 use crate::error::PipelineError;
 use crate::external::Patience;
 use crate::profiles::load_profile;
-use crate::simulator::{Simulator, SimulatorKind};
+use crate::simulator::{Simulator, SimulatorKind, start_simulator};
 use crate::store::{read_text, to_compact_json, write_file_whole};
 use recrash_agents::{Brief, Design, Feedback, Problem, inexpressible};
 use recrash_metrics::{faithfulness, findings, measure};
@@ -30,11 +30,12 @@ pub const MAX_DESIGNS: usize = 6;
 /// The simulator failed; the native one cannot.
 pub fn run_scenario(
     scenario: &Scenario,
-    simulator: &Simulator,
+    simulator: &dyn Simulator,
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
 ) -> Result<JudgedRun, PipelineError> {
-    Ok(judge(scenario, simulator.run(scenario)?, profile, expectation))
+    let rollout = simulator.run(scenario).map_err(|error| PipelineError::not_run(&error))?;
+    Ok(judge(scenario, rollout, profile, expectation))
 }
 
 /// Computes everything from a rollout of a scenario, whichever simulator it comes from.
@@ -125,7 +126,7 @@ pub fn design_case(
     brief: &Brief,
     narrative: &Narrative,
     expectation: &Expectation,
-    simulator: &Simulator,
+    simulator: &dyn Simulator,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
     let asked = designers.first().map_or(RULES, |designer| designer.name).to_owned();
     let mut log = DesignLog { asked, repairs: 0, attempts: Vec::new(), taken: 0, gave_up: Vec::new() };
@@ -154,7 +155,7 @@ fn design_by(
     brief: &Brief,
     narrative: &Narrative,
     expectation: &Expectation,
-    simulator: &Simulator,
+    simulator: &dyn Simulator,
     attempts: &mut Vec<DesignAttempt>,
 ) -> Result<Course, PipelineError> {
     let mut feedback = Vec::new();
@@ -225,7 +226,7 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
     let profile = load_profile(request.profile)?;
     let (scenario, diagnostics) = read_scenario(request.scenario)?;
     let ego = request.ego.unwrap_or(&profile.ego);
-    let simulator = Simulator::start(request.simulator, ego, request.python, 1, request.patience)?;
+    let simulator = start_simulator(request.simulator, ego, request.python, 1, request.patience)?;
     let run = run_scenario(&scenario, &simulator, &profile, None)?;
     if let Some(target) = request.rollout {
         write_file_whole(target, &to_compact_json(&run.rollout)).map_err(|source| PipelineError::Io {

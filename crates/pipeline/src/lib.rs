@@ -70,7 +70,7 @@ pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
 pub use selecting::{SelectionStudy, StrategyStudy};
-pub use simulator::{Simulator, SimulatorKind};
+pub use simulator::{Simulator, SimulatorKind, start_simulator};
 pub use stages::StageReport;
 pub use store::{Store, WriteFile, remove_unfinished};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};

@@ -45,7 +45,7 @@ pub struct Scoring<'a> {
     /// Failure criteria.
     pub profile: &'a SystemProfile,
     /// Simulator with the ego in it.
-    pub simulator: &'a Simulator,
+    pub simulator: &'a dyn Simulator,
     /// Hardest braking of partners as designed, which the narrative asks for. [m/s^2]
     pub designed_braking_mps2: f64,
     /// Points that could not be run.
@@ -59,7 +59,7 @@ impl<'a> Scoring<'a> {
         parameters: &'a [Parameter],
         expectation: &'a Expectation,
         profile: &'a SystemProfile,
-        simulator: &'a Simulator,
+        simulator: &'a dyn Simulator,
         first: &JudgedRun,
     ) -> Self {
         let designed_braking_mps2 = hardest_partner_braking(&first.rollout);

@@ -7,6 +7,7 @@
 //! - [`simulate`] runs one scenario and keeps everything.
 //! - [`Runner`] runs many, with a [`Recorder`] that keeps what is wanted; a step allocates nothing.
 //! - [`Run`] is one run that others drive: reset, observe, step, snapshot, restore. The two above are users of it.
+//! - [`Native`] is it as one [`recrash_roads::Simulator`] among others.
 //! - [`EgoDriver`] is the seat for a driver from outside, see [`Runner::run_with`].
 //! - The models behind it are described in `docs/models`: vehicle, metadrive-idm, idm, reference, policies.
 //!
@@ -21,6 +22,7 @@ mod give_way;
 mod idm;
 mod lanes;
 mod metadrive_idm;
+mod native;
 mod recorder;
 mod reference;
 mod run;
@@ -36,6 +38,7 @@ pub use driver::{EgoDriver, Observation};
 pub use ego::{Ego, UnknownEgo};
 pub use emergency::EmergencyResponse;
 pub use idm::IdmParameters;
+pub use native::Native;
 pub use recorder::{CastMember, Recorder, RolloutRecorder, Summary, SummaryRecorder};
 pub use run::{Run, Seat, Snapshot};
 pub use runner::Runner;

@@ -5,14 +5,12 @@
 //!
 //! ```
 //! # fn scenario() -> recrash_roads::Scenario {
-//! #     let draft = serde_json::json!({
-//! #         "format": "recrash.scenario/1", "id": "doc", "title": "", "description": "", "source": [], "duration_s": 3.0,
+//! #     let json = r#"{ "format": "recrash.scenario/1", "id": "doc", "source": {}, "duration_s": 3.0,
 //! #         "map": { "type": "S", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 200.0 },
 //! #         "environment": { "lighting": "daylight", "weather": "clear", "surface": "dry" },
-//! #         "ego": { "lane": 0, "turn": "straight", "start_s_m": 5.0, "start_speed_mps": 8.0, "target_speed_mps": 8.0 },
-//! #         "partners": [], "obstacles": [], "traffic": { "density": 0.0, "seed": 0 },
-//! #     });
-//! #     recrash_roads::check(serde_json::from_value(draft).expect("a draft")).expect("a scenario").value
+//! #         "ego": { "lane": 1, "turn": "straight", "s_m": 5.0, "speed_mps": 8.0, "target_speed_mps": 8.0 },
+//! #         "partners": [] }"#;
+//! #     recrash_roads::check(recrash_roads::read_draft(json).expect("a draft").value).expect("a scenario").value
 //! # }
 //! use recrash_sim::{Controls, Run, Seat};
 //!

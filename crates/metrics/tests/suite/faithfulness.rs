@@ -3,7 +3,7 @@
 use crate::world::*;
 use recrash_metrics::faithfulness_on;
 use recrash_model::math::{FRAC_PI_2, PI};
-use recrash_model::metrics::{CheckKind, CheckResult, CollisionKind, Expectation, Verdict};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult, CollisionKind, Expectation, Verdict};
 use recrash_model::narrative::{FirstMover, Side};
 use recrash_model::record::ContactZone;
 use recrash_model::rollout::{ActorState, Role, Rollout};
@@ -65,7 +65,7 @@ fn a_crossing_at_an_intersection_passes_every_check() {
     expectation.order = Some(FirstMover::Sv);
     (expectation.sv_speed_mps, expectation.cp_speed_mps) = (Some(8.0), Some(7.0));
     let verdict = verdict(&network, &rollout, &expectation);
-    assert!(verdict.faithful(), "{verdict:#?}");
+    assert_eq!(verdict.faithful(), Answer::Yes, "{verdict:#?}");
     assert!(verdict.checks.iter().all(|check| check.result == CheckResult::Shown), "{verdict:#?}");
 }
 
@@ -349,7 +349,7 @@ fn the_approach_is_where_the_partner_starts_and_heads() {
             assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::Approach), wanted, "{stated:?}");
         }
         let silent = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
-        assert_eq!(result(&verdict(&network, &rollout, &silent), CheckKind::Approach), CheckResult::NotApplicable);
+        assert_eq!(result(&verdict(&network, &rollout, &silent), CheckKind::Approach), CheckResult::NotTold);
     }
     // On a curve the oncoming one starts at a right angle to the ego.
     let network = curve(Side::Left);
@@ -406,7 +406,7 @@ fn told_speeds_are_driven_within_a_tolerance() {
         (expectation.sv_speed_mps, expectation.cp_speed_mps) = (Some(told), None);
         let ego = verdict(&network, &rollout, &expectation);
         assert_eq!(result(&ego, CheckKind::SvSpeed), wanted, "{told}");
-        assert_eq!(result(&ego, CheckKind::CpSpeed), CheckResult::NotApplicable);
+        assert_eq!(result(&ego, CheckKind::CpSpeed), CheckResult::NotTold);
         (expectation.sv_speed_mps, expectation.cp_speed_mps) = (None, Some(told));
         assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::CpSpeed), wanted, "{told}");
     }
@@ -486,15 +486,15 @@ fn contact_zones_agree_within_one_step_around_the_box() {
     assert_eq!(check(&hit, &[Right], &[Front]), CheckResult::NotShown);
     assert_eq!(check(&hit, &[Left], &[Rear]), CheckResult::NotShown);
     assert_eq!(check(&hit, &[Left], &[]), CheckResult::Shown);
-    assert_eq!(check(&hit, &[], &[]), CheckResult::NotApplicable);
-    assert_eq!(check(&hit, &[Top], &[]), CheckResult::NotApplicable, "a plane has no top");
+    assert_eq!(check(&hit, &[], &[]), CheckResult::NotTold);
+    assert_eq!(check(&hit, &[Top], &[]), CheckResult::NotTold, "a plane has no top");
     let gap =
         |rollout: &Rollout| measure(&network, &path(&network, Approach::Same, Turn::Straight, 1), 8.0, rollout).min_gap;
     assert!(gap(&near).unwrap().value < 2.0 && gap(&near).unwrap().value > 0.0, "{:?}", gap(&near));
     assert_eq!(check(&near, &[Rear], &[Front]), CheckResult::Shown);
     assert_eq!(check(&near, &[FrontLeft], &[Front]), CheckResult::NotShown);
     assert!(gap(&far).unwrap().value > 2.0);
-    assert_eq!(check(&far, &[FrontLeft], &[Front]), CheckResult::NotApplicable);
+    assert_eq!(check(&far, &[FrontLeft], &[Front]), CheckResult::CannotBeShown);
 }
 
 #[test]
@@ -529,15 +529,13 @@ fn excluded_kinds_of_collision_are_found_in_contacts_and_near_misses() {
         assert_eq!(check(rollout, &others), CheckResult::Shown, "{kind:?}");
     }
     assert_eq!(check(&free, &[RearEndByEgo]), CheckResult::Shown);
-    assert_eq!(check(&free, &[]), CheckResult::NotApplicable);
+    assert_eq!(check(&free, &[]), CheckResult::NotTold);
 }
 
 #[test]
 fn a_rollout_without_states_is_not_faithful() {
     let network = cross();
     let empty = rollout(Vec::new(), Vec::new());
-    assert!(
-        !verdict(&network, &empty, &expecting(RoadType::Intersection, Movement::Straight, Movement::Straight))
-            .faithful()
-    );
+    let told = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
+    assert_eq!(verdict(&network, &empty, &told).faithful(), Answer::No);
 }

@@ -111,7 +111,9 @@ fn stepped_from_outside_a_built_in_ego_drives_as_in_the_loop_of_the_simulator() 
 fn a_copy_goes_its_own_way() {
     let scenario = checked(alone(wide_cross(2), Turn::Straight, 1, 8.0, 8.0));
     let mut run = Run::new(&scenario, Seat::Outside);
-    (0..10).for_each(|_| drop(run.step(None)));
+    for _ in 0..10 {
+        run.step(None);
+    }
     let mut braking = run.clone();
     for _ in 0..20 {
         run.step(None);
