@@ -2,9 +2,11 @@
 
 use crate::error::PipelineError;
 use crate::external::{EgoCommand, ExternalEgo, Patience};
+use crate::suite::Suite;
 use recrash_metadrive::{Drive, METADRIVE_VERSION, Metadrive};
 use recrash_model::rollout::Rollout;
 use recrash_roads::Scenario;
+use recrash_search::Searcher;
 use recrash_sim::Ego;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -94,10 +96,32 @@ impl Simulator {
         match self {
             Self::Native(ego) => Ok(recrash_sim::simulate(scenario, *ego)),
             Self::External(ego) => ego.run(scenario),
-            Self::Metadrive(pool) => pool
-                .simulate(scenario, &Drive::MetadriveIdm)
-                .map_err(|e| PipelineError::scenario(&scenario.draft().id, e)),
+            Self::Metadrive(pool) => pool.simulate(scenario, &Drive::MetadriveIdm).map_err(|e| {
+                PipelineError::scenario(&scenario.draft().id, crate::secrets::scrubber().scrub(&e.to_string()))
+            }),
         }
+    }
+}
+
+/// Checks what a run needs only after its models were asked, which may cost: the ego, its program, and the optimiser.
+///
+/// # Errors
+/// One of them is not there.
+pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
+    suite.options().searcher.parse::<Searcher>().map_err(PipelineError::bad_input)?;
+    let (kind, ego) = (suite.options().simulator, suite.ego());
+    match EgoCommand::parse(ego).map_err(PipelineError::bad_input)? {
+        Some(_) if kind == SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
+        Some(command) if !command.is_there() => Err(PipelineError::bad_input(format!(
+            "the ego {command}: there is no such program; check its name and path"
+        ))),
+        Some(_) => Ok(()),
+        None => match ego.parse::<Ego>().map_err(|e| PipelineError::bad_input(format!("{e}")))? {
+            native if kind == SimulatorKind::Metadrive && native != Ego::MetadriveIdm => {
+                Err(metadrive_only_runs_its_own(ego))
+            }
+            _ => Ok(()),
+        },
     }
 }
 
