@@ -75,11 +75,6 @@ impl Fault {
         Self::of_status(status, &provider_text(&String::from_utf8_lossy(body), options), retry_after_s)
     }
 
-    /// That nobody answers at an address.
-    pub fn unreachable_sentence(url: &str, why: &str) -> String {
-        unreachable(url, why)
-    }
-
     fn of_status(status: u16, text: &str, retry_after_s: Option<f64>) -> Self {
         let told = if text.is_empty() { format!("status {status}") } else { format!("status {status}, \"{text}\"") };
         match status {
@@ -124,7 +119,7 @@ fn presentable(text: &str, options: &LiveOptions) -> String {
 }
 
 /// That nobody answers at the host of an address, which may hold more than may be shown.
-fn unreachable(url: &str, why: &str) -> String {
+pub fn unreachable(url: &str, why: &str) -> String {
     let uri: Option<Uri> = url.parse().ok();
     let host = uri.as_ref().and_then(Uri::host).unwrap_or("the server");
     let port = uri.as_ref().and_then(Uri::port_u16).map(|port| format!(":{port}")).unwrap_or_default();

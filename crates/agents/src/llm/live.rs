@@ -8,7 +8,7 @@
 
 use crate::llm::access::LiveOptions;
 use crate::llm::answers::{Answers, AskError, Ledger};
-use crate::llm::fault::Fault;
+use crate::llm::fault::{self, Fault};
 use crate::llm::prompts;
 use crate::llm::providers::{Provider, provider};
 use crate::llm::question::{Asked, EXCHANGE_FORMAT, Exchange, Question, bounded_answer};
@@ -98,11 +98,11 @@ impl Live {
             self.spending.check(&self.options.caps)?;
             let schema = !self.without_schema.load(Ordering::Relaxed);
             let begun = Instant::now();
-            let fault = match self.send(question, schema) {
+            let failed = match self.send(question, schema) {
                 Ok((reply, sent)) => return Ok(self.exchange(question, reply, sent, begun.elapsed(), retries)),
-                Err(fault) => fault,
+                Err(failed) => failed,
             };
-            match fault {
+            match failed {
                 Fault::Refused(why) => return Err(AskError::Refused(why)),
                 Fault::Request(_) if schema => self.without_schema.store(true, Ordering::Relaxed),
                 Fault::Request(why) => return Err(self.given_up(question, &why, retries, true)),
@@ -138,14 +138,14 @@ impl Live {
             let (name, content) = target.wire.key_header(key);
             request = request.header(name, content);
         }
-        let fault = |error: ureq::Error| Fault::of(&error, &url, &self.options);
-        let mut response = request.send(body.as_bytes()).map_err(fault)?;
+        let failed = |error: ureq::Error| Fault::of(&error, &url, &self.options);
+        let mut response = request.send(body.as_bytes()).map_err(failed)?;
         let status = response.status().as_u16();
         if status != 200 {
             let told = response.body_mut().with_config().limit(MOST_ERROR_BYTES).read_to_vec().unwrap_or_default();
             return Err(Fault::of_response(status, response.headers(), &told, &self.options));
         }
-        let bytes = response.body_mut().with_config().limit(MOST_BYTES).read_to_vec().map_err(fault)?;
+        let bytes = response.body_mut().with_config().limit(MOST_BYTES).read_to_vec().map_err(failed)?;
         let reply = serde_json::from_slice(&bytes).ok().and_then(|body| target.wire.reply(&body));
         reply.map(|reply| (reply, body.len())).ok_or_else(Fault::broken)
     }
@@ -180,7 +180,7 @@ impl Live {
         let probed = if addresses.len() > 1 && ureq::Proxy::try_from_env().is_none() { &addresses[..] } else { &[] };
         probed
             .iter()
-            .try_for_each(|address| connects(address).map_err(|why| Fault::unreachable_sentence(address, &why)))
+            .try_for_each(|address| connects(address).map_err(|why| fault::unreachable(address, &why)))
     }
 
     /// Why a question is given up. A fault that may be everybody's stops the run as long as nothing was answered at all:
@@ -273,4 +273,18 @@ fn connects(address: &str) -> Result<(), String> {
         let _ = sender.send(told);
     });
     receiver.recv_timeout(patience).unwrap_or_else(|_| Err(format!("no connection within {CONNECT_S} s")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_listens_is_told_from_who_does_not() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = format!("http://{}/v1", listener.local_addr().unwrap());
+        assert_eq!(connects(&address), Ok(()));
+        drop(listener);
+        assert!(connects(&address).is_err());
+    }
 }
