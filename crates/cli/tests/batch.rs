@@ -322,7 +322,8 @@ fn what_was_changed_in_the_ledger_does_not_replay() {
     }
     let is_exchange = |path: &std::path::PathBuf| path.file_stem().is_some_and(|stem| stem.len() == 64);
     let kept: Vec<_> = std::fs::read_dir(out.join("ledger")).unwrap().map(|e| e.unwrap().path()).collect();
-    let retold = |path: &&std::path::PathBuf| std::fs::read_to_string(path).unwrap().contains("\"role\": \"paraphrase\"");
+    let retold =
+        |path: &&std::path::PathBuf| std::fs::read_to_string(path).unwrap().contains("\"role\": \"paraphrase\"");
     let file = kept.iter().filter(|path| is_exchange(path)).find(retold).expect("an exchange");
     let whole = std::fs::read_to_string(file).unwrap();
     let exchange: Value = serde_json::from_str(&whole).unwrap();

@@ -114,8 +114,11 @@ fn a_program_behind_a_wrapper_that_hangs_is_left_by_nobody() {
     assert_eq!(code, 3, "{errors}");
     assert!(errors.contains("gave no answer to hello"), "{errors}");
     let told = std::process::Command::new("ps").args(["-A", "-o", "args"]).output().expect("ps");
-    let left: Vec<String> =
-        String::from_utf8_lossy(&told.stdout).lines().filter(|l| l.contains("sleep 64.193")).map(str::to_owned).collect();
+    let left: Vec<String> = String::from_utf8_lossy(&told.stdout)
+        .lines()
+        .filter(|l| l.contains("sleep 64.193"))
+        .map(str::to_owned)
+        .collect();
     assert_eq!(left, [""; 0]);
 }
 

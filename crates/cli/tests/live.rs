@@ -545,7 +545,8 @@ fn a_cap_on_tokens_holds_where_the_server_does_not_count() {
     assert_eq!(output.status.code(), Some(4), "{}", shown(&output));
     assert!(shown(&output).contains("cap of 40000 tokens is reached"), "{}", shown(&output));
     let kept = ledger(&folder.suite());
-    let tokens: u64 = kept.iter().map(|e| e["input_tokens"].as_u64().unwrap() + e["output_tokens"].as_u64().unwrap()).sum();
+    let tokens: u64 =
+        kept.iter().map(|e| e["input_tokens"].as_u64().unwrap() + e["output_tokens"].as_u64().unwrap()).sum();
     let sent: usize = server.requests().iter().map(|request| request.body.to_string().len()).sum();
     assert!(kept.iter().all(|exchange| exchange["tokens_estimated"] == true));
     assert!((40_000..60_000).contains(&tokens) && tokens as usize > sent / 3, "{tokens} tokens of {sent} bytes");
@@ -636,7 +637,9 @@ fn written(text: &str) -> Vec<String> {
 fn a_planted_key_is_in_no_file_however_it_is_written_and_whoever_tells_it() {
     const PLANTED: [(&str, &str); 3] =
         [("RECRASH_API_KEY", "sk-plant/ed+key-0123456789"), ("SOME_API_KEY", "k9/zQ"), ("OTHER_TOKEN", "tk_55512345")];
-    let (folder, model) = (Folder::new(), model());
+    const FOUR: [&str; 6] = ["--budget", "4", "--tune-budget", "1", "--seed", "5"];
+    let (folder, elsewhere) = (Folder::new(), Folder::new());
+    let model = ScriptedModel::new(elsewhere.0.path(), &FOUR);
     let told: Vec<String> = PLANTED.iter().flat_map(|(_, key)| written(key)).collect();
     let say = told.join(" ");
     let server = Server::start(move |request| {
@@ -657,12 +660,17 @@ fn a_planted_key_is_in_no_file_however_it_is_written_and_whoever_tells_it() {
     let ego = format!("cmd:python3 {} {}", program.display(), known.display());
     let output = recrash(&["run", "--agent", "scripted", "--base-url", &server.base_url, "--ego", &ego, "--out"])
         .arg(folder.suite())
-        .args(["--budget", "4", "--tune-budget", "1", "--rounds", "1", "--seed", "5"])
+        .args(FOUR)
+        .args(["--rounds", "1"])
         .envs(PLANTED)
         .output()
         .unwrap();
     let files = files_below(&folder.suite());
-    assert!(files.iter().any(|file| file.to_string_lossy().ends_with(".failed.json")), "the ego fails: {}", shown(&output));
+    assert!(
+        files.iter().any(|file| file.to_string_lossy().ends_with(".failed.json")),
+        "the ego fails: {}",
+        shown(&output)
+    );
     let contents = files.iter().map(|file| (file.display().to_string(), std::fs::read_to_string(file).unwrap()));
     let everything: Vec<(String, String)> = contents.chain([("the terminal".to_owned(), shown(&output))]).collect();
     // What stands in base64 is found without its last letters, which depend on what follows.

@@ -178,9 +178,7 @@ impl Live {
         addresses.dedup();
         // Behind a proxy it is the proxy that answers.
         let probed = if addresses.len() > 1 && ureq::Proxy::try_from_env().is_none() { &addresses[..] } else { &[] };
-        probed
-            .iter()
-            .try_for_each(|address| connects(address).map_err(|why| fault::unreachable(address, &why)))
+        probed.iter().try_for_each(|address| connects(address).map_err(|why| fault::unreachable(address, &why)))
     }
 
     /// Why a question is given up. A fault that may be everybody's stops the run as long as nothing was answered at all:
