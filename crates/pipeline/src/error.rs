@@ -1,6 +1,7 @@
 //! What can go wrong outside the stages, with what, where and how to mend it.
 
 use recrash_model::Diagnostic;
+use recrash_roads::RunError;
 use std::path::PathBuf;
 
 /// Why a command stopped.
@@ -127,9 +128,15 @@ impl PipelineError {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
     }
 
-    /// What one scenario failed of.
+    /// What one scenario failed of. It ends up in a file of the suite, and may be in a program's own words: keys are blacked
+    /// out.
     pub fn scenario(id: &str, why: impl ToString) -> Self {
-        Self::Scenario { id: id.to_owned(), why: why.to_string() }
+        Self::Scenario { id: id.to_owned(), why: crate::secrets::scrubber().scrub(&why.to_string()) }
+    }
+
+    /// What a simulator failed of.
+    pub fn not_run(error: &RunError) -> Self {
+        Self::scenario(&error.scenario_id, &error.why)
     }
 
     /// Whether the same command goes on where this one stopped.

@@ -7,7 +7,7 @@ use crate::casework::read_scenario;
 use crate::error::PipelineError;
 use crate::external::Patience;
 use crate::profiles::load_profile;
-use crate::simulator::{Simulator, SimulatorKind};
+use crate::simulator::{Simulator, SimulatorKind, start_simulator};
 use crate::stages::names;
 use crate::store::{Store, Unfinished, write_file_whole};
 use crate::suite::Suite;
@@ -24,7 +24,6 @@ use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::tuning::{Parameter, TuneLog, apply};
 use recrash_records::{Column, ParquetWriter};
 use recrash_roads::Scenario;
-use recrash_sim::RolloutRecorder;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -179,7 +178,7 @@ impl Sweep {
             .num_threads(self.threads.unwrap_or(0))
             .build()
             .map_err(|e| PipelineError::Threads(e.to_string()))?;
-        let simulator = Simulator::start(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
+        let simulator = start_simulator(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
         let failed = |source| PipelineError::Io { action: "write", path: out.to_owned(), source };
         // Written under another name, which a killed run leaves and the next one overwrites.
         let name = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -205,7 +204,7 @@ impl Sweep {
         &self,
         sink: BufWriter<File>,
         threads: &rayon::ThreadPool,
-        simulator: &Simulator,
+        simulator: &dyn Simulator,
         progress: &(dyn Fn(u64) + Sync),
         failed: &dyn Fn(std::io::Error) -> PipelineError,
     ) -> Result<(BufWriter<File>, SweepSummary), PipelineError> {
@@ -219,7 +218,7 @@ impl Sweep {
             let end = (done + CHUNK).min(self.rollouts);
             let chunk: Vec<Row> = threads.install(|| {
                 let numbers = (done..end).into_par_iter();
-                numbers.map_init(recrash_sim::Simulator::new, |native, n| self.row(n, simulator, native)).collect()
+                numbers.map(|n| self.row(n, simulator)).collect()
             });
             chunk.iter().for_each(|row| summary.count(row));
             rows.extend(chunk);
@@ -245,7 +244,7 @@ impl Sweep {
         (base, base.parameters.iter().map(sample).collect(), seed.0)
     }
 
-    fn row(&self, number: u64, simulator: &Simulator, native: &mut recrash_sim::Simulator) -> Row {
+    fn row(&self, number: u64, simulator: &dyn Simulator) -> Row {
         let (base, values, seed) = self.point(number);
         let by_pointer = |pointer: &String| {
             base.parameters.iter().position(|parameter| parameter.pointer == *pointer).map(|at| values[at])
@@ -259,7 +258,7 @@ impl Sweep {
         let Ok(checked) = recrash_roads::check(draft) else {
             return Row { outcome: Err(REFUSED.to_owned()), ..row };
         };
-        match roll_out(&checked.value, simulator, native) {
+        match simulator.run(&checked.value) {
             Ok(rollout) => Row { outcome: Ok(self.outcome(&checked.value, &rollout)), ..row },
             Err(_) => Row { outcome: Err(EGO_FAILED.to_owned()), ..row },
         }
@@ -409,17 +408,6 @@ fn termination_name(kind: TerminationKind) -> &'static str {
     }
 }
 
-fn roll_out(
-    scenario: &Scenario,
-    simulator: &Simulator,
-    native: &mut recrash_sim::Simulator,
-) -> Result<Rollout, PipelineError> {
-    let Simulator::Native(ego) = simulator else { return simulator.run(scenario) };
-    let mut recorder = RolloutRecorder::new();
-    native.run(scenario, *ego, &mut recorder);
-    Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
-}
-
 /// The scenario file, or those of a suite: the tuned ones, by name.
 fn scenario_files(source: &Path) -> Result<Vec<PathBuf>, PipelineError> {
     if !source.is_dir() {
@@ -500,7 +488,7 @@ fn untold(draft: &ScenarioDraft) -> Narrative {
         records: Vec::new(),
         text: String::new(),
         facts: Vec::new(),
-        origin: Origin::Alternative { reason: String::new() },
+        origin: Origin::Invented { reason: String::new() },
         author: Author::Person,
     }
 }
