@@ -152,9 +152,10 @@ impl PipelineError {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
     }
 
-    /// What one scenario failed of.
+    /// What one scenario failed of. It ends up in a file of the suite, and may be in a program's own words: keys are blacked
+    /// out.
     pub fn scenario(id: &str, why: impl ToString) -> Self {
-        Self::Scenario { id: id.to_owned(), why: why.to_string() }
+        Self::Scenario { id: id.to_owned(), why: crate::secrets::scrubber().scrub(&why.to_string()) }
     }
 
     /// What a simulator failed of.

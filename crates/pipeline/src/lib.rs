@@ -28,8 +28,10 @@ mod profiles;
 mod progress;
 mod prompting;
 mod recording;
+mod responses;
 mod scenario_files;
 mod scoring;
+mod secrets;
 mod simulator;
 mod stages;
 mod store;
@@ -62,13 +64,14 @@ pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use prompting::{Prompt, PromptRequest, prompt};
 pub use recording::{TableFormat, read_records, write_records};
 pub use recrash_agents::llm::{Caps, Role, Spent};
+pub use recrash_child::end_all as end_programs;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
 pub use scenario_files::{FileRequest, FileRun, read_scenario, simulate_file};
-pub use simulator::{Simulator, SimulatorKind, start_simulator};
+pub use simulator::{Simulator, SimulatorKind, check_choices, start_simulator};
 pub use stages::{
     CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary, SelectionStudy,
     StageReport, StrategyStudy, Summary,

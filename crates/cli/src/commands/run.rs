@@ -9,7 +9,7 @@ use comfy_table::Cell;
 use owo_colors::OwoColorize;
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
-use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary};
+use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary, check_choices};
 use std::path::Path;
 
 /// Runs every stage.
@@ -18,6 +18,8 @@ use std::path::Path;
 /// The first stage's that stops.
 pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
     let suite = args.open(Options::default())?;
+    output::batch_remarks(&suite, output);
+    check_choices(&suite)?;
     if output.tables() {
         heading(&suite);
     }
