@@ -152,9 +152,10 @@ impl SuiteArgs {
     /// The suite a stage works on, with what was typed over what is saved there.
     ///
     /// # Errors
-    /// As [`SuiteArgs::open`].
+    /// As [`SuiteArgs::open`], or there is no suite: a mistyped folder is not made.
     pub fn open_saved(&self) -> Result<Suite, PipelineError> {
-        self.open(Suite::saved_options(&self.out)?.unwrap_or_default())
+        let saved = Suite::saved_options(&self.out)?;
+        self.open(saved.ok_or_else(|| PipelineError::NoSuite { dir: self.out.clone() })?)
     }
 
     /// What was typed, over `base`.

@@ -19,6 +19,7 @@ pub mod rollout;
 pub mod scenario;
 pub mod seed;
 pub mod selection;
+pub mod spreadsheet;
 pub mod template;
 pub mod triage;
 pub mod tuning;

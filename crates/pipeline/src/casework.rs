@@ -3,9 +3,11 @@
 use crate::agents::{RULES, unusable};
 use crate::error::PipelineError;
 use crate::external::Patience;
+use crate::output::Outputs;
+use crate::paths;
 use crate::profiles::load_profile;
 use crate::simulator::{Simulator, SimulatorKind};
-use crate::store::{read_text, to_compact_json, write_file_whole};
+use crate::store::{read_text, to_compact_json};
 use recrash_agents::{Brief, Design, Feedback, Problem, inexpressible};
 use recrash_metrics::{faithfulness, findings, measure, series};
 use recrash_model::metrics::{Check, Expectation, Finding, Metrics, Series, Verdict};
@@ -253,17 +255,16 @@ pub struct FileRequest<'a> {
 /// # Errors
 /// The file cannot be read, is no scenario, or cannot be run: every problem with its place.
 pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
+    let read = paths::of_profile_and_ego(Some(request.profile), request.ego).into_iter();
+    let mut outputs = Outputs::of_inputs(read.chain([request.scenario.to_owned()]));
+    let rollout = request.rollout.map(|target| outputs.claim(target)).transpose()?;
     let profile = load_profile(request.profile)?;
     let (scenario, diagnostics) = read_scenario(request.scenario)?;
     let ego = request.ego.unwrap_or(&profile.ego);
     let simulator = Simulator::start(request.simulator, ego, request.python, 1, request.patience)?;
     let run = run_scenario(&scenario, &simulator, &profile, None)?;
-    if let Some(target) = request.rollout {
-        write_file_whole(target, &to_compact_json(&run.rollout)).map_err(|source| PipelineError::Io {
-            action: "write",
-            path: target.to_owned(),
-            source,
-        })?;
+    if let Some(rollout) = rollout {
+        rollout.write(&to_compact_json(&run.rollout))?;
     }
     Ok(FileRun { run, diagnostics })
 }

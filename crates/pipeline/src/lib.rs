@@ -22,7 +22,9 @@ mod fetching;
 mod importing;
 mod ledger;
 mod models;
+mod output;
 mod parity;
+mod paths;
 mod profiles;
 mod progress;
 mod prompting;
@@ -52,11 +54,12 @@ pub use error::PipelineError;
 pub use evaluation::{Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate};
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
-pub use failures::Failure;
+pub use failures::{Failure, unfaithful};
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use importing::{ImportRequest, Imported, SourceFormat, import};
 pub use ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
 pub use models::{AnswerMode, ModelAccess};
+pub use output::{Begun, Output, Outputs};
 pub use parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
     ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
@@ -64,7 +67,7 @@ pub use parity::{
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use prompting::{Prompt, PromptRequest, prompt};
-pub use recording::{TableFormat, read_records, write_records};
+pub use recording::{TableFormat, read_records, record_outputs, write_records};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
@@ -77,5 +80,5 @@ pub use store::{Store, WriteFile, remove_unfinished};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};
 pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
 #[cfg(feature = "parquet")]
-pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
+pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};
 pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

@@ -5,6 +5,7 @@ use crate::embedding::EmbeddingKind;
 use crate::error::PipelineError;
 use crate::external::Patience;
 use crate::models::{AnswerMode, ModelAccess, Models};
+use crate::paths;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
 use crate::recording;
@@ -320,6 +321,7 @@ impl Suite {
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
         options.system_profile()?;
+        paths::must_be_text(&options)?;
         recording::read_filter(&options)?;
         let store = Store::create(dir, write_file)?;
         let lock = lock_folder(dir)?;

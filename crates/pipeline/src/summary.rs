@@ -148,7 +148,7 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
-    fn new(run: &CaseRun) -> Self {
+    pub(crate) fn new(run: &CaseRun) -> Self {
         let mut kinds: Vec<_> = run.findings.iter().map(|f| f.kind).collect();
         kinds.sort_unstable();
         kinds.dedup();

@@ -1,6 +1,7 @@
 //! The suite as the report sees it.
 
 use crate::agents::Cast;
+use crate::paths;
 use crate::stages::{Case, Ran, names};
 use crate::suite::{Options, RecordSource, Suite, quoted};
 use crate::summary::{self, FallbackReason, simulator_name};
@@ -95,10 +96,11 @@ fn rerun_command(suite: &Suite, file: &str) -> String {
     let (options, default) = (suite.options(), Options::default());
     let mut command = format!("recrash simulate {file}");
     if options.profile != default.profile {
-        command += &format!(" --profile {}", quoted(&options.profile));
+        command +=
+            &format!(" --profile {}", quoted(&paths::profile_from_folder(suite.store().dir(), &options.profile)));
     }
     if options.simulator != default.simulator {
         command += &format!(" --sim {}", options.simulator.name());
     }
-    command + &format!(" --ego {}", quoted(suite.ego()))
+    command + &format!(" --ego {}", quoted(&paths::ego_from_folder(suite.store().dir(), suite.ego())))
 }

@@ -2,6 +2,7 @@
 
 use crate::fields::{Field, FieldValue};
 use recrash_model::record::{CrashRecord, RecordSet, Reject};
+use recrash_model::spreadsheet::inert;
 use std::collections::BTreeMap;
 
 /// Parts several codes in one cell: `front;front_left`.
@@ -92,7 +93,8 @@ fn column<'a>(field: Field, records: impl Iterator<Item = &'a CrashRecord>) -> C
 
 impl RecordTable {
     /// The table as CSV: a header, commas, quotes where needed, UTF-8, a line feed behind each row; `true` and `false`,
-    /// and nothing where a value is missing.
+    /// and nothing where a value is missing. Texts that a spreadsheet would run as formulas are made inert
+    /// ([`recrash_model::spreadsheet`]).
     pub fn to_csv(&self) -> Vec<u8> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut write = |fields: Vec<String>| {
@@ -113,7 +115,7 @@ impl Column {
             values.get(row).and_then(Option::as_ref).map(T::to_string).unwrap_or_default()
         }
         match self {
-            Self::Text(values) => text(values, row),
+            Self::Text(values) => inert(&text(values, row)).into_owned(),
             Self::Whole(values) => text(values, row),
             Self::Number(values) => text(values, row),
             Self::Flag(values) => text(values, row),

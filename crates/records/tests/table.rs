@@ -5,6 +5,7 @@ mod common;
 use common::builder::{row, second};
 use common::{ingest_bytes, paper};
 use recrash_model::record::Edition;
+use recrash_model::spreadsheet::original;
 use recrash_records::{SAMPLE_CSV, SourceText, TableRows, distributions, ingest, record_table};
 
 fn cells(csv: &[u8]) -> Vec<Vec<String>> {
@@ -46,6 +47,25 @@ fn a_csv_table_has_a_row_a_record_and_nothing_where_nothing_is_known() {
     assert_eq!((cell(1, "usable"), cell(1, "lost")), ("true".into(), String::new()));
     assert_eq!((cell(2, "road"), cell(2, "year"), cell(2, "surface")), (String::new(), String::new(), String::new()));
     assert_eq!((cell(2, "usable"), cell(2, "lost").as_str()), ("false".into(), "road type not expressible"));
+}
+
+#[test]
+fn a_spreadsheet_runs_no_cell_of_a_csv_table_and_every_text_comes_back() {
+    let texts = ["=cmd|' /C calc'!A0", "+1+1", "-1-1", "@SUM(A1)", "'=1", "It's 3 - 2 = 1."];
+    let rows: Vec<String> = (1..)
+        .zip(texts)
+        .map(|(n, text)| row(Edition::Second, &format!("1-{n}"), &[("Reporting Entity", text)]))
+        .collect();
+    let set = ingest_bytes(second(&rows).as_bytes()).value;
+    let table = cells(&record_table(&set, TableRows::All).to_csv());
+    let at = table[0].iter().position(|name| name == "entity").unwrap();
+    for (row, text) in table[1..].iter().zip(texts) {
+        assert!(
+            !row.iter().any(|cell| cell.starts_with(['=', '+', '@', '\t', '\r']) || cell.starts_with("-1-")),
+            "{row:?}"
+        );
+        assert_eq!(original(&row[at]), text);
+    }
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod records;
 mod run;
 mod schema;
 mod select;
+mod shell;
 mod simulate;
 mod stage;
 #[cfg(feature = "parquet")]
@@ -36,9 +37,10 @@ Examples:
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
-Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
+Exit codes: 0 done; 1 a file that is there could not be read, or one could not be written; 2 wrong usage;
+  3 the input is not there or cannot be used;
   4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached;
-  5 a share or speed that is asked for was missed; 130 interrupted";
+  5 a share or speed that is asked for was missed, or what simulate and tune ran is not true to its record; 130 interrupted";
 
 const RUN_EXAMPLES: &str = "\
 Examples:
@@ -60,7 +62,9 @@ Examples:
 const TUNE_EXAMPLES: &str = "\
 Examples:
   recrash tune                                           160 points for each scenario of suite/
-  recrash tune --out paper-suite --searcher halton --tune-budget 500";
+  recrash tune --out paper-suite --searcher halton --tune-budget 500
+
+Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
 const REPORT_EXAMPLES: &str = "\
 Examples:
   recrash report                                         of the suite in suite/
@@ -134,6 +138,10 @@ pub enum Command {
     /// Print the JSON Schema of scenario files.
     #[command(after_help = SCHEMA_EXAMPLES)]
     Schema,
+    /// Print the completions of a shell.
+    Completions(shell::CompletionArgs),
+    /// Write the manual pages.
+    Man(shell::ManArgs),
 }
 
 impl Command {
@@ -175,6 +183,11 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         #[cfg(feature = "parquet")]
         Command::Sweep(args) => sweep::run(args, output),
         Command::Schema => schema::run(),
+        Command::Completions(args) => {
+            shell::completions(args);
+            Ok(())
+        }
+        Command::Man(args) => shell::man(args, output),
     }
 }
 

@@ -3,10 +3,9 @@
 use super::records::funnel;
 use super::select::{coverage, tables};
 use crate::options::SuiteArgs;
-use crate::output::{self, Output, number, table, title};
-use anstream::{eprintln, println};
-use comfy_table::Cell;
-use owo_colors::OwoColorize;
+use crate::output::{self, Output, title};
+use crate::screen::{bold, eprintln, one_line, println, yellow};
+use crate::table::{Cell, number, table};
 use recrash_model::metrics::CheckKind;
 use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary};
 use std::path::Path;
@@ -61,7 +60,7 @@ fn heading(suite: &Suite) {
     let options = suite.options();
     eprintln!(
         "{} {}: profile {}, ego {}, budget {}, seed {} -> {}",
-        "recrash".bold(),
+        bold("recrash"),
         env!("CARGO_PKG_VERSION"),
         suite.profile().name,
         suite.ego(),
@@ -107,14 +106,15 @@ fn models(models: &[ModelSummary]) {
     println!("{rows}");
     for model in models {
         for reason in &model.reasons {
-            println!("  {} {} of {}: {}", "by the rules:".yellow(), model.role, reason.id, one_line(&reason.why));
+            println!(
+                "  {} {} of {}: {}",
+                yellow("by the rules:"),
+                model.role,
+                reason.id,
+                one_line(&reason.why.chars().take(300).collect::<String>())
+            );
         }
     }
-}
-
-/// A stranger's text, safe to print.
-fn one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(300).collect()
 }
 
 /// Prints a whole run in tables.
@@ -123,7 +123,8 @@ fn show(summary: &Summary, dir: &Path) {
     tables(&summary.tables);
     coverage(&summary.coverage, &summary.templates);
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
-    let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"]);
+    let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"])
+        .without_first(&["findings", "from", "designed", "failure"]);
     for case in &summary.cases {
         let verdict = match &case.tuned {
             Some(run) if run.faithful => "faithful",
@@ -143,9 +144,9 @@ fn show(summary: &Summary, dir: &Path) {
     println!("{rows}");
     for case in &summary.cases {
         if let Some(failure) = &case.failure {
-            println!("  {} {}: {failure}", "not run:".yellow(), case.id);
+            println!("  {} {}: {failure}", yellow("not run:"), case.id);
         } else if let Some(run) = case.tuned.as_ref().filter(|run| !run.faithful) {
-            println!("  {} {}: {}", "not faithful:".yellow(), case.id, run.unfaithful.join("; "));
+            println!("  {} {}: {}", yellow("not faithful:"), case.id, run.unfaithful.join("; "));
         }
     }
     let doubted = |run: &RunSummary| run.unfaithful.iter().any(|why| why.starts_with(CheckKind::Order.label()));
@@ -158,7 +159,7 @@ fn show(summary: &Summary, dir: &Path) {
     let (first, tuned) = summary.failed();
     println!(
         "\n{} {run}{of_total} scenarios run; {} faithful; {} fails {first} as designed and {tuned} after tuning",
-        "result:".bold(),
+        bold("result:"),
         summary.faithful(),
         summary.ego,
     );

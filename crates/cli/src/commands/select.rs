@@ -1,10 +1,10 @@
 //! `recrash select`: a few records that stand for all.
 
 use crate::options::SuiteArgs;
-use crate::output::{self, Output, number, table, title};
-use anstream::println;
+use crate::output::{self, Output, title};
+use crate::screen::println;
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use recrash_model::selection::{Coverage, Selection, StageTables, TemplateCount};
 use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suite};
 
