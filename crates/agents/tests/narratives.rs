@@ -57,8 +57,9 @@ fn every_case_is_read_as_told() {
     for case in cases() {
         let narrative = support::narrate(&case.told.record(), &profile).value;
         let (is, reason) = match &narrative.origin {
-            Origin::Record => ("record", ""),
-            Origin::Alternative { reason } => ("alternative", reason.as_str()),
+            Origin::Own => ("own", ""),
+            Origin::Other { reason, .. } => ("other", reason.as_str()),
+            Origin::Invented { reason } => ("invented", reason.as_str()),
         };
         if is != case.is {
             wrong.push(format!("{}: is {is} ({reason})", case.name));
@@ -130,7 +131,7 @@ fn another_record_of_the_cluster_is_retold_before_anything_is_invented() {
         &support::brief("01-test", &records, &profile, 7),
     )
     .expect("a narrative");
-    let Origin::Alternative { reason } = &outcome.value.origin else { panic!("{:?}", outcome.value.origin) };
+    let Some(reason) = outcome.value.origin.reason() else { panic!("{:?}", outcome.value.origin) };
     assert!(reason.contains("1-1/1 describes a rear-end") && reason.contains("2-2/1"), "{reason}");
     assert!(outcome.value.facts.iter().any(|fact| matches!(
         &fact.source,

@@ -4,7 +4,7 @@ mod world;
 
 use recrash_metrics::faithfulness_on;
 use recrash_model::math::{FRAC_PI_2, PI};
-use recrash_model::metrics::{CheckKind, CheckResult, CollisionKind, Expectation, Verdict};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult, CollisionKind, Expectation, Verdict};
 use recrash_model::narrative::{FirstMover, Side};
 use recrash_model::record::ContactZone;
 use recrash_model::rollout::{ActorState, Role, Rollout};
@@ -67,8 +67,8 @@ fn a_crossing_at_an_intersection_passes_every_check() {
     expectation.order = Some(FirstMover::Sv);
     (expectation.sv_speed_mps, expectation.cp_speed_mps) = (Some(8.0), Some(7.0));
     let verdict = verdict(&network, &rollout, &expectation);
-    assert!(verdict.faithful(), "{verdict:#?}");
-    assert!(verdict.checks.iter().all(|check| check.result == CheckResult::Pass), "{verdict:#?}");
+    assert_eq!(verdict.faithful(), Answer::Yes, "{verdict:#?}");
+    assert!(verdict.checks.iter().all(|check| check.result == CheckResult::Shown), "{verdict:#?}");
 }
 
 #[test]
@@ -90,10 +90,10 @@ fn movements_are_read_from_the_path_driven_not_from_its_end_alone() {
         let rollout = meeting(&network, (turn, 1), (Approach::Left, Turn::Straight, 1), speed, late_s);
         for expected in [Straight, LeftTurn, RightTurn] {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::Intersection, expected, Straight));
-            let wanted = if expected == shown { CheckResult::Pass } else { CheckResult::Fail };
+            let wanted = if expected == shown { CheckResult::Shown } else { CheckResult::NotShown };
             let text = observed(&verdict, CheckKind::SvMovement);
             assert_eq!(result(&verdict, CheckKind::SvMovement), wanted, "{turn:?} late {late_s}: {text}");
-            assert_eq!(result(&verdict, CheckKind::CpMovement), CheckResult::Pass);
+            assert_eq!(result(&verdict, CheckKind::CpMovement), CheckResult::Shown);
         }
     }
 }
@@ -118,10 +118,10 @@ fn the_partners_movement_is_read_from_its_path_for_every_way_through_a_junction(
                     let mut expectation = expecting(RoadType::Intersection, Straight, expected);
                     expectation.approach = Some(approach);
                     let verdict = verdict(&network, &rollout, &expectation);
-                    let wanted = if expected == shown { CheckResult::Pass } else { CheckResult::Fail };
+                    let wanted = if expected == shown { CheckResult::Shown } else { CheckResult::NotShown };
                     let text = observed(&verdict, CheckKind::CpMovement);
                     assert_eq!(result(&verdict, CheckKind::CpMovement), wanted, "{approach:?} {turn:?}: {text}");
-                    assert_eq!(result(&verdict, CheckKind::Approach), CheckResult::Pass, "{approach:?}");
+                    assert_eq!(result(&verdict, CheckKind::Approach), CheckResult::Shown, "{approach:?}");
                 }
             }
         }
@@ -137,7 +137,7 @@ fn a_turn_not_yet_begun_is_not_shown() {
     let rollout = rollout(ego, vec![glide(55.0, 3.5, 0.0, 1.0, 60)]);
     let verdict =
         verdict(&network, &rollout, &expecting(RoadType::Intersection, Movement::LeftTurn, Movement::Straight));
-    assert_eq!(result(&verdict, CheckKind::SvMovement), CheckResult::Fail);
+    assert_eq!(result(&verdict, CheckKind::SvMovement), CheckResult::NotShown);
 }
 
 #[test]
@@ -146,9 +146,9 @@ fn standing_is_not_going_straight() {
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     let rollout = rollout(drive(&way, 20.0, 60, |_| 8.0), vec![glide(70.0, 20.0, -FRAC_PI_2, 0.0, 60)]);
     let straight = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
-    assert_eq!(result(&verdict(&network, &rollout, &straight), CheckKind::CpMovement), CheckResult::Fail);
+    assert_eq!(result(&verdict(&network, &rollout, &straight), CheckKind::CpMovement), CheckResult::NotShown);
     let stopped = expecting(RoadType::Intersection, Movement::Straight, Movement::Stopped);
-    assert_eq!(result(&verdict(&network, &rollout, &stopped), CheckKind::CpMovement), CheckResult::Pass);
+    assert_eq!(result(&verdict(&network, &rollout, &stopped), CheckKind::CpMovement), CheckResult::Shown);
 }
 
 #[test]
@@ -161,12 +161,12 @@ fn following_a_curve_is_going_straight() {
             let rollout = rollout(drive(&way, 5.0, 120, |_| 10.0), vec![partner]);
             let straight = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
             let shown = verdict(&network, &rollout, &straight);
-            assert_eq!(result(&shown, CheckKind::SvMovement), CheckResult::Pass, "{shown:#?}");
-            assert_eq!(result(&shown, CheckKind::CpMovement), CheckResult::Pass, "{shown:#?}");
+            assert_eq!(result(&shown, CheckKind::SvMovement), CheckResult::Shown, "{shown:#?}");
+            assert_eq!(result(&shown, CheckKind::CpMovement), CheckResult::Shown, "{shown:#?}");
             let turns = expecting(RoadType::Highway, Movement::LeftTurn, Movement::RightTurn);
             let not_shown = verdict(&network, &rollout, &turns);
-            assert_eq!(result(&not_shown, CheckKind::SvMovement), CheckResult::Fail, "{not_shown:#?}");
-            assert_eq!(result(&not_shown, CheckKind::CpMovement), CheckResult::Fail, "{not_shown:#?}");
+            assert_eq!(result(&not_shown, CheckKind::SvMovement), CheckResult::NotShown, "{not_shown:#?}");
+            assert_eq!(result(&not_shown, CheckKind::CpMovement), CheckResult::NotShown, "{not_shown:#?}");
         }
     }
 }
@@ -179,10 +179,10 @@ fn on_a_highway_a_move_into_the_next_lane_shows_the_turn_to_that_side() {
     let ego = drive(&left_way, 5.0, 60, |_| 14.0);
     let rollout = rollout(ego, vec![drive_at(&left_way, 22.0, 60, |_| 14.0, cut_in)]);
     for (movement, wanted) in [
-        (Movement::LeftTurn, CheckResult::Pass),
-        (Movement::RightTurn, CheckResult::Fail),
-        (Movement::ChangingLanes, CheckResult::Pass),
-        (Movement::Straight, CheckResult::Pass),
+        (Movement::LeftTurn, CheckResult::Shown),
+        (Movement::RightTurn, CheckResult::NotShown),
+        (Movement::ChangingLanes, CheckResult::Shown),
+        (Movement::Straight, CheckResult::Shown),
     ] {
         let expectation = expecting(RoadType::Highway, Movement::Straight, movement);
         let verdict = verdict(&network, &rollout, &expectation);
@@ -202,7 +202,7 @@ fn on_a_roundabout_the_way_around_counts() {
         let rollout = rollout(drive(&way, 5.0, steps, |_| 8.0), vec![far()]);
         for expected in [Straight, LeftTurn, RightTurn] {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, expected, Straight));
-            let wanted = if expected == shown { CheckResult::Pass } else { CheckResult::Fail };
+            let wanted = if expected == shown { CheckResult::Shown } else { CheckResult::NotShown };
             assert_eq!(result(&verdict, CheckKind::SvMovement), wanted, "{turn:?} {expected:?}: {verdict:#?}");
         }
     }
@@ -219,12 +219,21 @@ fn on_the_ring_a_left_turn_is_shown_until_it_leaves_and_straight_until_the_secon
         .find(|segment| network.road(network.lane(segment.lane).road).part == recrash_roads::RoadPart::Ring);
     let joined = on_ring.unwrap().start_m;
     for (driven_m, wanted) in [
-        (joined - 25.0, [(Straight, CheckResult::Fail), (LeftTurn, CheckResult::Fail), (RightTurn, CheckResult::Fail)]),
-        (joined - 9.0, [(Straight, CheckResult::Pass), (LeftTurn, CheckResult::Fail), (RightTurn, CheckResult::Fail)]),
-        (joined + 10.0, [(Straight, CheckResult::Pass), (LeftTurn, CheckResult::Pass), (RightTurn, CheckResult::Fail)]),
+        (
+            joined - 25.0,
+            [(Straight, CheckResult::NotShown), (LeftTurn, CheckResult::NotShown), (RightTurn, CheckResult::NotShown)],
+        ),
+        (
+            joined - 9.0,
+            [(Straight, CheckResult::Shown), (LeftTurn, CheckResult::NotShown), (RightTurn, CheckResult::NotShown)],
+        ),
+        (
+            joined + 10.0,
+            [(Straight, CheckResult::Shown), (LeftTurn, CheckResult::Shown), (RightTurn, CheckResult::NotShown)],
+        ),
         (
             joined + 100.0,
-            [(Straight, CheckResult::Fail), (LeftTurn, CheckResult::Pass), (RightTurn, CheckResult::Fail)],
+            [(Straight, CheckResult::NotShown), (LeftTurn, CheckResult::Shown), (RightTurn, CheckResult::NotShown)],
         ),
     ] {
         let steps = ((driven_m - 5.0) / 0.8) as usize;
@@ -248,7 +257,7 @@ fn who_starts_on_the_ring_turns_as_seen_from_the_egos_entry() {
         let rollout = rollout(ego, vec![drive(&way, 5.0, steps, |_| 8.0)]);
         for expected in [Straight, LeftTurn, RightTurn] {
             let verdict = verdict(&network, &rollout, &expecting(RoadType::TrafficCircle, Straight, expected));
-            let wanted = if expected == shown { CheckResult::Pass } else { CheckResult::Fail };
+            let wanted = if expected == shown { CheckResult::Shown } else { CheckResult::NotShown };
             assert_eq!(result(&verdict, CheckKind::CpMovement), wanted, "{turn:?} {expected:?}: {verdict:#?}");
         }
     }
@@ -266,10 +275,10 @@ fn two_side_by_side_on_the_ring_both_turn_left() {
     expectation.approach = Some(Approach::Ring);
     let shown = verdict(&network, &rollout, &expectation);
     for kind in [CheckKind::Road, CheckKind::SvMovement, CheckKind::CpMovement, CheckKind::Approach] {
-        assert_eq!(result(&shown, kind), CheckResult::Pass, "{shown:#?}");
+        assert_eq!(result(&shown, kind), CheckResult::Shown, "{shown:#?}");
     }
     expectation.approach = Some(Approach::Left);
-    assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::Approach), CheckResult::Fail);
+    assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::Approach), CheckResult::NotShown);
 }
 
 #[test]
@@ -292,7 +301,7 @@ fn the_road_is_where_the_encounter_was() {
         (&straight, &plain, vec![Highway, Street], vec![Intersection, TrafficCircle, ParkingLot]),
         (&circle, &ring, vec![TrafficCircle], vec![Intersection, Highway, Street]),
     ] {
-        for (roads, wanted) in [(pass, CheckResult::Pass), (fail, CheckResult::Fail)] {
+        for (roads, wanted) in [(pass, CheckResult::Shown), (fail, CheckResult::NotShown)] {
             for road in roads {
                 let expectation = expecting(road, Movement::Straight, Movement::Straight);
                 let verdict = verdict(network, rollout, &expectation);
@@ -302,7 +311,7 @@ fn the_road_is_where_the_encounter_was() {
     }
     // Somebody turns off the highway: at a junction.
     let turning = expecting(Highway, Movement::Straight, Movement::LeftTurn);
-    assert_eq!(result(&verdict(&cross, &at_junction, &turning), CheckKind::Road), CheckResult::Pass);
+    assert_eq!(result(&verdict(&cross, &at_junction, &turning), CheckKind::Road), CheckResult::Shown);
 }
 
 #[test]
@@ -314,17 +323,17 @@ fn obstacles_are_there_where_and_only_where_they_belong() {
     let check = |rollout: &Rollout, expectation: &Expectation| {
         result(&verdict(&network, rollout, expectation), CheckKind::WorkZone)
     };
-    assert_eq!(check(&rollout, &expectation), CheckResult::Pass);
+    assert_eq!(check(&rollout, &expectation), CheckResult::Shown);
     expectation.template.work_zone = true;
-    assert_eq!(check(&rollout, &expectation), CheckResult::Fail);
+    assert_eq!(check(&rollout, &expectation), CheckResult::NotShown);
     rollout.obstacles = vec![cone(500.0, 0.0)];
-    assert_eq!(check(&rollout, &expectation), CheckResult::Fail, "far from the way");
+    assert_eq!(check(&rollout, &expectation), CheckResult::NotShown, "far from the way");
     rollout.obstacles = vec![cone(50.0, -1.75)];
-    assert_eq!(check(&rollout, &expectation), CheckResult::Pass);
+    assert_eq!(check(&rollout, &expectation), CheckResult::Shown);
     expectation.template.work_zone = false;
-    assert_eq!(check(&rollout, &expectation), CheckResult::Fail);
+    assert_eq!(check(&rollout, &expectation), CheckResult::NotShown);
     expectation.obstacles_named = true;
-    assert_eq!(check(&rollout, &expectation), CheckResult::Pass);
+    assert_eq!(check(&rollout, &expectation), CheckResult::Shown);
 }
 
 #[test]
@@ -338,11 +347,11 @@ fn the_approach_is_where_the_partner_starts_and_heads() {
         for stated in [Same, Opposite, Left, Right, Ring] {
             let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
             expectation.approach = Some(stated);
-            let wanted = if stated == approach { CheckResult::Pass } else { CheckResult::Fail };
+            let wanted = if stated == approach { CheckResult::Shown } else { CheckResult::NotShown };
             assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::Approach), wanted, "{stated:?}");
         }
         let silent = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
-        assert_eq!(result(&verdict(&network, &rollout, &silent), CheckKind::Approach), CheckResult::NotApplicable);
+        assert_eq!(result(&verdict(&network, &rollout, &silent), CheckKind::Approach), CheckResult::NotTold);
     }
     // On a curve the oncoming one starts at a right angle to the ego.
     let network = curve(Side::Left);
@@ -353,7 +362,7 @@ fn the_approach_is_where_the_partner_starts_and_heads() {
     );
     let mut expectation = expecting(RoadType::Highway, Movement::Straight, Movement::Straight);
     expectation.approach = Some(Opposite);
-    assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::Approach), CheckResult::Pass);
+    assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::Approach), CheckResult::Shown);
 }
 
 #[test]
@@ -368,19 +377,19 @@ fn the_order_is_that_of_the_arrivals_where_the_paths_cross() {
     };
     use FirstMover::{Both, Cp, Sv};
     for late_s in [0.6, 1.2, 4.0] {
-        assert_eq!(check(late_s, Sv), CheckResult::Pass, "{late_s}");
-        assert_eq!(check(-late_s, Cp), CheckResult::Pass, "{late_s}");
-        assert_eq!(check(late_s, Cp), CheckResult::Fail, "{late_s}");
-        assert_eq!(check(-late_s, Sv), CheckResult::Fail, "{late_s}");
+        assert_eq!(check(late_s, Sv), CheckResult::Shown, "{late_s}");
+        assert_eq!(check(-late_s, Cp), CheckResult::Shown, "{late_s}");
+        assert_eq!(check(late_s, Cp), CheckResult::NotShown, "{late_s}");
+        assert_eq!(check(-late_s, Sv), CheckResult::NotShown, "{late_s}");
     }
-    assert_eq!(check(0.2, Both), CheckResult::Pass);
-    assert_eq!(check(4.0, Both), CheckResult::Fail);
+    assert_eq!(check(0.2, Both), CheckResult::Shown);
+    assert_eq!(check(4.0, Both), CheckResult::NotShown);
     // Side by side there is no crossing, so an order that is told is not shown.
     let way = path(&network, Approach::Same, Turn::Straight, 1);
     let beside = rollout(drive(&way, 5.0, 60, |_| 5.0), vec![drive_at(&way, 9.0, 60, |_| 5.0, |_| -3.5)]);
     let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
     expectation.order = Some(Sv);
-    assert_eq!(result(&verdict(&network, &beside, &expectation), CheckKind::Order), CheckResult::Fail);
+    assert_eq!(result(&verdict(&network, &beside, &expectation), CheckKind::Order), CheckResult::NotShown);
 }
 
 #[test]
@@ -389,17 +398,17 @@ fn told_speeds_are_driven_within_a_tolerance() {
     let rollout = meeting(&network, (Turn::Straight, 1), (Approach::Left, Turn::Straight, 1), 10.0, 0.2);
     let mut expectation = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
     for (told, wanted) in [
-        (10.0, CheckResult::Pass),
+        (10.0, CheckResult::Shown),
         // 10 m/s are 40 % more than 7.2 m/s and 38 % less than 16 m/s.
-        (7.2, CheckResult::Pass),
-        (16.0, CheckResult::Pass),
-        (6.0, CheckResult::Fail),
-        (18.0, CheckResult::Fail),
+        (7.2, CheckResult::Shown),
+        (16.0, CheckResult::Shown),
+        (6.0, CheckResult::NotShown),
+        (18.0, CheckResult::NotShown),
     ] {
         (expectation.sv_speed_mps, expectation.cp_speed_mps) = (Some(told), None);
         let ego = verdict(&network, &rollout, &expectation);
         assert_eq!(result(&ego, CheckKind::SvSpeed), wanted, "{told}");
-        assert_eq!(result(&ego, CheckKind::CpSpeed), CheckResult::NotApplicable);
+        assert_eq!(result(&ego, CheckKind::CpSpeed), CheckResult::NotTold);
         (expectation.sv_speed_mps, expectation.cp_speed_mps) = (None, Some(told));
         assert_eq!(result(&verdict(&network, &rollout, &expectation), CheckKind::CpSpeed), wanted, "{told}");
     }
@@ -415,9 +424,9 @@ fn a_partner_beside_the_ego_is_on_the_side_that_is_told() {
             (expectation.approach, expectation.side) = (Some(Approach::Same), side);
             result(&verdict(&network, &on_right, &expectation), CheckKind::Approach)
         };
-        assert_eq!(check(Some(Side::Right)), CheckResult::Pass);
-        assert_eq!(check(Some(Side::Left)), CheckResult::Fail);
-        assert_eq!(check(None), CheckResult::Pass);
+        assert_eq!(check(Some(Side::Right)), CheckResult::Shown);
+        assert_eq!(check(Some(Side::Left)), CheckResult::NotShown);
+        assert_eq!(check(None), CheckResult::Shown);
     }
 }
 
@@ -429,9 +438,9 @@ fn no_cone_belongs_in_the_junction() {
     expectation.template.work_zone = true;
     let check = |rollout: &Rollout| result(&verdict(&network, rollout, &expectation), CheckKind::WorkZone);
     rollout.obstacles = vec![cone(50.0, -1.75)];
-    assert_eq!(check(&rollout), CheckResult::Pass);
+    assert_eq!(check(&rollout), CheckResult::Shown);
     rollout.obstacles.push(cone(70.0, 0.0));
-    assert_eq!(check(&rollout), CheckResult::Fail);
+    assert_eq!(check(&rollout), CheckResult::NotShown);
 }
 
 #[test]
@@ -442,20 +451,20 @@ fn the_encounter_is_with_the_partner() {
     let check = |rollout: &Rollout| result(&verdict(&network, rollout, &expectation), CheckKind::Encounter);
     let ego = |speed: f64| drive(&way, 5.0, 60, |_| speed);
     let ahead = |s: f64, speed: f64| drive(&way, s, 60, |_| speed);
-    assert_eq!(check(&rollout(ego(10.0), vec![ahead(30.0, 8.0)])), CheckResult::Pass);
-    assert_eq!(check(&rollout(ego(10.0), vec![ahead(200.0, 8.0)])), CheckResult::Fail, "never close");
-    assert_eq!(check(&rollout(ego(10.0), vec![ahead(14.0, 12.0)])), CheckResult::Fail, "closest at the start");
-    assert_eq!(check(&rollout(ego(10.0), vec![])), CheckResult::Fail, "nobody there");
+    assert_eq!(check(&rollout(ego(10.0), vec![ahead(30.0, 8.0)])), CheckResult::Shown);
+    assert_eq!(check(&rollout(ego(10.0), vec![ahead(200.0, 8.0)])), CheckResult::NotShown, "never close");
+    assert_eq!(check(&rollout(ego(10.0), vec![ahead(14.0, 12.0)])), CheckResult::NotShown, "closest at the start");
+    assert_eq!(check(&rollout(ego(10.0), vec![])), CheckResult::NotShown, "nobody there");
     // Contact with the partner, and contact with somebody else.
     let mut both = rollout(ego(12.0), vec![ahead(30.0, 8.0), ahead(60.0, 11.0)]);
-    assert_eq!(check(&both), CheckResult::Pass);
+    assert_eq!(check(&both), CheckResult::Shown);
     both.actors[1].role = Role::Traffic;
-    assert_eq!(check(&both), CheckResult::Fail, "the contact was with traffic");
+    assert_eq!(check(&both), CheckResult::NotShown, "the contact was with traffic");
     // Traffic came closer without contact.
     let mut near = rollout(ego(10.0), vec![ahead(30.0, 8.0), ahead(16.0, 9.8)]);
-    assert_eq!(check(&near), CheckResult::Pass);
+    assert_eq!(check(&near), CheckResult::Shown);
     near.actors[2].role = Role::Traffic;
-    assert_eq!(check(&near), CheckResult::Fail);
+    assert_eq!(check(&near), CheckResult::NotShown);
 }
 
 #[test]
@@ -473,21 +482,21 @@ fn contact_zones_agree_within_one_step_around_the_box() {
         (expectation.sv_zones, expectation.cp_zones) = (sv.to_vec(), cp.to_vec());
         result(&verdict(&network, rollout, &expectation), CheckKind::ContactZones)
     };
-    assert_eq!(check(&hit, &[Left], &[Front]), CheckResult::Pass);
-    assert_eq!(check(&hit, &[FrontLeft], &[FrontLeft]), CheckResult::Pass);
-    assert_eq!(check(&hit, &[Right, Left], &[Front]), CheckResult::Pass, "any of the record's zones");
-    assert_eq!(check(&hit, &[Right], &[Front]), CheckResult::Fail);
-    assert_eq!(check(&hit, &[Left], &[Rear]), CheckResult::Fail);
-    assert_eq!(check(&hit, &[Left], &[]), CheckResult::Pass);
-    assert_eq!(check(&hit, &[], &[]), CheckResult::NotApplicable);
-    assert_eq!(check(&hit, &[Top], &[]), CheckResult::NotApplicable, "a plane has no top");
+    assert_eq!(check(&hit, &[Left], &[Front]), CheckResult::Shown);
+    assert_eq!(check(&hit, &[FrontLeft], &[FrontLeft]), CheckResult::Shown);
+    assert_eq!(check(&hit, &[Right, Left], &[Front]), CheckResult::Shown, "any of the record's zones");
+    assert_eq!(check(&hit, &[Right], &[Front]), CheckResult::NotShown);
+    assert_eq!(check(&hit, &[Left], &[Rear]), CheckResult::NotShown);
+    assert_eq!(check(&hit, &[Left], &[]), CheckResult::Shown);
+    assert_eq!(check(&hit, &[], &[]), CheckResult::NotTold);
+    assert_eq!(check(&hit, &[Top], &[]), CheckResult::NotTold, "a plane has no top");
     let gap =
         |rollout: &Rollout| measure(&network, &path(&network, Approach::Same, Turn::Straight, 1), 8.0, rollout).min_gap;
     assert!(gap(&near).unwrap().value < 2.0 && gap(&near).unwrap().value > 0.0, "{:?}", gap(&near));
-    assert_eq!(check(&near, &[Rear], &[Front]), CheckResult::Pass);
-    assert_eq!(check(&near, &[FrontLeft], &[Front]), CheckResult::Fail);
+    assert_eq!(check(&near, &[Rear], &[Front]), CheckResult::Shown);
+    assert_eq!(check(&near, &[FrontLeft], &[Front]), CheckResult::NotShown);
     assert!(gap(&far).unwrap().value > 2.0);
-    assert_eq!(check(&far, &[FrontLeft], &[Front]), CheckResult::NotApplicable);
+    assert_eq!(check(&far, &[FrontLeft], &[Front]), CheckResult::CannotBeShown);
 }
 
 #[test]
@@ -516,21 +525,19 @@ fn excluded_kinds_of_collision_are_found_in_contacts_and_near_misses() {
         (&head_on, HeadOn),
         (&passing, Sideswipe),
     ] {
-        assert_eq!(check(rollout, &[kind]), CheckResult::Fail, "{kind:?}");
+        assert_eq!(check(rollout, &[kind]), CheckResult::NotShown, "{kind:?}");
         let others: Vec<_> =
             [Angle, HeadOn, RearEndByEgo, RearEndOfEgo, Sideswipe].into_iter().filter(|&other| other != kind).collect();
-        assert_eq!(check(rollout, &others), CheckResult::Pass, "{kind:?}");
+        assert_eq!(check(rollout, &others), CheckResult::Shown, "{kind:?}");
     }
-    assert_eq!(check(&free, &[RearEndByEgo]), CheckResult::Pass);
-    assert_eq!(check(&free, &[]), CheckResult::NotApplicable);
+    assert_eq!(check(&free, &[RearEndByEgo]), CheckResult::Shown);
+    assert_eq!(check(&free, &[]), CheckResult::NotTold);
 }
 
 #[test]
 fn a_rollout_without_states_is_not_faithful() {
     let network = cross();
     let empty = rollout(Vec::new(), Vec::new());
-    assert!(
-        !verdict(&network, &empty, &expecting(RoadType::Intersection, Movement::Straight, Movement::Straight))
-            .faithful()
-    );
+    let told = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
+    assert_eq!(verdict(&network, &empty, &told).faithful(), Answer::No);
 }

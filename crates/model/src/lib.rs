@@ -10,12 +10,14 @@
 pub mod account;
 pub mod diagnostic;
 pub mod geometry;
+pub mod hash;
 pub mod math;
 pub mod metrics;
 pub mod narrative;
 pub mod profile;
 pub mod record;
 pub mod rollout;
+pub mod run;
 pub mod scenario;
 pub mod seed;
 pub mod selection;

@@ -5,7 +5,7 @@ use crate::parity::{random_scenario, start};
 use crate::progress::{Progress, ProgressEvent};
 use recrash_metadrive::Drive;
 use recrash_roads::Scenario;
-use recrash_sim::{Ego, Simulator, SummaryRecorder};
+use recrash_sim::{Ego, Runner, SummaryRecorder};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -85,7 +85,7 @@ pub fn bench_sim(request: &SimBenchRequest, progress: &dyn Progress) -> Result<S
     const STAGE: &str = "bench";
     let scenarios: Vec<Scenario> = (0..request.count).map(|number| random_scenario(request.seed, number)).collect();
     progress.event(ProgressEvent::Started { stage: STAGE, units: request.rounds + METADRIVE_PASSES * scenarios.len() });
-    let agent_steps = run_all(&scenarios, &mut Simulator::new());
+    let agent_steps = run_all(&scenarios, &mut Runner::new());
     let (mut one, mut two) = (Vec::new(), Vec::new());
     for _ in 0..request.rounds {
         // In turn, so that other work on the machine meets both.
@@ -133,10 +133,10 @@ fn native(scenarios: &[Scenario], threads: usize, least: Duration) -> f64 {
     let begun = Instant::now();
     let steps: u64 = std::thread::scope(|scope| {
         let work = || {
-            let mut simulator = Simulator::new();
+            let mut runner = Runner::new();
             let mut steps = 0;
             while begun.elapsed() < least {
-                steps += run_all(scenarios, &mut simulator);
+                steps += run_all(scenarios, &mut runner);
             }
             steps
         };
@@ -147,10 +147,10 @@ fn native(scenarios: &[Scenario], threads: usize, least: Duration) -> f64 {
 }
 
 /// Runs every scenario once; gives the agent-steps.
-fn run_all(scenarios: &[Scenario], simulator: &mut Simulator) -> u64 {
+fn run_all(scenarios: &[Scenario], runner: &mut Runner) -> u64 {
     let mut recorder = SummaryRecorder::new();
     let run = |scenario| {
-        simulator.run(scenario, Ego::MetadriveIdm, &mut recorder);
+        runner.run(scenario, Ego::MetadriveIdm, &mut recorder);
         recorder.summary.actors as u64 * u64::from(recorder.summary.steps)
     };
     scenarios.iter().map(run).sum()

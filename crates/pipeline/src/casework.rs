@@ -6,14 +6,15 @@ use crate::external::Patience;
 use crate::output::Outputs;
 use crate::paths;
 use crate::profiles::load_profile;
-use crate::simulator::{Simulator, SimulatorKind};
+use crate::simulator::{Simulator, SimulatorKind, start_simulator};
 use crate::store::{read_text, to_compact_json};
 use recrash_agents::{Brief, Design, Feedback, Problem, inexpressible};
-use recrash_metrics::{faithfulness, findings, measure, series};
-use recrash_model::metrics::{Check, Expectation, Finding, Metrics, Series, Verdict};
+use recrash_metrics::{faithfulness, findings, measure};
+use recrash_model::metrics::{Check, Expectation};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::Rollout;
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::{Author, ScenarioDraft};
 use recrash_model::{Diagnostic, Outcome};
 use recrash_roads::Scenario;
@@ -25,46 +26,18 @@ const MAX_SCENARIO_FILE: u64 = 1 << 20;
 /// Designs of the rules that are tried before the best so far is taken.
 pub const MAX_DESIGNS: usize = 6;
 
-/// One run of one scenario, with all that was computed from it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CaseRun {
-    /// Always `recrash.run/1`.
-    pub format: String,
-    /// What was measured.
-    pub metrics: Metrics,
-    /// What that says about the ego.
-    pub findings: Vec<Finding>,
-    /// Whether the rollout is true to its record; absent for a scenario without one.
-    pub verdict: Option<Verdict>,
-    /// What happened.
-    pub rollout: Rollout,
-    /// Gaps, speeds and accelerations over time.
-    pub series: Series,
-}
-
-impl CaseRun {
-    /// Whether the ego failed, by the profile's criteria.
-    pub fn failed(&self) -> bool {
-        self.findings.iter().any(|finding| finding.kind.is_failure())
-    }
-
-    /// Whether every check of faithfulness passed; true where nothing was checked.
-    pub fn faithful(&self) -> bool {
-        self.verdict.as_ref().is_none_or(Verdict::faithful)
-    }
-}
-
 /// Runs a scenario and computes everything from its rollout.
 ///
 /// # Errors
 /// The simulator failed; the native one cannot.
 pub fn run_scenario(
     scenario: &Scenario,
-    simulator: &Simulator,
+    simulator: &dyn Simulator,
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
-) -> Result<CaseRun, PipelineError> {
-    Ok(judge(scenario, simulator.run(scenario)?, profile, expectation))
+) -> Result<JudgedRun, PipelineError> {
+    let rollout = simulator.run(scenario).map_err(|error| PipelineError::not_run(&error))?;
+    Ok(judge(scenario, rollout, profile, expectation))
 }
 
 /// Computes everything from a rollout of a scenario, whichever simulator it comes from.
@@ -73,16 +46,11 @@ pub(crate) fn judge(
     rollout: Rollout,
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
-) -> CaseRun {
+) -> JudgedRun {
     let metrics = measure(scenario, &rollout, &profile.failure);
-    CaseRun {
-        format: "recrash.run/1".into(),
-        findings: findings(scenario, &rollout, &metrics, &profile.failure),
-        verdict: expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)),
-        series: series(&rollout),
-        metrics,
-        rollout,
-    }
+    let found = findings(scenario, &rollout, &metrics, &profile.failure);
+    let verdict = expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)).unwrap_or_default();
+    JudgedRun::new(rollout, metrics, found, verdict)
 }
 
 /// What became of the designs of one scenario.
@@ -160,7 +128,7 @@ pub fn design_case(
     brief: &Brief,
     narrative: &Narrative,
     expectation: &Expectation,
-    simulator: &Simulator,
+    simulator: &dyn Simulator,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
     let asked = designers.first().map_or(RULES, |designer| designer.name).to_owned();
     let mut log = DesignLog { asked, repairs: 0, attempts: Vec::new(), taken: 0, gave_up: Vec::new() };
@@ -189,7 +157,7 @@ fn design_by(
     brief: &Brief,
     narrative: &Narrative,
     expectation: &Expectation,
-    simulator: &Simulator,
+    simulator: &dyn Simulator,
     attempts: &mut Vec<DesignAttempt>,
 ) -> Result<Course, PipelineError> {
     let mut feedback = Vec::new();
@@ -207,9 +175,11 @@ fn design_by(
             ),
             Ok(Outcome { value: scenario, diagnostics }) => {
                 let run = run_scenario(&scenario, simulator, brief.profile, Some(expectation))?;
-                let failures: Vec<Check> = run.verdict.iter().flat_map(|v| v.failures().cloned()).collect();
-                let problem = (!failures.is_empty())
-                    .then(|| Problem::NotFaithful { failures: failures.clone(), metrics: Box::new(run.metrics) });
+                let failures: Vec<Check> = run.verdict.failures().cloned().collect();
+                let problem = (!failures.is_empty()).then(|| Problem::NotFaithful {
+                    failures: failures.clone(),
+                    metrics: Box::new(run.judgement.metrics),
+                });
                 (DesignAttempt { draft: draft.clone(), diagnostics, unfaithful: Some(failures) }, problem)
             }
         };
@@ -226,7 +196,7 @@ fn design_by(
 #[derive(Debug, Clone, PartialEq)]
 pub struct FileRun {
     /// The run.
-    pub run: CaseRun,
+    pub run: JudgedRun,
     /// Remarks on the file.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -261,7 +231,7 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
     let profile = load_profile(request.profile)?;
     let (scenario, diagnostics) = read_scenario(request.scenario)?;
     let ego = request.ego.unwrap_or(&profile.ego);
-    let simulator = Simulator::start(request.simulator, ego, request.python, 1, request.patience)?;
+    let simulator = start_simulator(request.simulator, ego, request.python, 1, request.patience)?;
     let run = run_scenario(&scenario, &simulator, &profile, None)?;
     if let Some(rollout) = rollout {
         rollout.write(&to_compact_json(&run.rollout))?;

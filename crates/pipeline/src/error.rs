@@ -1,6 +1,7 @@
 //! What can go wrong outside the stages, with what, where and how to mend it.
 
 use recrash_model::Diagnostic;
+use recrash_roads::RunError;
 use std::path::PathBuf;
 
 /// Why a command stopped.
@@ -139,6 +140,11 @@ impl PipelineError {
     /// What one scenario failed of.
     pub fn scenario(id: &str, why: impl ToString) -> Self {
         Self::Scenario { id: id.to_owned(), why: why.to_string() }
+    }
+
+    /// What a simulator failed of.
+    pub fn not_run(error: &RunError) -> Self {
+        Self::scenario(&error.scenario_id, &error.why)
     }
 
     /// Whether the same command goes on where this one stopped.

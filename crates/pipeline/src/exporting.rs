@@ -6,7 +6,7 @@ use crate::external::Patience;
 use crate::output::Outputs;
 use crate::paths;
 use crate::profiles::load_profile;
-use crate::simulator::{Simulator, SimulatorKind};
+use crate::simulator::{SimulatorKind, start_simulator};
 use crate::stages::names;
 use crate::store::{Store, io};
 use crate::suite::Suite;
@@ -184,7 +184,7 @@ fn files_of(
     let (scenario, _) = read_scenario(&source.path).map_err(told)?;
     let profile = load_profile("paper").map_err(told)?;
     let native =
-        Simulator::start(SimulatorKind::Native, &source.ego, Path::new(""), 1, Patience::default()).map_err(told)?;
+        start_simulator(SimulatorKind::Native, &source.ego, Path::new(""), 1, Patience::default()).map_err(told)?;
     let rollout = run_scenario(&scenario, &native, &profile, None).map_err(told)?.rollout;
     let files = formats.iter().map(|&format| {
         let options = ExportOptions { partners_as, ..ExportOptions::new(format) };

@@ -1,6 +1,5 @@
 //! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
 
-use crate::casework::CaseRun;
 use crate::error::PipelineError;
 use crate::stages::names;
 use crate::store::to_json;
@@ -9,6 +8,8 @@ use crate::summary::RunSummary;
 use rayon::prelude::*;
 use recrash_model::Diagnostic;
 use recrash_model::diagnostic::{Location, Severity};
+use recrash_model::metrics::Answer;
+use recrash_model::run::JudgedRun;
 use recrash_model::selection::Selection;
 use serde::{Deserialize, Serialize};
 
@@ -71,13 +72,13 @@ pub fn unfaithful(suite: &Suite, stage: Stage) -> Result<Vec<Diagnostic>, Pipeli
         if !suite.store().path(&file(id)).exists() {
             return Ok(None);
         }
-        let run: CaseRun = suite.store().read_json(&file(id))?;
+        let run: JudgedRun = suite.store().read_json(&file(id))?;
         let remark = || {
             let why = RunSummary::new(&run).unfaithful.join("; ");
             let location = Location { file: Some((*id).clone()), ..Location::default() };
             Diagnostic::new(Severity::Warning, "scenario.unfaithful", location, format!("not faithful: {why}"))
         };
-        Ok((!run.faithful()).then(remark))
+        Ok((run.faithful() == Answer::No).then(remark))
     };
     let all: Vec<Option<Diagnostic>> = suite.in_pool(|| ids.par_iter().map(judged).collect::<Result<_, _>>())?;
     Ok(all.into_iter().flatten().collect())

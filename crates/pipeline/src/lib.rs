@@ -44,9 +44,7 @@ mod weights;
 
 pub use agents::{AgentLog, Cast};
 pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
-pub use casework::{
-    CaseRun, DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file,
-};
+pub use casework::{DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file};
 pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use embedding::EmbeddingKind;
@@ -71,10 +69,11 @@ pub use recording::{TableFormat, read_records, record_outputs, write_records};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
+pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
 pub use selecting::{SelectionStudy, StrategyStudy};
-pub use simulator::{Simulator, SimulatorKind};
+pub use simulator::{Simulator, SimulatorKind, start_simulator};
 pub use stages::StageReport;
 pub use store::{Store, WriteFile, remove_unfinished};
 pub use suite::{Options, RecordSource, Resources, Stage, Suite};

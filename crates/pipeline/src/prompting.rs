@@ -1,7 +1,7 @@
 //! What a model would be asked, shown without asking it.
 
 use crate::agents::RULES;
-use crate::casework::{CaseRun, read_scenario, run_scenario};
+use crate::casework::{read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::progress::NoProgress;
 use crate::scoring::Scoring;
@@ -12,6 +12,7 @@ use recrash_agents::llm::{
 };
 use recrash_agents::{AgentError, Brief, Design, Paraphrase, Rules, expectation, parameters};
 use recrash_model::narrative::Narrative;
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Cluster;
 use recrash_model::tuning::TunePoint;
@@ -128,7 +129,7 @@ fn question(suite: &Suite, brief: &Brief, role: Role, model: &str) -> Result<Que
     let scenario = designed(suite, brief, &narrative)?;
     let expectation = expectation(&narrative, brief.records[0], brief.profile);
     let simulator = suite.simulator()?;
-    let first = match stored::<CaseRun>(suite, &names::first_run(brief.scenario_id)) {
+    let first = match stored::<JudgedRun>(suite, &names::first_run(brief.scenario_id)) {
         Some(run) => run,
         None => run_scenario(&scenario, &simulator, brief.profile, Some(&expectation))?,
     };

@@ -11,7 +11,7 @@ use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;
 use recrash_records::{
     Bytes, Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, SAMPLE_CSV, SAMPLE_NAME, SourceBytes, TableRows,
-    ingest_sources, record_table,
+    ingest_sources, write_csv,
 };
 use std::borrow::Cow;
 use std::fs::File;
@@ -178,14 +178,21 @@ pub fn write_records(
     format: TableFormat,
     output: &Output,
 ) -> Result<usize, PipelineError> {
-    let table = record_table(records, rows);
-    let bytes = match format {
-        TableFormat::Csv => table.to_csv(),
+    match format {
+        TableFormat::Csv => {
+            let failed = |source| io("write", output.name(), source);
+            let mut begun = output.begin()?;
+            let written = write_csv(records, rows, &mut begun).map_err(failed)?;
+            begun.finish().map_err(failed)?;
+            Ok(written)
+        }
         #[cfg(feature = "parquet")]
-        TableFormat::Parquet => table.to_parquet(),
-    };
-    output.write(&bytes)?;
-    Ok(table.rows)
+        TableFormat::Parquet => {
+            let table = recrash_records::record_table(records, rows);
+            output.write(&table.to_parquet())?;
+            Ok(table.rows)
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! What a point of a search scores, and which points are refused. Described in `docs/models/tuning.md`.
 
-use crate::casework::{CaseRun, run_scenario};
+use crate::casework::run_scenario;
 use crate::simulator::Simulator;
-use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::math::wrap_angle;
 use recrash_model::metrics::Expectation;
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Role, Rollout, STEP_S};
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::{Parameter, Score, apply};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -44,7 +45,7 @@ pub struct Scoring<'a> {
     /// Failure criteria.
     pub profile: &'a SystemProfile,
     /// Simulator with the ego in it.
-    pub simulator: &'a Simulator,
+    pub simulator: &'a dyn Simulator,
     /// Hardest braking of partners as designed, which the narrative asks for. [m/s^2]
     pub designed_braking_mps2: f64,
     /// Points that could not be run.
@@ -58,8 +59,8 @@ impl<'a> Scoring<'a> {
         parameters: &'a [Parameter],
         expectation: &'a Expectation,
         profile: &'a SystemProfile,
-        simulator: &'a Simulator,
-        first: &CaseRun,
+        simulator: &'a dyn Simulator,
+        first: &JudgedRun,
     ) -> Self {
         let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
         let faults = AtomicUsize::new(0);
@@ -112,11 +113,10 @@ impl<'a> Scoring<'a> {
     }
 
     /// Why a run is refused: unfaithful, degenerate or implausible. Empty for an accepted one.
-    fn refusals(&self, run: &CaseRun) -> Vec<String> {
+    fn refusals(&self, run: &JudgedRun) -> Vec<String> {
         let mut why: Vec<String> = run
             .verdict
-            .iter()
-            .flat_map(|v| v.failures())
+            .failures()
             .map(|c| format!("unfaithful: {} is {}, not {}", c.kind.label(), c.observed, c.expected))
             .collect();
         if let Some(gap) = run.metrics.min_gap {
@@ -162,7 +162,7 @@ fn contact_depth(rollout: &Rollout) -> Option<f64> {
         let since_s = (time_s - step as f64 * STEP_S).max(1e-3);
         let rate = if turning { wrap_angle(pose.heading - track.states[step].heading) / since_s } else { 0.0 };
         // The chord of an arc is half turned.
-        let chord = Vec2::from_heading(pose.heading + 0.5 * rate * after_s) * (state.speed * after_s);
+        let chord = state.velocity().turned(0.5 * rate * after_s) * after_s;
         let pose = Pose { position: pose.position + chord, heading: pose.heading + rate * after_s };
         OrientedBox::new(pose, track.length_m, track.width_m)
     };
@@ -182,6 +182,6 @@ fn hardest_partner_braking(rollout: &Rollout) -> f64 {
         .iter()
         .filter(|actor| actor.role == Role::Partner)
         .flat_map(|actor| actor.states.windows(BRAKING_STEPS + 1))
-        .map(|states| (states[0].speed - states[BRAKING_STEPS].speed) / (BRAKING_STEPS as f64 * STEP_S))
+        .map(|states| (states[0].speed() - states[BRAKING_STEPS].speed()) / (BRAKING_STEPS as f64 * STEP_S))
         .fold(0.0, f64::max)
 }

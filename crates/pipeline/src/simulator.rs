@@ -1,13 +1,13 @@
-//! The simulators behind one door: the native one, and MetaDrive in Python workers.
+//! Which simulator: the native one, with an ego of its own or a program, or MetaDrive in Python workers.
 
 use crate::error::PipelineError;
 use crate::external::{EgoCommand, ExternalEgo, Patience};
-use recrash_metadrive::{Drive, METADRIVE_VERSION, Metadrive};
-use recrash_model::rollout::Rollout;
-use recrash_roads::Scenario;
-use recrash_sim::Ego;
+use recrash_metadrive::{METADRIVE_VERSION, Metadrive};
+use recrash_sim::{Ego, Native};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+
+pub use recrash_roads::Simulator;
 
 /// Which simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -45,64 +45,38 @@ impl std::str::FromStr for SimulatorKind {
     }
 }
 
-/// A simulator with the system under test in it.
-pub enum Simulator {
-    /// The native one.
-    Native(Ego),
-    /// The native one, with a program as the ego.
-    External(Box<ExternalEgo>),
-    /// MetaDrive, with its own IDM policy as the ego.
-    Metadrive(Box<Metadrive>),
-}
-
-impl Simulator {
-    /// Sets up a simulator. Python workers are started for MetaDrive alone, other programs for an ego `cmd:PROGRAM`.
-    ///
-    /// # Errors
-    /// There is no such ego, its program does not speak the protocol, or Python or MetaDrive is missing.
-    pub fn start(
-        kind: SimulatorKind,
-        ego: &str,
-        python: &Path,
-        workers: usize,
-        patience: Patience,
-    ) -> Result<Self, PipelineError> {
-        if let Some(command) = EgoCommand::parse(ego).map_err(PipelineError::bad_input)? {
-            return match kind {
-                SimulatorKind::Native => Ok(Self::External(Box::new(ExternalEgo::start(command, patience)?))),
-                SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
-            };
-        }
-        let native: Ego = ego.parse().map_err(|e| PipelineError::bad_input(format!("{e}")))?;
-        match kind {
-            SimulatorKind::Native => Ok(Self::Native(native)),
-            SimulatorKind::Metadrive if native == Ego::MetadriveIdm => {
-                let options = recrash_metadrive::Options { workers, ..recrash_metadrive::Options::new(python) };
-                let pool = Metadrive::start(options).map_err(|e| PipelineError::bad_input(e.to_string()))?;
-                Ok(Self::Metadrive(Box::new(pool)))
-            }
+/// Sets up a simulator with an ego in it, both chosen by name. Python workers are started for MetaDrive alone, other programs for
+/// an ego `cmd:PROGRAM`.
+///
+/// # Errors
+/// There is no such ego, its program does not speak the protocol, or Python or MetaDrive is missing.
+pub fn start_simulator(
+    kind: SimulatorKind,
+    ego: &str,
+    python: &Path,
+    workers: usize,
+    patience: Patience,
+) -> Result<Box<dyn Simulator>, PipelineError> {
+    if let Some(command) = EgoCommand::parse(ego).map_err(PipelineError::bad_input)? {
+        return match kind {
+            SimulatorKind::Native => Ok(Box::new(ExternalEgo::start(command, patience)?)),
             SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
-        }
+        };
     }
-
-    /// Runs a scenario.
-    ///
-    /// # Errors
-    /// [`PipelineError::Scenario`] where MetaDrive failed on it twice, or an external ego once. The native simulator with
-    /// its own egos cannot fail.
-    pub fn run(&self, scenario: &Scenario) -> Result<Rollout, PipelineError> {
-        match self {
-            Self::Native(ego) => Ok(recrash_sim::simulate(scenario, *ego)),
-            Self::External(ego) => ego.run(scenario),
-            Self::Metadrive(pool) => pool
-                .simulate(scenario, &Drive::MetadriveIdm)
-                .map_err(|e| PipelineError::scenario(&scenario.draft().id, e)),
+    let native: Ego = ego.parse().map_err(|e| PipelineError::bad_input(format!("{e}")))?;
+    match kind {
+        SimulatorKind::Native => Ok(Box::new(Native::new(native))),
+        SimulatorKind::Metadrive if native == Ego::MetadriveIdm => {
+            let options = recrash_metadrive::Options { workers, ..recrash_metadrive::Options::new(python) };
+            let pool = Metadrive::start(options).map_err(|e| PipelineError::bad_input(e.to_string()))?;
+            Ok(Box::new(pool))
         }
+        SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
     }
 }
 
 fn metadrive_only_runs_its_own(ego: &str) -> PipelineError {
     PipelineError::bad_input(format!(
-        "MetaDrive {METADRIVE_VERSION} runs its own policy only: choose --ego metadrive-idm, or --sim native for {ego}"
+        "MetaDrive {METADRIVE_VERSION} runs its own policy only: choose the ego metadrive-idm, or the native simulator for {ego}"
     ))
 }

@@ -1,7 +1,7 @@
 //! The stages: what each reads, does and writes.
 
 use crate::agents::{self, AgentLog, RULES};
-use crate::casework::{CaseRun, DesignLog, Designer, MAX_DESIGNS, design_case, read_scenario, run_scenario};
+use crate::casework::{DesignLog, Designer, MAX_DESIGNS, design_case, read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::failures::Failure;
 use crate::progress::{Progress, ProgressEvent};
@@ -17,6 +17,7 @@ use recrash_agents::{Brief, Rules, expectation, narrative_contradictions, parame
 use recrash_model::metrics::Expectation;
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{CrashRecord, RecordSet};
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::triage::{TRIAGE_FORMAT, Triage};
@@ -418,7 +419,7 @@ fn tune(work: &StageWork) -> Result<StageReport, PipelineError> {
         let id = &cluster.scenario_id;
         let (narrative, expectation) = case_expectation(suite, &cases, cluster)?;
         let draft = scenario(suite, &names::scenario(id))?.draft().clone();
-        let first: CaseRun = suite.store().read_json(&names::first_run(id))?;
+        let first: JudgedRun = suite.store().read_json(&names::first_run(id))?;
         let parameters = parameters(&draft, &narrative, suite.profile());
         let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), &simulator, &first);
         // A faithful contact as designed is what the search looks for, at no distance from the record.
@@ -492,7 +493,7 @@ pub struct Case<'a> {
     /// How the other egos fare where the system under test fails at last.
     pub triage: Option<Triage>,
     /// The reference driver's run there.
-    pub reference: Option<CaseRun>,
+    pub reference: Option<JudgedRun>,
     /// Why it went no further, where it did not.
     pub failure: Option<Failure>,
 }
@@ -502,7 +503,7 @@ pub struct Ran {
     /// What was run.
     pub scenario: recrash_roads::Scenario,
     /// What came of it.
-    pub run: CaseRun,
+    pub run: JudgedRun,
 }
 
 /// A tuned scenario.

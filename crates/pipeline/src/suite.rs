@@ -9,7 +9,7 @@ use crate::paths;
 use crate::profiles::load_profile;
 use crate::progress::Progress;
 use crate::recording;
-use crate::simulator::{Simulator, SimulatorKind};
+use crate::simulator::{Simulator, SimulatorKind, start_simulator};
 use crate::stages::names::FAILURE;
 use crate::stages::{self, StageReport};
 use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
@@ -426,9 +426,9 @@ impl Suite {
     }
 
     /// The simulator with the ego in it.
-    pub(crate) fn simulator(&self) -> Result<Simulator, PipelineError> {
+    pub(crate) fn simulator(&self) -> Result<Box<dyn Simulator>, PipelineError> {
         let workers = self.threads.current_num_threads();
-        Simulator::start(self.options.simulator, self.ego(), &self.python, workers, self.patience)
+        start_simulator(self.options.simulator, self.ego(), &self.python, workers, self.patience)
     }
 
     /// The models' side; absent where the rules play every role.

@@ -1,13 +1,13 @@
 //! What a person is told at the end of a run.
 
 use crate::agents::{AgentLog, Cast, RULES};
-use crate::casework::CaseRun;
 use crate::failures::Failure;
 use crate::stages::Case;
 use crate::suite::{RecordSource, Suite};
-use recrash_model::metrics::CheckResult;
+use recrash_model::metrics::{Answer, Check};
 use recrash_model::narrative::Origin;
 use recrash_model::record::{FunnelStep, RecordSet};
+use recrash_model::run::JudgedRun;
 use recrash_model::selection::{Coverage, EmbeddingInfo, Selection, StageTables, Strategy, TemplateCount};
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
@@ -111,8 +111,8 @@ pub struct CaseSummary {
     /// How the tuned one came about, in the same words, or `not asked` where a contact as designed needs no tuning.
     #[serde(default)]
     pub tuned_by: Option<String>,
-    /// Why the record itself was not used, where it was not.
-    pub alternative: Option<String>,
+    /// Whose crash it tells, and why not the picked record's.
+    pub origin: Option<Origin>,
     /// As designed.
     pub first: Option<RunSummary>,
     /// As tuned.
@@ -141,39 +141,42 @@ pub struct RunSummary {
     pub failed: bool,
     /// Kinds of findings, each once, failures first.
     pub findings: Vec<String>,
-    /// Whether every check of faithfulness passed.
-    pub faithful: bool,
-    /// Checks that failed: what is expected and what was observed.
+    /// Whether it is true to its record.
+    pub faithful: Answer,
+    /// Facts that are not shown: what is told and what was observed.
     pub unfaithful: Vec<String>,
+    /// Facts that cannot be shown.
+    #[serde(default)]
+    pub unchecked: Vec<String>,
 }
 
 impl RunSummary {
-    pub(crate) fn new(run: &CaseRun) -> Self {
-        let mut kinds: Vec<_> = run.findings.iter().map(|f| f.kind).collect();
-        kinds.sort_unstable();
-        kinds.dedup();
-        let checks = run.verdict.iter().flat_map(|v| &v.checks);
-        let unfaithful = checks
-            .filter(|check| check.result == CheckResult::Fail)
-            .map(|c| format!("{}: expected {}, observed {}", c.kind.label(), c.expected, c.observed))
-            .collect();
+    pub(crate) fn new(run: &JudgedRun) -> Self {
+        let told = |c: &Check| format!("{}: expected {}, observed {}", c.kind.label(), c.expected, c.observed);
         Self {
             min_gap_m: run.metrics.min_gap.map(|gap| gap.value),
             min_gap_time_s: run.metrics.min_gap.map(|gap| gap.time_s),
             min_centre_distance_m: run.metrics.min_centre_distance.map(|d| d.value),
             contact: run.metrics.contact.as_ref().map(|contact| contact.kind.label().to_owned()),
             failed: run.failed(),
-            findings: kinds.iter().map(|kind| kind.label().to_owned()).collect(),
+            findings: run.finding_kinds().iter().map(|kind| kind.label().to_owned()).collect(),
             faithful: run.faithful(),
-            unfaithful,
+            unfaithful: run.verdict.failures().map(told).collect(),
+            unchecked: run.verdict.unchecked().map(|check| check.kind.label().to_owned()).collect(),
         }
     }
 }
 
 impl Summary {
-    /// Scenarios whose tuned run is faithful.
-    pub fn faithful(&self) -> usize {
-        self.cases.iter().filter(|case| case.tuned.as_ref().is_some_and(|run| run.faithful)).count()
+    /// Scenarios whose tuned run gives this answer to whether it is true to its record.
+    pub fn faithful(&self, answer: Answer) -> usize {
+        self.cases.iter().filter(|case| case.tuned.as_ref().is_some_and(|run| run.faithful == answer)).count()
+    }
+
+    /// Scenarios that tell their own record, another one, and nobody's crash.
+    pub fn origins(&self) -> [usize; 3] {
+        let named = |name| move |case: &&CaseSummary| case.origin.as_ref().is_some_and(|o| o.name() == name);
+        ["own", "other", "invented"].map(|name| self.cases.iter().filter(named(name)).count())
     }
 
     /// Scenarios that went all the way.
@@ -224,10 +227,7 @@ pub fn summarise(suite: &Suite, records: &RecordSet, selection: &Selection, case
                 narrated: case.narrative.as_ref().map(|(_, log)| log.outcome().to_owned()),
                 designed: case.design.as_ref().map(|log| log.outcome().to_owned()),
                 tuned_by: case.tuned.as_ref().map(|tuned| tuned.agent.outcome().to_owned()),
-                alternative: case.narrative.as_ref().and_then(|(narrative, _)| match &narrative.origin {
-                    Origin::Record => None,
-                    Origin::Alternative { reason } => Some(reason.clone()),
-                }),
+                origin: case.narrative.as_ref().map(|(narrative, _)| narrative.origin.clone()),
                 first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
                 tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
                 triage: case.triage.clone(),

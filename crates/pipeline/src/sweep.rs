@@ -9,7 +9,7 @@ use crate::external::Patience;
 use crate::output::{Begun, Output, Outputs};
 use crate::paths;
 use crate::profiles::load_profile;
-use crate::simulator::{Simulator, SimulatorKind};
+use crate::simulator::{Simulator, SimulatorKind, start_simulator};
 use crate::stages::names;
 use crate::store::{Store, io};
 use crate::suite::Suite;
@@ -27,7 +27,6 @@ use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::tuning::{Parameter, TuneLog, apply};
 use recrash_records::{Column, ParquetWriter};
 use recrash_roads::Scenario;
-use recrash_sim::RolloutRecorder;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -207,7 +206,7 @@ impl Sweep {
             .num_threads(self.threads.unwrap_or(0))
             .build()
             .map_err(|e| PipelineError::Threads(e.to_string()))?;
-        let simulator = Simulator::start(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
+        let simulator = start_simulator(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
         let failed = |source| io("write", self.output.name(), source);
         let (begun, summary) = self.write(self.output.begin()?, &threads, &simulator, progress, &failed)?;
         begun.finish().map_err(failed)?;
@@ -218,7 +217,7 @@ impl Sweep {
         &self,
         sink: Begun,
         threads: &rayon::ThreadPool,
-        simulator: &Simulator,
+        simulator: &dyn Simulator,
         progress: &(dyn Fn(u64) + Sync),
         failed: &dyn Fn(std::io::Error) -> PipelineError,
     ) -> Result<(Begun, SweepSummary), PipelineError> {
@@ -232,7 +231,7 @@ impl Sweep {
             let end = (done + CHUNK).min(self.rollouts);
             let chunk: Vec<Row> = threads.install(|| {
                 let numbers = (done..end).into_par_iter();
-                numbers.map_init(recrash_sim::Simulator::new, |native, n| self.row(n, simulator, native)).collect()
+                numbers.map(|n| self.row(n, simulator)).collect()
             });
             chunk.iter().for_each(|row| summary.count(row));
             rows.extend(chunk);
@@ -258,7 +257,7 @@ impl Sweep {
         (base, base.parameters.iter().map(sample).collect(), seed.0)
     }
 
-    fn row(&self, number: u64, simulator: &Simulator, native: &mut recrash_sim::Simulator) -> Row {
+    fn row(&self, number: u64, simulator: &dyn Simulator) -> Row {
         let (base, values, seed) = self.point(number);
         let by_pointer = |pointer: &String| {
             base.parameters.iter().position(|parameter| parameter.pointer == *pointer).map(|at| values[at])
@@ -272,7 +271,7 @@ impl Sweep {
         let Ok(checked) = recrash_roads::check(draft) else {
             return Row { outcome: Err(REFUSED.to_owned()), ..row };
         };
-        match roll_out(&checked.value, simulator, native) {
+        match simulator.run(&checked.value) {
             Ok(rollout) => Row { outcome: Ok(self.outcome(&checked.value, &rollout)), ..row },
             Err(_) => Row { outcome: Err(EGO_FAILED.to_owned()), ..row },
         }
@@ -423,17 +422,6 @@ fn termination_name(kind: TerminationKind) -> &'static str {
     }
 }
 
-fn roll_out(
-    scenario: &Scenario,
-    simulator: &Simulator,
-    native: &mut recrash_sim::Simulator,
-) -> Result<Rollout, PipelineError> {
-    let Simulator::Native(ego) = simulator else { return simulator.run(scenario) };
-    let mut recorder = RolloutRecorder::new();
-    native.run(scenario, *ego, &mut recorder);
-    Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
-}
-
 /// The scenario file, or those of a suite: the tuned ones, by name.
 fn scenario_files(source: &Path) -> Result<Vec<PathBuf>, PipelineError> {
     if !source.is_dir() {
@@ -522,7 +510,7 @@ fn untold(draft: &ScenarioDraft) -> Narrative {
         records: Vec::new(),
         text: String::new(),
         facts: Vec::new(),
-        origin: Origin::Alternative { reason: String::new() },
+        origin: Origin::Invented { reason: String::new() },
         author: Author::Person,
     }
 }

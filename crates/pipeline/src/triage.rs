@@ -1,13 +1,13 @@
 //! Triage of failures: the other egos drive the same scenario. Defined in `docs/models/triage.md`.
 
-use crate::casework::{CaseRun, run_scenario};
+use crate::casework::run_scenario;
 use crate::error::PipelineError;
-use crate::simulator::Simulator;
 use recrash_model::metrics::{Finding, FindingKind};
 use recrash_model::profile::SystemProfile;
+use recrash_model::run::JudgedRun;
 use recrash_model::triage::{EgoOutcome, REFERENCE_EGO, Triage};
 use recrash_roads::Scenario;
-use recrash_sim::Ego;
+use recrash_sim::{Ego, Native};
 
 /// The triage of a scenario that `system` fails with these findings, and the run of the reference driver where that is another.
 ///
@@ -20,11 +20,11 @@ pub fn triage(
     system: &str,
     failed: &[Finding],
     profile: &SystemProfile,
-) -> Result<(Triage, Option<CaseRun>), PipelineError> {
+) -> Result<(Triage, Option<JudgedRun>), PipelineError> {
     let mut outcomes = Vec::new();
     let mut reference = None;
     for ego in Ego::ALL.into_iter().filter(|ego| ego.name() != system) {
-        let run = run_scenario(scenario, &Simulator::Native(ego), profile, None)?;
+        let run = run_scenario(scenario, &Native::new(ego), profile, None)?;
         outcomes.push(EgoOutcome {
             ego: ego.name().to_owned(),
             failed: run.failed(),

@@ -5,8 +5,8 @@ use crate::paths;
 use crate::stages::{Case, Ran, names};
 use crate::suite::{Options, RecordSource, Suite, quoted};
 use crate::summary::{self, FallbackReason, simulator_name};
+use recrash_metrics::series;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
-use recrash_model::metrics::Verdict;
 use recrash_model::record::RecordSet;
 use recrash_model::selection::Selection;
 use recrash_report::{CaseView, RunTrace, RunView, SuiteView};
@@ -69,11 +69,7 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
         before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
         after: moved.map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
         triage: case.triage.clone(),
-        reference: case.reference.as_ref().map(|run| RunTrace {
-            rollout: run.rollout.clone(),
-            series: run.series.clone(),
-            min_gap: run.metrics.min_gap,
-        }),
+        reference: case.reference.as_ref().map(|run| RunTrace { run: run.clone(), series: series(&run.rollout) }),
         tune_log: case.tuned.as_ref().map(|tuned| tuned.log.clone()),
         refused: case.failure.as_ref().map(ToString::to_string),
     }
@@ -82,11 +78,8 @@ fn case_view(suite: &Suite, records: &RecordSet, index: usize, case: &Case) -> C
 fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
     RunView {
         scenario: scenario.draft().clone(),
-        rollout: run.rollout.clone(),
-        metrics: run.metrics.clone(),
-        findings: run.findings.clone(),
-        verdict: run.verdict.clone().unwrap_or(Verdict { checks: Vec::new() }),
-        series: run.series.clone(),
+        run: run.clone(),
+        series: series(&run.rollout),
         rerun_command: rerun_command(suite, file),
     }
 }

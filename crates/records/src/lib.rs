@@ -34,7 +34,7 @@ pub use mapping::{MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, MappingError};
 #[cfg(feature = "parquet")]
 pub use parquet::ParquetWriter;
 pub use stream::{Bytes, sha256};
-pub use table::{Column, RecordTable, TableRows, record_table};
+pub use table::{Column, RecordTable, TableRows, record_table, write_csv};
 
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason};

@@ -8,9 +8,10 @@ use crate::pairs::{PairView, RunTrace};
 use crate::view::{CaseView, RunView, SuiteView};
 use crate::words;
 use recrash_model::geometry::{OrientedBox, Vec2};
-use recrash_model::metrics::{Series, Timed};
+use recrash_model::metrics::Series;
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
+use recrash_model::run::JudgedRun;
 use recrash_model::tuning::TuneLog;
 use recrash_roads::RoadDrawing;
 use serde_json::{Value, json};
@@ -54,8 +55,8 @@ pub fn suite(suite: &SuiteView, anchors: &Anchors) -> Value {
 pub fn case(case: &CaseView) -> Value {
     let runs = [case.before.as_ref().map(run), case.after.as_ref().map(run)];
     let mut data = drawn(&case.scenario_id, &case.drawing, runs, case.tune_log.as_ref().map(tune));
-    if let Some(RunTrace { rollout, series, min_gap }) = &case.reference {
-        data["reference"] = trace(rollout, series, *min_gap);
+    if let Some(RunTrace { run, series }) = &case.reference {
+        data["reference"] = trace(run, series);
     }
     data
 }
@@ -63,7 +64,7 @@ pub fn case(case: &CaseView) -> Value {
 /// What the scripts need of one pair of runs of a scenario.
 pub fn pair(pair: &PairView) -> Value {
     let runs = [Some(&pair.first), pair.second.as_ref()];
-    let trace = |run: &RunTrace| trace(&run.rollout, &run.series, run.min_gap);
+    let trace = |run: &RunTrace| trace(&run.run, &run.series);
     drawn(&pair.title, &pair.drawing, runs.map(|run| run.map(trace)), None)
 }
 
@@ -89,10 +90,11 @@ fn drawn(id: &str, drawing: &RoadDrawing, [before, after]: [Option<Value>; 2], t
 }
 
 fn run(run: &RunView) -> Value {
-    trace(&run.rollout, &run.series, run.metrics.min_gap)
+    trace(&run.run, &run.series)
 }
 
-fn trace(rollout: &Rollout, series: &Series, min_gap: Option<Timed>) -> Value {
+fn trace(run: &JudgedRun, series: &Series) -> Value {
+    let rollout = &run.rollout;
     let obstacles = rollout.obstacles.iter().map(|obstacle| {
         let pose = obstacle.pose;
         json!([
@@ -116,7 +118,7 @@ fn trace(rollout: &Rollout, series: &Series, min_gap: Option<Timed>) -> Value {
         "contacts": contacts(rollout),
         "gaps": series.partners.iter().map(|p| json!([p.actor, column(p.gap_m.iter().copied(), 1000.0)])).collect::<Vec<_>>(),
         "accelerations": accelerations,
-        "minGap": min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
+        "minGap": run.metrics.min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
     })
 }
 
@@ -131,7 +133,7 @@ fn actor(track: &ActorTrack) -> Value {
         "x": states(|state| state.x, 1000.0),
         "y": states(|state| state.y, 1000.0),
         "heading": states(|state| state.heading, 10_000.0),
-        "speed": states(|state| state.speed, 1000.0),
+        "speed": states(ActorState::speed, 1000.0),
         "throttle": states(|state| state.throttle, 20.0),
     })
 }

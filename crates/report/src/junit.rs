@@ -3,6 +3,7 @@
 use crate::results::other_egos;
 use crate::view::{CaseView, RunView, SuiteView};
 use crate::words::{self, fixed};
+use recrash_model::metrics::{Answer, Check};
 use recrash_model::triage::Triage;
 use std::fmt::Write;
 
@@ -13,7 +14,7 @@ pub fn render(suite: &SuiteView) -> String {
     let tuned: Vec<&CaseView> = suite.cases.iter().filter(|case| case.after.is_some()).collect();
     let tuned_cases: Vec<String> =
         tuned.iter().map(|case| test_case(suite, case, case.after.as_ref(), "tuned")).collect();
-    let failed = |run: Option<&RunView>| usize::from(run.is_some_and(RunView::failed));
+    let failed = |run: Option<&RunView>| usize::from(run.is_some_and(|run| run.failed()));
     let failed_designed: usize = suite.cases.iter().map(|case| failed(case.before.as_ref())).sum();
     let failed_tuned: usize = tuned.iter().map(|case| failed(case.after.as_ref())).sum();
     let skipped = suite.cases.iter().filter(|case| case.before.is_none()).count();
@@ -99,21 +100,22 @@ fn told(case: &CaseView, run: &RunView) -> String {
         .min_gap_m()
         .and_then(|gap| fixed(gap, 2))
         .map_or("no gap was measured".to_owned(), |gap| format!("{gap} m"));
-    let faithful = if run.faithful().is_none() {
-        "not checked".to_owned()
-    } else if run.verdict.faithful() {
-        "yes".to_owned()
-    } else {
-        let failures = run.verdict.failures();
-        let why = failures
-            .map(|check| format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed));
-        format!("no ({})", why.collect::<Vec<_>>().join("; "))
+    let faithful = match run.faithful() {
+        Answer::Yes => "yes".to_owned(),
+        Answer::Unchecked => "not all checked".to_owned(),
+        Answer::No => {
+            let told = |check: &Check| {
+                format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed)
+            };
+            format!("no ({})", run.verdict.failures().map(told).collect::<Vec<_>>().join("; "))
+        }
     };
+    let origin = case.narrative.as_ref().map_or("nobody said", |narrative| narrative.origin.label());
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
         format!("\n{}: {}\nother egos: {}", triage.class.label(), triage.class.meaning(), other_egos(triage))
     });
     format!(
-        "template: {}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}\nagain: {}",
+        "template: {}\ntells: {origin}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}\nagain: {}",
         case.template,
         words::name(&run.metrics.termination),
         run.rerun_command

@@ -1,13 +1,11 @@
 //! The results as a table for spreadsheets and data frames.
 
-use crate::summary::finding_kinds;
 use crate::view::{CaseView, RunView, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{PartnerMetrics, Timed};
-use recrash_model::narrative::Origin;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 39] = [
+const HEADER: [&str; 40] = [
     "scenario",
     "run",
     "road",
@@ -17,6 +15,7 @@ const HEADER: [&str; 39] = [
     "cluster",
     "record",
     "origin",
+    "told_record",
     "profile",
     "ego",
     "simulator",
@@ -72,11 +71,8 @@ pub fn render(suite: &SuiteView) -> String {
 fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) -> Vec<String> {
     let t = case.template;
     let cluster = suite.cluster(case);
-    let origin = match case.narrative.as_ref().map(|narrative| &narrative.origin) {
-        Some(Origin::Record) => "record",
-        Some(Origin::Alternative { .. }) => "alternative",
-        None => "",
-    };
+    let origin = case.narrative.as_ref().map_or("", |narrative| narrative.origin.name());
+    let told = case.narrative.as_ref().and_then(|narrative| narrative.told_record());
     let mut row = vec![
         case.scenario_id.clone(),
         name.to_owned(),
@@ -87,6 +83,7 @@ fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) ->
         cluster.map_or_else(String::new, |cluster| cluster.number.to_string()),
         suite.case_records(case).next().map_or_else(String::new, |record| record.id.to_string()),
         origin.to_owned(),
+        told.map_or_else(String::new, ToString::to_string),
         suite.profile.name.clone(),
         suite.ego.clone(),
         suite.simulator.clone(),
@@ -122,11 +119,11 @@ fn measured(run: &RunView) -> Vec<String> {
     let worst = |of: fn(&PartnerMetrics) -> Option<Timed>| m.partners.iter().filter_map(of).map(|timed| timed.value);
     let least = |of| number(worst(of).min_by(f64::total_cmp));
     let contact = m.contact.as_ref();
-    let kinds: Vec<&str> = finding_kinds(run).into_iter().map(|kind| kind.label()).collect();
+    let kinds: Vec<&str> = run.finding_kinds().into_iter().map(|kind| kind.label()).collect();
     let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
     vec![
         run.failed().to_string(),
-        run.faithful().map_or_else(String::new, |faithful| faithful.to_string()),
+        run.faithful().label().to_owned(),
         why.join("; "),
         kinds.join("; "),
         number(run.min_gap_m()),

@@ -1,8 +1,7 @@
 //! The headline numbers, computed once, so that no two places of the report can disagree.
 
 use crate::view::{CaseView, RunView, SuiteView};
-use recrash_model::metrics::FindingKind;
-use recrash_model::narrative::Origin;
+use recrash_model::metrics::Answer;
 use recrash_model::triage::FailureClass;
 
 /// How a run ended for the ego.
@@ -50,12 +49,14 @@ pub struct Summary {
     pub ran: usize,
     /// Scenarios that were refused.
     pub refused: usize,
-    /// Scenarios that retell their record.
-    pub from_record: usize,
-    /// Scenarios whose narrative takes the record's place.
-    pub alternatives: usize,
-    /// Scenarios whose last run is faithful.
+    /// Scenarios that tell their own record, another one, and nobody's crash.
+    pub origins: [usize; 3],
+    /// Scenarios whose last run shows every fact told.
     pub faithful: usize,
+    /// Scenarios whose last run shows something else.
+    pub unfaithful: usize,
+    /// Scenarios that tell their own record and whose last run shows every fact told.
+    pub own_faithful: usize,
     /// Scenarios the ego fails as designed.
     pub failed_before: usize,
     /// Scenarios the ego fails after tuning.
@@ -74,7 +75,10 @@ impl Summary {
     /// Of a suite.
     pub fn of(suite: &SuiteView) -> Self {
         let count = |holds: &dyn Fn(&CaseView) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
-        let origin = |case: &CaseView| case.narrative.as_ref().map(|narrative| narrative.origin == Origin::Record);
+        let tells = |case: &CaseView, name: &str| {
+            case.narrative.as_ref().is_some_and(|narrative| narrative.origin.name() == name)
+        };
+        let answers = |case: &CaseView, answer| case.last_run().is_some_and(|run| run.faithful() == answer);
         let gaps = |of: &dyn Fn(&CaseView) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
         Self {
             rows: suite.records.files.iter().map(|file| file.rows).sum(),
@@ -82,11 +86,12 @@ impl Summary {
             cases: suite.cases.len(),
             ran: count(&|case| case.last_run().is_some()),
             refused: count(&|case| case.refused.is_some()),
-            from_record: count(&|case| origin(case) == Some(true)),
-            alternatives: count(&|case| origin(case) == Some(false)),
-            faithful: count(&|case| case.last_run().is_some_and(|run| run.faithful() == Some(true))),
-            failed_before: count(&|case| case.before.as_ref().is_some_and(RunView::failed)),
-            failed_after: count(&|case| case.last_run().is_some_and(RunView::failed)),
+            origins: ["own", "other", "invented"].map(|name| count(&|case| tells(case, name))),
+            faithful: count(&|case| answers(case, Answer::Yes)),
+            unfaithful: count(&|case| answers(case, Answer::No)),
+            own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
+            failed_before: count(&|case| case.before.as_ref().is_some_and(|run| run.failed())),
+            failed_after: count(&|case| case.last_run().is_some_and(|run| run.failed())),
             classes: FailureClass::ALL
                 .into_iter()
                 .map(|class| (class, count(&|case| case.triage.as_ref().is_some_and(|triage| triage.class == class))))
@@ -108,14 +113,6 @@ impl Summary {
 fn closer(case: &CaseView) -> Option<bool> {
     let (before, after) = (case.before.as_ref()?, case.after.as_ref()?);
     Some(!before.failed() && after.min_gap_m()? < before.min_gap_m()?)
-}
-
-/// The kinds of finding of a run, each once, in the order of severity.
-pub fn finding_kinds(run: &RunView) -> Vec<FindingKind> {
-    let mut kinds: Vec<FindingKind> = run.findings.iter().map(|finding| finding.kind).collect();
-    kinds.sort();
-    kinds.dedup();
-    kinds
 }
 
 /// The median: the middle value, or the mean of the two in the middle.

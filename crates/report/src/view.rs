@@ -5,11 +5,11 @@
 
 use crate::pairs::RunTrace;
 use recrash_model::Diagnostic;
-use recrash_model::metrics::{Finding, Metrics, Series, Verdict};
+use recrash_model::metrics::Series;
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{CrashRecord, RecordSet};
-use recrash_model::rollout::Rollout;
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
@@ -84,14 +84,8 @@ pub struct CaseView {
 pub struct RunView {
     /// The scenario that was run.
     pub scenario: ScenarioDraft,
-    /// What happened.
-    pub rollout: Rollout,
-    /// Metrics of it.
-    pub metrics: Metrics,
-    /// Findings about the ego.
-    pub findings: Vec<Finding>,
-    /// Faithfulness.
-    pub verdict: Verdict,
+    /// What happened, and what that says.
+    pub run: JudgedRun,
     /// Values over time.
     pub series: Series,
     /// The command that runs this scenario again.
@@ -117,19 +111,10 @@ impl CaseView {
     }
 }
 
-impl RunView {
-    /// Whether the ego failed.
-    pub fn failed(&self) -> bool {
-        self.findings.iter().any(|finding| finding.kind.is_failure())
-    }
+impl std::ops::Deref for RunView {
+    type Target = JudgedRun;
 
-    /// Whether it is true to its record; `None` where nothing was checked.
-    pub fn faithful(&self) -> Option<bool> {
-        (!self.verdict.checks.is_empty()).then(|| self.verdict.faithful())
-    }
-
-    /// Least box gap to a scripted partner. [m]
-    pub fn min_gap_m(&self) -> Option<f64> {
-        self.metrics.min_gap.map(|gap| gap.value).filter(|gap| gap.is_finite())
+    fn deref(&self) -> &JudgedRun {
+        &self.run
     }
 }

@@ -43,7 +43,7 @@ fn the_page_works_in_a_browser() {
         case.scenario_id = "</script><img src=x onerror=alert(1)>".to_owned();
     }
     odd.cases[1].after = None;
-    odd.cases[1].before.as_mut().unwrap().rollout.actors.clear();
+    odd.cases[1].before.as_mut().unwrap().run.rollout.actors.clear();
     odd.cases[2].before = None;
     odd.cases[3].after.as_mut().unwrap().series.partners.clear();
     odd.cases[4].tune_log.as_mut().unwrap().points.clear();

@@ -62,7 +62,7 @@ fn hostile() -> SuiteView {
         case.refused = Some(HOSTILE.to_owned());
         let narrative = case.narrative.as_mut().unwrap();
         narrative.text = long.clone();
-        narrative.origin = Origin::Alternative { reason: HOSTILE.to_owned() };
+        narrative.origin = Origin::Invented { reason: HOSTILE.to_owned() };
         for fact in &mut narrative.facts {
             fact.source =
                 FactSource::Words { record: ids[case.records[0]].clone(), words: "onerror=alert(1)".to_owned() };
@@ -90,23 +90,23 @@ fn spoil_run(run: &mut RunView) {
     run.rerun_command = HOSTILE.to_owned();
     run.scenario.id = HOSTILE.to_owned();
     run.scenario.source.narrative = HOSTILE.to_owned();
-    run.rollout.simulator = HOSTILE.to_owned();
-    run.rollout.ego = HOSTILE.to_owned();
-    run.rollout.state_hash = HOSTILE.to_owned();
-    for actor in &mut run.rollout.actors {
+    run.run.rollout.simulator = HOSTILE.to_owned();
+    run.run.rollout.ego = HOSTILE.to_owned();
+    run.run.rollout.state_hash = HOSTILE.to_owned();
+    for actor in &mut run.run.rollout.actors {
         actor.id = HOSTILE.to_owned();
     }
-    for finding in &mut run.findings {
+    for finding in &mut run.run.judgement.findings {
         finding.sentence = HOSTILE.to_owned();
     }
-    for check in &mut run.verdict.checks {
+    for check in &mut run.run.judgement.verdict.checks {
         check.expected = HOSTILE.to_owned();
         check.observed = HOSTILE.to_owned();
     }
-    for partner in &mut run.metrics.partners {
+    for partner in &mut run.run.judgement.metrics.partners {
         partner.id = HOSTILE.to_owned();
     }
-    if let Some(contact) = &mut run.metrics.contact {
+    if let Some(contact) = &mut run.run.judgement.metrics.contact {
         contact.id = HOSTILE.to_owned();
     }
 }
@@ -124,16 +124,16 @@ fn broken() -> SuiteView {
     suite.cases[0].narrative = None;
     suite.cases[0].tune_log = None;
     let spoil = |case: &mut CaseView, of: fn(&mut RunView)| case.before.iter_mut().chain(&mut case.after).for_each(of);
-    spoil(&mut suite.cases[1], |run| run.rollout.actors.clear());
+    spoil(&mut suite.cases[1], |run| run.run.rollout.actors.clear());
     spoil(&mut suite.cases[2], |run| {
         run.series.partners.clear();
-        run.rollout.actors[1].states[3].x = f64::NAN;
-        run.metrics.min_gap = Some(Timed { value: f64::NAN, time_s: f64::INFINITY });
+        run.run.rollout.actors[1].states[3].x = f64::NAN;
+        run.run.judgement.metrics.min_gap = Some(Timed { value: f64::NAN, time_s: f64::INFINITY });
     });
     spoil(&mut suite.cases[3], |run| {
-        run.verdict.checks.clear();
-        run.metrics.partners.clear();
-        run.metrics.min_gap = None;
+        run.run.judgement.verdict.checks.clear();
+        run.run.judgement.metrics.partners.clear();
+        run.run.judgement.metrics.min_gap = None;
         run.series.partners[0].gap_m.iter_mut().for_each(|gap| *gap = f64::NAN);
         run.series.partners[0].actor = 77;
     });
@@ -228,7 +228,7 @@ fn broken_and_empty_suites_are_rendered() {
 fn a_run_in_which_nothing_was_checked_is_not_called_faithful() {
     let mut suite = suite::demo();
     for case in &mut suite.cases {
-        case.before.iter_mut().chain(&mut case.after).for_each(|run| run.verdict.checks.clear());
+        case.before.iter_mut().chain(&mut case.after).for_each(|run| run.run.judgement.verdict.checks.clear());
     }
     let page = html(&suite);
     assert!(page.contains("not checked") && !page.contains("</svg>faithful<"));

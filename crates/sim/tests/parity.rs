@@ -3,7 +3,7 @@
 use recrash_model::geometry::Vec2;
 use recrash_model::rollout::{Rollout, TerminationKind};
 use recrash_model::scenario::ScenarioDraft;
-use recrash_sim::{Ego, Simulator, SummaryRecorder, simulate};
+use recrash_sim::{Ego, Runner, SummaryRecorder, simulate};
 use serde_json::Value;
 
 mod common;
@@ -67,7 +67,7 @@ fn random_scenarios_end_as_in_metadrive() {
     assert_eq!(references.len(), 50);
     let (mut runs, mut contact, mut gap, mut time) = (0, 0, 0, 0);
     let mut errors = Vec::new();
-    let mut simulator = Simulator::new();
+    let mut runner = Runner::new();
     for reference in &references {
         // The check may grow stricter after the references were made.
         let Ok(checked) = recrash_roads::check(reference.draft.clone()) else {
@@ -77,7 +77,7 @@ fn random_scenarios_end_as_in_metadrive() {
         let scenario = checked.value;
         runs += 1;
         let mut recorder = SummaryRecorder::new();
-        let termination = simulator.run(&scenario, Ego::MetadriveIdm, &mut recorder);
+        let termination = runner.run(&scenario, Ego::MetadriveIdm, &mut recorder);
         let touched = reference.end == "contact";
         let reference_gap = if touched { 0.0 } else { reference.min_gap_m };
         let summary = recorder.summary;

@@ -6,7 +6,7 @@ use recrash_model::rollout::{ActorState, Rollout, Termination, TerminationKind};
 use recrash_model::scenario::{Approach, ScenarioDraft, Start, Turn};
 use recrash_roads::Scenario;
 use recrash_sim::{
-    CastMember, Controls, Ego, EgoDriver, Observation, RolloutRecorder, Simulator, SummaryRecorder, simulate,
+    CastMember, Controls, Ego, EgoDriver, Observation, RolloutRecorder, Runner, SummaryRecorder, simulate,
 };
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,8 +21,8 @@ fn assert_sound(rollout: &Rollout) {
     for track in &rollout.actors {
         assert_eq!(track.states.len(), steps, "{}", track.id);
         for state in &track.states {
-            assert!([state.x, state.y, state.heading, state.speed].iter().all(|number| number.is_finite()));
-            assert!(state.speed >= 0.0 && state.speed < 60.0, "{}", state.speed);
+            assert!(state.is_finite(), "{state:?}");
+            assert!(state.velocity().length() < 60.0 && state.speed() > -0.1, "{state:?}");
             assert!(state.steer.abs() <= 1.0 && state.throttle.abs() <= 1.0);
         }
     }
@@ -58,16 +58,16 @@ proptest! {
 }
 
 #[test]
-fn a_used_simulator_gives_the_same_bits_as_a_new_one() {
-    let mut simulator = Simulator::new();
+fn a_used_runner_gives_the_same_bits_as_a_new_one() {
+    let mut runner = Runner::new();
     let drafts: Vec<_> = (0..200).filter_map(|number| random_draft(11, number)).take(10).collect();
     let fresh: Vec<Rollout> = drafts.iter().map(|draft| simulate(&checked(draft.clone()), Ego::Idm)).collect();
     // In another order, and with another ego in between.
     for (draft, expected) in drafts.iter().zip(&fresh).rev() {
         let scenario = checked(draft.clone());
-        simulator.run(&scenario, Ego::MetadriveIdm, &mut SummaryRecorder::new());
+        runner.run(&scenario, Ego::MetadriveIdm, &mut SummaryRecorder::new());
         let mut recorder = RolloutRecorder::new();
-        simulator.run(&scenario, Ego::Idm, &mut recorder);
+        runner.run(&scenario, Ego::Idm, &mut recorder);
         assert_eq!(recorder.finish().as_ref(), Some(expected));
     }
 }
@@ -80,15 +80,15 @@ fn a_step_allocates_nothing() {
     crossing.partners.push(steady(Approach::Left, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 5.0 }, 8.0));
     for mut draft in [busy, crossing] {
         for ego in Ego::ALL {
-            let mut simulator = Simulator::new();
+            let mut runner = Runner::new();
             let mut recorder = SummaryRecorder::new();
             let mut allocations = |duration_s: f64| {
                 draft.duration_s = duration_s;
                 let scenario = checked(draft.clone());
                 // The first run makes room.
-                simulator.run(&scenario, ego, &mut recorder);
+                runner.run(&scenario, ego, &mut recorder);
                 let counted = allocation_counter::measure(|| {
-                    simulator.run(&scenario, ego, &mut recorder);
+                    runner.run(&scenario, ego, &mut recorder);
                 });
                 (counted.count_total, recorder.summary.steps)
             };
@@ -189,13 +189,13 @@ impl EgoDriver for Replay<'_> {
 
 #[test]
 fn a_driver_from_outside_that_does_what_another_did_gets_the_same_bits() {
-    let mut simulator = Simulator::new();
+    let mut runner = Runner::new();
     for draft in (0..200).filter_map(|number| random_draft(12, number)).take(10) {
         let scenario = checked(draft);
         let rollout = simulate(&scenario, Ego::Idm);
         let mut recorder = RolloutRecorder::new();
         let mut replay = Replay { rollout: &rollout, fails_at: usize::MAX };
-        let termination = simulator.run_with(&scenario, &mut replay, &mut recorder);
+        let termination = runner.run_with(&scenario, &mut replay, &mut recorder);
         assert_eq!(termination, Ok(rollout.termination));
         let again = recorder.finish().expect("a rollout");
         assert_eq!((again.ego.as_str(), &again.state_hash), ("replay", &rollout.state_hash));
@@ -208,7 +208,7 @@ fn a_driver_from_outside_without_an_answer_ends_the_run_with_its_error() {
     let scenario = checked(alone(wide_cross(2), Turn::Straight, 1, 8.0, 8.0));
     let rollout = simulate(&scenario, Ego::Idm);
     let mut replay = Replay { rollout: &rollout, fails_at: 17 };
-    let outcome = Simulator::new().run_with(&scenario, &mut replay, &mut SummaryRecorder::new());
+    let outcome = Runner::new().run_with(&scenario, &mut replay, &mut SummaryRecorder::new());
     assert_eq!(outcome, Err("no answer at step 17".to_owned()));
 }
 
@@ -244,12 +244,12 @@ fn golden_lines(scenarios: &[Scenario], threads: usize) -> Vec<String> {
     std::thread::scope(|scope| {
         for _ in 0..threads {
             scope.spawn(|| {
-                let mut simulator = Simulator::new();
+                let mut runner = Runner::new();
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
                     let Some(&(scenario, ego)) = runs.get(number) else { return };
                     let mut recorder = RolloutRecorder::new();
-                    simulator.run(scenario, ego, &mut recorder);
+                    runner.run(scenario, ego, &mut recorder);
                     let rollout = recorder.finish().expect("a rollout");
                     let line = format!("{} {ego} {} {}", rollout.scenario_id, rollout.steps(), rollout.state_hash);
                     lines.lock().expect("no thread has failed").push((number, line));
@@ -263,7 +263,7 @@ fn golden_lines(scenarios: &[Scenario], threads: usize) -> Vec<String> {
 }
 
 /// State hashes of all those scenarios with every ego: equal on every machine, in debug and release builds, for any
-/// number of threads and any history of the simulators. To renew them after a change of the model run with
+/// number of threads and any history of the runners. To renew them after a change of the model run with
 /// `RECRASH_RENEW_GOLDENS=1`; that run fails.
 #[test]
 fn state_hashes_are_those_on_file_for_1_2_and_8_threads() {

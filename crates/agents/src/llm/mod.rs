@@ -207,8 +207,8 @@ impl Paraphrase for LanguageModel<'_> {
             template: brief.template,
             records: brief.records.iter().map(|record| record.id.clone()).collect(),
             text: answer.text,
+            origin: origin(answer.replaces_record, &answer.facts, brief),
             facts: answer.facts,
-            origin: answer.replaces_record.map_or(Origin::Record, |reason| Origin::Alternative { reason }),
             author: Author::Model(self.model.to_owned()),
         };
         Ok(Outcome { value: narrative, diagnostics: Vec::new() })
@@ -243,7 +243,8 @@ impl Design for LanguageModel<'_> {
             format: SCENARIO_FORMAT.to_owned(),
             id: brief.scenario_id.to_owned(),
             source: Source {
-                records: narrative.records.clone(),
+                records: narrative.sources(),
+                origin: Some(narrative.origin.clone()),
                 template: Some(brief.template),
                 narrative: narrative.text.clone(),
                 author: Author::Model(self.model.to_owned()),
@@ -251,6 +252,19 @@ impl Design for LanguageModel<'_> {
             },
             ..draft
         })
+    }
+}
+
+/// Whose crash an answer tells: where it takes the pick's place, that of the report whose words it quotes first.
+fn origin(replaces_record: Option<String>, facts: &[Fact], brief: &Brief) -> Origin {
+    let Some(reason) = replaces_record else { return Origin::Own };
+    let quoted = facts.iter().find_map(|fact| match &fact.source {
+        FactSource::Words { record, .. } => Some(record),
+        FactSource::Column { .. } | FactSource::Assumed { .. } => None,
+    });
+    match quoted.filter(|record| brief.records.first().is_some_and(|pick| pick.id != **record)) {
+        Some(record) => Origin::Other { record: record.clone(), reason },
+        None => Origin::Invented { reason },
     }
 }
 

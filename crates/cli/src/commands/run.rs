@@ -6,7 +6,8 @@ use crate::options::SuiteArgs;
 use crate::output::{self, Output, title};
 use crate::screen::{bold, eprintln, one_line, println, yellow};
 use crate::table::{Cell, number, table};
-use recrash_model::metrics::CheckKind;
+use recrash_model::metrics::{Answer, CheckKind};
+use recrash_model::narrative::Origin;
 use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary};
 use std::path::Path;
 
@@ -127,13 +128,16 @@ fn show(summary: &Summary, dir: &Path) {
         .without_first(&["findings", "from", "designed", "failure"]);
     for case in &summary.cases {
         let verdict = match &case.tuned {
-            Some(run) if run.faithful => "faithful",
-            Some(_) => "NOT FAITHFUL",
+            Some(run) => match run.faithful {
+                Answer::Yes => "faithful",
+                Answer::Unchecked => "not all checked",
+                Answer::No => "NOT FAITHFUL",
+            },
             None => "NOT RUN",
         };
         rows.add_row(vec![
             Cell::new(&case.id),
-            Cell::new(if case.alternative.is_some() { "alternative" } else { "record" }),
+            Cell::new(case.origin.as_ref().map_or("", Origin::label)),
             Cell::new(gap(case.first.as_ref())),
             Cell::new(gap(case.tuned.as_ref())),
             Cell::new(verdict),
@@ -145,8 +149,18 @@ fn show(summary: &Summary, dir: &Path) {
     for case in &summary.cases {
         if let Some(failure) = &case.failure {
             println!("  {} {}: {failure}", yellow("not run:"), case.id);
-        } else if let Some(run) = case.tuned.as_ref().filter(|run| !run.faithful) {
-            println!("  {} {}: {}", yellow("not faithful:"), case.id, run.unfaithful.join("; "));
+        } else if let Some(run) = case.tuned.as_ref() {
+            match run.faithful {
+                Answer::Yes => {}
+                Answer::No => {
+                    println!("  {} {}: {}", yellow("not faithful:"), case.id, run.unfaithful.join("; "));
+                }
+                Answer::Unchecked => {
+                    let why =
+                        if run.unchecked.is_empty() { "nothing is told".into() } else { run.unchecked.join(", ") };
+                    println!("  {} {}: {why}", yellow("not all checked:"), case.id);
+                }
+            }
         }
     }
     let doubted = |run: &RunSummary| run.unfaithful.iter().any(|why| why.starts_with(CheckKind::Order.label()));
@@ -158,11 +172,14 @@ fn show(summary: &Summary, dir: &Path) {
     let of_total = if run < total { format!(" of {total}") } else { String::new() };
     let (first, tuned) = summary.failed();
     println!(
-        "\n{} {run}{of_total} scenarios run; {} faithful; {} fails {first} as designed and {tuned} after tuning",
+        "\n{} {run}{of_total} scenarios run; {} fails {first} as designed and {tuned} after tuning",
         bold("result:"),
-        summary.faithful(),
         summary.ego,
     );
+    let [own, other, invented] = summary.origins();
+    println!("  told: {own} of their own record, {other} of another real record, {invented} invented");
+    let [yes, no, unchecked] = [Answer::Yes, Answer::No, Answer::Unchecked].map(|answer| summary.faithful(answer));
+    println!("  faithful to what they tell: {yes} yes, {no} no, {unchecked} not all checked");
     for (class, count) in summary.failure_classes() {
         println!("  {count:>4} {}: {}", class.label(), class.meaning());
     }

@@ -14,11 +14,11 @@ pub use process::{EgoFault, Patience};
 use crate::error::PipelineError;
 use process::EgoProcess;
 use recrash_model::rollout::Rollout;
-use recrash_roads::Scenario;
-use recrash_sim::{RolloutRecorder, Simulator};
+use recrash_roads::{RunError, Scenario, Simulator};
+use recrash_sim::{Native, RolloutRecorder, Runner};
 use std::sync::{Mutex, PoisonError};
 
-/// A program as the ego, ready to drive. It may be shared between threads.
+/// The native simulator with a program as the ego, ready to drive. It may be shared between threads.
 pub struct ExternalEgo {
     command: EgoCommand,
     patience: Patience,
@@ -35,13 +35,24 @@ impl ExternalEgo {
             .map_err(|fault| PipelineError::bad_input(format!("the ego {command}: {fault}")))?;
         Ok(Self { command, patience, idle: Mutex::new(vec![first]) })
     }
+}
 
-    /// Runs a scenario.
-    ///
-    /// # Errors
-    /// The program failed: what it did, and at which step.
-    pub fn run(&self, scenario: &Scenario) -> Result<Rollout, PipelineError> {
-        let failed = |fault: EgoFault| PipelineError::scenario(&scenario.draft().id, format!("the ego {fault}"));
+impl Simulator for ExternalEgo {
+    fn name(&self) -> &str {
+        Native::NAME
+    }
+
+    fn version(&self) -> &str {
+        Native::VERSION
+    }
+
+    fn ego(&self) -> &str {
+        self.command.as_str()
+    }
+
+    /// It fails where the program does: what that did, and at which step.
+    fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError> {
+        let failed = |fault: EgoFault| RunError::new(scenario, format!("the ego {fault}"));
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut process = match idle {
             Some(process) => process,
@@ -49,7 +60,7 @@ impl ExternalEgo {
         };
         let mut recorder = RolloutRecorder::new();
         // A process with a fault is dropped, which ends it: what it has in its memory is not known.
-        Simulator::new().run_with(scenario, &mut process, &mut recorder).map_err(failed)?;
+        Runner::new().run_with(scenario, &mut process, &mut recorder).map_err(failed)?;
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(process);
         Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
     }

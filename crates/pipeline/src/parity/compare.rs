@@ -1,9 +1,9 @@
 //! One scenario on both simulators, compared; and what many of them say together.
 
-use crate::casework::CaseRun;
 use recrash_model::metrics::{FindingKind, Timed};
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{Role, Rollout, STEP_S, TerminationKind};
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::{Policy, ScenarioDraft};
 use serde::Serialize;
 
@@ -59,7 +59,7 @@ pub struct Pair {
 }
 
 impl PairOutcome {
-    fn of(run: &CaseRun) -> Self {
+    fn of(run: &JudgedRun) -> Self {
         let mut findings: Vec<FindingKind> = run.findings.iter().map(|finding| finding.kind).collect();
         findings.sort_unstable();
         findings.dedup();
@@ -79,8 +79,8 @@ impl Pair {
     pub(super) fn of(
         name: String,
         draft: &ScenarioDraft,
-        native: &CaseRun,
-        metadrive: Result<&CaseRun, String>,
+        native: &JudgedRun,
+        metadrive: Result<&JudgedRun, String>,
     ) -> Self {
         let apart = |role: Role| {
             metadrive.as_ref().map_or_else(|_| Vec::new(), |run| apart(&native.rollout, &run.rollout, role))

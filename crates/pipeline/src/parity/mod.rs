@@ -10,7 +10,7 @@ pub use draw::random_scenario;
 pub use open_loop::{OpenLoop, OpenLoopLimit, OpenLoopRequest, open_loop};
 pub use tables::ParityTable;
 
-use crate::casework::{CaseRun, judge, read_scenario};
+use crate::casework::{judge, read_scenario};
 use crate::error::PipelineError;
 use crate::profiles::load_profile;
 use crate::progress::{Progress, ProgressEvent};
@@ -19,6 +19,7 @@ use crate::store::{Store, to_json, write_file_whole};
 use crate::suite::Suite;
 use recrash_metadrive::{Drive, Metadrive};
 use recrash_model::profile::SystemProfile;
+use recrash_model::run::JudgedRun;
 use recrash_model::selection::Selection;
 use recrash_report::{PairView, PairsView};
 use recrash_roads::Scenario;
@@ -128,7 +129,7 @@ pub fn parity(request: &ParityRequest, progress: &dyn Progress) -> Result<Parity
     let native = |named: &Named| {
         judge(&named.scenario, recrash_sim::simulate(&named.scenario, Ego::MetadriveIdm), &profile, None)
     };
-    let ours: Vec<CaseRun> = scenarios.iter().map(native).collect();
+    let ours: Vec<JudgedRun> = scenarios.iter().map(native).collect();
     let theirs = on_metadrive(&metadrive, &scenarios, &profile, progress);
     let pairs = scenarios.iter().zip(ours.iter().zip(&theirs)).map(|(named, (ours, theirs))| {
         let theirs = theirs.as_ref().map_err(Clone::clone);
@@ -176,7 +177,7 @@ fn on_metadrive(
     scenarios: &[Named],
     profile: &SystemProfile,
     progress: &dyn Progress,
-) -> Vec<Result<CaseRun, String>> {
+) -> Vec<Result<JudgedRun, String>> {
     const STAGE: &str = "parity";
     progress.event(ProgressEvent::Started { stage: STAGE, units: scenarios.len() });
     let checked: Vec<Scenario> = scenarios.iter().map(|named| named.scenario.clone()).collect();
@@ -258,8 +259,8 @@ fn file_name(name: &str) -> String {
 fn page(
     parity: &Parity,
     scenarios: &[Named],
-    ours: &[CaseRun],
-    theirs: &[Result<CaseRun, String>],
+    ours: &[JudgedRun],
+    theirs: &[Result<JudgedRun, String>],
     profile: &SystemProfile,
 ) -> PairsView {
     let pairs = parity.worst.iter().map(|&position| {
@@ -283,6 +284,6 @@ fn page(
     }
 }
 
-fn view(run: &CaseRun) -> recrash_report::RunTrace {
-    recrash_report::RunTrace { rollout: run.rollout.clone(), series: run.series.clone(), min_gap: run.metrics.min_gap }
+fn view(run: &JudgedRun) -> recrash_report::RunTrace {
+    recrash_report::RunTrace { run: run.clone(), series: recrash_metrics::series(&run.rollout) }
 }

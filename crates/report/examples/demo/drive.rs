@@ -6,6 +6,7 @@ use recrash_model::math;
 use recrash_model::metrics::*;
 use recrash_model::record::{ContactZone, PartnerKind};
 use recrash_model::rollout::*;
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::*;
 use recrash_model::selection::Cluster;
 use recrash_model::template::{Movement, RoadType};
@@ -139,14 +140,8 @@ fn sample(path: &Path, place: impl Fn(f64) -> (f64, f64)) -> Vec<ActorState> {
         .map(|step| {
             let ((position, heading), _) = at(step);
             let throttle = (speed(step + 1) - speed(step)) / STEP_S / 3.0;
-            ActorState {
-                x: position.x,
-                y: position.y,
-                heading,
-                speed: speed(step),
-                steer: 0.0,
-                throttle: throttle.clamp(-1.0, 1.0),
-            }
+            let moving = ActorState::moving(Pose { position, heading }, speed(step));
+            ActorState { throttle: throttle.clamp(-1.0, 1.0), ..moving }
         })
         .collect()
 }
@@ -192,17 +187,17 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
     let car = VehicleSpec::of(PartnerKind::PassengerCar);
     let other = VehicleSpec::of(plan.partner_kind);
     let acceleration = |states: &[ActorState]| -> Vec<f64> {
-        let change = states.windows(2).map(|pair| (pair[1].speed - pair[0].speed) / STEP_S);
+        let change = states.windows(2).map(|pair| (pair[1].speed() - pair[0].speed()) / STEP_S);
         change.chain([0.0]).collect()
     };
     let series = Series {
         time_s: (0..ego.len()).map(|step| step as f64 * STEP_S).collect(),
-        ego_speed_mps: ego.iter().map(|state| state.speed).collect(),
+        ego_speed_mps: ego.iter().map(|state| state.speed()).collect(),
         ego_acceleration_mps2: acceleration(&ego),
         partners: vec![PartnerSeries {
             actor: 1,
             id: "cp1".into(),
-            speed_mps: partner.iter().map(|state| state.speed).collect(),
+            speed_mps: partner.iter().map(|state| state.speed()).collect(),
             acceleration_mps2: acceleration(&partner),
             gap_m,
             centre_distance_m: ego.iter().zip(&partner).map(|(e, p)| e.position().distance(p.position())).collect(),
@@ -217,9 +212,9 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         ego_zone: if cluster.number.is_multiple_of(2) { ContactZone::Left } else { ContactZone::FrontRight },
         other_zone: ContactZone::Front,
         kind: if plan.drift { CollisionKind::Sideswipe } else { CollisionKind::Angle },
-        relative_speed_mps: (ego[step].speed + partner[step].speed) * 0.7,
-        ego_speed_mps: ego[step].speed,
-        other_speed_mps: partner[step].speed,
+        relative_speed_mps: (ego[step].speed() + partner[step].speed()) * 0.7,
+        ego_speed_mps: ego[step].speed(),
+        other_speed_mps: partner[step].speed(),
     });
     let mut findings = Vec::new();
     if let Some(contact) = &contact {
@@ -318,10 +313,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
     };
     RunView {
         scenario: scenario(cluster, plan, arrival_gap_s),
-        rollout,
-        metrics,
-        findings,
-        verdict: verdict(cluster, touch.is_some()),
+        run: JudgedRun::new(rollout, metrics, findings, verdict(cluster, touch.is_some())),
         series,
         rerun_command,
     }
@@ -338,19 +330,19 @@ fn verdict(cluster: &Cluster, touched: bool) -> Verdict {
     let turned_back = cluster.number == 17;
     Verdict {
         checks: vec![
-            check(CheckKind::Road, t.road.label(), t.road.label(), CheckResult::Pass),
-            check(CheckKind::SvMovement, t.sv.label(), t.sv.label(), CheckResult::Pass),
+            check(CheckKind::Road, t.road.label(), t.road.label(), CheckResult::Shown),
+            check(CheckKind::SvMovement, t.sv.label(), t.sv.label(), CheckResult::Shown),
             check(
                 CheckKind::CpMovement,
                 t.cp.label(),
                 if turned_back { "Proceeding straight" } else { t.cp.label() },
-                if turned_back { CheckResult::Fail } else { CheckResult::Pass },
+                if turned_back { CheckResult::NotShown } else { CheckResult::Shown },
             ),
-            check(CheckKind::Encounter, "the partner is nearest to the ego", "it is", CheckResult::Pass),
+            check(CheckKind::Encounter, "the partner is nearest to the ego", "it is", CheckResult::Shown),
             if touched {
-                check(CheckKind::ContactZones, "left; front", "left; front", CheckResult::Pass)
+                check(CheckKind::ContactZones, "left; front", "left; front", CheckResult::Shown)
             } else {
-                check(CheckKind::ContactZones, "left; front", "no contact", CheckResult::NotApplicable)
+                check(CheckKind::ContactZones, "left; front", "no contact", CheckResult::CannotBeShown)
             },
         ],
     }
@@ -362,6 +354,7 @@ fn scenario(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64) -> ScenarioDraft
         id: cluster.scenario_id.clone(),
         source: Source {
             records: vec![cluster.pick.clone()],
+            origin: None,
             template: Some(cluster.template),
             narrative: String::new(),
             author: Author::Rules,

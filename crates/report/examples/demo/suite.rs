@@ -274,11 +274,9 @@ fn narrative(cluster: &Cluster, record: &CrashRecord, plan: &Plan) -> Narrative 
         ),
         facts,
         origin: if cluster.number.is_multiple_of(6) {
-            Origin::Alternative {
-                reason: "the record describes a rear-end collision, which the profile excludes".into(),
-            }
+            Origin::Invented { reason: "the record describes a rear-end collision, which the profile excludes".into() }
         } else {
-            Origin::Record
+            Origin::Own
         },
         author: Author::Rules,
     }
@@ -397,7 +395,7 @@ pub fn demo() -> SuiteView {
         members.truncate(4);
         let before = (!refused).then(|| run(cluster, &plan, designed, "4-scenarios"));
         let after = (!refused && log.best != 0).then(|| run(cluster, &plan, tuned, "6-tuned"));
-        let failed = after.as_ref().or(before.as_ref()).is_some_and(RunView::failed);
+        let failed = after.as_ref().or(before.as_ref()).is_some_and(|run| run.failed());
         let careful = failed.then(|| run(cluster, &plan, designed + 3.0, "6-tuned"));
         CaseView {
             scenario_id: cluster.scenario_id.clone(),
@@ -409,11 +407,7 @@ pub fn demo() -> SuiteView {
             before,
             after,
             triage: careful.as_ref().map(|run| triage(cluster.number, run)),
-            reference: careful.map(|run| RunTrace {
-                rollout: run.rollout,
-                series: run.series,
-                min_gap: run.metrics.min_gap,
-            }),
+            reference: careful.map(|run| RunTrace { run: run.run, series: run.series }),
             tune_log: (!refused).then_some(log),
             refused: refused.then(|| "partners[0].turn: no left turn on this map; allowed: straight".to_owned()),
         }

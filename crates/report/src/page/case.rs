@@ -1,7 +1,7 @@
 //! One scenario: what it stands for, the replay with its plots, and tabs with everything behind it.
 
 use super::{Context, compare, icon, parts, scenario, story, triage};
-use crate::summary::{Result, finding_kinds};
+use crate::summary::Result;
 use crate::view::{CaseView, RunView};
 use crate::{data, words};
 use maud::{Markup, PreEscaped, html};
@@ -59,10 +59,11 @@ fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Ma
                 (parts::result_chip(Result::of(last)))
                 @if let Some(triage) = &case.triage { (parts::class_chip(triage.class)) }
                 (parts::faithful_chip(last))
-                @for kind in last.map(finding_kinds).unwrap_or_default() { (parts::finding_chip(kind)) }
+                @for kind in last.map(|run| run.finding_kinds()).unwrap_or_default() { (parts::finding_chip(kind)) }
                 @match case.narrative.as_ref().map(|narrative| &narrative.origin) {
-                    Some(Origin::Record) => span.chip.none { "retells the record" },
-                    Some(Origin::Alternative { .. }) => span.chip.odd { (icon::bang()) "alternative to the record" },
+                    Some(Origin::Own) => span.chip.none { "retells its own record" },
+                    Some(Origin::Other { .. }) => span.chip.odd { (icon::bang()) "retells another record" },
+                    Some(Origin::Invented { .. }) => span.chip.odd { (icon::bang()) "invented: nobody's crash" },
                     None => "",
                 }
             }
@@ -171,7 +172,7 @@ fn numbers(case: &CaseView) -> Markup {
     };
     html! {
         dl.tiles.compact {
-            (pair("Least gap", "m", 2, "no scripted partner took part", &RunView::min_gap_m))
+            (pair("Least gap", "m", 2, "no scripted partner took part", &|run: &RunView| run.min_gap_m()))
             (pair("Least TTC", "s", 2, "they were never on a course to touch", &|run| worst(run, |p| p.min_ttc.map(|t| t.value), true)))
             (pair("PET", "s", 2, "no place was crossed by both, one after the other", &|run| worst(run, |p| p.pet.map(|t| t.value), true)))
             (pair("Hardest braking of the ego", "m/s\u{b2}", 1, "", &|run| Some(run.metrics.ego.max_deceleration.value)))

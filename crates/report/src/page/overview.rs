@@ -2,10 +2,11 @@
 
 use super::parts::{self, missing};
 use super::{Context, icon};
-use crate::summary::{Result, finding_kinds};
+use crate::summary::Result;
 use crate::view::{CaseView, RunView};
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
+use recrash_model::metrics::Answer;
 use recrash_model::metrics::FindingKind;
 use recrash_model::narrative::Origin;
 
@@ -93,7 +94,7 @@ fn tiles(context: &Context) -> Markup {
                 "Scenarios",
                 html! { (s.cases) },
                 html! {
-                    (s.from_record) " retell a record, " (s.alternatives) " stand in for one"
+                    (s.origins[0]) " tell their own record, " (s.origins[1]) " another one, " (s.origins[2]) " are invented"
                     @if s.refused > 0 { ", " b { (s.refused) " refused" } }
                 },
                 None,
@@ -129,7 +130,7 @@ fn controls() -> Markup {
             label { span.hidden-text { "Search scenarios" } input #case-search type="search" placeholder="Search id, template, record, finding  ( / )"; }
             fieldset.segments {
                 legend.hidden-text { "Show" }
-                @for (value, name) in [("all", "All"), ("failed", "Fails"), ("passed", "Passes"), ("unfaithful", "Not faithful"), ("alternative", "Alternative"), ("refused", "Refused")] {
+                @for (value, name) in [("all", "All"), ("failed", "Fails"), ("passed", "Passes"), ("unfaithful", "Not faithful"), ("other", "Another record"), ("invented", "Invented"), ("refused", "Refused")] {
                     label { input type="radio" name="case-filter" value=(value) checked[value == "all"]; span { (name) } }
                 }
             }
@@ -170,25 +171,28 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
     let suite = context.suite;
     let last = case.last_run();
     let result = Result::of(last);
-    let faithful = last.and_then(RunView::faithful);
-    let alternative = matches!(case.narrative.as_ref().map(|n| &n.origin), Some(Origin::Alternative { .. }));
+    let faithful = last.map(|run| run.faithful());
+    let origin = case.narrative.as_ref().map(|narrative| &narrative.origin);
     let mut tags = vec![match result {
         Result::Failed => "failed",
         Result::Passed => "passed",
         Result::Missing => "missing",
     }];
-    for (tag, holds) in
-        [("unfaithful", faithful == Some(false)), ("alternative", alternative), ("refused", case.refused.is_some())]
-    {
+    for (tag, holds) in [
+        ("unfaithful", faithful == Some(Answer::No)),
+        ("other", matches!(origin, Some(Origin::Other { .. }))),
+        ("invented", matches!(origin, Some(Origin::Invented { .. }))),
+        ("refused", case.refused.is_some()),
+    ] {
         if holds {
             tags.push(tag);
         }
     }
     let members = suite.cluster(case).map_or(0, |cluster| cluster.members.len());
     let sort_gap =
-        |run: Option<&RunView>| run.and_then(RunView::min_gap_m).and_then(|gap| fixed(gap, 4)).unwrap_or_default();
+        |run: Option<&RunView>| run.and_then(|run| run.min_gap_m()).and_then(|gap| fixed(gap, 4)).unwrap_or_default();
     let contact = last.and_then(|run| run.metrics.contact.as_ref());
-    let kinds = last.map(finding_kinds).unwrap_or_default();
+    let kinds = last.map(|run| run.finding_kinds()).unwrap_or_default();
     let anchor = context.anchors.case(position);
     let not_run = case.refused.as_deref().unwrap_or("it was not run");
     html! {
@@ -206,8 +210,10 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
                 }
                 .muted {
                     @if members > 0 { "cluster of " (members) }
-                    @if alternative { br; }
-                    @if alternative { span.chip.odd { (icon::bang()) "alternative" } }
+                    @if let Some(origin) = origin.filter(|origin| **origin != Origin::Own) {
+                        br;
+                        span.chip.odd { (icon::bang()) (origin.label()) }
+                    }
                 }
             }
             td data-sort=(sort_gap(last)) { (gap_chart(case, suite.profile.failure.min_gap_m)) }
@@ -221,7 +227,7 @@ fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
                 @for kind in &kinds { (parts::finding_chip(*kind)) " " }
                 @if kinds.is_empty() { (missing(if last.is_some() { "no finding" } else { not_run })) }
             }
-            td data-sort=(match faithful { Some(true) => "2", Some(false) => "1", None => "" }) { (parts::faithful_chip(last)) }
+            td data-sort=(match faithful { Some(Answer::Yes) => "3", Some(Answer::Unchecked) => "2", Some(Answer::No) => "1", None => "" }) { (parts::faithful_chip(last)) }
         }
     }
 }
@@ -249,8 +255,8 @@ fn gap_cell(run: Option<&RunView>, why: &str, sort: &str) -> Markup {
 fn gap_chart(case: &CaseView, threshold_m: f64) -> Markup {
     let at = |gap: f64| 8.0 + 124.0 * (gap / CHART_M).clamp(0.0, 1.0);
     let place = |gap: f64| fixed(at(gap), 1).unwrap_or_default();
-    let before = case.before.as_ref().and_then(RunView::min_gap_m);
-    let after = case.after.as_ref().and_then(RunView::min_gap_m);
+    let before = case.before.as_ref().and_then(|run| run.min_gap_m());
+    let after = case.after.as_ref().and_then(|run| run.min_gap_m());
     if before.or(after).is_none() {
         return missing("no gap was measured");
     }

@@ -5,7 +5,7 @@ use crate::summary::Result;
 use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};
-use recrash_model::metrics::{CheckResult, FindingKind, Timed};
+use recrash_model::metrics::{Answer, CheckResult, FindingKind, Timed};
 use recrash_model::triage::FailureClass;
 
 /// A dash that says why there is no value.
@@ -53,9 +53,9 @@ pub fn result_chip(result: Result) -> Markup {
 pub fn faithful_chip(run: Option<&RunView>) -> Markup {
     let Some(run) = run else { return missing("it was not run") };
     match run.faithful() {
-        None => return html! { span.chip.none { (icon::dash()) "not checked" } },
-        Some(true) => return html! { span.chip.good { (icon::tick()) "faithful" } },
-        Some(false) => {}
+        Answer::Unchecked => return html! { span.chip.odd { (icon::bang()) "not all checked" } },
+        Answer::Yes => return html! { span.chip.good { (icon::tick()) "faithful" } },
+        Answer::No => {}
     }
     let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
     html! { span.chip.bad { (icon::cross()) "not faithful" } span.why { (why.join(", ")) } }
@@ -64,9 +64,10 @@ pub fn faithful_chip(run: Option<&RunView>) -> Markup {
 /// The result of a check.
 pub fn check_chip(result: CheckResult) -> Markup {
     match result {
-        CheckResult::Pass => html! { span.chip.good { (icon::tick()) "agrees" } },
-        CheckResult::Fail => html! { span.chip.bad { (icon::cross()) "differs" } },
-        CheckResult::NotApplicable => html! { span.chip.none { (icon::dash()) "not applicable" } },
+        CheckResult::Shown => html! { span.chip.good { (icon::tick()) "shown" } },
+        CheckResult::NotShown => html! { span.chip.bad { (icon::cross()) "not shown" } },
+        CheckResult::CannotBeShown => html! { span.chip.odd { (icon::bang()) "cannot be shown" } },
+        CheckResult::NotTold => html! { span.chip.none { (icon::dash()) "not told" } },
     }
 }
 

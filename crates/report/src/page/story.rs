@@ -4,7 +4,7 @@ use super::{Context, icon, parts};
 use crate::view::CaseView;
 use crate::words::{self, LONGEST_TEXT};
 use maud::{Markup, html};
-use recrash_model::narrative::{Fact, FactSource, Narrative, Origin};
+use recrash_model::narrative::{Fact, FactSource, Narrative};
 use recrash_model::record::{CrashRecord, RecordRef};
 use std::ops::Range;
 
@@ -44,7 +44,7 @@ pub fn story(context: &Context, case: &CaseView) -> Markup {
 
 fn told(narrative: &Narrative, pick: Option<&RecordRef>) -> Markup {
     html! {
-        @if let Origin::Alternative { reason } = &narrative.origin {
+        @if let Some(reason) = narrative.origin.reason() {
             p.banner role="note" { (icon::bang()) span { strong { "Alternative. " } "It takes the record's place: " (words::clean(reason, 400)) } }
         }
         blockquote.narrative dir="auto" { (words::clean(&narrative.text, LONGEST_TEXT)) }

@@ -1,7 +1,7 @@
 //! What the failures are worth: how the other egos fare in the same scenarios.
 
 use super::{Context, parts};
-use crate::summary::{Result, finding_kinds};
+use crate::summary::Result;
 use crate::view::CaseView;
 use crate::words;
 use maud::{Markup, html};
@@ -41,7 +41,7 @@ pub fn of_case(context: &Context, case: &CaseView) -> Markup {
     let Some(triage) = &case.triage else {
         return html! { p.empty { "The ego does not fail this scenario, so no other ego was asked." } };
     };
-    let kinds = finding_kinds(last);
+    let kinds = last.finding_kinds();
     html! {
         p { (parts::class_chip(triage.class)) " " (words::capital(triage.class.meaning())) "." }
         .table-wrap { table.plain {
