@@ -61,7 +61,7 @@ fn an_output_never_replaces_an_input_or_another_output() {
     let place = place();
     std::fs::hard_link(place.path("a.csv"), place.path("hard.csv")).unwrap();
     std::fs::create_dir_all(place.path("exports/scenic")).unwrap();
-    std::fs::hard_link(place.path("a.json"), place.path("exports/scenic/crossing.scenic")).unwrap();
+    std::fs::hard_link(place.path("a.json"), place.path("exports/scenic/bench-crossing.scenic")).unwrap();
     #[cfg(unix)]
     std::os::unix::fs::symlink("a.csv", place.path("soft.csv")).unwrap();
     let absolute = place.path("a.csv").display().to_string();
@@ -101,7 +101,7 @@ fn an_output_never_replaces_an_input_or_another_output() {
         let (code, _, error) = place.run(form);
         assert_eq!(code, BAD_INPUT, "{form:?}: {error}");
         let target = form.iter().rev().find(|word| !word.starts_with('-')).unwrap();
-        let told = if form[0] == "export" { "exports/scenic/crossing.scenic" } else { target };
+        let told = if form[0] == "export" { "exports/scenic/bench-crossing.scenic" } else { target };
         let why = ["is read", "as well"].iter().any(|why| error.contains(why));
         assert!(error.contains(told) && why && error.contains("name "), "{form:?}: {error}");
         assert!(contents(place.folder()) == before, "{form:?} has changed a file");

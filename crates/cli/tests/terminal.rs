@@ -63,7 +63,7 @@ fn without_colours(text: &str) -> String {
 #[test]
 fn escapes_of_strangers_are_shown_and_not_obeyed() {
     let place = Place::new();
-    let hostile = "\u{1b}]0;owned\u{7}\u{1b}[8mEvil\u{9b}2J\u{202e}\r";
+    let hostile = "\u{1b}]0;owned\u{7}\u{1b}[8mEvil\u{9b}2J\u{202e}";
     let (header, rows) = SAMPLE_CSV.split_once('\n').unwrap();
     let entity = rows.split(',').nth(2).unwrap();
     let header = header.replacen("VIN,", &format!("\u{1b}[8mVIN{hostile},"), 1);
@@ -72,7 +72,9 @@ fn escapes_of_strangers_are_shown_and_not_obeyed() {
     let name = profile.lines().find(|line| line.starts_with("name")).unwrap();
     let named = profile.replacen(name, "name = \"\\u001b[8m\\u001b]0;owned\\u0007\"", 1);
     std::fs::write(place.path("mine.toml"), named).unwrap();
-    let forms: [&[&str]; 9] = [
+    let back = format!("{hostile}\rerror: none");
+    let forms: [&[&str]; 10] = [
+        &["records", &back],
         &["records", "a.csv"],
         &["run", "--records", "a.csv", "--profile", "mine.toml", "--budget", "2", "--tune-budget", "1"],
         &["records", hostile],
@@ -125,7 +127,7 @@ fn the_table_of_scenarios_keeps_to_the_width_of_the_terminal() {
         let whole = table.join("\n");
         assert!(whole.contains("01-intersection-straight-straight"), "an id is not cut at {width}:\n{whole}");
         assert!(table[0].contains("scenario") && table[0].contains("verdict") && rule > 0, "{whole}");
-        assert_eq!(whole.contains("not shown in"), width < 100, "{whole}");
+        assert_eq!(whole.contains("not shown in"), width < 120, "{whole}");
     }
 }
 
