@@ -149,6 +149,14 @@ impl SuiteArgs {
         Suite::open(&self.out, self.options(base), self.resources())
     }
 
+    /// The suite a stage works on, with what was typed over what is saved there; begun where there is none.
+    ///
+    /// # Errors
+    /// As [`SuiteArgs::open`].
+    pub fn open_or_begin(&self) -> Result<Suite, PipelineError> {
+        self.open(Suite::saved_options(&self.out)?.unwrap_or_default())
+    }
+
     /// The suite a stage works on, with what was typed over what is saved there.
     ///
     /// # Errors

@@ -172,9 +172,7 @@ fn a_run_that_is_not_true_to_its_record_is_told_by_the_exit_code() {
 #[test]
 fn a_stage_makes_no_suite_where_there_is_none() {
     let place = Place::new();
-    for stage in
-        ["select", "narrate", "design", "simulate", "tune", "report", "prompt design", "ledger", "export --to scenic"]
-    {
+    for stage in ["narrate", "design", "simulate", "tune", "report", "ledger", "export --to scenic"] {
         let mut words: Vec<&str> = stage.split(' ').collect();
         match words[0] {
             "ledger" | "export" => words.insert(1, "siute"),
@@ -184,7 +182,7 @@ fn a_stage_makes_no_suite_where_there_is_none() {
         assert!(matches!(code, 1..=3), "{stage}: {error}");
         assert!(error.contains("siute"), "{stage}: {error}");
         assert!(!place.path("siute").exists(), "{stage} has made the folder");
-        if words.contains(&"--out") && words[0] != "prompt" {
+        if words.contains(&"--out") {
             assert!(
                 error.contains("there is no suite in siute") && error.contains("recrash records"),
                 "{stage}: {error}"

@@ -82,16 +82,18 @@ pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
         match exported(source) {
             Ok(per_format) => {
                 report.scenarios += 1;
-                for ((_, folder), files) in folders.iter().zip(per_format) {
-                    std::fs::create_dir_all(folder).map_err(|source| io("create", folder, source))?;
-                    for file in files {
-                        let path = folder.join(&file.name);
-                        // MetaDrive's script is the same for all.
-                        if written.insert(path.clone()) {
-                            outputs.claim(&path)?.write(&file.content)?;
-                            report.files.push(path);
-                        }
-                    }
+                let in_folder = |((_, folder), files): (&(Format, PathBuf), Vec<ExportFile>)| {
+                    files.into_iter().map(|file| (folder.join(&file.name), file.content)).collect::<Vec<_>>()
+                };
+                let files = folders.iter().zip(per_format).flat_map(in_folder);
+                // MetaDrive's script is the same for all.
+                let new = files.filter(|(path, _)| written.insert(path.clone()));
+                let claimed = new.map(|(path, content)| Ok((outputs.claim(&path)?, content)));
+                for (output, content) in claimed.collect::<Result<Vec<_>, PipelineError>>()? {
+                    let folder = parent(output.name());
+                    std::fs::create_dir_all(&folder).map_err(|source| io("create", &folder, source))?;
+                    output.write(&content)?;
+                    report.files.push(output.name().to_owned());
                 }
             }
             Err(why) => report.failures.push(Diagnostic::new(

@@ -38,7 +38,7 @@ pub struct SelectArgs {
 /// The stage's.
 pub fn run(args: &SelectArgs, output: Output) -> Result<(), PipelineError> {
     let is_new = Suite::saved_options(&args.suite.out)?.is_none();
-    let suite = args.suite.open_saved()?;
+    let suite = args.suite.open_or_begin()?;
     let progress = output.progress();
     if is_new || args.suite.source.is_given() || args.suite.profile.is_some() {
         let report = suite.run_stage(Stage::Records, &*progress)?;
