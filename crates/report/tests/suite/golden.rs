@@ -1,15 +1,7 @@
 //! JUnit and CSV of made-up cases: fails as designed, another record's, nobody's crash and edited, tuned to fail, not faithful,
 //! refused.
 
-#[allow(dead_code)]
-#[path = "../examples/demo/drive.rs"]
-mod drive;
-#[allow(dead_code)]
-#[path = "../examples/demo/roads.rs"]
-mod roads;
-#[path = "../examples/demo/suite.rs"]
-mod suite;
-
+use crate::suite;
 use recrash_report::SuiteView;
 
 fn some_cases() -> SuiteView {

@@ -1,15 +1,7 @@
 //! The page in a real browser: headless Chromium runs `tests/browser/check.mjs` on a made-up suite, a hostile one,
 //! an empty one, and one of two thousand scenarios. Needs node, Chromium and `npm ci` in `tests/browser`; says so where one is missing.
 
-#[allow(dead_code)]
-#[path = "../examples/demo/drive.rs"]
-mod drive;
-#[allow(dead_code)]
-#[path = "../examples/demo/roads.rs"]
-mod roads;
-#[path = "../examples/demo/suite.rs"]
-mod suite;
-
+use crate::suite;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
