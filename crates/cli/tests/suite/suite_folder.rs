@@ -196,7 +196,7 @@ fn a_missing_input_has_the_exit_code_that_the_help_tells() {
     let told = help.split("Exit codes:").nth(1).unwrap();
     let told = told.split("\n\n").next().unwrap().replace("\n", " ");
     assert!(told.contains("3 the input is not there or cannot be used"), "{told}");
-    std::fs::write(place.path("map.toml"), include_str!("../../../docs/mappings/crss.toml")).unwrap();
+    std::fs::write(place.path("map.toml"), include_str!("../../../../docs/mappings/crss.toml")).unwrap();
     let missing: [&[&str]; 7] = [
         &["records", "nowhere.csv"],
         &["records", "--mapping", "nowhere.toml"],

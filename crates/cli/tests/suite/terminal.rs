@@ -1,9 +1,7 @@
 //! What people see: clean text whoever wrote it, tables as wide as the terminal, and an end without a panic where nobody
 //! looks.
 
-mod common;
-
-use common::{Place, recrash};
+use crate::common::{Place, recrash};
 use recrash_records::SAMPLE_CSV;
 use std::fs::File;
 use std::process::{Output, Stdio};
@@ -68,7 +66,7 @@ fn escapes_of_strangers_are_shown_and_not_obeyed() {
     let entity = rows.split(',').nth(2).unwrap();
     let header = header.replacen("VIN,", &format!("\u{1b}[8mVIN{hostile},"), 1);
     std::fs::write(place.path("a.csv"), format!("{header}\n{}", rows.replace(entity, hostile))).unwrap();
-    let profile = include_str!("../../../profiles/paper.toml");
+    let profile = include_str!("../../../../profiles/paper.toml");
     let name = profile.lines().find(|line| line.starts_with("name")).unwrap();
     let named = profile.replacen(name, "name = \"\\u001b[8m\\u001b]0;owned\\u0007\"", 1);
     std::fs::write(place.path("mine.toml"), named).unwrap();

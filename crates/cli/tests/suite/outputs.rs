@@ -1,8 +1,6 @@
 //! What commands write outside a suite: never in the place of something that is read, of another output or of a device.
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 use recrash_records::SAMPLE_CSV;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,8 +32,8 @@ fn place() -> Place {
     std::fs::write(place.path("a.json"), crossing).unwrap();
     std::fs::write(place.path("a.csv"), SAMPLE_CSV).unwrap();
     std::fs::write(place.path("ego.py"), EGO).unwrap();
-    std::fs::write(place.path("map.toml"), include_str!("../../../docs/mappings/crss.toml")).unwrap();
-    std::fs::write(place.path("mine.toml"), include_str!("../../../profiles/paper.toml")).unwrap();
+    std::fs::write(place.path("map.toml"), include_str!("../../../../docs/mappings/crss.toml")).unwrap();
+    std::fs::write(place.path("mine.toml"), include_str!("../../../../profiles/paper.toml")).unwrap();
     std::fs::create_dir(place.path("sub")).unwrap();
     let (code, _, error) = place.run(&["run", "--quiet", "--budget", "2", "--tune-budget", "4", "--out", "s"]);
     assert_eq!(code, 0, "{error}");
@@ -178,7 +176,7 @@ fn paths_that_are_no_text_work_or_are_refused_with_a_word() {
         std::fs::copy(place.path(name), place.folder().join(odd(name.as_bytes()))).unwrap();
     }
     let run = |words: &[&str]| {
-        let mut command = common::recrash(&[]);
+        let mut command = crate::common::recrash(&[]);
         command.current_dir(place.folder());
         for word in words {
             command.arg(word.strip_prefix("odd-").map_or_else(|| word.into(), |name| odd(name.as_bytes())));
