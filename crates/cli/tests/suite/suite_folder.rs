@@ -1,6 +1,6 @@
 //! What a suite's folder may count on: one run at a time, nothing left behind, nothing touched that is not its own.
 
-use crate::common::Place;
+use crate::common::{Place, driving_ego};
 use std::path::Path;
 
 /// A place with a small suite in `suite/`, and the words that make it again.
@@ -84,24 +84,6 @@ fn the_command_that_runs_a_scenario_again_names_its_profile() {
     assert_eq!(hashes_of_reruns(&place, &results), hashes(&results));
 }
 
-/// An ego that drives on at a speed, or stands.
-fn ego(speed_mps: f64) -> String {
-    format!(
-        r#"
-import json, sys
-for line in sys.stdin:
-    message = json.loads(line)
-    if message["type"] == "step":
-        slow = message["ego"]["speed"] < {speed_mps:?}
-        answer = {{"type": "control", "throttle": 0.3 if slow else -0.2, "steer": 0.0}}
-    else:
-        answer = {{"type": "ready", "protocol": "recrash.ego/1"}}
-    if message["type"] != "end":
-        print(json.dumps(answer), flush=True)
-"#
-    )
-}
-
 /// The state hashes of a table of results.
 fn hashes(results: &str) -> Vec<String> {
     column(results, "state_hash")
@@ -133,7 +115,7 @@ fn hashes_of_reruns(place: &Place, results: &str) -> Vec<String> {
 fn the_command_that_runs_a_scenario_again_finds_an_ego_by_its_relative_path() {
     let place = Place::new();
     std::fs::create_dir(place.path("my egos")).unwrap();
-    std::fs::write(place.path("my egos/steady.py"), ego(6.0)).unwrap();
+    std::fs::write(place.path("my egos/steady.py"), driving_ego(6.0)).unwrap();
     let program = "cmd:python3 'my egos/steady.py'";
     let (code, _, error) = place.run(&["run", "--quiet", "--budget", "2", "--tune-budget", "2", "--ego", program]);
     assert_eq!(code, 0, "{error}");
@@ -150,7 +132,7 @@ fn a_run_that_is_not_true_to_its_record_is_told_by_the_exit_code() {
     let (code, shown, error) = place.run(&["simulate", "suite"]);
     assert_eq!(code, 0, "a folder is a suite: {error}");
     assert!(shown.contains("simulate: 0 done, 2 there already, in suite"), "{shown}");
-    std::fs::write(place.path("stand.py"), ego(0.0)).unwrap();
+    std::fs::write(place.path("stand.py"), driving_ego(0.0)).unwrap();
     let standing = ["--ego", "cmd:python3 stand.py"];
     let (code, _, error) = place.run(&[&["simulate", "suite"], &standing[..]].concat());
     assert_eq!(code, MISSED, "{error}");
