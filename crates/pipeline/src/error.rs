@@ -214,3 +214,9 @@ fn hint(source: &std::io::Error) -> &'static str {
         _ => "",
     }
 }
+
+impl From<RunError> for PipelineError {
+    fn from(error: RunError) -> Self {
+        Self::not_run(&error)
+    }
+}

@@ -9,7 +9,7 @@ use recrash_model::Outcome;
 use recrash_model::record::{FunnelStep, RecordSet, RejectReason};
 use recrash_pipeline::{
     Distribution, Options, Output as File, PipelineError, Resources, Stage, Suite, TableFormat, TableRows,
-    distributions, read_records, record_outputs, write_records,
+    distributions, read_records, record_outputs, run_stage, write_records,
 };
 use std::path::PathBuf;
 
@@ -89,7 +89,7 @@ pub fn run(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
         }
         Some(out) => {
             let suite = Suite::open(out, options, Resources::default())?;
-            let report = suite.run_stage(Stage::Records, &*output.progress())?;
+            let report = run_stage(&suite, Stage::Records, &*output.progress())?;
             (suite.store().read_json("1-records.json")?, report.diagnostics)
         }
     };

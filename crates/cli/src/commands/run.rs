@@ -8,7 +8,9 @@ use crate::screen::{bold, eprintln, one_line, println, yellow};
 use crate::table::{Cell, number, table};
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
-use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary, check_choices};
+use recrash_pipeline::{
+    ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage,
+};
 use std::path::Path;
 
 /// Runs every stage.
@@ -24,7 +26,7 @@ pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
     }
     let progress = output.progress();
     for stage in Stage::ALL {
-        let report = suite.run_stage(stage, &*progress)?;
+        let report = run_stage(&suite, stage, &*progress)?;
         if output.tables() {
             output::remarks(&report);
         }
@@ -38,7 +40,7 @@ pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
 /// A stage before it is not done.
 pub fn report(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
     let suite = args.open_saved()?;
-    suite.run_stage(Stage::Report, &*output.progress())?;
+    run_stage(&suite, Stage::Report, &*output.progress())?;
     finish(&suite, output)
 }
 

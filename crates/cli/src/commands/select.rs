@@ -6,7 +6,7 @@ use crate::screen::println;
 use crate::table::{Cell, number, table};
 use clap::Args;
 use recrash_model::selection::{Coverage, Selection, StageTables, TemplateCount};
-use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suite};
+use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suite, run_stage};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -41,12 +41,12 @@ pub fn run(args: &SelectArgs, output: Output) -> Result<(), PipelineError> {
     let suite = args.suite.open_or_begin()?;
     let progress = output.progress();
     if is_new || args.suite.source.is_given() || args.suite.profile.is_some() {
-        let report = suite.run_stage(Stage::Records, &*progress)?;
+        let report = run_stage(&suite, Stage::Records, &*progress)?;
         if output.tables() {
             output::remarks(&report);
         }
     }
-    let report = suite.run_stage(Stage::Select, &*progress)?;
+    let report = run_stage(&suite, Stage::Select, &*progress)?;
     let selection: Selection = suite.store().read_json("2-selection.json")?;
     let study = args.study.then(|| suite.study_selection(usize::from(args.study_seeds))).transpose()?;
     if output.json {

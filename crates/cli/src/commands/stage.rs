@@ -3,7 +3,7 @@
 use crate::options::SuiteArgs;
 use crate::output::{self, Output};
 use crate::screen::println;
-use recrash_pipeline::{PipelineError, Stage, check_choices, unfaithful};
+use recrash_pipeline::{PipelineError, Stage, check_choices, run_stage, unfaithful};
 
 /// Runs a stage of a suite, and the stages that belong to it, as one.
 ///
@@ -15,7 +15,7 @@ pub fn run(args: &SuiteArgs, stages: &[Stage], output: Output) -> Result<(), Pip
     check_choices(&suite)?;
     let (mut done, mut skipped, mut lost) = (0, 0, Vec::new());
     for &stage in stages {
-        let report = suite.run_stage(stage, &*output.progress())?;
+        let report = run_stage(&suite, stage, &*output.progress())?;
         (done, skipped) = (done + report.done, skipped + report.skipped);
         lost.extend(unfaithful(&suite, stage)?);
         if !output.json && !output.quiet {

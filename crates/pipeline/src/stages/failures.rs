@@ -1,9 +1,10 @@
 //! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
 
+use super::CASE_STAGES;
 use super::summary::RunSummary;
-use super::{CASE_STAGES, names};
 use crate::error::PipelineError;
-use crate::store::to_json;
+use crate::files::store::to_json;
+use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
 use rayon::prelude::*;
 use recrash_model::Diagnostic;

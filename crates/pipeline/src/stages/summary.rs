@@ -3,7 +3,7 @@
 use super::failures::Failure;
 use super::report::Case;
 use super::{Cases, DesignLog};
-use crate::agents::{AgentLog, Cast, RULES};
+use crate::models::cast::{AgentLog, Cast, RULES};
 use crate::options::RecordSource;
 use crate::suite::Suite;
 use recrash_model::metrics::{Answer, Check};
