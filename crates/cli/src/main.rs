@@ -29,6 +29,7 @@ fn on_interrupt(goes_on: bool) {
     // Without a handler the system stops the program as well, only without a word.
     let _ = ctrlc::set_handler(move || {
         recrash_pipeline::remove_unfinished();
+        recrash_pipeline::end_programs();
         output::interrupted(goes_on);
         std::process::exit(130);
     });

@@ -5,7 +5,7 @@ use anstream::{eprintln, println};
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, Table, presets};
 use owo_colors::OwoColorize;
 use recrash_model::diagnostic::{Diagnostic, Severity};
-use recrash_pipeline::{NoProgress, PipelineError, Progress, StageReport};
+use recrash_pipeline::{NoProgress, PipelineError, Progress, StageReport, Suite};
 use serde::Serialize;
 use std::io::Write;
 
@@ -91,6 +91,13 @@ pub fn remark(diagnostic: &Diagnostic) {
 /// Prints the remarks of a stage.
 pub fn remarks(report: &StageReport) {
     remark_list(&report.diagnostics, "in the files of the suite");
+}
+
+/// Prints what there is to say about the answers of a batch: every line, because each was paid for.
+pub fn batch_remarks(suite: &Suite, output: Output) {
+    if !output.quiet {
+        suite.remarks().iter().for_each(remark);
+    }
 }
 
 /// Prints remarks, warnings and errors one by one, as far as there is room, and where to find the rest.

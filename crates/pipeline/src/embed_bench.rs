@@ -1,11 +1,11 @@
 //! Our MiniLM beside sentence-transformers: the same texts, the same weights, the same threads, in turn in one run.
 
 use crate::error::PipelineError;
+use crate::options::Options;
 use crate::recording::read_records;
-use crate::suite::Options;
 use crate::weights::{find_weights, load};
 use rayon::prelude::*;
-use recrash_child::{Program, Silence};
+use recrash_child::{Program, Silence, printable};
 use recrash_model::record::Redaction;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -176,7 +176,7 @@ impl Python {
         let line = line.map_err(|silence| match silence {
             Silence::Hung => failed("it gave no answer in time"),
             Silence::TooLong => failed("its answer has no end"),
-            Silence::Ended { complaint, .. } => failed(&format!("it ended, saying: {complaint}")),
+            Silence::Ended { complaint, .. } => failed(&format!("it ended, saying: {}", printable(&complaint, 300))),
         })?;
         let answer: Answer = serde_json::from_str(&line).map_err(|e| failed(&format!("its answer is none: {e}")))?;
         match answer.error {

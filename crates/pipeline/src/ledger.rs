@@ -81,8 +81,8 @@ impl Sum {
     fn add(&mut self, entry: &Entry) {
         self.answers += 1;
         self.later += usize::from(entry.attempt > 0);
-        self.input_tokens += entry.input_tokens;
-        self.output_tokens += entry.output_tokens;
+        self.input_tokens = self.input_tokens.saturating_add(entry.input_tokens);
+        self.output_tokens = self.output_tokens.saturating_add(entry.output_tokens);
         self.latency_s += entry.latency_s.unwrap_or(0.0);
         self.cost_usd += entry.cost_usd.unwrap_or(0.0);
     }
@@ -169,7 +169,8 @@ fn exchange_files(dir: &Path) -> Result<Vec<String>, PipelineError> {
     let is_exchange = |name: &str| {
         name.strip_suffix(".json").is_some_and(|hash| hash.len() == 64 && hash.bytes().all(|b| b.is_ascii_hexdigit()))
     };
-    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let regular = entries.filter_map(Result::ok).filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));
+    let names = regular.filter_map(|entry| entry.file_name().into_string().ok());
     let mut files: Vec<String> = names.filter(|name| is_exchange(name)).map(|name| format!("ledger/{name}")).collect();
     files.sort();
     Ok(files)

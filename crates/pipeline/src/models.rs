@@ -2,30 +2,26 @@
 
 use crate::agents::Cast;
 use crate::error::PipelineError;
-use crate::store::{Store, read_text, sha256};
+use crate::responses::{self, PENDING, REQUESTS, TakenIn, exchange_file};
+use crate::secrets;
+use crate::store::{Store, read_text};
 #[cfg(feature = "live")]
 use recrash_agents::llm::Live;
 use recrash_agents::llm::{
-    Answers, Batch, Caps, Exchange, LanguageModel, Ledger, LiveOptions, PriceTable, Question, Replay, Secret, Spending,
-    Spent, read_responses, request_line,
+    Answers, Batch, Caps, Exchange, LanguageModel, Ledger, LiveOptions, PriceTable, Replay, Spending, Spent,
+    request_line,
 };
 use recrash_model::Diagnostic;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Requests for a provider's batch service.
-pub const REQUESTS: &str = "requests.jsonl";
-/// Its answers.
-pub const RESPONSES: &str = "responses.jsonl";
-/// The questions behind the requests.
-const PENDING: &str = "ledger/pending.json";
 /// Largest file of prices. [bytes]
 const MAX_PRICES: u64 = 1 << 20;
 /// Variable with the key for a server whose address was given.
 const KEY_VARIABLE: &str = "RECRASH_API_KEY";
-/// Endings of the names of variables that hold keys.
-const KEY_ENDINGS: [&str; 2] = ["_API_KEY", "_TOKEN"];
+/// Largest exchange: its question holds the answers before it, each bounded. [bytes]
+const MAX_EXCHANGE: u64 = 64 << 20;
 
 /// Where a model's answers come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -94,8 +90,10 @@ impl Models {
             AnswerMode::Replay => (Arc::new(Replay { ledger }), None),
             AnswerMode::Live => (live(ledger, cast, access, &spending)?, None),
             AnswerMode::Batch => {
-                diagnostics = take_in_responses(store, &price_table(access)?)?;
-                let batch = Arc::new(Batch::new(ledger));
+                let taken_in = responses::take_in(store, &price_table(access)?, &secrets::scrubber())?;
+                let TakenIn { tried, diagnostics: told } = taken_in;
+                diagnostics = told;
+                let batch = Arc::new(Batch::new(ledger, tried, cast.repairs + 1));
                 (Arc::clone(&batch) as Arc<dyn Answers>, Some(batch))
             }
         };
@@ -134,8 +132,7 @@ fn live(
 ) -> Result<Arc<dyn Answers>, PipelineError> {
     let options = live_options(access)?;
     options.check(&cast.models()).map_err(PipelineError::Usage)?;
-    let live = Live::new(ledger, options, Arc::clone(spending));
-    Ok(Arc::new(live.map_err(|e| PipelineError::ModelRefused(e.to_string()))?))
+    Ok(Arc::new(Live::new(ledger, options, Arc::clone(spending), &cast.models())))
 }
 
 #[cfg(not(feature = "live"))]
@@ -163,13 +160,11 @@ impl Answers for Absent {
 /// Reads what the environment says about keys. Nothing of it is kept.
 #[cfg_attr(not(feature = "live"), expect(dead_code, reason = "for live models only"))]
 fn live_options(access: &ModelAccess) -> Result<LiveOptions, PipelineError> {
-    let is_key = |name: &str| KEY_ENDINGS.iter().any(|ending| name.ends_with(ending));
-    let variables = std::env::vars_os().filter_map(|(name, value)| Some((name.into_string().ok()?, value)));
-    let secrets = variables.filter(|(name, _)| is_key(name)).filter_map(|(_, value)| value.into_string().ok());
     Ok(LiveOptions {
         base_url: access.base_url.clone(),
-        key: std::env::var(KEY_VARIABLE).ok().map(|key| Secret::new(&key)),
-        secrets: secrets.map(|value| Secret::new(&value)).collect(),
+        key: secrets::key(KEY_VARIABLE),
+        provider_key: secrets::key,
+        scrubber: secrets::scrubber(),
         timeout_s: access.timeout_s,
         retries: access.retries,
         caps: access.caps,
@@ -199,37 +194,33 @@ pub fn read_prices(path: &Path) -> Result<PriceTable, PipelineError> {
 /// Exchanges as files of a suite, named by hash.
 struct FileLedger(Store);
 
-fn exchange_file(hash: &str) -> String {
-    format!("ledger/{hash}.json")
-}
-
 impl Ledger for FileLedger {
-    fn find(&self, hash: &str) -> Option<Exchange> {
-        self.0.read_json(&exchange_file(hash)).ok()
+    fn find(&self, hash: &str) -> Result<Option<Exchange>, String> {
+        let name = exchange_file(hash);
+        let path = self.0.path(&name);
+        let spoilt = |why: &str| {
+            Err(format!(
+                "{}: {why}; put the file back as it was, or remove it to have its question asked again",
+                path.display()
+            ))
+        };
+        match std::fs::symlink_metadata(&path) {
+            Err(_) => return Ok(None),
+            Ok(metadata) if !metadata.is_file() => return spoilt("it is no regular file"),
+            Ok(metadata) if metadata.len() > MAX_EXCHANGE => return spoilt("it is longer than any exchange"),
+            Ok(_) => {}
+        }
+        match self.0.read_json::<Exchange>(&name) {
+            Err(_) => spoilt("it is damaged"),
+            Ok(exchange) => match exchange.check(hash) {
+                Err(why) => spoilt(why),
+                Ok(()) => Ok(Some(exchange)),
+            },
+        }
     }
 
     fn keep(&self, exchange: &Exchange) -> Result<(), String> {
-        self.0.write_json(&exchange_file(&exchange.hash), exchange).map(drop).map_err(|e| e.to_string())
+        let kept = self.0.write_json(&exchange_file(&exchange.hash), exchange);
+        kept.map(drop).map_err(|e| format!("the ledger cannot keep an answer: {e}"))
     }
-}
-
-fn take_in_responses(store: &Store, prices: &PriceTable) -> Result<Vec<Diagnostic>, PipelineError> {
-    let path = store.path(RESPONSES);
-    if !path.exists() {
-        return Ok(Vec::new());
-    }
-    let text = read_text(&path, 1 << 30)?;
-    let questions: Vec<Question> = store.read_json(PENDING)?;
-    let (mut exchanges, diagnostics) = read_responses(RESPONSES, &text, &questions);
-    for exchange in &mut exchanges {
-        let price = prices.price(&exchange.question.model);
-        let (input, output) = (exchange.input_tokens, exchange.output_tokens);
-        exchange.cost_usd = price.map(|price| price.batch_share * price.cost_usd(input, output));
-        store.write_json(&exchange_file(&exchange.hash), exchange)?;
-    }
-    store.write(&format!("ledger/responses-{}.jsonl", &sha256(text.as_bytes())[..12]), text.as_bytes())?;
-    for done in [RESPONSES, REQUESTS, PENDING] {
-        store.remove(done)?;
-    }
-    Ok(diagnostics)
 }

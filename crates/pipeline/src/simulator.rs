@@ -2,7 +2,9 @@
 
 use crate::error::PipelineError;
 use crate::external::{EgoCommand, ExternalEgo, Patience};
+use crate::suite::Suite;
 use recrash_metadrive::{METADRIVE_VERSION, Metadrive};
+use recrash_search::Searcher;
 use recrash_sim::{Ego, Native};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -72,6 +74,28 @@ pub fn start_simulator(
             Ok(Box::new(pool))
         }
         SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
+    }
+}
+
+/// Checks what a run needs only after its models were asked, which may cost: the ego, its program, and the optimiser.
+///
+/// # Errors
+/// One of them is not there.
+pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
+    suite.options().searcher.parse::<Searcher>().map_err(PipelineError::bad_input)?;
+    let (kind, ego) = (suite.options().simulator, suite.ego());
+    match EgoCommand::parse(ego).map_err(PipelineError::bad_input)? {
+        Some(_) if kind == SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
+        Some(command) if !command.is_there() => Err(PipelineError::bad_input(format!(
+            "the ego {command}: there is no such program; check its name and path"
+        ))),
+        Some(_) => Ok(()),
+        None => match ego.parse::<Ego>().map_err(|e| PipelineError::bad_input(format!("{e}")))? {
+            native if kind == SimulatorKind::Metadrive && native != Ego::MetadriveIdm => {
+                Err(metadrive_only_runs_its_own(ego))
+            }
+            _ => Ok(()),
+        },
     }
 }
 

@@ -3,13 +3,29 @@
 use crate::caches::{Variable, cache_folder, no_cache_folder, variable};
 use crate::error::PipelineError;
 use crate::store::read_bytes;
-use recrash_child::run;
+use recrash_child::{let_through, run};
 use recrash_embed::{Embedder, MINILM_NAME, MODEL_FILES, ModelFiles};
 use serde::Serialize;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
+
+/// Variables that pip may see: its own, and the way out.
+const PIP_VARIABLES: [&str; 12] = [
+    "PIP_*",
+    "http_proxy",
+    "https_proxy",
+    "all_proxy",
+    "no_proxy",
+    "HTTP_PROXY",
+    "HTTPS_PROXY",
+    "ALL_PROXY",
+    "NO_PROXY",
+    "SSL_CERT_FILE",
+    "SSL_CERT_DIR",
+    "REQUESTS_CA_BUNDLE",
+];
 
 /// Model files larger than this are refused. [bytes]
 const MAX_MODEL_FILE: u64 = 1 << 30;
@@ -220,6 +236,8 @@ fn python(interpreter: &Path, folder: &Path, words: &[&str], paths: &[&OsStr]) -
     command.args(words).args(paths);
     // A module of the user's called pip or zipfile must not be taken for Python's.
     command.env("PYTHONSAFEPATH", "1").current_dir(folder);
+    // Where pip looks, and the way there, are the user's.
+    let_through(&mut command, &PIP_VARIABLES);
     let finished = run(&mut command, Duration::from_secs(PULL_TIMEOUT_S))
         .map_err(|e| failed(&format!("cannot start {}: {e}", interpreter.display())))?
         .ok_or_else(|| failed(&format!("no end within {PULL_TIMEOUT_S} s")))?;

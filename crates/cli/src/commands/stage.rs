@@ -3,7 +3,7 @@
 use crate::options::SuiteArgs;
 use crate::output::{self, Output};
 use anstream::println;
-use recrash_pipeline::{PipelineError, Stage};
+use recrash_pipeline::{PipelineError, Stage, check_choices};
 
 /// Runs one stage of a suite.
 ///
@@ -11,6 +11,8 @@ use recrash_pipeline::{PipelineError, Stage};
 /// The stage's.
 pub fn run(args: &SuiteArgs, stage: Stage, output: Output) -> Result<(), PipelineError> {
     let suite = args.open_saved()?;
+    output::batch_remarks(&suite, output);
+    check_choices(&suite)?;
     let report = suite.run_stage(stage, &*output.progress())?;
     if output.json {
         output::json(&serde_json::json!({ "stage": stage.name(), "done": report.done, "skipped": report.skipped }));

@@ -1,6 +1,7 @@
 //! The command of an external ego, as it is typed: `cmd:PROGRAM [ARGS]`.
 
 use std::fmt;
+use std::path::Path;
 
 /// What an ego's name begins with where it is a program.
 pub const EGO_COMMAND_PREFIX: &str = "cmd:";
@@ -31,6 +32,16 @@ impl EgoCommand {
             }
             _ => Err("--ego cmd: needs a program, such as --ego 'cmd:python3 my_ego.py'".to_owned()),
         }
+    }
+
+    /// Whether the program can be found, as far as that is seen without starting it: on Windows names go without endings.
+    pub(crate) fn is_there(&self) -> bool {
+        let program = Path::new(&self.program);
+        if cfg!(windows) || program.components().count() > 1 || program.is_absolute() {
+            return cfg!(windows) || program.is_file();
+        }
+        let folders = std::env::var_os("PATH").unwrap_or_default();
+        std::env::split_paths(&folders).any(|folder| folder.join(program).is_file())
     }
 
     /// As it was typed.

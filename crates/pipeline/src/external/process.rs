@@ -2,6 +2,8 @@
 
 use super::command::EgoCommand;
 use super::protocol::{Answer, PROTOCOL, Reset, Said, Step};
+use crate::secrets;
+use recrash_agents::llm::Scrubber;
 use recrash_child::{Program, Silence, printable};
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::Termination;
@@ -115,6 +117,7 @@ pub(crate) struct EgoProcess {
     /// Names of the run's actors but the ego.
     ids: Vec<String>,
     spec: VehicleSpec,
+    scrubber: Scrubber,
 }
 
 impl EgoProcess {
@@ -128,15 +131,16 @@ impl EgoProcess {
             patience,
             ids: Vec::new(),
             spec: VehicleSpec::of(PartnerKind::PassengerCar),
+            scrubber: secrets::scrubber(),
         };
         let hello = Said::Hello { protocol: PROTOCOL, recrash: env!("CARGO_PKG_VERSION") };
         match process.ask(&hello, "hello", patience.start, READY)? {
             (Answer::Ready { protocol: Some(protocol) }, _) if protocol == PROTOCOL => Ok(process),
             (Answer::Ready { protocol: Some(other) }, _) => {
-                Err(EgoFault::Protocol { found: format!("\"{}\"", printable(&other, 40)) })
+                Err(EgoFault::Protocol { found: format!("\"{}\"", process.presentable(&other, 40)) })
             }
             (Answer::Ready { protocol: None }, _) => Err(EgoFault::Protocol { found: "no version".to_owned() }),
-            (_, line) => Err(rubbish("hello", READY, &line)),
+            (_, line) => Err(process.rubbish("hello", READY, &line)),
         }
     }
 
@@ -153,20 +157,34 @@ impl EgoProcess {
             Silence::Hung => EgoFault::Hung { question: asked(), seconds: patience.as_secs() },
             Silence::TooLong => EgoFault::TooLong { question: asked() },
             Silence::Ended { status, complaint } => {
+                let complaint = self.presentable(&complaint, 300);
                 let status = status.map_or_else(|| "it closed its output".to_owned(), |status| status.to_string());
                 EgoFault::Ended { question: asked(), status, complaint }
             }
         })?;
         match serde_json::from_str(&line) {
             Ok(Answer::Error { message }) => {
-                Err(EgoFault::Told { question: asked(), message: printable(&message, 300) })
+                Err(EgoFault::Told { question: asked(), message: self.presentable(&message, 300) })
             }
             Ok(answer) => Ok((answer, line)),
             Err(_) if names_no_number(&line) => {
-                Err(EgoFault::NotFinite { question: asked(), beginning: printable(&line, 80) })
+                Err(EgoFault::NotFinite { question: asked(), beginning: self.presentable(&line, 80) })
             }
-            Err(_) => Err(rubbish(question, wanted, &line)),
+            Err(_) => Err(self.rubbish(question, wanted, &line)),
         }
+    }
+}
+
+impl EgoProcess {
+    fn rubbish(&self, question: &str, wanted: &'static str, line: &str) -> EgoFault {
+        EgoFault::Rubbish { question: question.to_owned(), wanted, beginning: self.presentable(line, 80) }
+    }
+
+    /// The beginning of what the program said, printable and without keys: it ends up in files of the suite.
+    fn presentable(&self, text: &str, longest: usize) -> String {
+        /// How much is looked through for keys, so that none is cut in half before. [characters]
+        const LOOKED_THROUGH: usize = 8_192;
+        printable(&self.scrubber.scrub(&printable(text, LOOKED_THROUGH)), longest)
     }
 }
 
@@ -187,7 +205,7 @@ impl EgoDriver for EgoProcess {
         let reset = Said::Reset(Box::new(Reset::new(scenario, cast)));
         match self.ask(&reset, "reset", self.patience.answer, READY)? {
             (Answer::Ready { .. }, _) => Ok(()),
-            (_, line) => Err(rubbish("reset", READY, &line)),
+            (_, line) => Err(self.rubbish("reset", READY, &line)),
         }
     }
 
@@ -198,7 +216,7 @@ impl EgoDriver for EgoProcess {
         self.ids = ids;
         match answer? {
             (Answer::Control(control), _) => Ok(control.controls(&self.spec)),
-            (_, line) => Err(rubbish(&question, CONTROL, &line)),
+            (_, line) => Err(self.rubbish(&question, CONTROL, &line)),
         }
     }
 
@@ -219,10 +237,6 @@ fn line_of(said: &Said<'_>) -> Vec<u8> {
     let mut line = serde_json::to_vec(said).unwrap_or_else(|_| unreachable!("numbers and texts serialise"));
     line.push(b'\n');
     line
-}
-
-fn rubbish(question: &str, wanted: &'static str, line: &str) -> EgoFault {
-    EgoFault::Rubbish { question: question.to_owned(), wanted, beginning: printable(line, 80) }
 }
 
 /// Whether a line is no JSON because of a number that JSON does not have: many languages write these all the same.
