@@ -3,17 +3,20 @@
 use crate::error::PipelineError;
 use crate::external::Patience;
 use crate::judging::run_scenario;
+use crate::output::Outputs;
+use crate::paths;
 use crate::profiles::load_profile;
 use crate::scenario_files::read_scenario;
 use crate::simulator::{SimulatorKind, start_simulator};
 use crate::stages::names;
-use crate::store::{Store, write_file_whole};
+use crate::store::{Store, io};
 use crate::suite::{Suite, refuse_untrusted};
 use recrash_export::{ExportFile, ExportOptions, Format, PartnersAs};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::selection::Selection;
 use recrash_model::tuning::{Parameter, TuneLog};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// What to export, and where to.
@@ -39,47 +42,61 @@ pub struct ExportReport {
     /// Scenarios that were exported.
     pub scenarios: usize,
     /// Files written, in order.
+    #[serde(serialize_with = "paths::as_texts")]
     pub files: Vec<PathBuf>,
     /// Scenarios that could not be exported, each with its reason.
     pub failures: Vec<Diagnostic>,
 }
 
-/// Exports every scenario that can be; one that cannot is named, and the rest goes on.
+/// Exports every scenario that can be; one that cannot is named, and the rest goes on. Files that an earlier export of the
+/// same scenarios has written stay, so that one that was interrupted goes on.
 ///
 /// # Errors
-/// The source is no suite and no file, or the target holds files already; then nothing is written.
+/// The source is no suite and no file, or the target holds other files already; then nothing is written.
 pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
     let sources = sources(&request.source, request.trust)?;
     let beside = if request.source.is_dir() { request.source.clone() } else { parent(&request.source) };
     let target = request.target.clone().unwrap_or_else(|| beside.join("exports"));
-    let folders: Vec<(Format, PathBuf)> =
-        request.formats.iter().map(|&format| (format, target.join(format.name()))).collect();
-    for (_, folder) in &folders {
+    let mut folders: Vec<(Format, PathBuf)> = Vec::new();
+    for &format in &request.formats {
+        if !folders.iter().any(|(known, _)| *known == format) {
+            folders.push((format, target.join(format.name())));
+        }
+    }
+    let formats: Vec<Format> = folders.iter().map(|(format, _)| *format).collect();
+    let exported = |source: &ScenarioSource| files_of(source, &formats, request.partners_as);
+    let mut filled = Vec::new();
+    for (at, (_, folder)) in folders.iter().enumerate() {
         if folder.is_dir() {
             Store::at(folder).remove_leftovers()?;
         }
         if !request.force && std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
-            return Err(PipelineError::bad_input(format!(
-                "{} holds files already; add --force to overwrite them, or choose another --to-dir",
-                folder.display()
-            )));
+            filled.push((at, folder.as_path()));
         }
     }
+    if !filled.is_empty() {
+        let all = sources.iter().filter_map(|source| exported(source).ok());
+        only_of_this_export(&filled, all)?;
+    }
+    let mut outputs = Outputs::of_inputs(sources.iter().map(|source| source.path.clone()));
     let mut report = ExportReport { scenarios: 0, files: Vec::new(), failures: Vec::new() };
+    let mut written = BTreeSet::new();
     for source in &sources {
-        match files_of(source, &request.formats, request.partners_as) {
+        match exported(source) {
             Ok(per_format) => {
                 report.scenarios += 1;
-                for ((_, folder), files) in folders.iter().zip(per_format) {
-                    let store = Store::create(folder, write_file_whole)?;
-                    for file in files {
-                        store.write(&file.name, &file.content)?;
-                        let path = folder.join(&file.name);
-                        // MetaDrive's script is the same for all.
-                        if !report.files.contains(&path) {
-                            report.files.push(path);
-                        }
-                    }
+                let in_folder = |((_, folder), files): (&(Format, PathBuf), Vec<ExportFile>)| {
+                    files.into_iter().map(|file| (folder.join(&file.name), file.content)).collect::<Vec<_>>()
+                };
+                let files = folders.iter().zip(per_format).flat_map(in_folder);
+                // MetaDrive's script is the same for all.
+                let new = files.filter(|(path, _)| written.insert(path.clone()));
+                let claimed = new.map(|(path, content)| Ok((outputs.claim(&path)?, content)));
+                for (output, content) in claimed.collect::<Result<Vec<_>, PipelineError>>()? {
+                    let folder = parent(output.name());
+                    std::fs::create_dir_all(&folder).map_err(|source| io("create", &folder, source))?;
+                    output.write(&content)?;
+                    report.files.push(output.name().to_owned());
                 }
             }
             Err(why) => report.failures.push(Diagnostic::new(
@@ -91,6 +108,40 @@ pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
         }
     }
     Ok(report)
+}
+
+/// Whether folders hold nothing but what this export writes, as it writes it: then an earlier one was interrupted, or is
+/// done again.
+///
+/// # Errors
+/// There is something else in a folder.
+fn only_of_this_export(
+    filled: &[(usize, &Path)],
+    exports: impl Iterator<Item = Vec<Vec<ExportFile>>>,
+) -> Result<(), PipelineError> {
+    let mut ours: BTreeSet<PathBuf> = BTreeSet::new();
+    for files in exports {
+        for &(at, folder) in filled {
+            let paths = files[at].iter().map(|file| (folder.join(&file.name), &file.content));
+            ours.extend(paths.filter(|(path, content)| has_content(path, content)).map(|(path, _)| path));
+        }
+    }
+    for (_, folder) in filled {
+        let entries = std::fs::read_dir(folder).map_err(|source| io("read", folder, source))?;
+        if entries.flatten().any(|entry| !ours.contains(&entry.path())) {
+            return Err(PipelineError::bad_input(format!(
+                "{} holds other files already; add --force to overwrite them, or choose another --to-dir",
+                folder.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a regular file holds exactly this.
+fn has_content(path: &Path, content: &[u8]) -> bool {
+    let size = std::fs::symlink_metadata(path).ok().filter(|there| there.is_file()).map(|there| there.len());
+    size == Some(content.len() as u64) && std::fs::read(path).is_ok_and(|there| there == content)
 }
 
 struct ScenarioSource {

@@ -2,8 +2,10 @@
 
 use crate::caches::{cache_folder, no_cache_folder, variable};
 use crate::error::PipelineError;
+use crate::output::Outputs;
+use crate::paths;
 use crate::profiles::load_profile;
-use crate::store::{sha256, write_file_whole};
+use crate::store::{io, sha256};
 use recrash_fetch::{FetchError, Limits, download};
 use recrash_model::Outcome;
 use recrash_model::profile::Dedupe;
@@ -58,6 +60,7 @@ pub struct Fetched {
     /// What `--records` takes: the bare name where it lies in the cache that is looked in, the path elsewhere.
     pub name: String,
     /// Where it lies.
+    #[serde(serialize_with = "paths::as_text")]
     pub path: PathBuf,
     /// Size. [byte]
     pub bytes: usize,
@@ -117,12 +120,8 @@ pub fn fetch(request: &FetchRequest, limits: &Limits) -> Result<Fetched, Pipelin
     let path = folder.join(&name);
     let sha256 = sha256(&got.bytes);
     let unchanged = std::fs::read(&path).is_ok_and(|before| before == got.bytes);
-    let io = |action: &'static str, path: &Path| {
-        let path = path.to_owned();
-        move |source| PipelineError::Io { action, path, source }
-    };
-    std::fs::create_dir_all(&folder).map_err(io("create", &folder))?;
-    write_file_whole(&path, &got.bytes).map_err(io("write", &path))?;
+    std::fs::create_dir_all(&folder).map_err(|source| io("create", &folder, source))?;
+    Outputs::default().claim(&path)?.write(&got.bytes)?;
     let found = cached(Path::new(&name)).is_some_and(|found| found == path);
     let name = if found { name } else { path.to_string_lossy().into_owned() };
     let bytes = got.bytes.len();

@@ -1,8 +1,10 @@
 //! Scenarios of other formats read back: our OpenSCENARIO, and the paper's JSON dialect.
 
 use crate::error::PipelineError;
+use crate::output::Outputs;
+use crate::paths;
 use crate::scenario_files::{not_runnable, scenario_from};
-use crate::store::{io, read_text, write_file_whole};
+use crate::store::read_text;
 use recrash_export::MAX_IMPORT_BYTES;
 use recrash_model::diagnostic::Diagnostic;
 use recrash_model::scenario::ScenarioDraft;
@@ -25,6 +27,7 @@ pub struct ImportRequest<'a> {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Imported {
     /// The scenario file that was written.
+    #[serde(serialize_with = "paths::as_text")]
     pub file: PathBuf,
     /// What the source was read as.
     pub read_as: SourceFormat,
@@ -61,12 +64,13 @@ pub fn import(request: &ImportRequest) -> Result<Imported, PipelineError> {
     let read = read.map_err(|diagnostics| not_runnable(source, diagnostics))?;
     let scenario = read.value.draft().clone();
     let file = request.target.map_or_else(|| PathBuf::from(format!("{}.json", scenario.id)), Path::to_owned);
-    if !request.force && file.exists() {
+    let output = Outputs::of_inputs([source.to_owned()]).claim(&file)?;
+    if !request.force && output.replaces() {
         return Err(PipelineError::bad_input(format!(
             "{} is there already; add --force to overwrite it, or choose another --out",
             file.display()
         )));
     }
-    write_file_whole(&file, write_draft(&scenario).as_bytes()).map_err(|source| io("write", &file, source))?;
+    output.write(write_draft(&scenario).as_bytes())?;
     Ok(Imported { file, read_as, scenario, diagnostics: read.diagnostics })
 }

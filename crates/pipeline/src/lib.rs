@@ -23,7 +23,9 @@ mod judging;
 mod ledger;
 mod models;
 mod options;
+mod output;
 mod parity;
+mod paths;
 mod profiles;
 mod progress;
 mod prompting;
@@ -55,6 +57,7 @@ pub use judging::run_scenario;
 pub use ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
 pub use models::{AnswerMode, ModelAccess};
 pub use options::{Options, RecordSource};
+pub use output::{Begun, Output, Outputs};
 pub use parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
     ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
@@ -62,7 +65,7 @@ pub use parity::{
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
 pub use prompting::{Prompt, PromptRequest, prompt};
-pub use recording::{TableFormat, read_records, write_records};
+pub use recording::{TableFormat, read_records, record_outputs, write_records};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_child::end_all as end_programs;
 pub use recrash_export::{Format, PartnersAs};
@@ -74,10 +77,10 @@ pub use scenario_files::{FileRequest, FileRun, read_scenario, simulate_file};
 pub use simulator::{Simulator, SimulatorKind, check_choices, start_simulator};
 pub use stages::{
     CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary, SelectionStudy,
-    StageReport, StrategyStudy, Summary,
+    StageReport, StrategyStudy, Summary, unfaithful,
 };
 pub use store::{Store, WriteFile, remove_unfinished};
 pub use suite::{Permissions, Resources, Stage, Suite};
 #[cfg(feature = "parquet")]
-pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
+pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};
 pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

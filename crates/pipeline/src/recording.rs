@@ -3,14 +3,19 @@
 use crate::error::PipelineError;
 use crate::fetching::cached;
 use crate::options::{Options, RecordSource};
-use crate::store::{read_bytes, read_text, sha256, write_file_whole};
+use crate::output::{Output, Outputs};
+use crate::paths;
+use crate::store::{io, read_bytes, read_text};
 use recrash_model::Outcome;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;
 use recrash_records::{
-    Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, SAMPLE_CSV, SAMPLE_NAME, SourceText, TableRows, ingest_with,
-    record_table,
+    Bytes, Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, SAMPLE_CSV, SAMPLE_NAME, SourceBytes, TableRows,
+    ingest_sources, write_csv,
 };
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// Crash files larger than this are refused. [bytes]
@@ -18,10 +23,34 @@ const MAX_CRASH_FILE: u64 = 1 << 30;
 
 /// Everything that decides which records come of the first stage, beside the profile.
 pub struct RecordInput {
-    files: Vec<(String, Vec<u8>)>,
+    files: Vec<(String, Content)>,
     filter: Option<Filter>,
     mapping: Option<Mapping>,
     mapping_text: String,
+}
+
+/// What a crash file holds.
+enum Content {
+    /// A regular file: read as it goes, so that 100 MB of it do not stand in memory beside the records.
+    File(File),
+    /// What can be read only once, such as a pipe; and the sample.
+    Memory(Cow<'static, [u8]>),
+}
+
+impl Content {
+    fn open(path: &Path) -> Result<Self, PipelineError> {
+        if std::fs::metadata(path).is_ok_and(|there| there.is_file()) {
+            return File::open(path).map(Self::File).map_err(|source| io("read", path, source));
+        }
+        read_bytes(path, MAX_CRASH_FILE).map(|bytes| Self::Memory(bytes.into()))
+    }
+
+    fn bytes(&self) -> Box<dyn Bytes + '_> {
+        match self {
+            Self::File(file) => Box::new(file),
+            Self::Memory(bytes) => Box::new(Cursor::new(bytes)),
+        }
+    }
 }
 
 impl RecordInput {
@@ -43,8 +72,12 @@ impl RecordInput {
             RecordSource::Sample if mapping.is_some() => {
                 return Err(PipelineError::bad_input("a mapping needs its crash files: give them with --records"));
             }
-            RecordSource::Sample => vec![(SAMPLE_NAME.to_owned(), SAMPLE_CSV.as_bytes().to_vec())],
-            RecordSource::Files(paths) => paths.iter().map(|path| crash_file(path)).collect::<Result<_, _>>()?,
+            RecordSource::Sample => vec![(SAMPLE_NAME.to_owned(), Content::Memory(SAMPLE_CSV.as_bytes().into()))],
+            RecordSource::Files(paths) => {
+                let paths: Vec<PathBuf> = paths.iter().map(|path| crash_file(path)).collect();
+                let named = names(&paths).into_iter().zip(&paths);
+                named.map(|(name, path)| Ok((name, Content::open(path)?))).collect::<Result<_, PipelineError>>()?
+            }
         };
         Ok(Self { files, filter, mapping, mapping_text })
     }
@@ -54,19 +87,21 @@ impl RecordInput {
         let filter = self.filter.as_ref().map_or("", Filter::text);
         let mut all = vec![filter.to_owned(), self.mapping_text.clone()];
         for (name, content) in &self.files {
-            all.extend([name.clone(), sha256(content)]);
+            // A file that cannot be read is another input, and is told when its records are asked for.
+            let hash = recrash_records::sha256(&mut *content.bytes()).unwrap_or_else(|error| error.to_string());
+            all.extend([name.clone(), hash]);
         }
         all
     }
 
-    /// The records. The files' contents are gone afterwards: nobody should hold 100 MB of them beside the records.
+    /// The records. In memory is what is kept of the files.
     ///
     /// # Errors
     /// A file is no crash file, or does not fit the mapping.
     pub fn ingest(self, profile: &SystemProfile) -> Result<Outcome<RecordSet>, PipelineError> {
-        let sources: Vec<SourceText> = self.files.iter().map(|(name, bytes)| SourceText { name, bytes }).collect();
+        let sources = self.files.iter().map(|(name, content)| SourceBytes { name, bytes: content.bytes() }).collect();
         let options = IngestOptions { filter: self.filter.as_ref(), mapping: self.mapping.as_ref() };
-        ingest_with(&sources, profile, &options).map_err(|e| PipelineError::bad_input(e.to_string()))
+        ingest_sources(sources, profile, &options).map_err(|e| PipelineError::bad_input(e.to_string()))
     }
 }
 
@@ -80,11 +115,38 @@ pub fn read_filter(options: &Options) -> Result<Option<Filter>, PipelineError> {
 }
 
 /// A file by its path; a bare name that is no file here is looked up among the downloaded ones.
-fn crash_file(path: &Path) -> Result<(String, Vec<u8>), PipelineError> {
+fn crash_file(path: &Path) -> PathBuf {
     let found = if path.exists() { None } else { cached(path) };
-    let path: PathBuf = found.unwrap_or_else(|| path.to_owned());
-    let name = path.file_name().map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
-    Ok((name.into_owned(), read_bytes(&path, MAX_CRASH_FILE)?))
+    found.unwrap_or_else(|| path.to_owned())
+}
+
+/// What files are called in messages and provenance: their names without folders, and with as many folders as tell files
+/// of one name apart.
+fn names(paths: &[PathBuf]) -> Vec<String> {
+    let named = |path: &Path, parts: usize| -> String {
+        let all: Vec<_> = path.components().collect();
+        all[all.len().saturating_sub(parts)..].iter().collect::<PathBuf>().display().to_string()
+    };
+    let name = |path: &PathBuf| {
+        let most = path.components().count().max(1);
+        let differs = |parts: &usize| {
+            let others = paths.iter().filter(|other| *other != path);
+            others.into_iter().all(|other| named(other, *parts) != named(path, *parts))
+        };
+        named(path, (1..most).find(differs).unwrap_or(most))
+    };
+    paths.iter().map(name).collect()
+}
+
+/// What may be written beside reading the records of these options; a suite that they go into counts as read.
+pub fn record_outputs(options: &Options, suite: Option<&Path>) -> Outputs {
+    let files: &[PathBuf] = match &options.records {
+        RecordSource::Sample => &[],
+        RecordSource::Files(files) => files,
+    };
+    let read =
+        files.iter().map(|path| crash_file(path)).chain(options.mapping.clone()).chain(suite.map(Path::to_owned));
+    Outputs::of_inputs(read.chain(paths::of_profile_and_ego(Some(&options.profile), None)))
 }
 
 /// Formats of tables.
@@ -106,7 +168,7 @@ pub fn read_records(options: &Options) -> Result<Outcome<RecordSet>, PipelineErr
     RecordInput::read(options)?.ingest(&profile)
 }
 
-/// Writes records as a table, whole or not at all. Gives the number of rows.
+/// Writes records as a table. Gives the number of rows.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -114,15 +176,39 @@ pub fn write_records(
     records: &RecordSet,
     rows: TableRows,
     format: TableFormat,
-    path: &Path,
+    output: &Output,
 ) -> Result<usize, PipelineError> {
-    let table = record_table(records, rows);
-    let bytes = match format {
-        TableFormat::Csv => table.to_csv(),
+    match format {
+        TableFormat::Csv => {
+            let failed = |source| io("write", output.name(), source);
+            let mut begun = output.begin()?;
+            let written = write_csv(records, rows, &mut begun).map_err(failed)?;
+            begun.finish().map_err(failed)?;
+            Ok(written)
+        }
         #[cfg(feature = "parquet")]
-        TableFormat::Parquet => table.to_parquet(),
-    };
-    let failed = |source| PipelineError::Io { action: "write", path: path.to_owned(), source };
-    write_file_whole(path, &bytes).map_err(failed)?;
-    Ok(table.rows)
+        TableFormat::Parquet => {
+            let table = recrash_records::record_table(records, rows);
+            output.write(&table.to_parquet())?;
+            Ok(table.rows)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_one_name_are_told_apart_by_their_folders() {
+        let named = |paths: &[&str]| names(&paths.iter().map(PathBuf::from).collect::<Vec<_>>());
+        assert_eq!(named(&["a/x.csv", "b/y.csv"]), ["x.csv", "y.csv"]);
+        let folders = |parts: &[&str]| parts.iter().collect::<PathBuf>().display().to_string();
+        assert_eq!(
+            named(&["a/x.csv", "b/x.csv", "y.csv"]),
+            [folders(&["a", "x.csv"]), folders(&["b", "x.csv"]), "y.csv".into()]
+        );
+        assert_eq!(named(&["x.csv", "b/x.csv"]), ["x.csv".to_owned(), folders(&["b", "x.csv"])]);
+        assert_eq!(named(&["1/c/x.csv", "2/c/x.csv"]), [folders(&["1", "c", "x.csv"]), folders(&["2", "c", "x.csv"])]);
+    }
 }

@@ -3,9 +3,11 @@
 use crate::error::PipelineError;
 use crate::external::Patience;
 use crate::judging::run_scenario;
+use crate::output::Outputs;
+use crate::paths;
 use crate::profiles::load_profile;
 use crate::simulator::{SimulatorKind, start_simulator};
-use crate::store::{read_text, to_compact_json, write_file_whole};
+use crate::store::{read_text, to_compact_json};
 use recrash_model::run::JudgedRun;
 use recrash_model::{Diagnostic, Outcome};
 use recrash_roads::Scenario;
@@ -47,17 +49,16 @@ pub struct FileRequest<'a> {
 /// # Errors
 /// The file cannot be read, is no scenario, or cannot be run: every problem with its place.
 pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
+    let read = paths::of_profile_and_ego(Some(request.profile), request.ego).into_iter();
+    let mut outputs = Outputs::of_inputs(read.chain([request.scenario.to_owned()]));
+    let rollout = request.rollout.map(|target| outputs.claim(target)).transpose()?;
     let profile = load_profile(request.profile)?;
     let (scenario, diagnostics) = read_scenario(request.scenario)?;
     let ego = request.ego.unwrap_or(&profile.ego);
     let simulator = start_simulator(request.simulator, ego, request.python, 1, request.patience)?;
     let run = run_scenario(&scenario, &simulator, &profile, None)?;
-    if let Some(target) = request.rollout {
-        write_file_whole(target, &to_compact_json(&run.rollout)).map_err(|source| PipelineError::Io {
-            action: "write",
-            path: target.to_owned(),
-            source,
-        })?;
+    if let Some(rollout) = rollout {
+        rollout.write(&to_compact_json(&run.rollout))?;
     }
     Ok(FileRun { run, diagnostics })
 }

@@ -14,7 +14,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 const MAX_SUITE_FILE: u64 = 1 << 30;
 
 /// First letters of the names of files that are being written.
-const TEMPORARY_PREFIX: &str = ".recrash-";
+pub(crate) const TEMPORARY_PREFIX: &str = ".recrash-";
 
 /// Files that are being written under another name.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());

@@ -9,6 +9,7 @@ use crate::external::{EGO_COMMAND_PREFIX, Patience};
 use crate::journal::{Journal, Made, Unit};
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::options::{Options, RecordSource};
+use crate::paths;
 use crate::progress::Progress;
 use crate::recording;
 use crate::simulator::{Simulator, start_simulator};
@@ -199,6 +200,7 @@ impl Suite {
         write_file: WriteFile,
     ) -> Result<Self, PipelineError> {
         options.system_profile()?;
+        paths::must_be_text(&options)?;
         recording::read_filter(&options)?;
         let before = Self::saved_options(dir)?;
         if let Some(saved) = before.as_ref().filter(|_| !resources.permissions.replace) {

@@ -5,11 +5,13 @@
 
 use crate::error::PipelineError;
 use crate::external::Patience;
+use crate::output::{Begun, Output, Outputs};
+use crate::paths;
 use crate::profiles::load_profile;
 use crate::scenario_files::read_scenario;
 use crate::simulator::{Simulator, SimulatorKind, start_simulator};
 use crate::stages::names;
-use crate::store::{Store, Unfinished, write_file_whole};
+use crate::store::{Store, io};
 use crate::suite::{Suite, refuse_untrusted};
 use rayon::prelude::*;
 use recrash_agents::parameters;
@@ -20,14 +22,13 @@ use recrash_model::narrative::{NARRATIVE_FORMAT, Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{Rollout, TerminationKind};
 use recrash_model::scenario::{Author, ScenarioDraft};
+use recrash_model::selection::Selection;
 use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::tuning::{Parameter, TuneLog, apply};
 use recrash_records::{Column, ParquetWriter};
 use recrash_roads::Scenario;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Rollouts between two reports of progress.
@@ -83,6 +84,8 @@ pub struct SweepRequest<'a> {
     pub threads: Option<usize>,
     /// Whether a program that only the suite names is started as the ego.
     pub trust: bool,
+    /// The file to write: the table, or the scenario of one rollout.
+    pub out: &'a Path,
 }
 
 /// What came of a sweep.
@@ -98,7 +101,10 @@ pub struct SweepSummary {
     pub closest: Option<(u64, f64)>,
     /// Scenarios and what varied in each.
     pub scenarios: Vec<SweptScenario>,
+    /// Scenarios of the suite that were not swept, because their tuned files are not there.
+    pub passed_over: Vec<String>,
     /// The table.
+    #[serde(serialize_with = "paths::as_text")]
     pub file: PathBuf,
 }
 
@@ -122,6 +128,8 @@ pub struct Sweep {
     rollouts: u64,
     seed: Seed,
     threads: Option<usize>,
+    output: Output,
+    passed_over: Vec<String>,
 }
 
 struct Base {
@@ -134,13 +142,17 @@ impl Sweep {
     ///
     /// # Errors
     /// A file cannot be read or is no scenario, or something varies that is no number of it.
+    /// The file to write cannot be, or is one of those that are read.
     pub fn prepare(request: &SweepRequest) -> Result<Self, PipelineError> {
         let saved = if request.source.is_dir() { Suite::saved_options(request.source)? } else { None };
         let default = saved.as_ref().map_or("paper", |options| &options.profile);
-        let profile = load_profile(request.profile.unwrap_or(default))?;
+        let profile_name = request.profile.unwrap_or(default).to_owned();
+        let profile = load_profile(&profile_name)?;
         let saved_ego = saved.as_ref().and_then(|options| options.ego.clone());
         let ego = request.ego.map(str::to_owned).or(saved_ego).unwrap_or_else(|| profile.ego.clone());
         refuse_untrusted(&ego, request.trust || request.ego.is_some())?;
+        let read = paths::of_profile_and_ego(Some(&profile_name), Some(&ego));
+        let output = Outputs::of_inputs(read.into_iter().chain([request.source.to_owned()])).claim(request.out)?;
         let files = scenario_files(request.source)?;
         let bases = files.iter().map(|file| base(file, request.vary, &profile)).collect::<Result<Vec<_>, _>>()?;
         let mut pointers: Vec<String> = Vec::new();
@@ -150,7 +162,9 @@ impl Sweep {
             }
         }
         let (rollouts, seed, threads) = (request.rollouts, Seed(request.seed).child("sweep"), request.threads);
-        Ok(Self { bases, pointers, profile, ego, patience: request.patience, rollouts, seed, threads })
+        let passed_over = passed_over(request.source, &bases);
+        let patience = request.patience;
+        Ok(Self { bases, pointers, profile, ego, patience, rollouts, seed, threads, output, passed_over })
     }
 
     /// Ego that drives.
@@ -172,45 +186,44 @@ impl Sweep {
         Ok(draft)
     }
 
-    /// Runs everything and writes the table, whole or not at all. `progress` is told how many rollouts are done.
+    /// Scenarios of the suite that are not swept, because their tuned files are not there.
+    pub fn passed_over(&self) -> &[String] {
+        &self.passed_over
+    }
+
+    /// Writes the scenario of one rollout.
+    ///
+    /// # Errors
+    /// There is no such rollout, or the file cannot be written.
+    pub fn write_draft(&self, number: u64) -> Result<(), PipelineError> {
+        self.output.write(recrash_roads::write_draft(&self.draft(number)?).as_bytes())
+    }
+
+    /// Runs everything and writes the table; a regular file whole or not at all. `progress` is told how many rollouts are
+    /// done.
     ///
     /// # Errors
     /// The table cannot be written, or the ego cannot be started. A rollout cannot fail: it gets its verdict.
-    pub fn run(&self, out: &Path, progress: &(dyn Fn(u64) + Sync)) -> Result<SweepSummary, PipelineError> {
+    pub fn run(&self, progress: &(dyn Fn(u64) + Sync)) -> Result<SweepSummary, PipelineError> {
         let threads = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads.unwrap_or(0))
             .build()
             .map_err(|e| PipelineError::Threads(e.to_string()))?;
         let simulator = start_simulator(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
-        let failed = |source| PipelineError::Io { action: "write", path: out.to_owned(), source };
-        // Written under another name, which a killed run leaves and the next one overwrites.
-        let name = out.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let part = out.with_file_name(format!(".{name}.part"));
-        let _unfinished = Unfinished::new(&part);
-        let written = File::create(&part)
-            .map_err(failed)
-            .and_then(|file| self.write(BufWriter::new(file), &threads, &simulator, progress, &failed))
-            .and_then(|(file, summary)| {
-                let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
-                file.sync_data().map_err(failed)?;
-                std::fs::rename(&part, out).map_err(failed)?;
-                Ok(SweepSummary { file: out.to_owned(), ..summary })
-            });
-        if written.is_err() {
-            // What was written of it is of no use; that it cannot be removed changes nothing.
-            let _ = std::fs::remove_file(&part);
-        }
-        written
+        let failed = |source| io("write", self.output.name(), source);
+        let (begun, summary) = self.write(self.output.begin()?, &threads, &simulator, progress, &failed)?;
+        begun.finish().map_err(failed)?;
+        Ok(summary)
     }
 
     fn write(
         &self,
-        sink: BufWriter<File>,
+        sink: Begun,
         threads: &rayon::ThreadPool,
         simulator: &dyn Simulator,
         progress: &(dyn Fn(u64) + Sync),
         failed: &dyn Fn(std::io::Error) -> PipelineError,
-    ) -> Result<(BufWriter<File>, SweepSummary), PipelineError> {
+    ) -> Result<(Begun, SweepSummary), PipelineError> {
         let empty = self.columns(&[]);
         let columns = empty.iter().map(|(name, column)| (name.as_str(), column));
         let mut writer = ParquetWriter::new(sink, "rollouts", columns, &self.notes()).map_err(failed)?;
@@ -351,7 +364,8 @@ impl Sweep {
             verdicts: BTreeMap::new(),
             closest: None,
             scenarios: scenarios.collect(),
-            file: PathBuf::new(),
+            passed_over: self.passed_over.clone(),
+            file: self.output.name().to_owned(),
         }
     }
 }
@@ -434,6 +448,14 @@ fn scenario_files(source: &Path) -> Result<Vec<PathBuf>, PipelineError> {
     if files.is_empty() { Err(none()) } else { Ok(files) }
 }
 
+/// Scenarios of a suite without a tuned file: it was deleted, or the scenario was never made.
+fn passed_over(source: &Path, bases: &[Base]) -> Vec<String> {
+    // A folder with scenario files alone has no selection, and lacks nothing.
+    let selection: Option<Selection> = Store::at(source).read_json(names::SELECTION).ok();
+    let ids = selection.into_iter().flat_map(|selection| selection.clusters).map(|cluster| cluster.scenario_id);
+    ids.filter(|id| !bases.iter().any(|base| base.draft.id == *id)).collect()
+}
+
 fn base(file: &Path, vary: &[Vary], profile: &SystemProfile) -> Result<Base, PipelineError> {
     let (scenario, _) = read_scenario(file)?;
     let draft = scenario.draft().clone();
@@ -494,15 +516,6 @@ fn untold(draft: &ScenarioDraft) -> Narrative {
         origin: Origin::Invented { reason: String::new() },
         author: Author::Person,
     }
-}
-
-/// Writes a scenario as a file, to run a rollout of a sweep again.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn write_scenario(draft: &ScenarioDraft, path: &Path) -> Result<(), PipelineError> {
-    let failed = |source| PipelineError::Io { action: "write", path: path.to_owned(), source };
-    write_file_whole(path, recrash_roads::write_draft(draft).as_bytes()).map_err(failed)
 }
 
 #[cfg(test)]

@@ -67,6 +67,7 @@ impl WeightsSource {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Weights {
     /// The folder.
+    #[serde(serialize_with = "crate::paths::as_text")]
     pub folder: PathBuf,
     /// How it was found.
     pub source: WeightsSource,
@@ -165,6 +166,7 @@ pub struct Pulled {
     /// Name of the model.
     pub name: &'static str,
     /// Where its files lie.
+    #[serde(serialize_with = "crate::paths::as_text")]
     pub folder: PathBuf,
     /// Size of the weights. [byte]
     pub bytes: u64,

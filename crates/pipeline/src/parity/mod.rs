@@ -45,6 +45,7 @@ pub enum ParitySource {
     /// Those of a suite, as designed and as tuned.
     Suite {
         /// Its folder.
+        #[serde(serialize_with = "crate::paths::as_text")]
         dir: PathBuf,
     },
 }

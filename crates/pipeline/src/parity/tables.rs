@@ -2,6 +2,7 @@
 
 use super::compare::{Agreement, Pair, PairOutcome};
 use super::{Parity, ParitySource};
+use recrash_model::spreadsheet::inert;
 use recrash_report::TableView;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -254,5 +255,6 @@ fn outcome_cells(outcome: Option<&PairOutcome>) -> Vec<String> {
 }
 
 fn quoted(cell: &str) -> String {
-    if cell.contains(['"', ',', '\r', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+    let cell = inert(cell);
+    if cell.contains(['"', ',', '\r', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.into_owned() }
 }

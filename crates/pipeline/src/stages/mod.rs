@@ -20,7 +20,7 @@ mod view;
 
 pub(crate) use cases::{Cases, brief};
 pub use design::{DesignAttempt, DesignLog};
-pub use failures::Failure;
+pub use failures::{Failure, unfaithful};
 pub(crate) use names::is_failure_file;
 pub use select::{SelectionStudy, StrategyStudy};
 pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};

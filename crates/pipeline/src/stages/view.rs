@@ -4,6 +4,7 @@ use super::report::{Case, Ran};
 use super::summary::Summary;
 use super::{Cases, names};
 use crate::options::{Options, RecordSource, quoted};
+use crate::paths;
 use crate::suite::Suite;
 use recrash_metrics::series;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
@@ -124,10 +125,11 @@ pub(super) fn rerun_command(suite: &Suite, file: &str) -> String {
     let (options, default) = (suite.options(), Options::default());
     let mut command = format!("recrash simulate {file}");
     if options.profile != default.profile {
-        command += &format!(" --profile {}", quoted(&options.profile));
+        let profile = paths::profile_from_folder(suite.store().dir(), &options.profile);
+        command += &format!(" --profile {}", quoted(&profile));
     }
     if options.simulator != default.simulator {
         command += &format!(" --sim {}", options.simulator.name());
     }
-    command + &format!(" --ego {}", quoted(suite.ego()))
+    command + &format!(" --ego {}", quoted(&paths::ego_from_folder(suite.store().dir(), suite.ego())))
 }

@@ -40,7 +40,7 @@ impl Place {
         {
             command.env_remove(name);
         }
-        for name in ["VIRTUAL_ENV", "CONDA_PREFIX", "RECRASH_EMBEDDING", "RECRASH_PYTHON"] {
+        for name in ["VIRTUAL_ENV", "CONDA_PREFIX", "RECRASH_EMBEDDING", "RECRASH_PYTHON", "COLUMNS"] {
             command.env_remove(name);
         }
         let output = command.output().unwrap();
