@@ -66,10 +66,11 @@ def of_suite(recrash: str, suite: Path, name: str, folder: Path) -> list[Export]
     """Every scenario of a suite, exported as a whole."""
     export(recrash, suite, folder)
     found = []
-    for path in sorted((suite / "6-tuned").glob("*.run.json")):
-        scenario = json.loads(path.with_name(path.name.replace(".run.json", ".json")).read_text())
-        log = json.loads(path.with_name(path.name.replace(".run.json", ".search.json")).read_text())
-        rollout = json.loads(path.read_text())["rollout"]
+    for path in sorted((suite / "6-tuned").glob("*.search.json")):
+        name_of_case = path.name.replace(".search.json", ".json")
+        scenario = json.loads(path.with_name(name_of_case).read_text())
+        log = json.loads(path.read_text())
+        rollout = json.loads((suite / "7-tuned-runs" / name_of_case).read_text())["rollout"]
         found.append(Export(name, scenario["id"], scenario, rollout, folder, log["parameters"]))
     assert found
     return found

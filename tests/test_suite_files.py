@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import subprocess
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -28,17 +29,23 @@ def test_junit_counts_what_it_holds(suite: Path) -> None:
 def test_the_summary_agrees_with_the_rollouts(suite: Path) -> None:
     summary = json.loads((suite / "summary.json").read_text())
     for case in summary["cases"]:
-        run = json.loads((suite / "6-tuned" / f"{case['id']}.run.json").read_text())
-        assert run["metrics"]["min_gap"]["value"] == case["tuned"]["min_gap_m"]
-        gaps = [gap for partner in run["series"]["partners"] for gap in partner["gap_m"]]
-        assert abs(min(gaps) - case["tuned"]["min_gap_m"]) < 0.7, case["id"]
+        run = json.loads((suite / "7-tuned-runs" / f"{case['id']}.json").read_text())
+        assert run["judgement"]["metrics"]["min_gap"]["value"] == case["tuned"]["min_gap_m"]
+        ego, *others = run["rollout"]["actors"]
+        apart = [
+            math.dist((a["x"], a["y"]), (b["x"], b["y"]))
+            for other in others
+            if other["role"] == "partner"
+            for a, b in zip(ego["states"], other["states"], strict=False)
+        ]
+        assert abs(min(apart) - case["tuned"]["min_centre_distance_m"]) < 0.7, case["id"]
 
 
 def test_every_scenario_file_can_be_run_alone_and_gives_the_same_states(recrash: str, suite: Path) -> None:
-    scenarios = sorted((suite / "6-tuned").glob("*.run.json"))
-    assert scenarios
-    for run_file in scenarios:
-        scenario = run_file.with_name(run_file.name.replace(".run.json", ".json"))
+    runs = sorted(path for path in (suite / "7-tuned-runs").glob("*.json") if path.name.count(".") == 1)
+    assert runs
+    for run_file in runs:
+        scenario = suite / "6-tuned" / run_file.name
         shown = subprocess.run([recrash, "simulate", str(scenario), "--json"], check=True, capture_output=True)
         again = json.loads(shown.stdout)["rollout"]["state_hash"]
         assert again == json.loads(run_file.read_text())["rollout"]["state_hash"], scenario.name

@@ -99,11 +99,11 @@ impl Table {
         text
     }
 
-    /// The first column names the row: the others are wrapped before it is, while it leaves them half of the width.
+    /// The first column names the row: the others are wrapped before it is, while it leaves them a quarter of the width.
     fn keep_first_whole(&self, table: &mut comfy_table::Table, width: usize) {
         let names = self.rows.iter().filter_map(|row| row.first()).map(|cell| cell.text.chars().count());
         let wanted = names.max().unwrap_or(0) + PADDING;
-        if wanted <= width * 2 / 3
+        if wanted <= width * 3 / 4
             && let (Some(first), Ok(wanted)) = (table.column_mut(0), u16::try_from(wanted))
         {
             first.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(wanted)));

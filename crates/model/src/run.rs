@@ -31,6 +31,8 @@ pub struct Judgement {
     pub ego: String,
     /// Simulator and its version.
     pub simulator: String,
+    /// Hash of all states of the rollout: two runs of one hash drove the same.
+    pub state_hash: String,
     /// What was measured.
     pub metrics: Metrics,
     /// What that says about the ego: failures first.
@@ -48,6 +50,7 @@ impl JudgedRun {
             scenario_id: rollout.scenario_id.clone(),
             ego: rollout.ego.clone(),
             simulator: rollout.simulator.clone(),
+            state_hash: rollout.state_hash.clone(),
             metrics,
             findings,
             verdict,

@@ -5,7 +5,7 @@ use crate::words::{self, fixed};
 use recrash_model::metrics::{Check, PartnerMetrics, Timed};
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 44] = [
+const HEADER: [&str; 45] = [
     "scenario",
     "run",
     "road",
@@ -45,6 +45,7 @@ const HEADER: [&str; 44] = [
     "termination",
     "duration_s",
     "run_id",
+    "state_hash",
     "failure_class",
     "other_egos",
     "refused_because",
@@ -89,7 +90,7 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     ];
     match run {
         Some(run) => row.extend(measured(case, run)),
-        None => row.extend(std::iter::repeat_n(String::new(), 25)),
+        None => row.extend(std::iter::repeat_n(String::new(), 26)),
     }
     // The triage is about the last run.
     let is_last = run.is_some_and(|run| case.last_run().is_some_and(|last| std::ptr::eq(run, last)));
@@ -147,6 +148,7 @@ fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
         words::name(&m.termination),
         number(Some(m.duration_s)),
         run.id.clone(),
+        run.state_hash.clone(),
     ]
 }
 

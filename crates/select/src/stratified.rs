@@ -2,9 +2,11 @@
 
 use crate::SelectOptions;
 use crate::apportion::next_by_equal_proportions;
+use crate::greedy::k_center;
 use crate::matrix::{Matrix, distance};
 use crate::space::{ClusteringSpace, ObservedTemplate};
 use crate::strategy::{Group, groups_by_kmeans, join_nearest};
+use std::collections::BTreeSet;
 
 /// Groups of all rows. While the budget lasts:
 ///
@@ -20,13 +22,15 @@ pub(crate) fn stratified(space: &ClusteringSpace, options: &SelectOptions) -> Ve
     strata.sort_by(|a, b| b.template.weight.total_cmp(&a.template.weight));
     let weights: Vec<f64> = strata.iter().map(|stratum| stratum.template.weight).collect();
     let limits: Vec<usize> = strata.iter().map(|stratum| stratum.points.distinct_rows()).collect();
-    for pick in 0..options.budget {
+    let few = options.budget.min(MOST_BY_KMEANS);
+    for pick in 0..few {
         let picks: Vec<usize> = strata.iter().map(|stratum| stratum.groups.len()).collect();
         let by_distance = pick >= strata.len() && (pick - strata.len()) % 2 == 1;
         let worst_served = if by_distance { worst_served(&strata, &limits) } else { None };
         let Some(next) = worst_served.or_else(|| next_by_equal_proportions(&weights, &picks, &limits)) else { break };
         strata[next].split(picks[next] + 1, options);
     }
+    spread_the_rest(&mut strata, &weights, &limits, options.budget - few);
     let mut without_pick = Vec::new();
     let mut groups = Vec::new();
     for stratum in strata {
@@ -37,6 +41,25 @@ pub(crate) fn stratified(space: &ClusteringSpace, options: &SelectOptions) -> Ve
     }
     join_nearest(space, &mut groups, &without_pick);
     groups
+}
+
+/// Picks up to this many are placed one by one with k-means; each costs as much as all before it.
+const MOST_BY_KMEANS: usize = 256;
+
+/// Shares out the picks beyond those by frequency alone, and divides each template once, farthest point first
+/// (gonzalez1985): with hundreds of picks of one template the centres of groups say little more than the records.
+fn spread_the_rest(strata: &mut [Stratum], weights: &[f64], limits: &[usize], rest: usize) {
+    if rest == 0 {
+        return;
+    }
+    let mut picks: Vec<usize> = strata.iter().map(|stratum| stratum.groups.len()).collect();
+    for _ in 0..rest {
+        let Some(next) = next_by_equal_proportions(weights, &picks, limits) else { break };
+        picks[next] += 1;
+    }
+    for (stratum, &k) in strata.iter_mut().zip(&picks).filter(|(stratum, k)| **k > stratum.groups.len()) {
+        stratum.spread(k);
+    }
 }
 
 /// The records of one template, and their groups so far.
@@ -54,6 +77,17 @@ impl<'s> Stratum<'s> {
     fn new(space: &'s ClusteringSpace, template: &'s ObservedTemplate) -> Self {
         let points = space.narrative.select(&template.rows);
         Self { space, template, points, groups: Vec::new(), radius: f64::INFINITY }
+    }
+
+    /// Divides the records into `k` groups around records that lie far from each other.
+    fn spread(&mut self, k: usize) {
+        let rows = &self.template.rows;
+        let picks = k_center(&self.points, k);
+        let mut groups: Vec<Group> = picks.iter().map(|&pick| Group { members: vec![rows[pick]] }).collect();
+        let is_pick: BTreeSet<usize> = picks.iter().map(|&pick| rows[pick]).collect();
+        let others: Vec<usize> = rows.iter().copied().filter(|row| !is_pick.contains(row)).collect();
+        join_nearest(self.space, &mut groups, &others);
+        self.groups = groups;
     }
 
     /// Divides the records into `k` groups.

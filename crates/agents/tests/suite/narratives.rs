@@ -24,7 +24,7 @@ struct Case {
 }
 
 fn retold() -> String {
-    "record".to_owned()
+    "own".to_owned()
 }
 
 #[derive(Deserialize)]

@@ -10,8 +10,8 @@ const EXAMPLES: &str = "\
 Examples:
   recrash export suite --to openscenario,scenic,metadrive,commonroad    a suite in every format, in suite/exports/
   recrash export suite --to openscenario --as trajectory --to-dir t     partners on the way that was recorded
-  recrash export suite/6-tuned/01-intersection-straight-straight.json --to scenic --to-dir t
-  recrash import suite/exports/openscenario/01-intersection-straight-straight.xosc    and back
+  recrash export suite/6-tuned/intersection-straight-straight-90102-28.json --to scenic --to-dir t
+  recrash import suite/exports/openscenario/intersection-straight-straight-90102-28.xosc    and back
 
 What each file holds, and what each tool takes for a position, a heading and a time: docs/formats.";
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash import 01-intersection-straight-straight.xosc             writes 01-intersection-straight-straight.json
+  recrash import intersection-straight-straight-90102-28.xosc             writes intersection-straight-straight-90102-28.json
   recrash import edited.xosc --out edited.json --simulate           and runs it
   recrash import crash.json --out scenario.json                     the paper's JSON dialect
 

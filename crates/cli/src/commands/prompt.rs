@@ -10,7 +10,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   recrash prompt paraphrase                              for the first scenario of suite/, or of the built-in sample
-  recrash prompt design --scenario 03-intersection-straight-left --out mini-suite
+  recrash prompt design --scenario intersection-straight-left-90100-12 --out mini-suite
   recrash prompt paraphrase --records ads.csv --record 30270-7733/2
   recrash prompt tune --json | jq .question.schema       the schema that the answer must fit
 

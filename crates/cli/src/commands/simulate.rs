@@ -12,7 +12,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   recrash simulate                                       the scenarios of suite/, as designed
-  recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
+  recrash simulate suite/6-tuned/intersection-straight-straight-90102-28.json --ego idm
   recrash simulate paper-suite --ego reference           the scenarios of another suite
   recrash simulate scenario.json --rollout rollout.json --json
 

@@ -48,7 +48,7 @@ const MOODY: &str = r#"
 import json, sys
 for line in sys.stdin:
     message = json.loads(line)
-    if message["type"] == "reset" and message["scenario"].startswith("01-"):
+    if message["type"] == "reset" and message["scenario"].startswith("intersection-straight-straight"):
         sys.exit("licence expired")
     if message["type"] == "step":
         answer = {"type": "control", "throttle": 0.3 if message["ego"]["speed"] < 6.0 else 0.0, "steer": 0.0}
@@ -71,9 +71,10 @@ fn a_suite_goes_on_where_a_program_fails_in_some_scenarios_and_tells_which() {
     let summary: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).expect("a summary")).expect("JSON");
     let cases = summary["cases"].as_array().expect("cases");
-    let why = cases[0]["failure"]["why"].as_str().expect("the first failed");
+    let (failed, others): (Vec<_>, Vec<_>) = cases.iter().partition(|case| !case["failure"].is_null());
+    let why = failed[0]["failure"]["why"].as_str().expect("one failed");
     assert!(why.contains("exit status: 1") && why.contains("licence expired"), "{why}");
-    assert!(cases[1]["failure"].is_null() && cases[1]["tuned"].is_object(), "{}", cases[1]);
+    assert!(failed.len() == 1 && others[0]["tuned"].is_object(), "{cases:?}");
 }
 
 #[test]
@@ -94,7 +95,7 @@ fn failures_are_triaged_by_the_other_egos() {
                 triage["others"].as_array().expect("others").iter().filter_map(|o| o["ego"].as_str()).collect();
             assert_eq!(egos, ["idm", "reference"]);
             let id = case["id"].as_str().expect("id");
-            assert!(out.join(format!("6-tuned/{id}.reference.json")).exists());
+            assert!(out.join(format!("7-tuned-runs/{id}.reference.json")).exists());
             assert!(shown.contains(&triage["class"].as_str().expect("class").replace('_', " ")), "{shown}");
         }
     }

@@ -37,7 +37,7 @@ impl Case {
     /// The tuned scenarios, by id.
     fn scenarios(&self) -> Vec<(String, PathBuf)> {
         let names = names_in(&self.path("suite/6-tuned"));
-        let ids = names.iter().filter_map(|name| name.strip_suffix(".run.json"));
+        let ids = names.iter().filter_map(|name| name.strip_suffix(".search.json"));
         ids.map(|id| (id.to_owned(), self.path(&format!("suite/6-tuned/{id}.json")))).collect()
     }
 

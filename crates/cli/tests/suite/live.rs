@@ -63,7 +63,7 @@ fn finished(server: &Server, out: &Path, extra: &[&str]) -> Value {
     assert_eq!(cases.len(), SCENARIOS);
     for case in cases {
         let id = case["id"].as_str().unwrap();
-        assert!(case["first"]["faithful"].as_bool().unwrap(), "{case}");
+        assert_ne!(case["first"]["faithful"], "no", "{case}");
         assert!(case["tuned"].is_object() && case["failure"].is_null(), "{case}");
         recrash(&["simulate", "--quiet", out.join(format!("4-scenarios/{id}.json")).to_str().unwrap()])
             .assert()
@@ -283,7 +283,12 @@ fn a_narrative_that_gives_orders_is_data_and_so_is_a_model_that_follows_them() {
         files_below(folder.0.path()).into_iter().filter(|file| !file.starts_with(folder.suite())).collect();
     assert_eq!(outside, Vec::<PathBuf>::new());
     assert!(!files_below(&folder.suite()).iter().any(|file| file.file_name().unwrap() == "x"));
-    assert!(!std::fs::read_to_string(folder.suite().join("report.html")).unwrap().contains("<script>alert(1)"));
+    let pages = files_below(&folder.suite())
+        .into_iter()
+        .filter(|file| file.extension().is_some_and(|e| e == "html" || e == "js"));
+    for page in pages {
+        assert!(!std::fs::read_to_string(&page).unwrap().contains("<script>alert(1)"), "{}", page.display());
+    }
 }
 
 #[test]
@@ -582,7 +587,7 @@ fn a_typing_error_is_told_before_any_question_is_asked() {
         (["--ego", "cmd:./no/such/program"], "no such program"),
         (["--searcher", "cmaa"], "cma"),
     ] {
-        for command in ["run", "narrate"] {
+        for command in ["run"] {
             let folder = Folder::new();
             let output = recrash(&[command, "--quiet", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
                 .arg(folder.suite())

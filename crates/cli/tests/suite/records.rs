@@ -26,7 +26,10 @@ fn nothing_is_written_but_what_was_asked_for() {
     assert_eq!(files_of(place.folder()), [] as [&str; 0]);
     place.records(&["--csv", "a.csv", "--out", "s"]);
     assert_eq!(files_of(place.folder()), ["a.csv", "s"]);
-    assert_eq!(files_of(&place.path("s")), ["1-records.diagnostics.json", "1-records.json", "suite.json"]);
+    assert_eq!(
+        files_of(&place.path("s")),
+        ["1-records.diagnostics.json", "1-records.json", "suite.json", "units.jsonl"]
+    );
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn a_second_run_does_nothing_and_changes_nothing() {
     let before = files(&out);
     let output = recrash(&["run", "--out", out.to_str().unwrap()]).args(SMALL).assert().success();
     let shown = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
-    assert_eq!(shown.matches("there already").count(), 7, "{shown}");
+    assert_eq!(shown.matches("there already").count(), 9, "{shown}");
     assert!(files(&out) == before);
 }
 
@@ -77,7 +77,7 @@ fn a_run_killed_in_any_stage_goes_on_and_ends_with_the_same_bytes() {
         "2-selection.json".to_owned(),
         narrative,
         format!("4-scenarios/{id}.json"),
-        format!("5-rollouts/{id}.json"),
+        format!("5-runs/{id}.json"),
         format!("6-tuned/{id}.json"),
         "summary.json".to_owned(),
     ];
@@ -122,6 +122,10 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
                 folders.push(path);
             } else {
                 let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+                // When and in which order units were done is of this disk, and no result.
+                if name == "units.jsonl" {
+                    continue;
+                }
                 all.insert(name, std::fs::read(&path).unwrap());
             }
         }

@@ -131,12 +131,12 @@ fn a_run_that_is_not_true_to_its_record_is_told_by_the_exit_code() {
     let (place, _) = small_suite(&[]);
     let (code, shown, error) = place.run(&["simulate", "suite"]);
     assert_eq!(code, 0, "a folder is a suite: {error}");
-    assert!(shown.contains("simulate: 0 done, 2 there already, in suite"), "{shown}");
+    assert!(shown.contains("simulate: 0 units done, 2 there already, in suite"), "{shown}");
     std::fs::write(place.path("stand.py"), driving_ego(0.0)).unwrap();
     let standing = ["--ego", "cmd:python3 stand.py"];
     let (code, _, error) = place.run(&[&["simulate", "suite"], &standing[..]].concat());
     assert_eq!(code, MISSED, "{error}");
-    for words in ["2 of 2 scenarios are not true to their records", "scenario.unfaithful", "01-"] {
+    for words in ["2 scenarios are not true to the records they tell", "scenario.unfaithful", "intersection-"] {
         assert!(error.contains(words), "{words}: {error}");
     }
     let (code, told, _) = place.run(&[&["simulate", "--json"], &standing[..]].concat());

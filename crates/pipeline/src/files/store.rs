@@ -125,6 +125,18 @@ impl Store {
         }
     }
 
+    /// Path of a folder of this folder, which may be still to be made.
+    ///
+    /// # Errors
+    /// It is a link.
+    pub(crate) fn own_folder(&self, name: &str) -> Result<PathBuf, PipelineError> {
+        let path = self.path(name);
+        if fs::symlink_metadata(&path).is_ok_and(|is| is.file_type().is_symlink()) {
+            return Err(PipelineError::bad_input(format!("{} is a link, and is not followed", path.display())));
+        }
+        Ok(path)
+    }
+
     /// Refuses what is no regular file of the folder: a pipe, a device, a link.
     ///
     /// # Errors

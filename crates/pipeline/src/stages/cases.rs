@@ -57,8 +57,8 @@ impl Cases {
         self.selection.clusters.iter().filter(whole).collect()
     }
 
-    /// What decides about a case: its template and its own records, without where in the files they stand.
-    pub fn inputs(&self, cluster: &Cluster) -> Vec<String> {
+    /// What decides about a case: its template and these of its records, without where in the files they stand.
+    pub fn inputs(&self, cluster: &Cluster, records: &[&CrashRecord]) -> Vec<String> {
         #[derive(Serialize)]
         struct Own<'a> {
             scenario_id: &'a str,
@@ -66,11 +66,21 @@ impl Cases {
         }
         let own = Own { scenario_id: &cluster.scenario_id, template: cluster.template };
         let mut inputs = vec![text_of(&own)];
-        for record in self.records_of(cluster) {
+        for &record in records {
             let nowhere = Provenance { file: String::new(), row: 0, ..record.provenance.clone() };
             inputs.push(text_of(&CrashRecord { provenance: nowhere, ..record.clone() }));
         }
         inputs
+    }
+
+    /// The records that count once a narrative is written: the pick, and the one that is told in its place; all of them where
+    /// the narrative cannot be read.
+    pub fn records_told(&self, suite: &Suite, cluster: &Cluster) -> Vec<&CrashRecord> {
+        let file = names::narrative(&cluster.scenario_id);
+        let Ok(narrative) = suite.store().read_json::<Narrative>(&file) else { return self.records_of(cluster) };
+        let pick = &self.records.records[cluster.pick_index];
+        let told = self.told(cluster, &narrative);
+        if told.id == pick.id { vec![pick] } else { vec![pick, told] }
     }
 
     /// The record whose crash a narrative tells; of an invented one the pick.

@@ -210,7 +210,10 @@ pub(crate) fn case_inputs(
     cluster: &Cluster,
 ) -> Result<Vec<String>, PipelineError> {
     let id = &cluster.scenario_id;
-    let mut inputs = cases.inputs(cluster);
+    // A model is shown all of a case's records in every role; the rules look at the others to find one to tell.
+    let looks_at_all = declared.stage == Stage::Narrate || !suite.options().cast.models().is_empty();
+    let records = if looks_at_all { cases.records_of(cluster) } else { cases.records_told(suite, cluster) };
+    let mut inputs = cases.inputs(cluster, &records);
     for (stage, file) in (declared.reads)(id) {
         inputs.push(suite.output_hash(stage, &unit_name(stage, id), &file)?);
     }

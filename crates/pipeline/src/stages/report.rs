@@ -142,7 +142,7 @@ fn refuse_stale(suite: &Suite, cases: &Cases) -> Result<(), PipelineError> {
 /// What decides about a case's files: its records and everything that was made of them.
 fn inputs(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>, PipelineError> {
     let id = &cluster.scenario_id;
-    let mut inputs = cases.inputs(cluster);
+    let mut inputs = cases.inputs(cluster, &cases.records_of(cluster));
     let members: Vec<&RecordRef> = cluster.members.iter().map(|&at| &cases.records.records[at].id).collect();
     inputs.push(cases::text_of(&(members, cluster.number)));
     inputs.push(cases::text_of(suite.profile()));

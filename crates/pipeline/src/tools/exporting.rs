@@ -56,7 +56,11 @@ pub struct ExportReport {
 pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
     let sources = sources(&request.source, request.trust)?;
     let beside = if request.source.is_dir() { request.source.clone() } else { parent(&request.source) };
-    let target = request.target.clone().unwrap_or_else(|| beside.join("exports"));
+    let target = match &request.target {
+        Some(target) => target.clone(),
+        // A folder of a suite that is a link leads where nobody asked for.
+        None => Store::at(&beside).own_folder("exports")?,
+    };
     let mut folders: Vec<(Format, PathBuf)> = Vec::new();
     for &format in &request.formats {
         if !folders.iter().any(|(known, _)| *known == format) {
