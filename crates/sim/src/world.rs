@@ -3,7 +3,6 @@
 use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
 use crate::contacts::actor_state;
 use crate::ego::Ego;
-use crate::give_way::Crossing;
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
@@ -14,8 +13,10 @@ use crate::script::Script;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{ActorState, Role};
-use recrash_model::scenario::{LateralMove, Policy};
+use recrash_model::scenario::Policy;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
+use recrash_plan::{Crossing, Plan, Way};
 use recrash_roads::{Footprint, LanePath, RoadId, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement};
 
 /// Everything about one run; kept from run to run for its memory.
@@ -37,7 +38,8 @@ pub(crate) struct Setting {
     pub(crate) route_lanes: Vec<LaneIndex>,
     pub(crate) route_starts: Vec<f64>,
     pub(crate) obstacles: Vec<SeenObstacle>,
-    pub(crate) moves: Vec<LateralMove>,
+    /// The partners' ways.
+    pub(crate) ways: Vec<Way>,
     pub(crate) crossings: Vec<Crossing>,
     pub(crate) duration_s: f64,
 }
@@ -112,7 +114,7 @@ impl World {
         let placement = scenario.ego();
         let driver = match ego {
             None => Driver::Outside,
-            Some(Ego::MetadriveIdm) => Driver::MetadriveIdm(MetadriveIdm::new(target_mps)),
+            Some(Ego::MetadriveIdm) => Driver::MetadriveIdm(MetadriveIdm::new(target_mps, EGO_OVERTAKE_TIMER_STEPS)),
             Some(Ego::Idm) => Driver::Idm(Idm::new(&VehicleSpec::of(placement.kind), target_mps, surface)),
             Some(Ego::Reference) => {
                 Driver::Reference(Reference::new(&VehicleSpec::of(placement.kind), target_mps, surface))
@@ -121,18 +123,17 @@ impl World {
         let at = (placement.pose, placement.speed_mps);
         self.cast(Role::Ego, placement.kind, &placement.path, placement.s_m, at, surface, driver);
 
-        for (partner, placement) in draft.partners.iter().zip(scenario.partners()) {
-            let first_move = self.setting.moves.len() as u32;
-            self.setting.moves.extend_from_slice(&partner.lateral);
-            let moves = (first_move, self.setting.moves.len() as u32);
-            let driver = Driver::Script(Script::new(partner, placement.t_m, moves));
+        for (number, (partner, placement)) in draft.partners.iter().zip(scenario.partners()).enumerate() {
+            let plan = Plan::new(partner.kind, &partner.policy, placement.t_m, surface);
+            self.setting.ways.push(Way::new(scenario, number, &plan));
+            let driver = Driver::Script(Script::new(plan, number));
             let at = (placement.pose, placement.speed_mps);
             self.cast(Role::Partner, placement.kind, &placement.path, placement.s_m, at, surface, driver);
         }
 
         let spawns = recrash_roads::background_traffic(scenario);
         for spawn in &spawns {
-            let driver = Driver::MetadriveIdm(MetadriveIdm::new(TRAFFIC_SPEED_MPS));
+            let driver = Driver::MetadriveIdm(MetadriveIdm::new(TRAFFIC_SPEED_MPS, spawn.overtake_timer_steps));
             self.cast(Role::Traffic, spawn.kind, &spawn.path, 0.0, (spawn.pose, 0.0), surface, driver);
         }
         self.find_crossings(scenario, ego, &spawns);
@@ -231,7 +232,7 @@ impl Setting {
         self.route_lanes.clear();
         self.route_starts.clear();
         self.obstacles.clear();
-        self.moves.clear();
+        self.ways.clear();
         self.crossings.clear();
     }
 }

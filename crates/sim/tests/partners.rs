@@ -1,0 +1,112 @@
+//! What every kind of partner does on its way: it holds its line, and brakes no harder than its plan says.
+
+use recrash_model::narrative::Side;
+use recrash_model::record::{PartnerKind, Surface};
+use recrash_model::scenario::{Approach, CurveMap, LateralMove, MapSpec, Policy, Start, Turn};
+use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::Plan;
+use recrash_sim::{Ego, simulate};
+
+mod common;
+use common::{alone, checked, cross, lead, steady, straight};
+
+/// Seconds behind a move or a bend after which the line is held again. [s]
+const SETTLED_S: f64 = 12.0;
+
+/// Every kind that moves, at speeds up to the fastest it may drive and no faster than `most`.
+fn kinds_and_speeds(most: f64) -> Vec<(PartnerKind, f64)> {
+    PartnerKind::ALL
+        .into_iter()
+        .flat_map(|kind| {
+            let fastest = VehicleSpec::of(kind).max_speed_mps.min(most);
+            [0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0].map(|share| (kind, ((share * fastest) * 100.0).floor() / 100.0))
+        })
+        .filter(|(_, speed)| *speed > 0.0)
+        .collect()
+}
+
+fn holds(target_speed: f64) -> Policy {
+    Policy::SuddenBrake { target_speed, brake_step: 0, brake_steps: 0, speed_kp: None }
+}
+
+/// The greatest heading error [deg] and offset [m] of the partner from `from_s` on, while it is on its path.
+fn deviation(draft: recrash_model::scenario::ScenarioDraft, wanted_t_m: f64, from_s: f64) -> (f64, f64, f64) {
+    let scenario = checked(draft);
+    let path = scenario.partners()[0].path.clone();
+    let rollout = simulate(&scenario, Ego::Idm);
+    let mut segment = 0;
+    let (mut heading, mut offset, mut last) = (0.0_f64, 0.0_f64, 0.0);
+    for (step, state) in rollout.actors[1].states.iter().enumerate() {
+        let point = path.project(state.position(), segment);
+        segment = point.segment;
+        if 0.1 * step as f64 >= from_s && point.s < path.length_m {
+            let off = recrash_model::math::wrap_angle(state.heading - path.pose(point.s, 0.0).heading);
+            heading = heading.max(off.to_degrees().abs());
+            offset = offset.max((point.t - wanted_t_m).abs());
+            last = 0.1 * step as f64;
+        }
+    }
+    (heading, offset, last)
+}
+
+#[test]
+fn every_kind_at_every_speed_holds_its_line_after_a_sideways_move() {
+    let mut bad = Vec::new();
+    for (kind, speed) in kinds_and_speeds(22.2) {
+        for to_t_m in [-1.0, 1.0] {
+            let length = (speed * 20.0).max(60.0);
+            let mut draft = alone(straight(3, length.min(600.0)), Turn::Straight, 1, 1.0, 1.0);
+            let mut partner = lead(20.0, speed);
+            partner.kind = kind;
+            partner.policy = holds(speed);
+            partner.lateral = vec![LateralMove { start_s: 1.0, duration_s: 1.5, to_t_m }];
+            draft.partners.push(partner);
+            let (heading, offset, last) = deviation(draft, to_t_m, 2.5 + SETTLED_S);
+            if heading > 0.3 || offset > 0.05 || last < 2.5 + SETTLED_S {
+                bad.push(format!("{kind:?} {speed} {to_t_m}: {heading:.3} deg, {offset:.3} m, to {last:.1} s"));
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{bad:#?}");
+}
+
+#[test]
+fn every_kind_at_every_speed_holds_its_line_behind_a_bend() {
+    let mut bad = Vec::new();
+    let sides = [Side::Left, Side::Right];
+    let bends = sides.into_iter().flat_map(|direction| [(direction, 25.0), (direction, 50.0), (direction, 80.0)]);
+    for (direction, radius_m) in bends {
+        let most = (17.0 * 17.0 / 50.0_f64 * radius_m).sqrt();
+        for (kind, speed) in kinds_and_speeds(most) {
+            let length_m = (speed * 18.0).max(30.0).min(600.0);
+            let map = CurveMap { lanes: 2, lane_width_m: 3.5, approach_m: 60.0, radius_m, angle_deg: 60.0, direction, length_m };
+            let mut draft = alone(MapSpec::C(map), Turn::Straight, 0, 1.0, 1.0);
+            let mut partner = lead(40.0, speed);
+            partner.kind = kind;
+            partner.policy = holds(speed);
+            partner.lane_offset = 1;
+            draft.partners.push(partner);
+            draft.duration_s = 120.0;
+            let path = checked(draft.clone()).partners()[0].path.clone();
+            let behind_m = path.segments.iter().rev().take(1).map(|segment| segment.start_m).sum::<f64>();
+            let (heading, offset, seen) = behind(draft, behind_m);
+            if heading > 0.3 || offset > 0.05 || !seen {
+                bad.push(format!("{kind:?} {speed} {direction:?} {radius_m}: {heading:.3} deg, {offset:.3} m, {seen}"));
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{bad:#?}");
+}
+
+/// The greatest heading error [deg] and offset [m] from [`SETTLED_S`] after this place of its path on, and whether it
+/// got there.
+fn behind(draft: recrash_model::scenario::ScenarioDraft, behind_m: f64) -> (f64, f64, bool) {
+    let scenario = checked(draft.clone());
+    let path = scenario.partners()[0].path.clone();
+    let rollout = simulate(&scenario, Ego::Idm);
+    let passed = rollout.actors[1].states.iter().position(|state| path.project(state.position(), 0).s > behind_m);
+    let Some(step) = passed else { return (0.0, 0.0, false) };
+    let from_s = 0.1 * step as f64 + SETTLED_S;
+    let (heading, offset, last) = deviation(draft, 0.0, from_s);
+    (heading, offset, last >= from_s)
+}
