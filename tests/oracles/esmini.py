@@ -103,7 +103,8 @@ def ego_until_contact(export: Export) -> list[tuple[float, dict]]:
     turning = math.remainder(contact["heading"] - before[-1][1]["heading"], math.tau) / (at - before[-1][0])
     goes_on = []
     for after in (0.1, 0.2, 0.3, 0.4, 0.5):
-        along, way = contact["heading"] + 0.5 * turning * after, contact["speed"] * after
+        along = math.atan2(contact["vy"], contact["vx"]) + 0.5 * turning * after
+        way = math.hypot(contact["vx"], contact["vy"]) * after
         goes_on.append((at + after, {
             "x": contact["x"] + way * math.cos(along), "y": contact["y"] + way * math.sin(along),
             "heading": contact["heading"] + turning * after,

@@ -167,8 +167,8 @@ pub(crate) struct Answer {
 pub(crate) struct Done {
     end: TerminationKind,
     time_s: f64,
-    /// Per actor, per step: x, y, heading, speed, steering, throttle.
-    tracks: Vec<Vec<[f64; 6]>>,
+    /// Per actor, per step: x, y, heading, velocity along x and y, steering, throttle.
+    tracks: Vec<Vec<[f64; 7]>>,
     events: Vec<DoneEvent>,
     pub(crate) maps: u64,
 }
@@ -177,11 +177,11 @@ pub(crate) struct Done {
 struct DoneEvent {
     time_s: f64,
     a: usize,
-    a_state: [f64; 6],
+    a_state: [f64; 7],
     #[serde(default)]
     b: Option<usize>,
     #[serde(default)]
-    b_state: Option<[f64; 6]>,
+    b_state: Option<[f64; 7]>,
     #[serde(default)]
     obstacle: Option<usize>,
 }
@@ -364,7 +364,7 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, spec: &RunSpec, done: 
     })
 }
 
-fn track(member: &Member, states: &[[f64; 6]]) -> ActorTrack {
+fn track(member: &Member, states: &[[f64; 7]]) -> ActorTrack {
     let size = VehicleSpec::of(member.kind);
     ActorTrack {
         id: member.id.clone(),
@@ -376,8 +376,8 @@ fn track(member: &Member, states: &[[f64; 6]]) -> ActorTrack {
     }
 }
 
-fn state([x, y, heading, speed, steer, throttle]: &[f64; 6]) -> ActorState {
-    ActorState { x: *x, y: *y, heading: *heading, speed: *speed, steer: *steer, throttle: *throttle }
+fn state(&[x, y, heading, vx, vy, steer, throttle]: &[f64; 7]) -> ActorState {
+    ActorState { x, y, heading, vx, vy, steer, throttle }
 }
 
 fn event(done: &DoneEvent, actors: usize, obstacles: usize) -> Option<Event> {

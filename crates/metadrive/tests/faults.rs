@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const HELLO: &str = r#"echo '{"hello":{"python":"3.11.7","metadrive":"0.4.3","problem":null}}'"#;
 
 /// An answer that fits the crossing: two actors, one step.
-const DONE: &str = r#"echo '{"id":1,"done":{"end":"timeout","time_s":0.0,"tracks":[[[5,0,0,8,0,0]],[[9,9,0,8,0,0]]],"events":[],"maps":1}}'"#;
+const DONE: &str = r#"echo '{"id":1,"done":{"end":"timeout","time_s":0.0,"tracks":[[[5,0,0,8,0,0,0]],[[9,9,0,8,0,0,0]]],"events":[],"maps":1}}'"#;
 
 /// A program in place of Python. It takes the worker's script from its stdin, as Python would, then does this.
 fn program(folder: &Path, then: &str) -> PathBuf {
@@ -128,8 +128,8 @@ fn a_worker_that_prints_rubbish_is_not_believed() {
         r#"echo '{"id":2,"error":"x"}'"#,
         r#"echo '{"id":1,"done":{"end":"timeout","time_s":NaN,"tracks":[],"events":[],"maps":1}}'"#,
         r#"echo '{"id":1,"done":{"end":"timeout","time_s":0.0,"tracks":[],"events":[],"maps":1}}'"#,
-        r#"echo '{"id":1,"done":{"end":"timeout","time_s":0.0,"tracks":[[[5,0,0,8,0,0]]],"events":[],"maps":1}}'"#,
-        r#"echo '{"id":1,"done":{"end":"contact","time_s":0.0,"tracks":[[[5,0,0,8,0,0]],[[9,9,0,8,0,0]]],"events":[{"time_s":0,"a":7,"a_state":[0,0,0,0,0,0],"obstacle":0}],"maps":1}}'"#,
+        r#"echo '{"id":1,"done":{"end":"timeout","time_s":0.0,"tracks":[[[5,0,0,8,0,0,0]]],"events":[],"maps":1}}'"#,
+        r#"echo '{"id":1,"done":{"end":"contact","time_s":0.0,"tracks":[[[5,0,0,8,0,0,0]],[[9,9,0,8,0,0,0]]],"events":[{"time_s":0,"a":7,"a_state":[0,0,0,0,0,0,0],"obstacle":0}],"maps":1}}'"#,
         "head -c 10000000 /dev/zero | tr '\\0' 'x'; echo",
     ] {
         let fault = says(answer);

@@ -52,7 +52,7 @@ fn a_crossing_at_the_same_time_is_a_contact_and_one_far_apart_is_not() {
     assert!(rollouts[1].events.is_empty());
     assert_eq!(rollouts[0].simulator, "MetaDrive 0.4.3");
     let first = rollouts[0].ego_track().states[0];
-    assert!((first.x - 5.0).abs() < 1e-3 && first.y.abs() < 1e-3 && (first.speed - 8.0).abs() < 0.1, "{first:?}");
+    assert!((first.x - 5.0).abs() < 1e-3 && first.y.abs() < 1e-3 && (first.speed() - 8.0).abs() < 0.1, "{first:?}");
     assert!(rollouts[0].actors.iter().all(|actor| actor.states.len() == rollouts[0].steps()));
 }
 
@@ -135,7 +135,7 @@ fn every_policy_map_and_kind_runs() {
         let track = &rollout.actors[1];
         let start = scenario.partners()[0].pose.position;
         assert!(track.states[0].position().distance(start) < 0.01, "{}: {start:?}", rollout.scenario_id);
-        let wildest = track.states.iter().map(|state| state.speed).fold(0.0, f64::max);
+        let wildest = track.states.iter().map(|state| state.speed()).fold(0.0, f64::max);
         assert!(wildest < 9.0, "{}: {wildest} m/s", rollout.scenario_id);
     }
 }
@@ -188,11 +188,11 @@ fn background_traffic_starts_where_it_is_placed_and_drives_when_the_ego_comes() 
         assert_eq!((track.role, track.kind), (Role::Traffic, placement.kind));
         assert!(track.states[0].position().distance(placement.pose.position) < 0.01, "{}", track.id);
         // The entrance is 10 m long and the ego begins at 5 m with 8 m/s.
-        assert!(track.states[5].speed < 0.1, "{} moves at {} m/s", track.id, track.states[5].speed);
+        assert!(track.states[5].speed() < 0.1, "{} moves at {} m/s", track.id, track.states[5].speed());
         assert!(track.states.windows(2).all(|pair| pair[0].position().distance(pair[1].position()) < 1.2));
         gone += usize::from(track.states[track.states.len() - 1].x < -3.0);
     }
-    let fastest = rollout.actors[1..].iter().flat_map(|track| &track.states).map(|state| state.speed);
+    let fastest = rollout.actors[1..].iter().flat_map(|track| &track.states).map(|state| state.speed());
     assert!(fastest.fold(0.0, f64::max) > 5.0);
     assert!(rollout.termination.kind == TerminationKind::Contact || gone > 0, "{gone} have left the map");
 }
@@ -223,7 +223,7 @@ fn every_kind_of_road_user_drives_walks_or_stands() {
         let way = last.x - first.x;
         let wanted = if fixed { -0.1..0.1 } else { 3.7..5.2 };
         assert!(wanted.contains(&way), "{kind:?} went {way} m");
-        assert!((last.y - first.y).abs() < 0.1 && last.speed < 0.5, "{kind:?}: {last:?}");
+        assert!((last.y - first.y).abs() < 0.1 && last.speed() < 0.5, "{kind:?}: {last:?}");
     }
 }
 

@@ -367,20 +367,20 @@ class Actor:
         self.gone = None
 
     def state(self):
-        """Position, heading and speed."""
+        """Position, heading and velocity."""
         if self.gone is not None:
             return self.gone
         x, y = self.vehicle.position
         heading = math.atan2(math.sin(self.vehicle.heading_theta), math.cos(self.vehicle.heading_theta))
-        return [float(x), float(y), float(heading), float(self.vehicle.speed)]
+        vx, vy = self.vehicle.velocity
+        return [float(x), float(y), float(heading), float(vx), float(vy)]
 
     def leave(self):
         self.gone = self.state()
 
     def go_on(self):
-        x, y, heading, speed = self.gone
-        way = speed * STEP_S
-        self.gone = [x + way * math.cos(heading), y + way * math.sin(heading), heading, speed]
+        x, y, heading, vx, vy = self.gone
+        self.gone = [x + vx * STEP_S, y + vy * STEP_S, heading, vx, vy]
 
 
 CLASSES = {}

@@ -123,7 +123,7 @@ fn hardest_phantom_braking(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along])
 /// own target speed, or the end of its way.
 fn reason_to_brake(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], step: usize) -> bool {
     let (ego, ego_along) = (&scene.outlines[0][step], &along[step]);
-    let speed = scene.state(0, step).speed;
+    let speed = scene.speed(0, step);
     let look_ahead_m = (LOOK_AHEAD_S * speed).max(LOOK_AHEAD_M);
     if speed > way.target_speed_mps + 0.1
         || way.path.length_m - ego_along.s < look_ahead_m
@@ -137,7 +137,7 @@ fn reason_to_brake(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], step: u
             half_width: other.half_width + MARGIN_M,
             ..*other
         };
-        if time_to_collision(ego, ego.axis * speed, &wide, velocity).is_some_and(|ttc| ttc <= CROSSING_AHEAD_S) {
+        if time_to_collision(ego, scene.velocity(0, step), &wide, velocity).is_some_and(|ttc| ttc <= CROSSING_AHEAD_S) {
             return true;
         }
         let other_along = Along::of(way, other, ego_along.segment);
@@ -180,7 +180,7 @@ fn most_reversals(scene: &Scene<'_>, window_s: f64) -> (u32, f64) {
     for step in 0..scene.steps().saturating_sub(1) {
         let brakes = brake.deceleration(scene, step) >= LEAST_BRAKING_MPS2;
         let accelerates = scene.acceleration(0, step) >= LEAST_BRAKING_MPS2;
-        if !(brakes || accelerates) || scene.state(0, step).speed.abs() < STANDSTILL_MPS {
+        if !(brakes || accelerates) || scene.speed(0, step).abs() < STANDSTILL_MPS {
             continue;
         }
         if braked.is_some_and(|before| before != brakes) {
@@ -284,6 +284,6 @@ fn is_unmarked(way: &EgoWay<'_>, segment: usize) -> bool {
 pub fn following(scene: &Scene<'_>, way: &EgoWay<'_>, ego: &Along, actor: usize, step: usize) -> Option<Following> {
     let outline = &scene.outlines[actor][step];
     let other = Along::of(way, outline, ego.segment);
-    let (speed, other_speed) = (scene.state(0, step).speed, scene.state(actor, step).speed);
+    let (speed, other_speed) = (scene.speed(0, step), scene.speed(actor, step));
     Following::find(ego, speed, &other, other_speed, scene.acceleration(actor, step))
 }

@@ -62,7 +62,7 @@ fn obstacle_contacts<'a>(rollout: &'a Rollout, metrics: &'a Metrics) -> impl Ite
         };
         let (time_s, speed) = rollout.events.iter().find_map(|event| match event.kind {
             EventKind::ObstacleContact { actor: 0, obstacle, state } if obstacle == hit => {
-                Some((event.time_s, state.speed))
+                Some((event.time_s, state.velocity().length()))
             }
             _ => None,
         })?;
@@ -136,7 +136,7 @@ fn ending(rollout: &Rollout, metrics: &Metrics, criteria: &FailureCriteria) -> O
 /// How long the ego had been standing when the rollout ended. [s]
 fn standing_s(rollout: &Rollout) -> f64 {
     let Some(ego) = rollout.actors.first() else { return 0.0 };
-    time_of(ego.states.iter().rev().take_while(|state| state.speed.abs() < STANDSTILL_MPS).count())
+    time_of(ego.states.iter().rev().take_while(|state| state.velocity().length() < STANDSTILL_MPS).count())
 }
 
 fn odd_behaviour(metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> {

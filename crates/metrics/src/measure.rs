@@ -44,7 +44,7 @@ pub fn series(rollout: &Rollout) -> Series {
             partners: Vec::new(),
         };
     };
-    let speeds = |actor: usize| rollout.actors[actor].states.iter().map(|state| state.speed).collect::<Vec<f64>>();
+    let speeds = |actor: usize| rollout.actors[actor].states.iter().map(|state| state.speed()).collect::<Vec<f64>>();
     let partners = rollout.actors.iter().enumerate().filter(|(_, track)| track.role == Role::Partner);
     let partners = partners
         .map(|(actor, track)| {
@@ -60,7 +60,7 @@ pub fn series(rollout: &Rollout) -> Series {
             };
             for step in 0..steps {
                 let (a, b) = (ego.outline(step), track.outline(step));
-                let (velocity_a, velocity_b) = (a.axis * ego.states[step].speed, b.axis * track.states[step].speed);
+                let (velocity_a, velocity_b) = (ego.states[step].velocity(), track.states[step].velocity());
                 series.gap_m.push(a.gap(&b));
                 series.centre_distance_m.push(a.centre.distance(b.centre));
                 series.ttc_s.push(time_to_collision(&a, velocity_a, &b, velocity_b));
@@ -169,7 +169,7 @@ fn least_of(partners: &[PartnerMetrics], rollout: &Rollout, of: impl Fn(&Partner
 
 fn first_contact(scene: &Scene<'_>) -> Option<Contact> {
     let (contact, ego, other) = scene.contact_boxes()?;
-    let (ego_velocity, other_velocity) = (ego.axis * contact.ego.speed, other.axis * contact.other.speed);
+    let (ego_velocity, other_velocity) = (contact.ego.velocity(), contact.other.velocity());
     let geometry = contact_geometry(&ego, ego_velocity, &other, other_velocity);
     Some(Contact {
         actor: contact.actor,
@@ -179,8 +179,8 @@ fn first_contact(scene: &Scene<'_>) -> Option<Contact> {
         other_zone: geometry.other_zone,
         kind: geometry.kind,
         relative_speed_mps: (other_velocity - ego_velocity).length(),
-        ego_speed_mps: contact.ego.speed,
-        other_speed_mps: contact.other.speed,
+        ego_speed_mps: ego_velocity.length(),
+        other_speed_mps: other_velocity.length(),
     })
 }
 

@@ -70,7 +70,7 @@ impl<'a> Scene<'a> {
             .actors
             .iter()
             .map(|track| {
-                let counts = |&(step, state): &(usize, &ActorState)| time_of(step) <= last_s && is_finite(state);
+                let counts = |&(step, state): &(usize, &ActorState)| time_of(step) <= last_s && state.is_finite();
                 track
                     .states
                     .iter()
@@ -101,9 +101,14 @@ impl<'a> Scene<'a> {
         &self.rollout.actors[actor].states[step]
     }
 
-    /// Velocity of an actor: its speed along its heading. [m/s]
+    /// Velocity of an actor's centre over ground. [m/s]
     pub fn velocity(&self, actor: usize, step: usize) -> Vec2 {
-        self.outlines[actor][step].axis * self.state(actor, step).speed
+        self.state(actor, step).velocity()
+    }
+
+    /// Speed of an actor along its heading. [m/s]
+    pub fn speed(&self, actor: usize, step: usize) -> f64 {
+        self.state(actor, step).velocity().dot(self.outlines[actor][step].axis)
     }
 
     /// Longitudinal acceleration of an actor over the step that begins at `step`; over the last one, that of the one
@@ -114,7 +119,7 @@ impl<'a> Scene<'a> {
             return 0.0;
         }
         let from = step.min(count - 2);
-        (self.state(actor, from + 1).speed - self.state(actor, from).speed) / STEP_S
+        (self.speed(actor, from + 1) - self.speed(actor, from)) / STEP_S
     }
 
     /// Boxes of an actor and its contact state, where the first contact is with it, at that instant.
@@ -133,10 +138,6 @@ impl<'a> Scene<'a> {
 #[inline]
 pub fn time_of(step: usize) -> f64 {
     step as f64 * STEP_S
-}
-
-fn is_finite(state: &ActorState) -> bool {
-    state.x.is_finite() && state.y.is_finite() && state.heading.is_finite() && state.speed.is_finite()
 }
 
 /// Unit vector along the way at a point of it.

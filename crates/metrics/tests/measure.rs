@@ -328,7 +328,7 @@ fn broken_rollouts_do_not_panic() {
     let metrics = measure(&network, &way, 10.0, &none);
     assert_eq!(metrics.partners.len(), 1);
     none.actors[0].states[2].x = f64::NAN;
-    none.actors[1].states[0].speed = f64::INFINITY;
+    none.actors[1].states[0].vx = f64::INFINITY;
     let metrics = measure(&network, &way, 10.0, &none);
     assert!(metrics.partners.is_empty() && metrics.min_gap.is_none());
     let text = serde_json::to_string(&metrics).unwrap();

@@ -47,6 +47,13 @@ impl Vec2 {
         Self::new(-self.y, self.x)
     }
 
+    /// Turned by an angle to the left. [rad]
+    #[inline]
+    pub fn turned(self, angle: f64) -> Self {
+        let forward = Self::from_heading(angle);
+        forward * self.x + forward.left() * self.y
+    }
+
     /// Length squared.
     #[inline]
     pub fn length_squared(self) -> f64 {

@@ -6,7 +6,10 @@ use crate::scenario::ObstacleKind;
 use serde::{Deserialize, Serialize};
 
 /// The rollouts' format tag.
-pub const ROLLOUT_FORMAT: &str = "recrash.rollout/1";
+pub const ROLLOUT_FORMAT: &str = "recrash.rollout/2";
+
+/// The format before it, which is still read: states had a speed along the heading in place of a velocity.
+const ROLLOUT_FORMAT_1: &str = "recrash.rollout/1";
 
 /// Time between two recorded states, and between two decisions. [s]
 pub const STEP_S: f64 = 0.1;
@@ -19,8 +22,9 @@ pub const EGO_ID: &str = "ego";
 
 /// One simulation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "RolloutOnDisk")]
 pub struct Rollout {
-    /// Always [`ROLLOUT_FORMAT`].
+    /// Always [`ROLLOUT_FORMAT`]: what was read of an older format is turned into this one.
     pub format: String,
     /// Scenario.
     pub scenario_id: String,
@@ -70,7 +74,10 @@ pub struct ActorTrack {
 }
 
 /// State of an actor at one step, and the controls it chose for the next.
+///
+/// The velocity is that of the centre, over ground: a vehicle that slips sideways does not move where it points.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(try_from = "StateOnDisk")]
 pub struct ActorState {
     /// Centre, forward. [m]
     pub x: f64,
@@ -78,8 +85,10 @@ pub struct ActorState {
     pub y: f64,
     /// Heading. [rad]
     pub heading: f64,
-    /// Speed along the heading. [m/s]
-    pub speed: f64,
+    /// Velocity of the centre, forward. [m/s]
+    pub vx: f64,
+    /// Velocity of the centre, left. [m/s]
+    pub vy: f64,
     /// Steering, -1 to 1, left positive (times the vehicle's greatest wheel angle).
     pub steer: f64,
     /// Throttle (positive) or brake (negative), -1 to 1.
@@ -87,6 +96,19 @@ pub struct ActorState {
 }
 
 impl ActorState {
+    /// At a place, moving along its heading at a speed [m/s], with no controls.
+    pub fn moving(pose: Pose, speed_mps: f64) -> Self {
+        let velocity = Vec2::from_heading(pose.heading) * speed_mps;
+        Self {
+            x: pose.position.x,
+            y: pose.position.y,
+            heading: pose.heading,
+            vx: velocity.x,
+            vy: velocity.y,
+            ..Self::default()
+        }
+    }
+
     /// Position.
     #[inline]
     pub fn position(&self) -> Vec2 {
@@ -97,6 +119,27 @@ impl ActorState {
     #[inline]
     pub fn pose(&self) -> Pose {
         Pose { position: self.position(), heading: self.heading }
+    }
+
+    /// Velocity over ground. [m/s]
+    #[inline]
+    pub fn velocity(&self) -> Vec2 {
+        Vec2::new(self.vx, self.vy)
+    }
+
+    /// Speed along the heading; negative backwards. [m/s]
+    #[inline]
+    pub fn speed(&self) -> f64 {
+        self.velocity().dot(Vec2::from_heading(self.heading))
+    }
+
+    /// Whether every number of it is finite.
+    pub fn is_finite(&self) -> bool {
+        self.numbers().iter().all(|number| number.is_finite())
+    }
+
+    fn numbers(&self) -> [f64; 7] {
+        [self.x, self.y, self.heading, self.vx, self.vy, self.steer, self.throttle]
     }
 }
 
@@ -190,12 +233,12 @@ pub enum TerminationKind {
 }
 
 impl Rollout {
-    /// The hash of all states, actor by actor: FNV-1a (64 bits) over the little-endian bits of x, y, heading, speed,
-    /// steer and throttle, in hexadecimal.
+    /// The hash of all states, actor by actor: FNV-1a (64 bits) over the little-endian bits of x, y, heading, vx,
+    /// vy, steer and throttle, in hexadecimal.
     pub fn hash_states(actors: &[ActorTrack]) -> String {
         let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
         for state in actors.iter().flat_map(|track| &track.states) {
-            for number in [state.x, state.y, state.heading, state.speed, state.steer, state.throttle] {
+            for number in state.numbers() {
                 for byte in number.to_bits().to_le_bytes() {
                     hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
                 }
@@ -230,5 +273,133 @@ impl Rollout {
             EventKind::Contact { a: 0, b, a_state, b_state } => Some((b, event.time_s, a_state, b_state)),
             _ => None,
         })
+    }
+}
+
+/// A rollout as files have it, of this format or the one before.
+#[derive(Deserialize)]
+struct RolloutOnDisk {
+    format: String,
+    scenario_id: String,
+    simulator: String,
+    ego: String,
+    actors: Vec<ActorTrack>,
+    obstacles: Vec<PlacedObstacle>,
+    events: Vec<Event>,
+    termination: Termination,
+    state_hash: String,
+}
+
+impl TryFrom<RolloutOnDisk> for Rollout {
+    type Error = String;
+
+    fn try_from(read: RolloutOnDisk) -> Result<Self, String> {
+        let state_hash = match read.format.as_str() {
+            ROLLOUT_FORMAT => read.state_hash,
+            // The hash is of what the states hold, and they hold something else now.
+            ROLLOUT_FORMAT_1 => Self::hash_states(&read.actors),
+            other => {
+                return Err(format!(
+                    "this is a rollout of format `{other}`; `{ROLLOUT_FORMAT}` and `{ROLLOUT_FORMAT_1}` can be read"
+                ));
+            }
+        };
+        Ok(Self {
+            format: ROLLOUT_FORMAT.to_owned(),
+            scenario_id: read.scenario_id,
+            simulator: read.simulator,
+            ego: read.ego,
+            actors: read.actors,
+            obstacles: read.obstacles,
+            events: read.events,
+            termination: read.termination,
+            state_hash,
+        })
+    }
+}
+
+/// A state as files have it: with a velocity, or with a speed along the heading (format 1).
+#[derive(Deserialize)]
+struct StateOnDisk {
+    x: f64,
+    y: f64,
+    heading: f64,
+    vx: Option<f64>,
+    vy: Option<f64>,
+    speed: Option<f64>,
+    steer: f64,
+    throttle: f64,
+}
+
+impl TryFrom<StateOnDisk> for ActorState {
+    type Error = String;
+
+    fn try_from(read: StateOnDisk) -> Result<Self, String> {
+        let StateOnDisk { x, y, heading, steer, throttle, .. } = read;
+        let velocity = match (read.vx, read.vy, read.speed) {
+            (Some(vx), Some(vy), None) => Vec2::new(vx, vy),
+            (None, None, Some(speed)) => Vec2::from_heading(heading) * speed,
+            _ => return Err("a state has `vx` and `vy`, or `speed` (format 1)".to_owned()),
+        };
+        Ok(Self { x, y, heading, vx: velocity.x, vy: velocity.y, steer, throttle })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn document(format: &str, state: serde_json::Value) -> serde_json::Value {
+        json!({
+            "format": format, "scenario_id": "case", "simulator": "native", "ego": "idm",
+            "actors": [{
+                "id": "ego", "role": "ego", "kind": "passenger_car", "length_m": 4.5, "width_m": 1.9, "states": [state],
+            }],
+            "obstacles": [], "events": [], "termination": { "kind": "timeout", "time_s": 0.0 }, "state_hash": "of a file",
+        })
+    }
+
+    #[test]
+    fn speed_is_the_part_of_the_velocity_along_the_heading() {
+        let pose = Pose { position: Vec2::new(1.0, 2.0), heading: crate::math::FRAC_PI_2 };
+        let state = ActorState::moving(pose, 5.0);
+        assert!((state.speed() - 5.0).abs() < 1e-15 && state.vx.abs() < 1e-15 && (state.vy - 5.0).abs() < 1e-15);
+        // 3 m/s to the side on top: no more speed along the heading.
+        let slipping = ActorState { vx: 3.0, ..state };
+        assert!((slipping.speed() - 5.0).abs() < 1e-15);
+        assert!((slipping.velocity().length() - 34.0_f64.sqrt()).abs() < 1e-15);
+        let backwards = ActorState { vx: 0.0, vy: -2.0, ..state };
+        assert_eq!(backwards.speed(), -2.0);
+    }
+
+    #[test]
+    fn a_rollout_is_read_as_it_was_written() {
+        let state = json!({ "x": 1, "y": 2, "heading": 0.5, "vx": 3, "vy": 4, "steer": 0, "throttle": 1 });
+        let read: Rollout = serde_json::from_value(document(ROLLOUT_FORMAT, state)).unwrap();
+        assert_eq!((read.actors[0].states[0].vx, read.actors[0].states[0].vy), (3.0, 4.0));
+        let again: Rollout = serde_json::from_value(serde_json::to_value(&read).unwrap()).unwrap();
+        assert_eq!(again, read);
+    }
+
+    #[test]
+    fn a_rollout_of_format_1_moves_along_its_headings() {
+        let heading = crate::math::PI / 6.0;
+        let state = json!({ "x": 1, "y": 2, "heading": heading, "speed": 10, "steer": 0, "throttle": 1 });
+        let read: Rollout = serde_json::from_value(document("recrash.rollout/1", state)).unwrap();
+        assert_eq!(read.format, ROLLOUT_FORMAT);
+        let state = &read.actors[0].states[0];
+        assert!((state.vx - 75.0_f64.sqrt()).abs() < 1e-12 && (state.vy - 5.0).abs() < 1e-12, "{state:?}");
+        assert_eq!(read.state_hash, Rollout::hash_states(&read.actors));
+    }
+
+    #[test]
+    fn an_unknown_format_and_a_state_without_a_velocity_say_what_is_wrong() {
+        let state = json!({ "x": 1, "y": 2, "heading": 0, "vx": 3, "vy": 4, "steer": 0, "throttle": 1 });
+        let error = serde_json::from_value::<Rollout>(document("recrash.rollout/9", state)).unwrap_err().to_string();
+        assert!(error.contains("`recrash.rollout/9`") && error.contains(ROLLOUT_FORMAT), "{error}");
+        let state = json!({ "x": 1, "y": 2, "heading": 0, "vx": 3, "steer": 0, "throttle": 1 });
+        let error = serde_json::from_value::<Rollout>(document(ROLLOUT_FORMAT, state)).unwrap_err().to_string();
+        assert!(error.contains("`vx` and `vy`"), "{error}");
     }
 }

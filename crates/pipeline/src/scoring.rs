@@ -2,7 +2,7 @@
 
 use crate::casework::{CaseRun, run_scenario};
 use crate::simulator::Simulator;
-use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::math::wrap_angle;
 use recrash_model::metrics::Expectation;
 use recrash_model::profile::SystemProfile;
@@ -162,7 +162,7 @@ fn contact_depth(rollout: &Rollout) -> Option<f64> {
         let since_s = (time_s - step as f64 * STEP_S).max(1e-3);
         let rate = if turning { wrap_angle(pose.heading - track.states[step].heading) / since_s } else { 0.0 };
         // The chord of an arc is half turned.
-        let chord = Vec2::from_heading(pose.heading + 0.5 * rate * after_s) * (state.speed * after_s);
+        let chord = state.velocity().turned(0.5 * rate * after_s) * after_s;
         let pose = Pose { position: pose.position + chord, heading: pose.heading + rate * after_s };
         OrientedBox::new(pose, track.length_m, track.width_m)
     };
@@ -182,6 +182,6 @@ fn hardest_partner_braking(rollout: &Rollout) -> f64 {
         .iter()
         .filter(|actor| actor.role == Role::Partner)
         .flat_map(|actor| actor.states.windows(BRAKING_STEPS + 1))
-        .map(|states| (states[0].speed - states[BRAKING_STEPS].speed) / (BRAKING_STEPS as f64 * STEP_S))
+        .map(|states| (states[0].speed() - states[BRAKING_STEPS].speed()) / (BRAKING_STEPS as f64 * STEP_S))
         .fold(0.0, f64::max)
 }

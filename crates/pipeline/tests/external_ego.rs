@@ -88,7 +88,7 @@ fn both_forms_of_controls_drive() {
         let ego = start(&script(&still.replace("ANSWER", answer)), LONG).expect("it says hello");
         let rollout = ego.run(&scenario()).expect("it drives");
         let states = &rollout.ego_track().states;
-        let braking = (states[5].speed - states[6].speed) / 0.1;
+        let braking = (states[5].speed() - states[6].speed()) / 0.1;
         assert!((braking - 2.727).abs() < 0.05, "{braking}");
     }
 }

@@ -131,7 +131,7 @@ fn actor(track: &ActorTrack) -> Value {
         "x": states(|state| state.x, 1000.0),
         "y": states(|state| state.y, 1000.0),
         "heading": states(|state| state.heading, 10_000.0),
-        "speed": states(|state| state.speed, 1000.0),
+        "speed": states(ActorState::speed, 1000.0),
         "throttle": states(|state| state.throttle, 20.0),
     })
 }

@@ -94,7 +94,9 @@ fn outcome(rollout: &Rollout) -> Value {
     let tracks: Vec<Vec<[f64; 6]>> = rollout
         .actors
         .iter()
-        .map(|track| track.states.iter().map(|s| [s.x, s.y, s.heading, s.speed, s.steer, s.throttle]).collect())
+        .map(|track| {
+            track.states.iter().map(|s| [s.x, s.y, s.heading, s.velocity().length(), s.steer, s.throttle]).collect()
+        })
         .collect();
     json!({ "end": rollout.termination.kind, "time_s": rollout.termination.time_s, "tracks": tracks,
             "contact": rollout.first_ego_contact().map(|(other, time, ..)| (other, time)) })

@@ -16,7 +16,7 @@ fn main() {
         print!("{:5.1}", 0.1 * step as f64);
         for track in &rollout.actors {
             let s = track.states[step];
-            print!(" | {:7.2} {:7.2} {:5.2} {:5.2} {:5.2} {:5.2}", s.x, s.y, s.heading, s.speed, s.steer, s.throttle);
+            print!(" | {:7.2} {:7.2} {:5.2} {:5.2} {:5.2} {:5.2}", s.x, s.y, s.heading, s.speed(), s.steer, s.throttle);
         }
         println!();
     }

@@ -4,7 +4,7 @@ use crate::chassis::Controls;
 use crate::recorder::Recorder;
 use crate::scene::Seen;
 use crate::world::{Setting, State, Workspace};
-use recrash_model::geometry::{OrientedBox, Pose};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, Event, EventKind, STEP_S};
 
@@ -51,7 +51,7 @@ pub(crate) fn collide<R: Recorder>(
         };
         let state_of = |actor: usize| {
             let body = &state.bodies[actor];
-            actor_state(body.pose, body.speed(), workspace.controls[actor])
+            actor_state(body.pose, body.velocity(), workspace.controls[actor])
         };
         let kind = if b < actors {
             // Circles first: the boxes cost a sine and a cosine each.
@@ -81,12 +81,13 @@ pub(crate) fn collide<R: Recorder>(
 }
 
 /// A state as it is recorded.
-pub(crate) fn actor_state(pose: Pose, speed: f64, controls: Controls) -> ActorState {
+pub(crate) fn actor_state(pose: Pose, velocity: Vec2, controls: Controls) -> ActorState {
     ActorState {
         x: pose.position.x,
         y: pose.position.y,
         heading: math::wrap_angle(pose.heading),
-        speed,
+        vx: velocity.x,
+        vy: velocity.y,
         steer: controls.steer,
         throttle: controls.throttle,
     }

@@ -178,11 +178,12 @@ impl Recorder for SummaryRecorder {
                 }
             }
         }
+        let speed_mps = ego.speed();
         if let Some(last) = self.last_speed_mps {
-            let deceleration = (last - ego.speed) / STEP_S;
+            let deceleration = (last - speed_mps) / STEP_S;
             self.summary.max_deceleration_mps2 = self.summary.max_deceleration_mps2.max(deceleration);
         }
-        self.last_speed_mps = Some(ego.speed);
+        self.last_speed_mps = Some(speed_mps);
         self.summary.steps += 1;
     }
 

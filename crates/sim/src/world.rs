@@ -89,7 +89,7 @@ impl Workspace {
     /// Writes down everybody's state, with the controls chosen last.
     pub(crate) fn write_states(&mut self, seen: &[Seen]) {
         for ((slot, seen), controls) in self.states.iter_mut().zip(seen).zip(&self.controls) {
-            *slot = actor_state(seen.pose, seen.speed, *controls);
+            *slot = actor_state(seen.pose, seen.velocity, *controls);
         }
     }
 }

@@ -40,7 +40,7 @@ mod metadrive_idm {
     #[test]
     fn reaches_thirty_kilometres_an_hour_in_about_four_seconds_and_holds_it() {
         let rollout = run(alone(straight(2, 200.0), Turn::Straight, 1, 0.0, 30.0 / 3.6), Ego::MetadriveIdm);
-        let speeds: Vec<f64> = rollout.ego_track().states.iter().map(|state| state.speed).collect();
+        let speeds: Vec<f64> = rollout.ego_track().states.iter().map(|state| state.speed()).collect();
         assert!(speeds[20] < 7.0 && speeds[45] > 8.1, "{} {}", speeds[20], speeds[45]);
         near(speeds[100], 30.0 / 3.6, 0.15);
         assert_eq!(rollout.termination.kind, TerminationKind::Arrived);
@@ -73,7 +73,7 @@ mod metadrive_idm {
         assert!(matches!(rollout.termination.kind, TerminationKind::Stuck | TerminationKind::Timeout));
         // It crept ever slower far from the other's bumper.
         let last = rollout.ego_track().states.last().expect("states");
-        assert!(last.speed < 0.5 && rollout.actors[1].states[0].x - last.x > 10.0);
+        assert!(last.speed() < 0.5 && rollout.actors[1].states[0].x - last.x > 10.0);
     }
 
     #[test]
@@ -192,7 +192,7 @@ mod idm {
         let rollout = run(draft, Ego::Idm);
         assert!(!touches(&rollout));
         let states = &rollout.ego_track().states;
-        let hardest = states.windows(2).map(|pair| (pair[0].speed - pair[1].speed) / 0.1).fold(0.0, f64::max);
+        let hardest = states.windows(2).map(|pair| (pair[0].speed() - pair[1].speed()) / 0.1).fold(0.0, f64::max);
         assert!(hardest < 4.0, "{hardest}");
         let gap = rollout.actors[1].states[0].x - states.last().expect("states").x - 4.515;
         assert!(gap > 1.0 && gap < 3.5, "{gap}");
@@ -256,7 +256,7 @@ mod idm {
         assert_eq!(rollout.termination.kind, TerminationKind::Arrived);
         let in_turn = rollout.ego_track().states.iter().find(|state| state.heading < -0.7).expect("it turns");
         // sqrt(3.5 m/s^2 * 10 m) = 5.9 m/s.
-        near(in_turn.speed, 5.9, 0.8);
+        near(in_turn.speed(), 5.9, 0.8);
     }
 }
 
@@ -279,11 +279,11 @@ mod partners {
         let policy = Policy::SuddenBrake { target_speed: 10.0, brake_step: 30, brake_steps: 10, speed_kp: None };
         let rollout = partner_alone(policy, 10.0, Vec::new());
         let states = &rollout.actors[1].states;
-        assert!((0..30).all(|step| states[step].speed > 9.8));
+        assert!((0..30).all(|step| states[step].speed() > 9.8));
         assert!((30..36).all(|step| states[step].throttle == -1.0));
         assert!((30..40).all(|step| states[step].throttle < 0.0));
-        assert_eq!(states[40].speed, 0.0);
-        near(states[150].speed, 10.0, 0.1);
+        assert_eq!(states[40].speed(), 0.0);
+        near(states[150].speed(), 10.0, 0.1);
     }
 
     #[test]
@@ -298,8 +298,8 @@ mod partners {
         };
         let rollout = partner_alone(policy, 5.0, Vec::new());
         let states = &rollout.actors[1].states;
-        near(states[20].speed, 5.0 + 2.0 * 0.5 * 2.909, 0.01);
-        near(states[150].speed, 6.0, 0.1);
+        near(states[20].speed(), 5.0 + 2.0 * 0.5 * 2.909, 0.01);
+        near(states[150].speed(), 6.0, 0.1);
     }
 
     #[test]
@@ -308,7 +308,7 @@ mod partners {
         let rollout = partner_alone(policy, 0.0, Vec::new());
         let states = &rollout.actors[1].states;
         assert_eq!(states[50].position(), states[0].position());
-        near(states[150].speed, 6.0, 0.1);
+        near(states[150].speed(), 6.0, 0.1);
     }
 
     #[test]
@@ -343,7 +343,7 @@ mod partners {
         near(moved(10), 0.0, 0.1);
         near(moved(60), 6.0, 1.5);
         near(moved(120), 6.0, 0.7);
-        assert!(states.iter().all(|state| state.speed < 1.6));
+        assert!(states.iter().all(|state| state.speed() < 1.6));
     }
 
     #[test]
@@ -401,7 +401,7 @@ mod partners {
         let time = contact.expect("they touch").time_s;
         let later = (time / 0.1) as usize + 30;
         assert!(rollout.steps() > later);
-        assert_eq!((rollout.actors[1].states[later].speed, rollout.actors[2].states[later].speed), (0.0, 0.0));
+        assert_eq!((rollout.actors[1].states[later].speed(), rollout.actors[2].states[later].speed()), (0.0, 0.0));
     }
 
     #[test]
@@ -414,9 +414,9 @@ mod partners {
         assert!(!touches(&rollout));
         assert_eq!(rollout.termination.kind, TerminationKind::Arrived);
         let states = &rollout.actors[1].states;
-        let slowest = states.iter().map(|state| state.speed).fold(f64::INFINITY, f64::min);
+        let slowest = states.iter().map(|state| state.speed()).fold(f64::INFINITY, f64::min);
         assert!(slowest < 5.0, "{slowest}");
-        assert!(states.last().expect("states").speed > slowest + 1.0);
+        assert!(states.last().expect("states").speed() > slowest + 1.0);
     }
 }
 

@@ -27,7 +27,7 @@ fn ends(rollout: &Rollout) -> TerminationKind {
 
 fn hardest_braking(rollout: &Rollout) -> f64 {
     let states = &rollout.ego_track().states;
-    states.windows(2).map(|pair| (pair[0].speed - pair[1].speed) / 0.1).fold(0.0, f64::max)
+    states.windows(2).map(|pair| (pair[0].speed() - pair[1].speed()) / 0.1).fold(0.0, f64::max)
 }
 
 #[track_caller]
@@ -172,7 +172,7 @@ fn slows_for_a_cone_until_the_other_lane_is_free() {
         let rollout = run(draft);
         assert!(!touches(&rollout), "{:?}", rollout.events);
         assert_eq!(ends(&rollout), TerminationKind::Arrived);
-        rollout.ego_track().states.iter().map(|state| state.speed).fold(f64::INFINITY, f64::min)
+        rollout.ego_track().states.iter().map(|state| state.speed()).fold(f64::INFINITY, f64::min)
     };
     let (free, taken) = (slowest(-1, 60.0), slowest(-1, 0.0));
     assert!(free > 7.0 && taken < 6.0, "{free} {taken}");
@@ -218,7 +218,7 @@ fn a_cut_in_is_braked_for_after_1_15_s_and_fully_after_1_75_s() {
     let ego = &rollout.actors[0].states;
     assert!((0..=11).all(|step| ego[noticed + step].throttle > -0.01), "no braking for 1.15 s");
     assert!((5..=11).all(|step| ego[noticed + step].throttle <= 0.0), "off the throttle after 0.4 s");
-    let braking = |step: usize| (ego[noticed + step].speed - ego[noticed + step + 1].speed) / 0.1;
+    let braking = |step: usize| (ego[noticed + step].speed() - ego[noticed + step + 1].speed()) / 0.1;
     // In the middle of the step that begins after 1.4 s: (1.45 - 1.15) / 0.6 of 7.593 m/s^2; from 1.75 s on all of it.
     near(braking(14), 3.80, 0.3);
     near(braking(18), 7.593, 0.1);

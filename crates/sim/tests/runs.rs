@@ -21,8 +21,8 @@ fn assert_sound(rollout: &Rollout) {
     for track in &rollout.actors {
         assert_eq!(track.states.len(), steps, "{}", track.id);
         for state in &track.states {
-            assert!([state.x, state.y, state.heading, state.speed].iter().all(|number| number.is_finite()));
-            assert!(state.speed >= 0.0 && state.speed < 60.0, "{}", state.speed);
+            assert!(state.is_finite(), "{state:?}");
+            assert!(state.velocity().length() < 60.0 && state.speed() > -0.1, "{state:?}");
             assert!(state.steer.abs() <= 1.0 && state.throttle.abs() <= 1.0);
         }
     }

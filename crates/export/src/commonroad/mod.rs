@@ -190,7 +190,7 @@ fn state(name: &str, step: usize, state: &ActorState) -> Element {
         position(state.pose()),
         exact("orientation", state.heading),
         leaf_in("time", "exact", &step.to_string()),
-        exact("velocity", state.speed),
+        exact("velocity", state.speed()),
     ])
 }
 

@@ -44,7 +44,7 @@ impl Driven {
         Some(Self {
             places: places.collect(),
             touches: contact_s.is_some(),
-            start_mps: track.states[0].speed,
+            start_mps: track.states[0].speed(),
             to_centre_m: reference_to_centre(track.kind),
             poses,
         })

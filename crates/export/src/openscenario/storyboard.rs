@@ -56,7 +56,7 @@ fn init(context: &Context<'_>) -> Element {
                 let pose = reference_point(track.kind, track.states[0].pose());
                 element = element
                     .child(private(teleport(world_position(pose))))
-                    .child(speed_at_once(&number(rounded(track.states[0].speed))));
+                    .child(speed_at_once(&number(rounded(track.states[0].speed()))));
             }
             None => {
                 let speed = names.reference(&format!("/partners/{position}/speed_mps"), partner.speed_mps);

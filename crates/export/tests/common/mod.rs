@@ -33,14 +33,7 @@ pub fn straight_on(scenario: &Scenario, steps: usize) -> Rollout {
         let spec = VehicleSpec::of(placement.kind);
         let states = (0..=steps).map(|step| {
             let s = placement.s_m + placement.speed_mps * STEP_S * step as f64;
-            let pose = placement.path.pose(s, placement.t_m);
-            ActorState {
-                x: pose.position.x,
-                y: pose.position.y,
-                heading: pose.heading,
-                speed: placement.speed_mps,
-                ..ActorState::default()
-            }
+            ActorState::moving(placement.path.pose(s, placement.t_m), placement.speed_mps)
         });
         let (length_m, width_m) = (spec.length_m, spec.width_m);
         ActorTrack { id: id.to_owned(), role, kind: placement.kind, length_m, width_m, states: states.collect() }

@@ -253,7 +253,7 @@ impl Witness<'_> {
         let expected = format!("about {told_mps:.1} m/s");
         let Some(actor) = actor else { return check(kind, expected, "no scripted partner", false) };
         let steps = self.scene.outlines[actor].len();
-        let driven = (0..steps).map(|step| self.scene.state(actor, step).speed).fold(0.0, f64::max);
+        let driven = (0..steps).map(|step| self.scene.velocity(actor, step).length()).fold(0.0, f64::max);
         let agrees = (driven - told_mps).abs() <= (SPEED_SHARE * told_mps).max(SPEED_MARGIN_MPS);
         check(kind, expected, format!("up to {driven:.1} m/s"), agrees)
     }
@@ -354,7 +354,7 @@ impl Witness<'_> {
     /// The geometry of the contact, or of the one a near miss would have been, and whether it is predicted.
     fn contact(&self) -> Option<(ContactGeometry, bool)> {
         if let Some((contact, ego, other)) = self.scene.contact_boxes() {
-            let (ego_velocity, other_velocity) = (ego.axis * contact.ego.speed, other.axis * contact.other.speed);
+            let (ego_velocity, other_velocity) = (contact.ego.velocity(), contact.other.velocity());
             return Some((contact_geometry(&ego, ego_velocity, &other, other_velocity), false));
         }
         let partner = self.partner.filter(|partner| partner.min_gap.value < PREDICTED_BELOW_M)?;

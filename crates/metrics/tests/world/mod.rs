@@ -92,14 +92,7 @@ pub fn drive_at(
             let v = speed(time);
             let slant = if v > 0.5 { -math::atan(rate / v) } else { 0.0 };
             s += 0.5 * (v + speed(time + STEP_S)) * STEP_S;
-            ActorState {
-                x: here.position.x,
-                y: here.position.y,
-                heading: here.heading + slant,
-                speed: v,
-                steer: 0.0,
-                throttle: 0.0,
-            }
+            ActorState::moving(Pose { heading: here.heading + slant, ..here }, v)
         })
         .collect()
 }
@@ -110,7 +103,7 @@ pub fn glide(x: f64, y: f64, heading: f64, speed: f64, steps: usize) -> Vec<Acto
     (0..steps)
         .map(|step| {
             let time = step as f64 * STEP_S;
-            ActorState { x: x + go.x * time, y: y + go.y * time, heading, speed, steer: 0.0, throttle: 0.0 }
+            ActorState::moving(Pose { position: Vec2::new(x, y) + go * time, heading }, speed)
         })
         .collect()
 }

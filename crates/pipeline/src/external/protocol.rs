@@ -94,6 +94,8 @@ struct Ego {
     y: f64,
     heading: f64,
     speed: f64,
+    vx: f64,
+    vy: f64,
     route_s_m: f64,
     route_t_m: f64,
 }
@@ -105,6 +107,8 @@ struct Seen<'a> {
     y: f64,
     heading: f64,
     speed: f64,
+    vx: f64,
+    vy: f64,
 }
 
 /// What a program answers.
@@ -193,16 +197,20 @@ impl<'a> Reset<'a> {
 impl<'a> Step<'a> {
     /// Of the actors those that are in the world; `ids` are the names of all but the ego.
     pub(crate) fn new(observation: &Observation<'_>, ids: &'a [String]) -> Self {
-        let ActorState { x, y, heading, speed, .. } = observation.states[0];
+        let ActorState { x, y, heading, vx, vy, .. } = observation.states[0];
+        let speed = observation.states[0].speed();
         let (route_s_m, route_t_m) = (observation.route_s_m, observation.route_t_m);
         let others = ids.iter().zip(observation.states.iter().enumerate().skip(1));
         let present = others.filter(|(_, (actor, _))| observation.is_present(*actor));
         Self {
             step: observation.step,
             time_s: observation.time_s,
-            ego: Ego { x, y, heading, speed, route_s_m, route_t_m },
+            ego: Ego { x, y, heading, speed, vx, vy, route_s_m, route_t_m },
             actors: present
-                .map(|(id, (_, state))| Seen { id, x: state.x, y: state.y, heading: state.heading, speed: state.speed })
+                .map(|(id, (_, state))| {
+                    let ActorState { x, y, heading, vx, vy, .. } = *state;
+                    Seen { id, x, y, heading, speed: state.speed(), vx, vy }
+                })
                 .collect(),
         }
     }

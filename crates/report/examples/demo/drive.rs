@@ -139,14 +139,8 @@ fn sample(path: &Path, place: impl Fn(f64) -> (f64, f64)) -> Vec<ActorState> {
         .map(|step| {
             let ((position, heading), _) = at(step);
             let throttle = (speed(step + 1) - speed(step)) / STEP_S / 3.0;
-            ActorState {
-                x: position.x,
-                y: position.y,
-                heading,
-                speed: speed(step),
-                steer: 0.0,
-                throttle: throttle.clamp(-1.0, 1.0),
-            }
+            let moving = ActorState::moving(Pose { position, heading }, speed(step));
+            ActorState { throttle: throttle.clamp(-1.0, 1.0), ..moving }
         })
         .collect()
 }
@@ -192,17 +186,17 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
     let car = VehicleSpec::of(PartnerKind::PassengerCar);
     let other = VehicleSpec::of(plan.partner_kind);
     let acceleration = |states: &[ActorState]| -> Vec<f64> {
-        let change = states.windows(2).map(|pair| (pair[1].speed - pair[0].speed) / STEP_S);
+        let change = states.windows(2).map(|pair| (pair[1].speed() - pair[0].speed()) / STEP_S);
         change.chain([0.0]).collect()
     };
     let series = Series {
         time_s: (0..ego.len()).map(|step| step as f64 * STEP_S).collect(),
-        ego_speed_mps: ego.iter().map(|state| state.speed).collect(),
+        ego_speed_mps: ego.iter().map(|state| state.speed()).collect(),
         ego_acceleration_mps2: acceleration(&ego),
         partners: vec![PartnerSeries {
             actor: 1,
             id: "cp1".into(),
-            speed_mps: partner.iter().map(|state| state.speed).collect(),
+            speed_mps: partner.iter().map(|state| state.speed()).collect(),
             acceleration_mps2: acceleration(&partner),
             gap_m,
             centre_distance_m: ego.iter().zip(&partner).map(|(e, p)| e.position().distance(p.position())).collect(),
@@ -217,9 +211,9 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         ego_zone: if cluster.number.is_multiple_of(2) { ContactZone::Left } else { ContactZone::FrontRight },
         other_zone: ContactZone::Front,
         kind: if plan.drift { CollisionKind::Sideswipe } else { CollisionKind::Angle },
-        relative_speed_mps: (ego[step].speed + partner[step].speed) * 0.7,
-        ego_speed_mps: ego[step].speed,
-        other_speed_mps: partner[step].speed,
+        relative_speed_mps: (ego[step].speed() + partner[step].speed()) * 0.7,
+        ego_speed_mps: ego[step].speed(),
+        other_speed_mps: partner[step].speed(),
     });
     let mut findings = Vec::new();
     if let Some(contact) = &contact {
