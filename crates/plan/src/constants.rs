@@ -61,7 +61,7 @@ pub const PREVIEW_S: f64 = 0.17;
 pub const RETURN_S: f64 = 0.6;
 
 /// The way in which it does so is never shorter than this many wheelbases.
-pub const RETURN_WHEELBASES: f64 = 0.8;
+pub const RETURN_WHEELBASES: f64 = 0.6;
 
 /// A place to wait at that lies this far behind the vehicle's centre has been passed: it goes on. [m]
 pub const COMMITTED_M: f64 = 1.0;

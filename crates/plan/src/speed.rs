@@ -16,6 +16,13 @@ const GRAVITY_MPS2: f64 = 9.81;
 /// Bullet's tyres hold this much more along than across (`docs/models/vehicle.md`).
 const ALONG_PER_ACROSS: f64 = 2.0;
 
+/// Share of a wheel's sideways speed that one physics step takes away, and the step (`docs/models/vehicle.md`). [-, s]
+const DAMPING: f64 = 0.2;
+const PHYSICS_STEP_S: f64 = 0.02;
+
+/// Height of the centre of mass of a vehicle that has settled on its springs. [m]
+const SETTLED_HEIGHT_M: f64 = 0.539;
+
 /// What a partner does along its lane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -83,6 +90,10 @@ pub struct Plan {
     pub sideways_mps2: f64,
     /// Distance of its axles. [m]
     pub wheelbase_m: f64,
+    /// From its centre back to its rear axle. [m]
+    pub rear_axle_m: f64,
+    /// Sideways speed at which its tyres give a sideways acceleration: the ratio. [s]
+    pub slip_s: f64,
     /// Wheel angle at full steering. [rad]
     pub full_wheel_rad: f64,
     /// Half of its length. [m]
@@ -163,6 +174,8 @@ impl Plan {
             fastest_mps: spec.max_speed_mps,
             sideways_mps2: spec.sideways_mps2 * friction,
             wheelbase_m: spec.front_axle_m + spec.rear_axle_m,
+            rear_axle_m: spec.rear_axle_m,
+            slip_s: slip_s(&spec),
             full_wheel_rad: spec.max_wheel_angle_rad,
             half_length_m: 0.5 * spec.length_m,
             half_width_m: 0.5 * spec.width_m,
@@ -264,6 +277,17 @@ fn come_down(speed_mps: f64, target_mps: f64, distance_m: f64, deceleration_mps2
     let on_parabola = (target_mps * target_mps + 2.0 * deceleration_mps2 * distance_m).sqrt();
     let slope = if distance_m > 0.0 { deceleration_mps2 * speed_mps / on_parabola } else { 0.0 };
     (on_parabola - speed_mps) / CATCH_UP_S - slope
+}
+
+/// Sideways speed over sideways acceleration of a vehicle in a steady bend: each physics step takes a fifth of a wheel's
+/// sideways speed away, times the mass that the wheel feels (`docs/models/vehicle.md`, "Grip"). [s]
+fn slip_s(spec: &VehicleSpec) -> f64 {
+    let sq = recrash_model::math::sq;
+    let inertia = |a: f64, b: f64| (sq(a) + sq(b)) / 12.0;
+    let yaw_m2 = inertia(spec.chassis_length_m, spec.chassis_width_m);
+    let roll_m2 = inertia(spec.chassis_width_m, spec.chassis_height_m);
+    let felt = |arm_m: f64| 1.0 / (1.0 + sq(arm_m) / yaw_m2 + sq(SETTLED_HEIGHT_M) / roll_m2);
+    PHYSICS_STEP_S / (DAMPING * 2.0 * (felt(spec.front_axle_m) + felt(spec.rear_axle_m)))
 }
 
 /// Brakes to a stand and holds it: fully while it moves, lightly then. [-1 to 1]

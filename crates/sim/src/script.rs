@@ -7,8 +7,7 @@ use crate::scene::Scene;
 use recrash_model::rollout::STEP_S;
 use recrash_plan::constants::PREVIEW_S;
 use recrash_plan::{
-    Crossing, LaneKeeper, Line, Manners, Moment, Motion, Plan, SpeedPlan, Way, drift, gap_law, hold_still,
-    lateral_target,
+    Crossing, LaneKeeper, Line, Manners, Moment, Plan, SpeedPlan, Way, drift, gap_law, hold_still, lateral_target,
 };
 
 /// The state of a scripted partner.
@@ -56,21 +55,14 @@ impl Script {
         let time_s = f64::from(scene.step) * STEP_S + PREVIEW_S;
         let (wanted_m, rate_mps) = lateral_target(self.plan.start_t_m, &way.moves, time_s);
         let s_m = scene.path_s(me);
-        let (ahead_rad, curvature_per_m) = scene.way_at(me, s_m + seen.speed * PREVIEW_S);
-        let motion = Motion {
-            heading_rad: seen.pose.heading,
-            forward_mps: seen.velocity.dot(seen.forward),
-            leftward_mps: seen.velocity.dot(seen.forward.left()),
-        };
         let line = Line {
             offset_m,
-            heading_rad: scene.way_at(me, s_m).0,
-            ahead_rad,
-            curvature_per_m,
+            here: scene.way_at(me, s_m),
+            ahead: scene.way_at(me, s_m + seen.speed * PREVIEW_S),
             wanted_m,
             drift_rad: drift(rate_mps, seen.speed, self.plan.greatest_drift_rad),
         };
-        self.keeper.steer(&self.plan, &motion, &line)
+        self.keeper.steer(&self.plan, seen.pose.heading, seen.speed, &line)
     }
 
     fn throttle(&mut self, scene: &Scene<'_>, me: usize, way: &Way, offset_m: f64, crossings: &[Crossing]) -> f64 {

@@ -77,9 +77,17 @@ fn every_kind_at_every_speed_holds_its_line_behind_a_bend() {
     let bends = sides.into_iter().flat_map(|direction| [(direction, 25.0), (direction, 50.0), (direction, 80.0)]);
     for (direction, radius_m) in bends {
         let most = (17.0 * 17.0 / 50.0_f64 * radius_m).sqrt();
-        for (kind, speed) in kinds_and_speeds(most) {
-            let length_m = (speed * 18.0).max(30.0).min(600.0);
-            let map = CurveMap { lanes: 2, lane_width_m: 3.5, approach_m: 60.0, radius_m, angle_deg: 60.0, direction, length_m };
+        for (kind, speed) in kinds_and_speeds(most).into_iter().filter(|(_, speed)| *speed >= 1.0) {
+            let length_m = (speed * 13.5).clamp(30.0, 300.0);
+            let map = CurveMap {
+                lanes: 2,
+                lane_width_m: 3.5,
+                approach_m: 60.0,
+                radius_m,
+                angle_deg: 45.0,
+                direction,
+                length_m,
+            };
             let mut draft = alone(MapSpec::C(map), Turn::Straight, 0, 1.0, 1.0);
             let mut partner = lead(40.0, speed);
             partner.kind = kind;
@@ -109,4 +117,28 @@ fn behind(draft: recrash_model::scenario::ScenarioDraft, behind_m: f64) -> (f64,
     let from_s = 0.1 * step as f64 + SETTLED_S;
     let (heading, offset, last) = deviation(draft, 0.0, from_s);
     (heading, offset, last >= from_s)
+}
+
+#[test]
+fn every_kind_at_every_speed_holds_its_line_behind_a_turn() {
+    let mut bad = Vec::new();
+    for (approach, turn, most) in [(Approach::Same, Turn::Right, 10.0), (Approach::Same, Turn::Left, 12.0)] {
+        for (kind, speed) in kinds_and_speeds(most).into_iter().filter(|(_, speed)| *speed >= 1.0) {
+            let MapSpec::X(mut map) = cross(2) else { unreachable!("a cross") };
+            (map.approach_m, map.arm_m) = (60.0, (speed * 13.5).clamp(30.0, 300.0));
+            let mut draft = alone(MapSpec::X(map), Turn::Straight, 0, 1.0, 1.0);
+            let mut partner = steady(approach, turn, Start::Offset { delta_s_m: 40.0, delta_t_m: 0.0 }, speed);
+            partner.kind = kind;
+            partner.lane_offset = i8::from(turn == Turn::Right);
+            draft.partners.push(partner);
+            draft.duration_s = 120.0;
+            let path = checked(draft.clone()).partners()[0].path.clone();
+            let behind_m = path.segments.last().map_or(0.0, |segment| segment.start_m);
+            let (heading, offset, seen) = behind(draft, behind_m);
+            if heading > 0.3 || offset > 0.05 || !seen {
+                bad.push(format!("{kind:?} {speed} {turn:?}: {heading:.3} deg, {offset:.3} m, {seen}"));
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{bad:#?}");
 }
