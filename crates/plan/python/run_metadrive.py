@@ -139,15 +139,8 @@ class ScenarioMap(PGMap):
     def _generate(self):
         spec = self._config["scenario"]
         parent, physics = self.engine.worldNP, self.engine.physics_world
-        first = FirstPGBlock(
-            self.road_network,
-            spec["lane_width_m"],
-            spec["lanes"],
-            parent,
-            physics,
-            length=spec["approach_m"],
-            ignore_intersection_checking=True,
-        )
+        size = (self.road_network, spec["lane_width_m"], spec["lanes"], parent, physics)
+        first = FirstPGBlock(*size, length=spec["approach_m"], ignore_intersection_checking=True)
         kind = BLOCKS[spec["type"]]
         if "arm_m" in spec:
             # The length of the arms is an attribute of the class.
@@ -160,7 +153,6 @@ class ScenarioMap(PGMap):
 
 class ScenarioMapManager(PGMapManager):
     """Keeps the maps it has built."""
-
     spec = None
     built = {}
 
@@ -224,7 +216,6 @@ class FreePolicy(IDMPolicy):
 
 class TrafficPolicy(FreePolicy):
     """Stands until the ego has left the entrance of its road."""
-
     def decide(self, world, me):
         return super().decide(world, me) if world.released else [0.0, 0.0]
 
@@ -338,19 +329,14 @@ class PartnerPolicy(IDMPolicy):
         if kind == "timed" and script["brake_from"] <= world.step < script["brake_until"]:
             return hold_still(speed)
         if kind == "timed" and world.step < script["throttle_until"]:
-            if script["throttle"] < 0.0:
-                return script["throttle"]
-            acceleration = script["throttle"] * plan["full_throttle_mps2"]
+            wanted = self.meaning(script["throttle"])
         elif kind == "follow":
-            gap_law = self.gap_law(actor.vehicle)
-            if gap_law < 0.0:
-                return gap_law
-            acceleration = gap_law * plan["full_throttle_mps2"]
+            wanted = self.meaning(self.gap_law(actor.vehicle))
         else:
-            wanted = script["speed_mps"]
-            if wanted < Law.standing_mps and speed < Law.hold_below_mps:
+            if script["speed_mps"] < Law.standing_mps and speed < Law.hold_below_mps:
                 return Law.hold_brake
-            acceleration = max(plan["gain_per_s"] * (wanted - speed), -plan["comfortable_mps2"])
+            wanted = max(plan["gain_per_s"] * (script["speed_mps"] - speed), -plan["comfortable_mps2"])
+        acceleration = wanted
         stop = min([math.inf] + self.give_way(world, me) + self.blocked_ahead(world, place))
         if -Law.committed_m <= stop < math.inf:
             left = max(stop - Law.stop_short_m, 0.0)
@@ -363,10 +349,16 @@ class PartnerPolicy(IDMPolicy):
                 left = max(bend["from_m"] - place.path_s, 0.0)
                 slower = self.come_down(speed, bend["speed_mps"], left, plan["comfortable_mps2"])
                 acceleration = min(acceleration, slower)
-        acceleration = max(-plan["greatest_braking_mps2"], min(acceleration, plan["full_throttle_mps2"]))
+        hardest = min(-plan["greatest_braking_mps2"], wanted)
+        acceleration = max(hardest, min(acceleration, plan["full_throttle_mps2"]))
         if acceleration < 0.0:
             return acceleration / plan["full_brake_mps2"]
         return max(acceleration / max(plan["full_throttle_mps2"], 1e-3), Law.least_throttle)
+
+    def meaning(self, pedal):
+        """The acceleration that a pedal asks for."""
+        pedal = max(-1.0, min(1.0, pedal))
+        return pedal * self.plan["full_brake_mps2" if pedal < 0.0 else "full_throttle_mps2"]
 
     @staticmethod
     def come_down(speed, target, distance, deceleration):
@@ -390,8 +382,7 @@ class PartnerPolicy(IDMPolicy):
 
     def blocked_ahead(self, world, place):
         """Distances to obstacles that lie on its line."""
-        wanted = self.lateral_target(world.step * Law.step_s)[0]
-        half = self.plan["half_width_m"]
+        wanted, half = self.lateral_target(world.step * Law.step_s)[0], self.plan["half_width_m"]
         left, right = min(place.t, wanted) - half, max(place.t, wanted) + half
         aheads = [
             each["from_m"] - self.plan["half_length_m"] - place.path_s
@@ -414,8 +405,7 @@ class PartnerPolicy(IDMPolicy):
         return aheads
 
     def must_wait(self, world, me, crossing, ahead):
-        number, merges = crossing["other"], crossing["merges"]
-        mine, theirs = crossing["mine"], crossing["theirs"]
+        number, merges, mine, theirs = (crossing[name] for name in ("other", "merges", "mine", "theirs"))
         own, other = world.actors[me], world.actors[number]
         if other.gone:
             return False
@@ -444,7 +434,6 @@ class PartnerPolicy(IDMPolicy):
 
 class OpenLoopPolicy:
     """Given controls, one pair a step; none behind their end."""
-
     def __init__(self, controls):
         self.controls = controls
 
@@ -513,13 +502,8 @@ def adjust_inertia(vehicle, body):
     length, width, height = body["chassis_length_m"], body["chassis_width_m"], vehicle.HEIGHT
     share = vehicle.MASS / 12.0
     # Panda's vehicles face along y.
-    vehicle.body.setInertia(
-        Vec3(
-            share * (length**2 + height**2),
-            share * (width**2 + height**2),
-            share * (length**2 + width**2),
-        )
-    )
+    about = (length**2 + height**2, width**2 + height**2, length**2 + width**2)
+    vehicle.body.setInertia(Vec3(*(share * each for each in about)))
 
 
 def nodes_of(spec):
@@ -533,36 +517,20 @@ def spawn_config(spec):
         "spawn_lane_index": (start, end, number),
         "spawn_longitude": spec["s_m"],
         # Far from its lane's centre MetaDrive would take it for a vehicle of another road; it is moved there later.
-        "spawn_lateral": 0.0,
-        "spawn_velocity": [spec["speed_mps"], 0.0],
-        "spawn_velocity_car_frame": True,
+        **{"spawn_lateral": 0.0, "spawn_velocity": [spec["speed_mps"], 0.0], "spawn_velocity_car_frame": True},
         "destination": spec["way"][-1][1],
     }
 
 
 def make_env():
-    return ScenarioEnv(
-        {
-            "use_render": False,
-            "log_level": 50,
-            "num_scenarios": 1,
-            "start_seed": 0,
-            "traffic_density": 0.0,
-            "agent_observation": DummyObservation,
-            "agent_policy": FreePolicy,
-            "vehicle_config": {"vehicle_model": "static_default", "show_navi_mark": False},
-            "random_spawn_lane_index": False,
-            "show_sidewalk": False,
-            "show_crosswalk": False,
-            # Recycled bodies keep the state of their solver: only new ones give the same bits again.
-            "force_destroy": True,
-            "out_of_road_done": False,
-            "on_continuous_line_done": False,
-            "crash_vehicle_done": False,
-            "crash_object_done": False,
-            "horizon": None,
-        }
-    )
+    # Recycled bodies keep the state of their solver: only new ones (force_destroy) give the same bits again.
+    ended_by_nothing = ("out_of_road_done", "on_continuous_line_done", "crash_vehicle_done", "crash_object_done")
+    config = dict.fromkeys(ended_by_nothing, False)
+    config.update(use_render=False, log_level=50, num_scenarios=1, start_seed=0, traffic_density=0.0, horizon=None)
+    config.update(agent_observation=DummyObservation, agent_policy=FreePolicy, force_destroy=True)
+    config.update(random_spawn_lane_index=False, show_sidewalk=False, show_crosswalk=False)
+    config["vehicle_config"] = {"vehicle_model": "static_default", "show_navi_mark": False}
+    return ScenarioEnv(config)
 
 
 class World:
@@ -793,18 +761,14 @@ def least_gap(run, done):
         a, b = 0.5 * spec["body"]["length_m"], 0.5 * spec["body"]["width_m"]
         return Polygon([(x + u * c - v * s, y + u * s + v * c) for u, v in ((a, b), (-a, b), (-a, -b), (a, -b))])
 
-    least, partners = (math.inf, None), run["partners"]
-    tracks = done["tracks"]
-    for step, state in enumerate(tracks[0]):
-        ego = outline(run["ego"], state)
-        for number, partner in enumerate(partners):
-            gap = ego.distance(outline(partner, tracks[1 + number][step]))
-            if gap < least[0]:
-                least = (gap, step * Law.step_s)
-    for event in done["events"]:
-        if event["a"] == 0 and 0 < event.get("b", 0) <= len(partners):
-            least = (0.0, event["time_s"])
-    return least
+    tracks, partners = done["tracks"], run["partners"]
+    touched = [event for event in done["events"] if event["a"] == 0 and 0 < event.get("b", 0) <= len(partners)]
+    least = [(0.0, event["time_s"]) for event in touched]
+    for number, partner in enumerate(partners, 1):
+        for step, (mine, theirs) in enumerate(zip(tracks[0], tracks[number])):
+            gap = outline(run["ego"], mine).distance(outline(partner, theirs))
+            least.append((gap, step * Law.step_s))
+    return min(least, default=(math.inf, None))
 
 
 def main():
@@ -818,7 +782,7 @@ def main():
     run, env = content["run"], make_env()
     world = World(env, run)
     world.set_up()
-    display = os.name == "nt" or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
+    display = os.name == "nt" or not {"DISPLAY", "WAYLAND_DISPLAY"}.isdisjoint(os.environ)
     done = world.run(display and not arguments.headless)
     env.close()
     if arguments.trace:
@@ -828,10 +792,8 @@ def main():
         with open(arguments.trace, "w", encoding="utf-8") as file:
             json.dump(trace, file)
     gap, when = least_gap(run, done)
-    last = {"scenario": content["id"], "end": done["end"], "time_s": round(done["time_s"], 2)}
-    last["min_gap_m"] = None if math.isinf(gap) else round(gap, 3)
-    last["min_gap_time_s"] = when and round(when, 2)
-    print(json.dumps(last))
+    last = {"min_gap_m": None if when is None else round(gap, 3), "min_gap_time_s": when and round(when, 2)}
+    print(json.dumps({"scenario": content["id"], "end": done["end"], "time_s": round(done["time_s"], 2), **last}))
 
 
 work() if WORKER else main()

@@ -218,14 +218,8 @@ impl Plan {
             SpeedPlan::Timed { brake_from, brake_until, .. } if (brake_from..brake_until).contains(&now.step) => {
                 return hold_still(v);
             }
-            SpeedPlan::Timed { throttle, throttle_until, .. } if now.step < throttle_until => {
-                if throttle < 0.0 {
-                    return throttle;
-                }
-                throttle * self.full_throttle_mps2
-            }
-            SpeedPlan::Follow { .. } if now.gap_law < 0.0 => return now.gap_law,
-            SpeedPlan::Follow { .. } => now.gap_law * self.full_throttle_mps2,
+            SpeedPlan::Timed { throttle, throttle_until, .. } if now.step < throttle_until => self.meaning(throttle),
+            SpeedPlan::Follow { .. } => self.meaning(now.gap_law),
             SpeedPlan::Timed { speed_mps, .. }
             | SpeedPlan::Wait { speed_mps, .. }
             | SpeedPlan::GiveWay { speed_mps, .. } => {
@@ -250,7 +244,9 @@ impl Plan {
             let distance_m = (bend.from_m - now.s_m).max(0.0);
             acceleration = acceleration.min(come_down(v, bend.speed_mps, distance_m, self.comfortable_mps2));
         }
-        let acceleration = acceleration.clamp(-self.greatest_braking_mps2, self.full_throttle_mps2.max(0.0));
+        // What a throttle or the gap law asks for is as hard as it is.
+        let hardest = (-self.greatest_braking_mps2).min(wanted);
+        let acceleration = acceleration.clamp(hardest, self.full_throttle_mps2.max(0.0));
         if acceleration < 0.0 {
             acceleration / self.full_brake_mps2
         } else {
@@ -258,16 +254,16 @@ impl Plan {
         }
     }
 
+    /// The acceleration that a pedal asks for. [m/s^2]
+    fn meaning(&self, pedal: f64) -> f64 {
+        let pedal = pedal.clamp(-1.0, 1.0);
+        pedal * if pedal < 0.0 { self.full_brake_mps2 } else { self.full_throttle_mps2 }
+    }
+
     /// The acceleration that a pedal gives at a speed, without the tyres' lag. [m/s^2]
     pub fn acceleration(&self, pedal: f64, speed_mps: f64) -> f64 {
-        let pedal = pedal.clamp(-1.0, 1.0);
-        if pedal < 0.0 {
-            (pedal * self.full_brake_mps2).max(-self.hardest_mps2)
-        } else if speed_mps > self.fastest_mps {
-            0.0
-        } else {
-            pedal * self.full_throttle_mps2
-        }
+        let most = if speed_mps > self.fastest_mps { 0.0 } else { self.full_throttle_mps2 };
+        self.meaning(pedal).clamp(-self.hardest_mps2, most)
     }
 }
 

@@ -211,7 +211,7 @@ fn cut_in(ahead_m: f64, slower_mps: f64) -> (Rollout, usize, f64) {
 
 #[test]
 fn a_cut_in_is_braked_for_after_1_15_s_and_fully_after_1_75_s() {
-    let (rollout, noticed, gap) = cut_in(27.2, 6.5);
+    let (rollout, noticed, gap) = cut_in(26.4, 6.5);
     // Less than two seconds to a collision, and more than the 12.1 m it takes to avoid it.
     assert!(gap < 13.0 && gap > EmergencyResponse::UN_R157.braking_distance(6.5) + 0.5, "{gap}");
     assert!(!touches(&rollout));
