@@ -153,6 +153,7 @@ class ScenarioMap(PGMap):
 
 class ScenarioMapManager(PGMapManager):
     """Keeps the maps it has built."""
+
     spec = None
     built = {}
 
@@ -216,6 +217,7 @@ class FreePolicy(IDMPolicy):
 
 class TrafficPolicy(FreePolicy):
     """Stands until the ego has left the entrance of its road."""
+
     def decide(self, world, me):
         return super().decide(world, me) if world.released else [0.0, 0.0]
 
@@ -269,7 +271,7 @@ class PartnerPolicy(IDMPolicy):
     def has_plans(self, step):
         script, kind = self.script, self.script["type"]
         if kind == "wait":
-            return script["until"] is not None and script["speed_mps"] > 0 and step <= script["until"]
+            return script["speed_mps"] > 0 and script["until"] is not None and step <= script["until"]
         if kind == "timed":
             return script["speed_mps"] > 0 or step < max(script["brake_until"], script["throttle_until"])
         return False
@@ -296,10 +298,18 @@ class PartnerPolicy(IDMPolicy):
             offset += rate * max(until - move["start_s"], 0.0)
         return offset, 0.0
 
+    def line(self, time):
+        """The line of its moves, each corner rounded."""
+        half = 0.5 * self.way["blend_s"]
+        if half <= 0.0:
+            return self.lateral_target(time)
+        before, now, after = (self.lateral_target(time + share * half)[0] for share in (-1, 0, 1))
+        return (before + 4.0 * now + after) / 6.0, (after - before) / (2.0 * half)
+
     def steer(self, world, actor):
         plan, vehicle, place = self.plan, actor.vehicle, actor.place
         preview, greatest = Law.preview_s, plan["greatest_drift_rad"]
-        wanted, rate = self.lateral_target(world.step * Law.step_s + preview)
+        wanted, rate = self.line(world.step * Law.step_s + preview)
         drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, Law.slow_mps))))
         drift = max(-greatest, min(greatest, drift))
 
@@ -382,13 +392,10 @@ class PartnerPolicy(IDMPolicy):
 
     def blocked_ahead(self, world, place):
         """Distances to obstacles that lie on its line."""
-        wanted, half = self.lateral_target(world.step * Law.step_s)[0], self.plan["half_width_m"]
+        wanted, half = self.line(world.step * Law.step_s)[0], self.plan["half_width_m"] - Law.brushes_m
         left, right = min(place.t, wanted) - half, max(place.t, wanted) + half
-        aheads = [
-            each["from_m"] - self.plan["half_length_m"] - place.path_s
-            for each in self.way["blocked"]
-            if each["left_m"] < right and each["right_m"] > left
-        ]
+        there = [each for each in self.way["blocked"] if each["left_m"] < right and each["right_m"] > left]
+        aheads = (each["from_m"] - self.plan["half_length_m"] - place.path_s for each in there)
         return [ahead for ahead in aheads if ahead >= -Law.committed_m]
 
     def give_way(self, world, me):
@@ -434,6 +441,7 @@ class PartnerPolicy(IDMPolicy):
 
 class OpenLoopPolicy:
     """Given controls, one pair a step; none behind their end."""
+
     def __init__(self, controls):
         self.controls = controls
 
@@ -457,9 +465,6 @@ class Actor:
         heading = math.atan2(math.sin(self.vehicle.heading_theta), math.cos(self.vehicle.heading_theta))
         vx, vy = self.vehicle.velocity
         return [float(x), float(y), float(heading), float(vx), float(vy)]
-
-    def leave(self):
-        self.gone = self.state()
 
     def go_on(self):
         x, y, heading, vx, vy = self.gone
@@ -573,19 +578,14 @@ class World:
                 OBSTACLES[obstacle["kind"]],
                 lane=self.network.get_lane(tuple(obstacle["lane"])),
                 position=[obstacle["x"], obstacle["y"]],
-                heading_theta=obstacle["heading"],
-                static=True,
+                **{"heading_theta": obstacle["heading"], "static": True},
             )
             self.spawned.append(thing.id)
             self.obstacles.append((thing, math.hypot(obstacle["length_m"], obstacle["width_m"])))
 
     def spawn(self, spec):
-        vehicle = self.engine.spawn_object(
-            vehicle_class(spec["body"]),
-            vehicle_config=spawn_config(spec),
-            random_seed=0,
-            auto_fill_random_seed=False,
-        )
+        kind, config = vehicle_class(spec["body"]), spawn_config(spec)
+        vehicle = self.engine.spawn_object(kind, vehicle_config=config, random_seed=0, auto_fill_random_seed=False)
         self.spawned.append(vehicle.id)
         return vehicle
 
@@ -649,7 +649,7 @@ class World:
         """Background traffic that is on no lane any more is unseen and untouchable from then on."""
         for actor in self.actors[self.first_traffic :]:
             if actor.gone is None and self.is_off_road(actor.vehicle):
-                actor.leave()
+                actor.gone = actor.state()
                 self.spawned.remove(actor.vehicle.id)
                 self.engine.clear_objects([actor.vehicle.id], force_destroy=True)
 

@@ -1,7 +1,6 @@
 //! What a plan does with nobody else on the road.
 
 use crate::follow::gap_law;
-use crate::line::lateral_target;
 use crate::speed::{Moment, Plan, SpeedPlan};
 use crate::way::Way;
 use recrash_model::geometry::Vec2;
@@ -41,7 +40,7 @@ impl Alone {
     fn go_on(&mut self, plan: &Plan, way: &Way, start_m: f64, step: u32) {
         let last = self.speeds_mps.len() - 1;
         let (speed_mps, driven_m) = (self.speeds_mps[last], self.driven_m[last]);
-        let (wanted_t_m, _) = lateral_target(plan.start_t_m, &way.moves, f64::from(step) * STEP_S);
+        let (wanted_t_m, _) = way.line(plan, f64::from(step) * STEP_S);
         let ahead = Vec2::new(1.0, 0.0);
         let gap_law = match plan.speed {
             SpeedPlan::Follow { speed_mps: wanted } => gap_law(speed_mps, wanted, ahead, ahead * speed_mps, None),

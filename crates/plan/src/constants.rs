@@ -37,7 +37,10 @@ pub const CATCH_UP_S: f64 = 0.5;
 /// It stops with its front this far before the place; assumed. [m]
 pub const STOP_SHORT_M: f64 = 0.5;
 
-/// Bends are driven at this share of the sideways acceleration a kind may have, so that there is some left to steer with.
+/// An obstacle that it would brush by no more than this is not on its line: less than it sways. [m]
+pub const BRUSHES_M: f64 = 0.1;
+
+/// Bends are driven, and sideways moves begun and ended, at this share of the sideways acceleration a kind may have, so that there is some left to steer with.
 pub const SHARE_IN_BENDS: f64 = 0.8;
 
 /// The wanted line may run at no more than this angle to the lane, for vehicles; assumed. [rad]
@@ -115,6 +118,7 @@ pub struct Constants {
     pub stop_short_m: f64,
     pub slow_mps: f64,
     pub shortest_move_s: f64,
+    pub brushes_m: f64,
     pub preview_s: f64,
     pub return_s: f64,
     pub return_wheelbases: f64,
@@ -139,6 +143,7 @@ impl Constants {
         stop_short_m: STOP_SHORT_M,
         slow_mps: SLOW_MPS,
         shortest_move_s: SHORTEST_MOVE_S,
+        brushes_m: BRUSHES_M,
         preview_s: PREVIEW_S,
         return_s: RETURN_S,
         return_wheelbases: RETURN_WHEELBASES,

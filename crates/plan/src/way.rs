@@ -1,6 +1,7 @@
 //! What a partner's way asks of it: bends, and things that lie on it.
 
-use crate::constants::SHARE_IN_BENDS;
+use crate::constants::{BRUSHES_M, COMMITTED_M, SHARE_IN_BENDS, SHORTEST_MOVE_S};
+use crate::line::lateral_target;
 use crate::speed::{Moment, Plan};
 use recrash_model::scenario::LateralMove;
 use recrash_roads::path::SegmentShape;
@@ -15,6 +16,8 @@ const WIDE_M: f64 = 15.0;
 pub struct Way {
     /// Its sideways moves.
     pub moves: Vec<LateralMove>,
+    /// The time over which the corners of their line are rounded. [s]
+    pub blend_s: f64,
     /// Bends, in order.
     pub bends: Vec<Bend>,
     /// Obstacles on it or beside it.
@@ -47,28 +50,51 @@ impl Way {
     /// The way of a partner of a checked scenario.
     pub fn new(scenario: &Scenario, position: usize, plan: &Plan) -> Self {
         let path = &scenario.partners()[position].path;
-        Self {
-            moves: scenario.draft().partners[position].lateral.clone(),
-            bends: bends(path, plan),
-            blocked: scenario.obstacles().iter().filter_map(|each| blocked(path, each)).collect(),
-        }
+        let blocked = scenario.obstacles().iter().filter_map(|each| blocked(path, each)).collect();
+        Self { blocked, ..Self::along(path, plan, scenario.draft().partners[position].lateral.clone()) }
     }
 
     /// A way without anything on it.
     pub fn along(path: &LanePath, plan: &Plan, moves: Vec<LateralMove>) -> Self {
-        Self { moves, bends: bends(path, plan), blocked: Vec::new() }
+        let blend_s = blend_s(plan, &moves);
+        Self { moves, blend_s, bends: bends(path, plan), blocked: Vec::new() }
+    }
+
+    /// Where the partner wants to be beside its lane, and how fast that moves, positive to the right: the line of its moves,
+    /// each corner rounded as its sideways acceleration needs. [m, m/s]
+    pub fn line(&self, plan: &Plan, time_s: f64) -> (f64, f64) {
+        let at = |time_s: f64| lateral_target(plan.start_t_m, &self.moves, time_s);
+        if self.blend_s <= 0.0 {
+            return at(time_s);
+        }
+        let half_s = 0.5 * self.blend_s;
+        let (before, now, after) = (at(time_s - half_s).0, at(time_s).0, at(time_s + half_s).0);
+        ((before + 4.0 * now + after) / 6.0, (after - before) / self.blend_s)
     }
 
     /// Distance from the partner's centre to where its front would touch the first obstacle that lies on its line. [m]
     pub(crate) fn blocked_ahead(&self, plan: &Plan, now: &Moment) -> Option<f64> {
+        let reach_m = plan.half_width_m - BRUSHES_M;
         let (left, right) = (now.t_m.min(now.wanted_t_m), now.t_m.max(now.wanted_t_m));
         self.blocked
             .iter()
-            .filter(|each| each.left_m < right + plan.half_width_m && each.right_m > left - plan.half_width_m)
+            .filter(|each| each.left_m < right + reach_m && each.right_m > left - reach_m)
             .map(|each| each.from_m - plan.half_length_m - now.s_m)
-            .filter(|ahead| *ahead >= -crate::constants::COMMITTED_M)
+            .filter(|ahead| *ahead >= -COMMITTED_M)
             .reduce(f64::min)
     }
+}
+
+/// The time in which its sideways acceleration turns one of its moves into the next, at most the shortest of them. [s]
+fn blend_s(plan: &Plan, moves: &[LateralMove]) -> f64 {
+    let mut from_m = plan.start_t_m;
+    let mut fastest_mps: f64 = 0.0;
+    for step in moves {
+        fastest_mps = fastest_mps.max(((step.to_t_m - from_m) / step.duration_s.max(SHORTEST_MOVE_S)).abs());
+        from_m = step.to_t_m;
+    }
+    let shortest_s = moves.iter().map(|step| step.duration_s).fold(f64::INFINITY, f64::min);
+    if fastest_mps > 0.0 { (fastest_mps / (SHARE_IN_BENDS * plan.sideways_mps2)).min(shortest_s) } else { 0.0 }
 }
 
 fn bends(path: &LanePath, plan: &Plan) -> Vec<Bend> {

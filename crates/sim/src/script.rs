@@ -6,9 +6,7 @@ use crate::metadrive_idm;
 use crate::scene::Scene;
 use recrash_model::rollout::STEP_S;
 use recrash_plan::constants::PREVIEW_S;
-use recrash_plan::{
-    Crossing, LaneKeeper, Line, Manners, Moment, Plan, SpeedPlan, Way, drift, gap_law, hold_still, lateral_target,
-};
+use recrash_plan::{Crossing, LaneKeeper, Line, Manners, Moment, Plan, SpeedPlan, Way, drift, gap_law, hold_still};
 
 /// The state of a scripted partner.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +51,7 @@ impl Script {
     fn steer(&mut self, scene: &Scene<'_>, me: usize, way: &Way, offset_m: f64) -> f64 {
         let seen = &scene.actors[me];
         let time_s = f64::from(scene.step) * STEP_S + PREVIEW_S;
-        let (wanted_m, rate_mps) = lateral_target(self.plan.start_t_m, &way.moves, time_s);
+        let (wanted_m, rate_mps) = way.line(&self.plan, time_s);
         let s_m = scene.path_s(me);
         let line = Line {
             offset_m,
@@ -85,7 +83,7 @@ impl Script {
             speed_mps: f64::from(seen.speed as f32),
             s_m: scene.path_s(me),
             t_m: offset_m,
-            wanted_t_m: lateral_target(self.plan.start_t_m, &way.moves, time_s).0,
+            wanted_t_m: way.line(&self.plan, time_s).0,
             give_way_m,
             gap_law: law,
         };

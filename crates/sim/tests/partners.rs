@@ -2,7 +2,10 @@
 
 use recrash_model::narrative::Side;
 use recrash_model::record::{PartnerKind, Surface};
-use recrash_model::scenario::{Approach, CurveMap, LateralMove, MapSpec, Policy, Start, Turn};
+use recrash_model::rollout::Rollout;
+use recrash_model::scenario::{
+    Approach, CurveMap, LateralMove, MapSpec, Obstacle, ObstacleKind, Policy, ScenarioDraft, Start, Turn,
+};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_plan::Plan;
 use recrash_sim::{Ego, simulate};
@@ -30,7 +33,7 @@ fn holds(target_speed: f64) -> Policy {
 }
 
 /// The greatest heading error [deg] and offset [m] of the partner from `from_s` on, while it is on its path.
-fn deviation(draft: recrash_model::scenario::ScenarioDraft, wanted_t_m: f64, from_s: f64) -> (f64, f64, f64) {
+fn deviation(draft: ScenarioDraft, wanted_t_m: f64, from_s: f64) -> (f64, f64, f64) {
     let scenario = checked(draft);
     let path = scenario.partners()[0].path.clone();
     let rollout = simulate(&scenario, Ego::Idm);
@@ -108,7 +111,7 @@ fn every_kind_at_every_speed_holds_its_line_behind_a_bend() {
 
 /// The greatest heading error [deg] and offset [m] from [`SETTLED_S`] after this place of its path on, and whether it
 /// got there.
-fn behind(draft: recrash_model::scenario::ScenarioDraft, behind_m: f64) -> (f64, f64, bool) {
+fn behind(draft: ScenarioDraft, behind_m: f64) -> (f64, f64, bool) {
     let scenario = checked(draft.clone());
     let path = scenario.partners()[0].path.clone();
     let rollout = simulate(&scenario, Ego::Idm);
@@ -141,4 +144,76 @@ fn every_kind_at_every_speed_holds_its_line_behind_a_turn() {
         }
     }
     assert!(bad.is_empty(), "{bad:#?}");
+}
+
+/// The hardest braking of the partner over 0.1 s. [m/s^2]
+fn hardest(rollout: &Rollout) -> f64 {
+    let states = &rollout.actors[1].states;
+    states.windows(2).map(|pair| (pair[0].speed() - pair[1].speed()) / 0.1).fold(0.0, f64::max)
+}
+
+/// Its greatest sideways acceleration, as a mean over 0.3 s: that of the way it drives. [m/s^2]
+fn sideways(rollout: &Rollout) -> f64 {
+    let states = &rollout.actors[1].states;
+    let turn = |step: usize| {
+        let (a, b) = (&states[step], &states[step + 3]);
+        let turned = recrash_model::math::wrap_angle(b.heading - a.heading) / 0.3;
+        (turned * 0.5 * (a.speed() + b.speed())).abs()
+    };
+    (10..states.len().saturating_sub(3)).map(turn).fold(0.0, f64::max)
+}
+
+#[test]
+fn who_set_off_comes_down_to_its_cruise_speed_without_slamming_the_brake() {
+    for (kind, _) in kinds_and_speeds(22.2) {
+        let cruise_speed = 0.5 * VehicleSpec::of(kind).max_speed_mps.min(12.0);
+        let policy = Policy::AccelThenBrake {
+            accel_mag: 1.0,
+            accel_steps: 60,
+            cruise_speed,
+            brake_step: 0,
+            brake_steps: 0,
+            speed_kp: None,
+        };
+        let plan = Plan::new(kind, &policy, 0.0, Surface::Dry);
+        let mut draft = alone(straight(3, 300.0), Turn::Straight, 1, 1.0, 1.0);
+        let mut partner = lead(20.0, 0.0);
+        (partner.kind, partner.policy) = (kind, policy);
+        draft.partners.push(partner);
+        let rollout = simulate(&checked(draft), Ego::Idm);
+        assert!(hardest(&rollout) <= plan.comfortable_mps2 + 0.4, "{kind:?}: {}", hardest(&rollout));
+        let end = rollout.actors[1].states[300].speed();
+        assert!((end - cruise_speed).abs() < 0.1, "{kind:?}: {end} instead of {cruise_speed}");
+    }
+}
+
+#[test]
+fn every_kind_slows_for_a_turn_as_its_plan_says() {
+    for (kind, speed) in kinds_and_speeds(10.0).into_iter().filter(|(_, speed)| *speed >= 1.0) {
+        let plan = Plan::new(kind, &holds(speed), 0.0, Surface::Dry);
+        let mut draft = alone(cross(2), Turn::Straight, 0, 1.0, 1.0);
+        let mut partner = steady(Approach::Same, Turn::Right, Start::Offset { delta_s_m: 20.0, delta_t_m: 0.0 }, speed);
+        (partner.kind, partner.lane_offset) = (kind, 1);
+        draft.partners.push(partner);
+        let rollout = simulate(&checked(draft), Ego::Idm);
+        assert!(hardest(&rollout) <= plan.greatest_braking_mps2, "{kind:?} {speed}: {}", hardest(&rollout));
+        assert!(sideways(&rollout) <= 1.15 * plan.sideways_mps2, "{kind:?} {speed}: {}", sideways(&rollout));
+    }
+}
+
+#[test]
+fn a_partner_stops_before_a_barrier_on_its_line_and_passes_one_beside_it() {
+    let meets = |t_m: f64| {
+        let mut draft = alone(straight(3, 200.0), Turn::Straight, 1, 1.0, 1.0);
+        draft.partners.push(lead(20.0, 12.0));
+        draft.obstacles.push(Obstacle { kind: ObstacleKind::Barrier, s_m: 120.0, t_m });
+        simulate(&checked(draft), Ego::MetadriveIdm)
+    };
+    let stops = meets(0.5);
+    assert!(stops.events.is_empty(), "{:?}", stops.events);
+    let last = stops.actors[1].states[300];
+    // Its front is 0.5 m before the barrier's near side: 120 - 0.15 - 0.5 - 2.2575.
+    assert!((last.x - 117.1).abs() < 0.4 && last.speed() < 0.05, "{last:?}");
+    assert!(hardest(&stops) < 4.0, "{}", hardest(&stops));
+    assert!(meets(2.2).actors[1].states[150].x > 180.0);
 }

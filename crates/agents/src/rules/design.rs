@@ -66,6 +66,9 @@ pub fn staging_of(narrative: &Narrative, facts: &Facts) -> Option<Staging> {
         .copied()
 }
 
+/// Room behind the partner's start, in time at its speed; assumed. [s]
+const ROOM_TO_COME_LATER_S: f64 = 1.0;
+
 /// Everything that is decided before numbers are worked out.
 struct Stage<'a> {
     brief: &'a Brief<'a>,
@@ -186,9 +189,10 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Nearest to the beginning of its way that the partner may start. [m]
+    /// Nearest to the beginning of its way that the partner may start: all of it on the road, with room to come a little
+    /// later, which tuning may want. [m]
     fn least_start_m(&self) -> f64 {
-        0.5 * VehicleSpec::of(self.kind).length_m + 1.0
+        0.5 * VehicleSpec::of(self.kind).length_m + ROOM_TO_COME_LATER_S * self.partner_mps
     }
 
     /// What a partner does whose path meets the ego's, and its first speed: one that had stood sets off. [m/s]

@@ -6,7 +6,7 @@ use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::record::{ContactZone, PartnerKind, Surface};
 use recrash_model::scenario::{LateralMove, Policy};
-use recrash_plan::{Alone, Plan, Way, drift, lateral_target};
+use recrash_plan::{Alone, Plan, Way, drift};
 use recrash_roads::LanePath;
 
 /// Time step: at 20 m/s a metre. [s]
@@ -58,7 +58,7 @@ impl<'a> Motion<'a> {
 
     /// Offset to the right of the lane's centre, and how fast it grows. [m, m/s]
     fn offset(&self, time_s: f64) -> (f64, f64) {
-        lateral_target(self.plan.start_t_m, &self.way.moves, time_s)
+        self.way.line(&self.plan, time_s)
     }
 
     fn outline(&self, time_s: f64) -> OrientedBox {

@@ -175,7 +175,7 @@ fn time_paths(task: &Task, course: &Course, plan: &Attempt) -> Option<Timing> {
     };
     // Who sets off, or slows for a bend, arrives later than the arrival gap says, which counts with the target speed.
     let lost_s = meets_s - motion(0.0).driven(meets_s) / task.partner_mps;
-    let lost_s = (lost_s / GAP_STEP_S).round().max(0.0) * GAP_STEP_S;
+    let lost_s = (lost_s * 100.0).round().max(0.0) / 100.0;
     let count = (2.0 * WIDEST_GAP_S / GAP_STEP_S).round() as usize;
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
         .map(|n| {

@@ -193,7 +193,8 @@ fn offset_start(
             shown(delta_s_m.abs()),
             if delta_s_m < 0.0 { "behind" } else { "ahead of" }
         );
-        let hint = format!("allowed: delta_s_m from {} to {} m, or a longer map", shown(least), shown(most));
+        let (least, most) = (shown(round_up(least)), shown(round_down(most)));
+        let hint = format!("allowed: delta_s_m from {least} to {most} m, or a longer map");
         remarks.error("scenario.start-off-road", at, message, hint);
         return None;
     }
