@@ -23,10 +23,8 @@ fn main() {
             serde_json::from_value(line["draft"].take()).expect("a draft")
         })
         .collect();
-    let scenarios: Vec<Scenario> = drafts
-        .into_iter()
-        .map(|draft| check(draft).unwrap_or_else(|problems| panic!("{problems:?}")).value)
-        .collect();
+    let scenarios: Vec<Scenario> =
+        drafts.into_iter().map(|draft| check(draft).unwrap_or_else(|problems| panic!("{problems:?}")).value).collect();
     let metadrive = Metadrive::start(Options::new(python)).unwrap_or_else(|error| panic!("{error}"));
     let rollouts = metadrive.simulate_all(&scenarios, &Drive::MetadriveIdm, &|_| {});
     for (scenario, rollout) in scenarios.iter().zip(rollouts) {

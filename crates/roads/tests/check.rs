@@ -238,7 +238,7 @@ fn offsets_are_for_the_ego_s_own_road() {
     );
     assert!(error.hint.starts_with("allowed: delta_s_m from -2.742 to "), "{error}");
     // The arm ahead runs from x = 60 + 30.5 to 170.5; the ego starts at 5; half a car must be on it too.
-    for (delta, fits) in [(85.0, false), (86.0, true), (162.7, true), (162.8, false)] {
+    for (delta, fits) in [(85.0, false), (86.0, true), (163.2, true), (163.3, false)] {
         let changes = [("/partners/0/approach", json!("opposite")), ("/partners/0/start", json!({"delta_s_m": delta}))];
         assert_eq!(check(with(&changes)).is_ok(), fits, "{delta}");
     }
@@ -276,7 +276,7 @@ fn a_bus_on_the_ring_starts_with_all_of_its_corners_on_the_road() {
         ("/partners/0/approach", json!("ring")),
         ("/partners/0/kind", json!("bus")),
         ("/partners/0/policy/target_speed_mps", json!(5.0)),
-        ("/partners/0/start/arrival_gap_s", json!(0.0)),
+        ("/partners/0/start/arrival_gap_s", json!(-4.0)),
     ]);
     let bus = &scenario.partners()[0];
     let spec = VehicleSpec::of(bus.kind);

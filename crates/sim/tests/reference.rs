@@ -185,7 +185,7 @@ fn passes_a_parked_car_by_the_other_lane_but_waits_while_somebody_is_there() {
     let free = run(draft.clone());
     assert_eq!(ends(&free), TerminationKind::Arrived);
     assert!(!touches(&free));
-    let mut beside = lead(-4.0, 8.0);
+    let mut beside = lead(-2.7, 8.0);
     beside.id = "cp2".to_owned();
     beside.lane_offset = -1;
     draft.partners.push(beside);

@@ -189,10 +189,12 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Nearest to the beginning of its way that the partner may start: all of it on the road, with room to come a little
-    /// later, which tuning may want. [m]
+    /// Nearest to the beginning of its way that the partner may start: all of it on the road. One that sets off, and so
+    /// starts near, keeps room to come a little later, which tuning may want. [m]
     fn least_start_m(&self) -> f64 {
-        0.5 * VehicleSpec::of(self.kind).length_m + ROOM_TO_COME_LATER_S * self.partner_mps
+        let (_, start_mps) = self.on_its_path();
+        let later_m = if start_mps < self.partner_mps { ROOM_TO_COME_LATER_S * self.partner_mps } else { 0.0 };
+        0.5 * VehicleSpec::of(self.kind).length_m + 1.0 + later_m
     }
 
     /// What a partner does whose path meets the ego's, and its first speed: one that had stood sets off. [m/s]
