@@ -2,7 +2,7 @@
 
 use recrash_model::account::Account;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::narrative::{FactValue, Narrative, Origin};
+use recrash_model::narrative::{FactValue, Narrative};
 use recrash_model::profile::SystemProfile;
 
 /// The account a narrative gives of its record.
@@ -11,7 +11,7 @@ use recrash_model::profile::SystemProfile;
 /// record describes an excluded kind of collision.
 pub fn account_of(narrative: &Narrative, profile: &SystemProfile) -> Account {
     let mut account = Account { road: Some(narrative.template.road.into()), ..Account::default() };
-    if let Origin::Alternative { reason } = &narrative.origin {
+    if let Some(reason) = narrative.origin.reason() {
         let reason = plain(reason);
         account.collision = profile.excludes.collisions.iter().copied().find(|kind| names_kind(&reason, *kind));
         account.excluded = Some(account.collision.is_some());
@@ -49,7 +49,7 @@ fn plain(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT};
+    use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT, Origin};
     use recrash_model::scenario::{Approach, Author};
     use recrash_model::template::{Movement, RoadType, Template};
 
@@ -84,14 +84,14 @@ mod tests {
             FactValue::SvMovement { movement: Movement::Straight },
             FactValue::Collision { kind: CollisionKind::Angle },
         ];
-        let account = account(Origin::Record, values);
+        let account = account(Origin::Own, values);
         assert_eq!((account.approach, account.excluded), (Some(Approach::Left), Some(false)));
     }
 
     #[test]
     fn an_alternative_tells_why_and_nothing_else() {
         let values = || vec![FactValue::Approach { approach: Approach::Left }];
-        let why = |reason: &str| account(Origin::Alternative { reason: reason.into() }, values());
+        let why = |reason: &str| account(Origin::Invented { reason: reason.into() }, values());
         assert_eq!((why("a Rear-end collision").excluded, why("a Rear-end collision").approach), (Some(true), None));
         assert_eq!(why("it tells nothing").excluded, Some(false));
     }

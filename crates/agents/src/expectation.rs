@@ -3,23 +3,23 @@
 use crate::rules::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
 use crate::rules::staged::{Facts, Ground, ground, staging_of, turn};
 use recrash_model::metrics::Expectation;
-use recrash_model::narrative::{FactSource, FactValue, Narrative, Origin};
+use recrash_model::narrative::{FactSource, FactValue, Narrative};
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::CrashRecord;
 use recrash_model::scenario::Approach;
 use recrash_model::template::RoadType;
 
 /// What the rollout must show: the template; the partner's approach and side where the narrative states them; speeds that
-/// the record or its narrative tells, as far as the map allows them; who was first and the record's contact zones where the
-/// narrative retells the record (an alternative is another collision, so they do not bind); and none of the collisions
-/// the profile excludes.
+/// the record or its narrative tells, as far as the map allows them; who was first and the contact zones of `record`, the
+/// one whose crash is told (an invented narrative is nobody's, so that none bind); and none of the collisions the profile
+/// excludes.
 ///
 /// On a road without junction nobody can turn: there a move of at least half a lane width to one side counts as the turn
 /// to that side (see `docs/models/rules.md` and `docs/models/faithfulness.md`).
 pub fn expectation(narrative: &Narrative, record: &CrashRecord, profile: &SystemProfile) -> Expectation {
     let facts = Facts(&narrative.facts);
     let approach = facts.approach();
-    let binds = narrative.origin == Origin::Record;
+    let binds = narrative.told_record().is_some();
     // Side by side nobody is first at a place, and the partner keeps to the ego's speed.
     let crosses = approach.is_some_and(|approach| approach != Approach::Same);
     // On a circle paths run into one, and who is ahead there follows from how far around each drives.

@@ -49,6 +49,15 @@ pub struct Brief<'a> {
     pub seed: Seed,
 }
 
+impl<'a> Brief<'a> {
+    /// The record whose crash a narrative tells; of an invented one the pick, which its surroundings are taken from.
+    pub fn told(&self, narrative: &Narrative) -> Option<&'a CrashRecord> {
+        let told = narrative.told_record();
+        let named = self.records.iter().find(|record| Some(&record.id) == told);
+        named.or(self.records.first()).copied()
+    }
+}
+
 /// Retells a record, with only what matters to a scenario.
 pub trait Paraphrase {
     /// Writes the narrative of a scenario.

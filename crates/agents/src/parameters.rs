@@ -2,7 +2,7 @@
 
 use crate::rules::limits::{ground_of, most_speed, most_speed_of};
 use crate::rules::staged::Facts;
-use recrash_model::narrative::{Fact, FactSource, FactValue, FirstMover, Narrative, Origin};
+use recrash_model::narrative::{Fact, FactSource, FactValue, FirstMover, Narrative};
 use recrash_model::profile::SystemProfile;
 use recrash_model::scenario::{Approach, Partner, Policy, ScenarioDraft, Start};
 use recrash_model::tuning::Parameter;
@@ -106,7 +106,7 @@ impl List {
             Start::ArrivalGap { arrival_gap_s } => {
                 let (mut min, mut max) = (arrival_gap_s - GAP_TOLERANCE_S, arrival_gap_s + GAP_TOLERANCE_S);
                 let mut reason = "about one vehicle length of time around the design's gap";
-                if narrative.origin == Origin::Record {
+                if narrative.told_record().is_some() {
                     match Facts(&narrative.facts).first_mover() {
                         Some(FirstMover::Cp) => {
                             max = max.min(ORDER_TOLERANCE_S);

@@ -1,11 +1,11 @@
 //! The pool: several workers, faults mended, results in the order of the scenarios.
 
-use crate::MetadriveError;
 use crate::protocol::{Drive, rollout, run_spec};
 use crate::worker::{Worker, WorkerFault};
+use crate::{METADRIVE_VERSION, MetadriveError};
 use recrash_model::rollout::Rollout;
 use recrash_plan::metadrive::Run;
-use recrash_roads::Scenario;
+use recrash_roads::{RunError, Scenario, Simulator};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -156,6 +156,25 @@ impl Metadrive {
         }
         state.busy += 1;
         state.idle.pop()
+    }
+}
+
+/// With MetaDrive's own IDM policy as the ego.
+impl Simulator for Metadrive {
+    fn name(&self) -> &str {
+        "MetaDrive"
+    }
+
+    fn version(&self) -> &str {
+        METADRIVE_VERSION
+    }
+
+    fn ego(&self) -> &str {
+        Drive::MetadriveIdm.name()
+    }
+
+    fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError> {
+        self.simulate(scenario, &Drive::MetadriveIdm).map_err(|error| RunError::new(scenario, error))
     }
 }
 

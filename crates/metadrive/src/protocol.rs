@@ -21,7 +21,7 @@ pub enum Drive {
 }
 
 impl Drive {
-    fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::MetadriveIdm => "metadrive-idm",
             Self::OpenLoop(_) => "open-loop",

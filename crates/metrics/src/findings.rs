@@ -10,6 +10,11 @@ use recrash_roads::Scenario;
 /// Slower than this the ego stands. [m/s]
 const STANDSTILL_MPS: f64 = 0.3;
 
+/// A near miss is one of somebody who came at least this much nearer than the scene begins with: a conflict is two road
+/// users who approach each other (amundsen1977), and lanes side by side are nearer than some limits. Assumed: more than
+/// lane keeping moves a car sideways. [m]
+const APPROACH_M: f64 = 0.1;
+
 /// What a rollout shows about the ego: failures first, then odd behaviour, each in order of time.
 pub fn findings(
     _scenario: &Scenario,
@@ -88,6 +93,8 @@ fn near_misses<'a>(
         .filter(move |partner| Some(partner.actor) != touched)
         .filter(|partner| rollout.actors.get(partner.actor).is_some_and(|track| track.role == Role::Partner))
         .filter(|partner| partner.min_gap.value < criteria.min_gap_m)
+        // Who is put so near to the ego and comes no nearer has not met it.
+        .filter(|partner| first_gap_m(rollout, partner.actor) - partner.min_gap.value > APPROACH_M)
         .map(|partner| {
             let Timed { value, time_s } = partner.min_gap;
             Finding {
@@ -101,6 +108,15 @@ fn near_misses<'a>(
                 ),
             }
         })
+}
+
+/// Box gap between the ego and another where the scene begins. [m]
+fn first_gap_m(rollout: &Rollout, actor: usize) -> f64 {
+    let first = |actor: usize| rollout.actors.get(actor).filter(|track| !track.states.is_empty());
+    match (first(0), first(actor)) {
+        (Some(ego), Some(other)) => ego.outline(0).gap(&other.outline(0)),
+        _ => 0.0,
+    }
 }
 
 fn ending(rollout: &Rollout, metrics: &Metrics, criteria: &FailureCriteria) -> Option<Finding> {

@@ -332,33 +332,91 @@ impl CheckKind {
     }
 }
 
-/// Result of a check.
+/// What became of one told fact. Words of `DESIGN`: shown, not shown, cannot be shown, not told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CheckResult {
-    /// The rollout agrees with the record.
-    Pass,
-    /// It does not.
-    Fail,
-    /// The record says nothing about it, or the rollout cannot show it (no contact, say).
-    NotApplicable,
+    /// The rollout shows what is told.
+    Shown,
+    /// It shows something else.
+    NotShown,
+    /// It is told, and this rollout cannot show it: contact zones without a contact, say.
+    CannotBeShown,
+    /// Nothing is told about it.
+    NotTold,
 }
 
-/// Whether a rollout is true to its record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A verdict of three values: nothing that failed is not yet a yes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Answer {
+    /// It holds, and everything it rests on was checked.
+    Yes,
+    /// It does not.
+    No,
+    /// Nothing speaks against it, and not everything was checked.
+    Unchecked,
+}
+
+impl Answer {
+    /// For tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Yes => "yes",
+            Self::No => "no",
+            Self::Unchecked => "unchecked",
+        }
+    }
+}
+
+/// Whether a rollout is true to its record, fact by fact; without checks where there is no record to be true to.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
     /// Every check.
     pub checks: Vec<Check>,
 }
 
 impl Verdict {
-    /// Whether no check failed.
-    pub fn faithful(&self) -> bool {
-        self.failures().next().is_none()
+    /// Whether the rollout is true to its record: yes where every told fact is shown, no where one is not, unchecked where
+    /// one cannot be shown or nothing was told.
+    pub fn faithful(&self) -> Answer {
+        let any = |result| self.checks.iter().any(|check| check.result == result);
+        if any(CheckResult::NotShown) {
+            Answer::No
+        } else if any(CheckResult::CannotBeShown) || !any(CheckResult::Shown) {
+            Answer::Unchecked
+        } else {
+            Answer::Yes
+        }
     }
 
-    /// The checks that failed.
+    /// The told facts that the rollout does not show.
     pub fn failures(&self) -> impl Iterator<Item = &Check> {
-        self.checks.iter().filter(|check| check.result == CheckResult::Fail)
+        self.checks.iter().filter(|check| check.result == CheckResult::NotShown)
+    }
+
+    /// The told facts that the rollout cannot show.
+    pub fn unchecked(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(|check| check.result == CheckResult::CannotBeShown)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn verdict(results: &[CheckResult]) -> Answer {
+        let check = |&result| Check { kind: CheckKind::Road, expected: String::new(), observed: String::new(), result };
+        Verdict { checks: results.iter().map(check).collect() }.faithful()
+    }
+
+    #[test]
+    fn yes_asks_for_every_told_fact_and_nothing_that_failed_is_not_yet_a_yes() {
+        use CheckResult::{CannotBeShown, NotShown, NotTold, Shown};
+        assert_eq!(verdict(&[Shown, NotTold, Shown]), Answer::Yes);
+        assert_eq!(verdict(&[Shown, CannotBeShown]), Answer::Unchecked);
+        assert_eq!(verdict(&[Shown, CannotBeShown, NotShown]), Answer::No);
+        assert_eq!(verdict(&[NotTold, NotTold]), Answer::Unchecked);
+        assert_eq!(verdict(&[]), Answer::Unchecked);
     }
 }

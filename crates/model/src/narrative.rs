@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The narratives' format tag.
-pub const NARRATIVE_FORMAT: &str = "recrash.narrative/1";
+pub const NARRATIVE_FORMAT: &str = "recrash.narrative/2";
 
 /// One paraphrased narrative.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,23 +26,76 @@ pub struct Narrative {
     pub text: String,
     /// What the text states.
     pub facts: Vec<Fact>,
-    /// Whether it retells the record or takes its place.
+    /// Whose crash it tells.
     pub origin: Origin,
     /// Who wrote it.
     pub author: Author,
 }
 
-/// Whether a narrative retells its record.
+/// Whose crash is told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", tag = "is")]
+#[serde(rename_all = "snake_case", tag = "is", deny_unknown_fields)]
 pub enum Origin {
-    /// It retells the record.
-    Record,
-    /// A plausible alternative of the same template takes the record's place.
-    Alternative {
-        /// Why the record itself was not used.
+    /// The picked record's own.
+    Own,
+    /// Another real record's, which takes the picked one's place.
+    Other {
+        /// The record that is told.
+        record: RecordRef,
+        /// Why the picked one is not.
         reason: String,
     },
+    /// Nobody's: a plausible course of the same template.
+    Invented {
+        /// Why no record is told.
+        reason: String,
+    },
+}
+
+impl Origin {
+    /// One word for files and tables: `own`, `other` or `invented`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Other { .. } => "other",
+            Self::Invented { .. } => "invented",
+        }
+    }
+
+    /// For sentences.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::Own => "own record",
+            Self::Other { .. } => "another record",
+            Self::Invented { .. } => "invented",
+        }
+    }
+
+    /// Why the picked record is not told, where it is not.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Self::Own => None,
+            Self::Other { reason, .. } | Self::Invented { reason } => Some(reason),
+        }
+    }
+}
+
+impl Narrative {
+    /// The record whose crash is told; none where it is invented.
+    pub fn told_record(&self) -> Option<&RecordRef> {
+        match &self.origin {
+            Origin::Own => self.records.first(),
+            Origin::Other { record, .. } => Some(record),
+            Origin::Invented { .. } => None,
+        }
+    }
+
+    /// The records it was made from: the told one first, so that no cut loses it.
+    pub fn sources(&self) -> Vec<RecordRef> {
+        let told = self.told_record();
+        let others = self.records.iter().filter(|record| Some(*record) != told);
+        told.into_iter().chain(others).cloned().collect()
+    }
 }
 
 /// One fact and where it came from.

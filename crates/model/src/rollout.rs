@@ -236,15 +236,13 @@ impl Rollout {
     /// The hash of all states, actor by actor: FNV-1a (64 bits) over the little-endian bits of x, y, heading, vx,
     /// vy, steer and throttle, in hexadecimal.
     pub fn hash_states(actors: &[ActorTrack]) -> String {
-        let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
+        let mut hash = crate::hash::Fnv::default();
         for state in actors.iter().flat_map(|track| &track.states) {
             for number in state.numbers() {
-                for byte in number.to_bits().to_le_bytes() {
-                    hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-                }
+                hash.write(&number.to_bits().to_le_bytes());
             }
         }
-        format!("{hash:016x}")
+        hash.hexadecimal()
     }
 
     /// The ego's track.

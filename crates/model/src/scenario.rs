@@ -5,6 +5,7 @@
 //!
 //! Lateral offsets `t` are positive to the **right** of travel and lane 0 is the leftmost, as in MetaDrive.
 
+use crate::narrative::Origin;
 use crate::record::{Lighting, PartnerKind, RecordRef, Surface, Weather};
 use crate::template::Template;
 use schemars::JsonSchema;
@@ -50,9 +51,12 @@ pub struct ScenarioDraft {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
-    /// Crash records; the pick is the first.
+    /// Crash records: the one that is told first, then the others that were looked at.
     #[serde(default)]
     pub records: Vec<RecordRef>,
+    /// Whose crash it is; absent where nobody said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
     /// Template.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub template: Option<Template>,

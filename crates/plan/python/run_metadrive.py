@@ -309,7 +309,7 @@ class PartnerPolicy(IDMPolicy):
     def steer(self, world, actor):
         plan, vehicle, place = self.plan, actor.vehicle, actor.place
         preview, greatest = Law.preview_s, plan["greatest_drift_rad"]
-        wanted, rate = self.line(world.step * Law.step_s + preview)
+        wanted, rate = self.line(world.step * Law.step_s + preview - Law.seen_late_s)
         drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, Law.slow_mps))))
         drift = max(-greatest, min(greatest, drift))
 
@@ -591,6 +591,8 @@ class World:
 
     def introduce(self, vehicle, policy, spec):
         adjust_inertia(vehicle, spec["body"])
+        # A contact is an event and pushes nobody, as in the native simulator: whoever has touched brakes, and is in nobody's way.
+        vehicle.body.setCollisionResponse(False)
         place = Place(self.network, spec)
         if spec["t_m"] != 0.0:
             vehicle.set_position(place.lanes[0].position(spec["s_m"], spec["t_m"]))

@@ -40,7 +40,7 @@ pub const STOP_SHORT_M: f64 = 0.5;
 /// An obstacle that it would brush by no more than this is not on its line: less than it sways. [m]
 pub const BRUSHES_M: f64 = 0.1;
 
-/// Bends are driven, and sideways moves begun and ended, at this share of the sideways acceleration a kind may have, so that there is some left to steer with.
+/// Bends are driven at this share of the sideways acceleration a kind may have, so that there is some left to steer with.
 pub const SHARE_IN_BENDS: f64 = 0.8;
 
 /// The wanted line may run at no more than this angle to the lane, for vehicles; assumed. [rad]
@@ -58,6 +58,10 @@ pub const SHORTEST_MOVE_S: f64 = 1e-3;
 /// The lane keeper looks this far ahead in time: the lag of held controls, wheels and published places together,
 /// 0.05 + 0.1 + 0.02 s (`docs/models/vehicle.md`). [s]
 pub const PREVIEW_S: f64 = 0.17;
+
+/// Places are seen this late: one physics step (`docs/models/vehicle.md`). So what is previewed is that much nearer in
+/// time. [s]
+pub const SEEN_LATE_S: f64 = 0.02;
 
 /// The time in which a deviation from the line goes down to 1/e, twice: both poles lie there (critical damping), far
 /// enough from the lag above; assumed. [s]
@@ -120,6 +124,7 @@ pub struct Constants {
     pub shortest_move_s: f64,
     pub brushes_m: f64,
     pub preview_s: f64,
+    pub seen_late_s: f64,
     pub return_s: f64,
     pub return_wheelbases: f64,
     pub committed_m: f64,
@@ -145,6 +150,7 @@ impl Constants {
         shortest_move_s: SHORTEST_MOVE_S,
         brushes_m: BRUSHES_M,
         preview_s: PREVIEW_S,
+        seen_late_s: SEEN_LATE_S,
         return_s: RETURN_S,
         return_wheelbases: RETURN_WHEELBASES,
         committed_m: COMMITTED_M,

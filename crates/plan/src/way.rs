@@ -94,7 +94,7 @@ fn blend_s(plan: &Plan, moves: &[LateralMove]) -> f64 {
         from_m = step.to_t_m;
     }
     let shortest_s = moves.iter().map(|step| step.duration_s).fold(f64::INFINITY, f64::min);
-    if fastest_mps > 0.0 { (fastest_mps / (SHARE_IN_BENDS * plan.sideways_mps2)).min(shortest_s) } else { 0.0 }
+    if fastest_mps > 0.0 { (fastest_mps / plan.sideways_mps2).min(shortest_s) } else { 0.0 }
 }
 
 fn bends(path: &LanePath, plan: &Plan) -> Vec<Bend> {

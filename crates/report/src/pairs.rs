@@ -1,8 +1,8 @@
 //! Runs of the same scenarios by two simulators: what the pipeline hands over for the page that shows them side by side.
 
-use recrash_model::metrics::{Series, Timed};
+use recrash_model::metrics::Series;
 use recrash_model::profile::FailureCriteria;
-use recrash_model::rollout::Rollout;
+use recrash_model::run::JudgedRun;
 use recrash_roads::RoadDrawing;
 
 /// A comparison.
@@ -53,10 +53,8 @@ pub struct PairView {
 /// What a replay shows of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunTrace {
-    /// What happened.
-    pub rollout: Rollout,
+    /// What happened, and what that says.
+    pub run: JudgedRun,
     /// Values over time.
     pub series: Series,
-    /// Least box gap of the ego, and when. [m]
-    pub min_gap: Option<Timed>,
 }

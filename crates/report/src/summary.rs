@@ -1,8 +1,8 @@
 //! The headline numbers, computed once, so that no two places of the report can disagree.
 
-use crate::view::{CaseView, RunView, SuiteView};
-use recrash_model::metrics::FindingKind;
-use recrash_model::narrative::Origin;
+use crate::view::{CaseRow, SuiteView};
+use recrash_model::metrics::Answer;
+use recrash_model::run::Judgement;
 use recrash_model::triage::FailureClass;
 
 /// How a run ended for the ego.
@@ -18,7 +18,7 @@ pub enum Result {
 
 impl Result {
     /// Of a run.
-    pub fn of(run: Option<&RunView>) -> Self {
+    pub fn of(run: Option<&Judgement>) -> Self {
         match run {
             Some(run) if run.failed() => Self::Failed,
             Some(_) => Self::Passed,
@@ -50,12 +50,16 @@ pub struct Summary {
     pub ran: usize,
     /// Scenarios that were refused.
     pub refused: usize,
-    /// Scenarios that retell their record.
-    pub from_record: usize,
-    /// Scenarios whose narrative takes the record's place.
-    pub alternatives: usize,
-    /// Scenarios whose last run is faithful.
-    pub faithful: usize,
+    /// Scenarios that tell their own record, another one, and nobody's crash.
+    pub origins: [usize; 3],
+    /// Scenarios that tell their own record and whose last run shows every fact told.
+    pub own_faithful: usize,
+    /// Scenarios that tell their own record and whose last run shows something else.
+    pub own_unfaithful: usize,
+    /// Scenarios that tell another record and whose last run shows every fact told.
+    pub other_faithful: usize,
+    /// Scenarios in which a person edited a file.
+    pub edited: usize,
     /// Scenarios the ego fails as designed.
     pub failed_before: usize,
     /// Scenarios the ego fails after tuning.
@@ -73,20 +77,23 @@ pub struct Summary {
 impl Summary {
     /// Of a suite.
     pub fn of(suite: &SuiteView) -> Self {
-        let count = |holds: &dyn Fn(&CaseView) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
-        let origin = |case: &CaseView| case.narrative.as_ref().map(|narrative| narrative.origin == Origin::Record);
-        let gaps = |of: &dyn Fn(&CaseView) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
+        let count = |holds: &dyn Fn(&CaseRow) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
+        let tells = |case: &CaseRow, name: &str| case.origin.as_ref().is_some_and(|origin| origin.name() == name);
+        let answers = |case: &CaseRow, answer| case.faithful() == Some(answer);
+        let gaps = |of: &dyn Fn(&CaseRow) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
         Self {
             rows: suite.records.files.iter().map(|file| file.rows).sum(),
             usable: suite.records.usable.len(),
             cases: suite.cases.len(),
             ran: count(&|case| case.last_run().is_some()),
             refused: count(&|case| case.refused.is_some()),
-            from_record: count(&|case| origin(case) == Some(true)),
-            alternatives: count(&|case| origin(case) == Some(false)),
-            faithful: count(&|case| case.last_run().is_some_and(|run| run.faithful() == Some(true))),
-            failed_before: count(&|case| case.before.as_ref().is_some_and(RunView::failed)),
-            failed_after: count(&|case| case.last_run().is_some_and(RunView::failed)),
+            origins: ["own", "other", "invented"].map(|name| count(&|case| tells(case, name))),
+            own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
+            own_unfaithful: count(&|case| tells(case, "own") && answers(case, Answer::No)),
+            other_faithful: count(&|case| tells(case, "other") && answers(case, Answer::Yes)),
+            edited: count(&|case| !case.edited.is_empty()),
+            failed_before: count(&|case| case.before.as_ref().is_some_and(|run| run.failed())),
+            failed_after: count(&|case| case.last_run().is_some_and(|run| run.failed())),
             classes: FailureClass::ALL
                 .into_iter()
                 .map(|class| (class, count(&|case| case.triage.as_ref().is_some_and(|triage| triage.class == class))))
@@ -105,17 +112,9 @@ impl Summary {
 }
 
 /// Whether tuning brought the partner closer, where the ego did not fail as designed.
-fn closer(case: &CaseView) -> Option<bool> {
+fn closer(case: &CaseRow) -> Option<bool> {
     let (before, after) = (case.before.as_ref()?, case.after.as_ref()?);
     Some(!before.failed() && after.min_gap_m()? < before.min_gap_m()?)
-}
-
-/// The kinds of finding of a run, each once, in the order of severity.
-pub fn finding_kinds(run: &RunView) -> Vec<FindingKind> {
-    let mut kinds: Vec<FindingKind> = run.findings.iter().map(|finding| finding.kind).collect();
-    kinds.sort();
-    kinds.dedup();
-    kinds
 }
 
 /// The median: the middle value, or the mean of the two in the middle.

@@ -14,6 +14,7 @@ mod paper_dialect;
 pub mod path;
 mod read;
 pub mod scenario;
+pub mod simulator;
 pub mod traffic;
 
 pub use check::check;
@@ -24,4 +25,5 @@ pub use network::{Road, RoadId, RoadNetwork, RoadPart};
 pub use path::{Conflict, Footprint, LanePath, PathPoint};
 pub use read::{MAX_SCENARIO_BYTES, read_draft, scenario_schema, write_draft};
 pub use scenario::{ObstaclePlacement, Placement, Scenario, obstacle_size};
+pub use simulator::{RunError, Simulator};
 pub use traffic::{TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic};

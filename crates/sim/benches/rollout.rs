@@ -5,10 +5,10 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use recrash_model::scenario::{Approach, Start, Turn};
 use recrash_roads::Scenario;
-use recrash_sim::{Ego, RolloutRecorder, Simulator, SummaryRecorder};
+use recrash_sim::{Ego, RolloutRecorder, Runner, SummaryRecorder};
 use std::hint::black_box;
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 /// The ego straight across an intersection, a partner that turns left in front of it, late enough to miss it.
@@ -30,22 +30,22 @@ fn rollouts(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("rollout");
     for (name, scenario) in [("crossing", crossing()), ("busy_roundabout", busy_roundabout())] {
         for ego in Ego::ALL {
-            let mut simulator = Simulator::new();
+            let mut runner = Runner::new();
             let mut recorder = SummaryRecorder::new();
-            simulator.run(&scenario, ego, &mut recorder);
+            runner.run(&scenario, ego, &mut recorder);
             let agent_steps = recorder.summary.actors as u64 * u64::from(recorder.summary.steps);
             group.throughput(Throughput::Elements(agent_steps));
             group.bench_function(format!("{name}/{ego}/summary"), |bencher| {
-                bencher.iter(|| simulator.run(black_box(&scenario), ego, &mut recorder));
+                bencher.iter(|| runner.run(black_box(&scenario), ego, &mut recorder));
             });
         }
     }
     let scenario = crossing();
-    let mut simulator = Simulator::new();
+    let mut runner = Runner::new();
     group.bench_function("crossing/metadrive-idm/everything", |bencher| {
         bencher.iter(|| {
             let mut recorder = RolloutRecorder::new();
-            simulator.run(black_box(&scenario), Ego::MetadriveIdm, &mut recorder);
+            runner.run(black_box(&scenario), Ego::MetadriveIdm, &mut recorder);
             recorder.finish()
         });
     });

@@ -1,9 +1,9 @@
 //! Runs one scenario again and again, for a profiler: `throughput crossing|roundabout RUNS`.
 
 use recrash_model::scenario::{Approach, Start, Turn};
-use recrash_sim::{Ego, Simulator, SummaryRecorder};
+use recrash_sim::{Ego, Runner, SummaryRecorder};
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 fn main() {
@@ -20,11 +20,11 @@ fn main() {
         draft
     };
     let scenario = common::checked(draft);
-    let mut simulator = Simulator::new();
+    let mut runner = Runner::new();
     let mut recorder = SummaryRecorder::new();
     let mut agent_steps = 0;
     for _ in 0..runs {
-        simulator.run(&scenario, Ego::MetadriveIdm, &mut recorder);
+        runner.run(&scenario, Ego::MetadriveIdm, &mut recorder);
         agent_steps += recorder.summary.actors as u64 * u64::from(recorder.summary.steps);
     }
     println!("{agent_steps} agent-steps; divide by the user time of this process");

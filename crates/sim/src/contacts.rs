@@ -1,7 +1,6 @@
 //! Who touches whom.
 
 use crate::chassis::Controls;
-use crate::recorder::Recorder;
 use crate::scene::Seen;
 use crate::world::{Setting, State, Workspace};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -33,14 +32,8 @@ pub(crate) fn find_near(setting: &Setting, state: &State, near: &mut Vec<(u16, u
     }
 }
 
-/// Notes every first contact at this physics step.
-pub(crate) fn collide<R: Recorder>(
-    setting: &Setting,
-    state: &mut State,
-    workspace: &mut Workspace,
-    time_s: f64,
-    recorder: &mut R,
-) {
+/// Notes every first contact at this physics step, and who brakes for good because of it.
+pub(crate) fn collide(setting: &Setting, state: &mut State, workspace: &mut Workspace, time_s: f64) {
     let actors = state.seen.len();
     let columns = actors + setting.obstacles.len();
     workspace.near.retain(|&(a, b)| {
@@ -51,7 +44,7 @@ pub(crate) fn collide<R: Recorder>(
         };
         let state_of = |actor: usize| {
             let body = &state.bodies[actor];
-            actor_state(body.pose, body.velocity(), workspace.controls[actor])
+            actor_state(body.pose, body.velocity(), state.controls[actor])
         };
         let kind = if b < actors {
             // Circles first: the boxes cost a sine and a cosine each.
@@ -75,7 +68,7 @@ pub(crate) fn collide<R: Recorder>(
             state.halted[b] = true;
             state.ego_contact |= a == 0;
         }
-        recorder.event(&Event { time_s, kind });
+        workspace.events.push(Event { time_s, kind });
         false
     });
 }

@@ -5,8 +5,10 @@
 //! whatever a checked scenario asks for, a run ends with a termination that is data.
 //!
 //! - [`simulate`] runs one scenario and keeps everything.
-//! - [`Simulator`] runs many, with a [`Recorder`] that keeps what is wanted; a step allocates nothing.
-//! - [`EgoDriver`] is the seat for a driver from outside, see [`Simulator::run_with`].
+//! - [`Runner`] runs many, with a [`Recorder`] that keeps what is wanted; a step allocates nothing.
+//! - [`Run`] is one run that others drive: reset, observe, step, snapshot, restore. The two above are users of it.
+//! - [`Native`] is it as one [`recrash_roads::Simulator`] among others.
+//! - [`EgoDriver`] is the seat for a driver from outside, see [`Runner::run_with`].
 //! - The models behind it are described in `docs/models`: vehicle, metadrive-idm, idm, reference, policies.
 //!
 //! What this crate does **not** do: it never sees a crash record, opens no file, reads no clock and starts no thread.
@@ -20,11 +22,13 @@ mod give_way;
 mod idm;
 mod lanes;
 mod metadrive_idm;
+mod native;
 mod recorder;
 mod reference;
+mod run;
+mod runner;
 mod scene;
 mod script;
-mod simulator;
 mod steering;
 mod swerve;
 mod world;
@@ -34,17 +38,19 @@ pub use driver::{EgoDriver, Observation};
 pub use ego::{Ego, UnknownEgo};
 pub use emergency::EmergencyResponse;
 pub use idm::IdmParameters;
+pub use native::Native;
 pub use recorder::{CastMember, Recorder, RolloutRecorder, Summary, SummaryRecorder};
-pub use simulator::Simulator;
+pub use run::{Run, Seat, Snapshot};
+pub use runner::Runner;
 
 use recrash_model::rollout::Rollout;
 use recrash_roads::Scenario;
 
 /// Runs one scenario.
 ///
-/// For many runs keep a [`Simulator`]: it reuses its memory.
+/// For many runs keep a [`Runner`]: it reuses its memory.
 pub fn simulate(scenario: &Scenario, ego: Ego) -> Rollout {
     let mut recorder = RolloutRecorder::new();
-    Simulator::new().run(scenario, ego, &mut recorder);
+    Runner::new().run(scenario, ego, &mut recorder);
     recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends"))
 }

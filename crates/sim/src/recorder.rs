@@ -1,5 +1,6 @@
 //! What is kept of a run: everything ([`RolloutRecorder`]) or a few numbers ([`SummaryRecorder`]).
 
+use crate::native::Native;
 use recrash_model::geometry::OrientedBox;
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{
@@ -79,7 +80,7 @@ impl Recorder for RolloutRecorder {
         self.rollout = Some(Rollout {
             format: ROLLOUT_FORMAT.to_owned(),
             scenario_id: draft.id.clone(),
-            simulator: format!("native {}", env!("CARGO_PKG_VERSION")),
+            simulator: format!("{} {}", Native::NAME, Native::VERSION),
             ego: ego.to_string(),
             actors: actors.collect(),
             obstacles: scenario.obstacles().iter().map(|obstacle| obstacle.placed).collect(),

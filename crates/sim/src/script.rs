@@ -5,7 +5,7 @@ use crate::give_way::GiveWay;
 use crate::metadrive_idm;
 use crate::scene::Scene;
 use recrash_model::rollout::STEP_S;
-use recrash_plan::constants::PREVIEW_S;
+use recrash_plan::constants::{PREVIEW_S, SEEN_LATE_S};
 use recrash_plan::{Crossing, LaneKeeper, Line, Manners, Moment, Plan, SpeedPlan, Way, drift, gap_law, hold_still};
 
 /// The state of a scripted partner.
@@ -50,7 +50,7 @@ impl Script {
 
     fn steer(&mut self, scene: &Scene<'_>, me: usize, way: &Way, offset_m: f64) -> f64 {
         let seen = &scene.actors[me];
-        let time_s = f64::from(scene.step) * STEP_S + PREVIEW_S;
+        let time_s = f64::from(scene.step) * STEP_S + PREVIEW_S - SEEN_LATE_S;
         let (wanted_m, rate_mps) = way.line(&self.plan, time_s);
         let s_m = scene.path_s(me);
         let line = Line {

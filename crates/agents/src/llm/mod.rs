@@ -2,7 +2,8 @@
 //! of times, and then the caller lets the rules take over.
 //!
 //! A role makes a [`Question`]; [`Answers`] answers it: live, from a batch, or from the ledger. So prompts, repairs and
-//! fallback are one path for every provider, and a provider is known to `live.rs` only.
+//! fallback are one path for every provider, and a provider is known to
+//! `providers.rs` and `wire.rs` only.
 
 mod access;
 mod answers;
@@ -14,20 +15,23 @@ mod fault;
 mod live;
 mod prices;
 mod prompts;
+#[cfg(feature = "live")]
+mod providers;
 mod question;
 mod schema;
 mod secrets;
 mod spending;
+mod wire;
 
 pub use access::LiveOptions;
-pub use answers::{Answers, AskError, Batch, Ledger, Replay};
-pub use batch::{read_responses, request_line};
+pub use answers::{Answers, AskError, Batch, Ledger, Replay, Tried};
+pub use batch::{LONGEST_RESPONSE, Responses, request_line};
 #[cfg(feature = "live")]
 pub use live::Live;
 pub use prices::{ModelPrice, PriceTable, plain_name};
 pub use prompts::{TuneBrief, version as prompts_version};
 pub use question::{Asked, EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
-pub use secrets::Secret;
+pub use secrets::{Scrubber, Secret};
 pub use spending::{Caps, Spending, Spent};
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
@@ -152,7 +156,7 @@ impl LanguageModel<'_> {
     ) -> Result<T, AgentError> {
         loop {
             let exchange = self.answers.answer(&question)?;
-            let found = extract::json_object(&exchange.answer).map_err(|why| vec![why]).and_then(&accept);
+            let found = extract::json_object(&exchange.answer).map_err(|why| vec![why]).and_then(|json| accept(&json));
             let problems = match found {
                 Ok(value) => return Ok(value),
                 Err(problems) => problems,
@@ -207,8 +211,8 @@ impl Paraphrase for LanguageModel<'_> {
             template: brief.template,
             records: brief.records.iter().map(|record| record.id.clone()).collect(),
             text: answer.text,
+            origin: origin(answer.replaces_record, &answer.facts, brief),
             facts: answer.facts,
-            origin: answer.replaces_record.map_or(Origin::Record, |reason| Origin::Alternative { reason }),
             author: Author::Model(self.model.to_owned()),
         };
         Ok(Outcome { value: narrative, diagnostics: Vec::new() })
@@ -243,7 +247,8 @@ impl Design for LanguageModel<'_> {
             format: SCENARIO_FORMAT.to_owned(),
             id: brief.scenario_id.to_owned(),
             source: Source {
-                records: narrative.records.clone(),
+                records: narrative.sources(),
+                origin: Some(narrative.origin.clone()),
                 template: Some(brief.template),
                 narrative: narrative.text.clone(),
                 author: Author::Model(self.model.to_owned()),
@@ -254,9 +259,22 @@ impl Design for LanguageModel<'_> {
     }
 }
 
+/// Whose crash an answer tells: where it takes the pick's place, that of the report whose words it quotes first.
+fn origin(replaces_record: Option<String>, facts: &[Fact], brief: &Brief) -> Origin {
+    let Some(reason) = replaces_record else { return Origin::Own };
+    let quoted = facts.iter().find_map(|fact| match &fact.source {
+        FactSource::Words { record, .. } => Some(record),
+        FactSource::Column { .. } | FactSource::Assumed { .. } => None,
+    });
+    match quoted.filter(|record| brief.records.first().is_some_and(|pick| pick.id != **record)) {
+        Some(record) => Origin::Other { record: record.clone(), reason },
+        None => Origin::Invented { reason },
+    }
+}
+
 fn push_repair(question: &mut Question, answer: String, problems: &[String]) -> Result<(), AgentError> {
     // Some providers take no empty turn.
-    let answer = if answer.trim().is_empty() { "(no answer)".to_owned() } else { answer };
+    let answer = if answer.trim().is_empty() { "(no answer)".to_owned() } else { question::bounded_turn(&answer) };
     question.turns.push(Turn { speaker: Speaker::Assistant, text: answer });
     question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(problems)? });
     question.purpose.attempt += 1;

@@ -95,7 +95,7 @@ impl<'a> Stage<'a> {
         let facts = Facts(&narrative.facts);
         let kind = facts.partner().unwrap_or_default();
         let ground = ground(&narrative.template, &staging);
-        let record = brief.records.first().copied();
+        let record = brief.told(narrative);
         let told = |pick: fn(&FactValue) -> Option<f64>| facts.find(pick).filter(|v| *v >= LEAST_TOLD_SPEED_MPS);
         let posted = record.and_then(|r| r.posted_speed_mps).map(|v| v * SHARE_OF_POSTED_SPEED);
         let ego = told(|value| match value {
@@ -254,7 +254,8 @@ impl<'a> Stage<'a> {
             format: SCENARIO_FORMAT.to_owned(),
             id: self.brief.scenario_id.to_owned(),
             source: Source {
-                records: self.narrative.records.iter().take(MOST_SOURCES).cloned().collect(),
+                records: self.narrative.sources().into_iter().take(MOST_SOURCES).collect(),
+                origin: Some(self.narrative.origin.clone()),
                 template: Some(template),
                 narrative: self.narrative.text.clone(),
                 author: Author::Rules,
@@ -281,7 +282,7 @@ impl<'a> Stage<'a> {
             }],
             obstacles: Vec::new(),
             traffic: Traffic::default(),
-            environment: self.brief.records.first().map_or_else(Environment::default, |record| environment(record)),
+            environment: self.brief.told(self.narrative).map_or_else(Environment::default, environment),
             duration_s: 30.0,
         }
     }

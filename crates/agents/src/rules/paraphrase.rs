@@ -35,17 +35,17 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
     let pick = read(pick);
     let mut diagnostics = Vec::new();
     let (told, origin) = match retell(&pick, brief, ways) {
-        Ok(told) => (told, Origin::Record),
+        Ok(told) => (told, Origin::Own),
         Err(reason) => {
-            let (told, source) = alternative(&pick, brief, ways);
-            let reason = format!("{reason}; {source}");
+            let (told, origin) = alternative(&pick, reason, brief, ways);
+            let reason = origin.reason().unwrap_or_default();
             diagnostics.push(Diagnostic::new(
                 Severity::Note,
                 "narrative.alternative",
                 Location::default(),
                 format!("{}: {reason}", brief.scenario_id),
             ));
-            (told, Origin::Alternative { reason })
+            (told, origin)
         }
     };
     let facts = complete(told, brief, &mut diagnostics);
@@ -114,7 +114,7 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
 
 /// Another record of the cluster that can be retold, else a staging of the template chosen by the seed, with what of the
 /// pick does not depend on the conflict.
-fn alternative(pick: &Reading, brief: &Brief, ways: &[Staging]) -> (Told, String) {
+fn alternative(pick: &Reading, why_not: String, brief: &Brief, ways: &[Staging]) -> (Told, Origin) {
     let mut rng = brief.seed.child(brief.scenario_id).child("alternative").rng();
     let mut donors: Vec<_> = brief.records.iter().skip(1).take(MOST_DONORS).collect();
     // Scenarios of one template look at the same few records; each begins elsewhere.
@@ -128,7 +128,8 @@ fn alternative(pick: &Reading, brief: &Brief, ways: &[Staging]) -> (Told, String
             continue;
         }
         if let Ok(told) = retell(&reading, brief, ways) {
-            return (told, format!("{}, of the same cluster, is retold in its place", donor.id));
+            let reason = format!("{why_not}; {}, of the same cluster, is retold in its place", donor.id);
+            return (told, Origin::Other { record: donor.id.clone(), reason });
         }
     }
     let by_zones = if pick.collision.is_none() { from_zones(pick, ways) } else { None };
@@ -139,7 +140,8 @@ fn alternative(pick: &Reading, brief: &Brief, ways: &[Staging]) -> (Told, String
     let facts = pick.facts.iter().filter(|fact| survives(&fact.value)).cloned().collect();
     let source = FactSource::Assumed { why: why.to_owned() };
     let approach = Fact { value: FactValue::Approach { approach: staging.approach }, source };
-    (Told { staging, approach, facts }, "a plausible course of the same template takes its place".to_owned())
+    let reason = format!("{why_not}; a plausible course of the same template takes its place");
+    (Told { staging, approach, facts }, Origin::Invented { reason })
 }
 
 /// What stays true of a record when another conflict takes its place.

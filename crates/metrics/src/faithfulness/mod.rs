@@ -180,7 +180,7 @@ impl Witness<'_> {
 
     fn approach(&self) -> Check {
         let Some(expected) = self.expectation.approach else {
-            return not_applicable(CheckKind::Approach, "not stated", "");
+            return not_told(CheckKind::Approach, "not stated", "");
         };
         let first = |actor: usize| self.scene.outlines.get(actor).and_then(|outlines| outlines.first());
         let pair = self.partner.and_then(|partner| Some((first(0)?, first(partner.actor)?)));
@@ -220,7 +220,7 @@ impl Witness<'_> {
 
     fn order(&self) -> Check {
         let Some(expected) = self.expectation.order else {
-            return not_applicable(CheckKind::Order, "not stated", "");
+            return not_told(CheckKind::Order, "not stated", "");
         };
         let told = match expected {
             FirstMover::Sv => "the ego first",
@@ -249,7 +249,7 @@ impl Witness<'_> {
 
     /// The greatest speed up to the encounter: what comes after braking for it is no told speed.
     fn speed(&self, kind: CheckKind, actor: Option<usize>, told_mps: Option<f64>) -> Check {
-        let Some(told_mps) = told_mps else { return not_applicable(kind, "not stated", "") };
+        let Some(told_mps) = told_mps else { return not_told(kind, "not stated", "") };
         let expected = format!("about {told_mps:.1} m/s");
         let Some(actor) = actor else { return check(kind, expected, "no scripted partner", false) };
         let steps = self.scene.outlines[actor].len();
@@ -318,14 +318,16 @@ impl Witness<'_> {
             zones => zones.iter().map(|zone| zone.label()).collect::<Vec<_>>().join(", "),
         };
         let expected = format!("SV {}; CP {}", name(&sv), name(&cp));
+        let told = !(sv.is_empty() && cp.is_empty());
         let Some((geometry, predicted)) = self.contact() else {
-            return not_applicable(CheckKind::ContactZones, &expected, "no contact");
+            let result = if told { CheckResult::CannotBeShown } else { CheckResult::NotTold };
+            return Check { kind: CheckKind::ContactZones, expected, observed: "no contact".to_owned(), result };
         };
         let (on_sv, on_cp) = (geometry.ego_zone, geometry.other_zone);
         let how = if predicted { ", as predicted from the closest approach" } else { "" };
         let observed = format!("SV {}; CP {}{how}", on_sv.label(), on_cp.label());
-        if sv.is_empty() && cp.is_empty() {
-            return not_applicable(CheckKind::ContactZones, &expected, &observed);
+        if !told {
+            return not_told(CheckKind::ContactZones, &expected, &observed);
         }
         let agree = |zones: &[ContactZone], shown: ContactZone| {
             zones.is_empty()
@@ -337,7 +339,7 @@ impl Witness<'_> {
     fn excluded_collision(&self) -> Check {
         let excluded = &self.expectation.excluded;
         if excluded.is_empty() {
-            return not_applicable(CheckKind::ExcludedCollision, "no kind excluded", "");
+            return not_told(CheckKind::ExcludedCollision, "no kind excluded", "");
         }
         let expected = format!("no {}", excluded.iter().map(|kind| kind.label()).collect::<Vec<_>>().join(", no "));
         match self.contact() {
@@ -390,10 +392,10 @@ fn label(approach: Approach) -> &'static str {
 }
 
 fn check(kind: CheckKind, expected: impl Into<String>, observed: impl Into<String>, agrees: bool) -> Check {
-    let result = if agrees { CheckResult::Pass } else { CheckResult::Fail };
+    let result = if agrees { CheckResult::Shown } else { CheckResult::NotShown };
     Check { kind, expected: expected.into(), observed: observed.into(), result }
 }
 
-fn not_applicable(kind: CheckKind, expected: &str, observed: &str) -> Check {
-    Check { kind, expected: expected.to_owned(), observed: observed.to_owned(), result: CheckResult::NotApplicable }
+fn not_told(kind: CheckKind, expected: &str, observed: &str) -> Check {
+    Check { kind, expected: expected.to_owned(), observed: observed.to_owned(), result: CheckResult::NotTold }
 }

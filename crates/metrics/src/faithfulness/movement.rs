@@ -219,9 +219,9 @@ impl Driven {
             | Movement::NmWaiting
             | Movement::NmAlongside
             | Movement::NmOnSidewalk
-            | Movement::NmInRoadway => return CheckResult::NotApplicable,
+            | Movement::NmInRoadway => return CheckResult::CannotBeShown,
         };
-        if shown { CheckResult::Pass } else { CheckResult::Fail }
+        if shown { CheckResult::Shown } else { CheckResult::NotShown }
     }
 
     /// For the report.

@@ -6,6 +6,7 @@ use recrash_model::math;
 use recrash_model::metrics::*;
 use recrash_model::record::{ContactZone, PartnerKind};
 use recrash_model::rollout::*;
+use recrash_model::run::JudgedRun;
 use recrash_model::scenario::*;
 use recrash_model::selection::Cluster;
 use recrash_model::template::{Movement, RoadType};
@@ -312,10 +313,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
     };
     RunView {
         scenario: scenario(cluster, plan, arrival_gap_s),
-        rollout,
-        metrics,
-        findings,
-        verdict: verdict(cluster, touch.is_some()),
+        run: JudgedRun::new(rollout, metrics, findings, verdict(cluster, touch.is_some())),
         series,
         rerun_command,
     }
@@ -332,19 +330,19 @@ fn verdict(cluster: &Cluster, touched: bool) -> Verdict {
     let turned_back = cluster.number == 17;
     Verdict {
         checks: vec![
-            check(CheckKind::Road, t.road.label(), t.road.label(), CheckResult::Pass),
-            check(CheckKind::SvMovement, t.sv.label(), t.sv.label(), CheckResult::Pass),
+            check(CheckKind::Road, t.road.label(), t.road.label(), CheckResult::Shown),
+            check(CheckKind::SvMovement, t.sv.label(), t.sv.label(), CheckResult::Shown),
             check(
                 CheckKind::CpMovement,
                 t.cp.label(),
                 if turned_back { "Proceeding straight" } else { t.cp.label() },
-                if turned_back { CheckResult::Fail } else { CheckResult::Pass },
+                if turned_back { CheckResult::NotShown } else { CheckResult::Shown },
             ),
-            check(CheckKind::Encounter, "the partner is nearest to the ego", "it is", CheckResult::Pass),
+            check(CheckKind::Encounter, "the partner is nearest to the ego", "it is", CheckResult::Shown),
             if touched {
-                check(CheckKind::ContactZones, "left; front", "left; front", CheckResult::Pass)
+                check(CheckKind::ContactZones, "left; front", "left; front", CheckResult::Shown)
             } else {
-                check(CheckKind::ContactZones, "left; front", "no contact", CheckResult::NotApplicable)
+                check(CheckKind::ContactZones, "left; front", "no contact", CheckResult::CannotBeShown)
             },
         ],
     }
@@ -356,6 +354,7 @@ fn scenario(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64) -> ScenarioDraft
         id: cluster.scenario_id.clone(),
         source: Source {
             records: vec![cluster.pick.clone()],
+            origin: None,
             template: Some(cluster.template),
             narrative: String::new(),
             author: Author::Rules,

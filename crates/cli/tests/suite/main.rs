@@ -1,0 +1,20 @@
+//! Tests of the crate as its users see it, in one binary: a file a subject.
+
+mod bad_input;
+mod batch;
+mod common;
+mod contradictions;
+mod edits;
+mod egos;
+mod eval;
+mod export;
+mod live;
+mod outputs;
+mod records;
+mod repeatable;
+mod selection;
+mod stranger;
+mod suite_folder;
+mod sweep;
+mod terminal;
+mod tools;

@@ -1,0 +1,99 @@
+//! Judged runs: what one ego did in one scenario, and what that says. Every table, page and export of the suite reads this
+//! one type.
+
+use crate::hash::Fnv;
+use crate::metrics::{Answer, Finding, FindingKind, Metrics, Verdict};
+use crate::rollout::Rollout;
+use serde::{Deserialize, Serialize};
+
+/// The judged runs' format tag.
+pub const RUN_FORMAT: &str = "recrash.run/2";
+
+/// One run with all that was computed from it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JudgedRun {
+    /// What is said about it: enough for every table.
+    pub judgement: Judgement,
+    /// What happened.
+    pub rollout: Rollout,
+}
+
+/// What is said about a run: a [`JudgedRun`] without its tracks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Judgement {
+    /// Always [`RUN_FORMAT`].
+    pub format: String,
+    /// Name of the run by its content: scenario, ego, simulator and every state. Two runs of one id are the same run.
+    pub id: String,
+    /// Scenario.
+    pub scenario_id: String,
+    /// Ego that was run.
+    pub ego: String,
+    /// Simulator and its version.
+    pub simulator: String,
+    /// What was measured.
+    pub metrics: Metrics,
+    /// What that says about the ego: failures first.
+    pub findings: Vec<Finding>,
+    /// Whether the rollout is true to its record.
+    pub verdict: Verdict,
+}
+
+impl JudgedRun {
+    /// A run and what is said about it.
+    pub fn new(rollout: Rollout, metrics: Metrics, findings: Vec<Finding>, verdict: Verdict) -> Self {
+        let judgement = Judgement {
+            format: RUN_FORMAT.to_owned(),
+            id: run_id(&rollout),
+            scenario_id: rollout.scenario_id.clone(),
+            ego: rollout.ego.clone(),
+            simulator: rollout.simulator.clone(),
+            metrics,
+            findings,
+            verdict,
+        };
+        Self { judgement, rollout }
+    }
+}
+
+impl std::ops::Deref for JudgedRun {
+    type Target = Judgement;
+
+    fn deref(&self) -> &Judgement {
+        &self.judgement
+    }
+}
+
+impl Judgement {
+    /// Whether the ego failed, by the profile's criteria.
+    pub fn failed(&self) -> bool {
+        self.findings.iter().any(|finding| finding.kind.is_failure())
+    }
+
+    /// Whether the rollout is true to its record.
+    pub fn faithful(&self) -> Answer {
+        self.verdict.faithful()
+    }
+
+    /// Kinds of findings, each once, failures first.
+    pub fn finding_kinds(&self) -> Vec<FindingKind> {
+        let mut kinds: Vec<FindingKind> = self.findings.iter().map(|finding| finding.kind).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds
+    }
+
+    /// Least box gap to a scripted partner. [m]
+    pub fn min_gap_m(&self) -> Option<f64> {
+        self.metrics.min_gap.map(|gap| gap.value).filter(|gap| gap.is_finite())
+    }
+}
+
+/// Sixteen hexadecimal digits that name a run by its content.
+fn run_id(rollout: &Rollout) -> String {
+    let mut hash = Fnv::default();
+    for part in [&rollout.scenario_id, &rollout.ego, &rollout.simulator, &rollout.state_hash] {
+        hash.write_text(part);
+    }
+    hash.hexadecimal()
+}

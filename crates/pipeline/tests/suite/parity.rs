@@ -1,0 +1,125 @@
+//! Both simulators side by side, with a MetaDrive that fails everywhere, and with a real one where
+//! `RECRASH_METADRIVE_PYTHON` names an interpreter that has it.
+
+use recrash_pipeline::{
+    NoProgress, OpenLoopRequest, Options, Parity, ParityRequest, ParitySource, PipelineError, Resources, Stage, Suite,
+    open_loop, parity, run_stage,
+};
+use std::path::{Path, PathBuf};
+
+fn request(source: ParitySource, python: PathBuf, out: &Path) -> ParityRequest {
+    ParityRequest { source, python, workers: 2, out: out.to_owned() }
+}
+
+/// The interpreter with MetaDrive, where there is one.
+fn metadrive(test: &str) -> Option<PathBuf> {
+    let python = std::env::var_os("RECRASH_METADRIVE_PYTHON").map(PathBuf::from);
+    if python.is_none() {
+        println!("skipped: {test} (needs RECRASH_METADRIVE_PYTHON)");
+    }
+    python
+}
+
+fn suite(dir: &Path, options: Options) {
+    let suite = Suite::open(dir, options, Resources::default()).expect("a suite");
+    for stage in Stage::ALL {
+        run_stage(&suite, stage, &NoProgress).expect("the sample runs");
+    }
+}
+
+fn shown(parity: &Parity) -> String {
+    parity.tables().iter().map(|table| format!("{}\n{:#?}\n", table.caption, table.rows)).collect()
+}
+
+#[test]
+fn without_metadrive_it_is_told_in_one_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = ParitySource::Random { count: 1, seed: 1 };
+    let error = parity(&request(source, "no-such-python".into(), folder.path()), &NoProgress).expect_err("no Python");
+    assert_eq!(error.exit_code(), 3);
+    assert!(error.to_string().contains("no-such-python") && !error.to_string().contains('\n'), "{error}");
+}
+
+#[test]
+fn a_folder_that_is_no_suite_and_a_suite_with_another_ego_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = ParitySource::Suite { dir: folder.path().to_owned() };
+    let error = parity(&request(source, "python3".into(), folder.path()), &NoProgress).expect_err("no suite");
+    assert!(error.to_string().contains("it holds no suite.json"), "{error}");
+
+    let dir = folder.path().join("suite");
+    let options = Options { ego: Some("idm".into()), budget: 1, tune_budget: 1, ..Options::default() };
+    suite(&dir, options);
+    let source = ParitySource::Suite { dir };
+    let error = parity(&request(source, "python3".into(), folder.path()), &NoProgress).expect_err("another ego");
+    assert!(matches!(error, PipelineError::BadInput { .. }) && error.to_string().contains("is idm"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn scenarios_that_metadrive_fails_on_count_as_disagreeing_and_the_results_are_written() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let (draft, python) = (folder.path().join("draft"), folder.path().join("python"));
+    let hello = r#"{"hello":{"python":"3.11.7","metadrive":"0.4.3","problem":null}}"#;
+    let program =
+        format!("#!/bin/sh\nhead -c \"$3\" >/dev/null\necho '{hello}'\nread line\necho 'no memory' >&2\nexit 1\n");
+    // Written aside and renamed: a file still open for writing cannot be started.
+    std::fs::write(&draft, program).expect("a writable folder");
+    std::fs::set_permissions(&draft, std::fs::Permissions::from_mode(0o755)).expect("its owner's");
+    std::fs::rename(&draft, &python).expect("the same folder");
+
+    let out = folder.path().join("parity");
+    let source = ParitySource::Random { count: 2, seed: 1 };
+    let result = parity(&request(source, python, &out), &NoProgress).expect("failures are data");
+    assert!(!result.passed());
+    assert_eq!((result.agreement.pairs, result.agreement.errors, result.agreement.same_verdict), (2, 2, 0));
+    let told = result.pairs[0].error.as_deref().unwrap_or_default();
+    assert!(told.contains("random-0000") && told.contains("no memory"), "{told}");
+    for file in ["parity.json", "parity.csv", "parity.html", "worst/random-0001.json"] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+    let csv = std::fs::read_to_string(out.join("parity.csv")).expect("text");
+    assert_eq!(csv.lines().count(), 3);
+}
+
+#[test]
+fn random_scenarios_agree_and_any_number_of_workers_gives_the_same_bytes() {
+    let Some(python) = metadrive("random_scenarios_agree") else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = ParitySource::Random { count: 25, seed: 11 };
+    let (two, one) = (folder.path().join("two"), folder.path().join("one"));
+    let result = parity(&request(source, python.clone(), &two), &NoProgress).expect("MetaDrive runs");
+    println!("{}", shown(&result));
+    assert!(result.passed(), "{}", shown(&result));
+    assert_eq!(result.agreement.errors, 0);
+
+    let few = ParitySource::Random { count: 5, seed: 11 };
+    let alone = ParityRequest { workers: 1, ..request(few, python, &one) };
+    let first = parity(&alone, &NoProgress).expect("MetaDrive runs");
+    assert_eq!(first.pairs[..], result.pairs[..5]);
+    let page = std::fs::read_to_string(two.join("parity.html")).expect("text");
+    assert!(page.contains("data-case=\"9\"") && page.contains("Side by side"));
+}
+
+#[test]
+fn the_vehicle_alone_agrees() {
+    let Some(python) = metadrive("the_vehicle_alone_agrees") else { return };
+    let result = open_loop(&OpenLoopRequest { count: 36, seed: 5, python, workers: 1 }, &NoProgress).expect("it runs");
+    println!("{result:#?}");
+    assert!(result.limits.iter().all(|limit| limit.apart_m.len() == 12));
+    assert!(result.passed(), "{result:#?}");
+}
+
+#[test]
+fn failures_of_a_suite_are_confirmed() {
+    let Some(python) = metadrive("failures_of_a_suite_are_confirmed") else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let dir = folder.path().join("suite");
+    suite(&dir, Options { budget: 6, tune_budget: 60, ..Options::default() });
+    let out = folder.path().join("parity");
+    let result = parity(&request(ParitySource::Suite { dir }, python, &out), &NoProgress).expect("MetaDrive runs");
+    println!("{}", shown(&result));
+    assert!(result.agreement.failed_natively >= 3, "{}", shown(&result));
+    assert!(result.passed(), "{}", shown(&result));
+}

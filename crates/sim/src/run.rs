@@ -1,0 +1,308 @@
+//! One run, driven step by step by whoever holds it: a test, a Python environment, a search, or [`crate::Runner`].
+//!
+//! A run is plain data in three parts, as rapier keeps them: what is fixed (the setting), what is true at a time (the
+//! state, drivers and their memory in it), and scratch. To save a run is to copy the state: see [`Run::snapshot`].
+//!
+//! ```
+//! # fn scenario() -> recrash_roads::Scenario {
+//! #     let json = r#"{ "format": "recrash.scenario/1", "id": "doc", "source": {}, "duration_s": 3.0,
+//! #         "map": { "type": "S", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 200.0 },
+//! #         "environment": { "lighting": "daylight", "weather": "clear", "surface": "dry" },
+//! #         "ego": { "lane": 1, "turn": "straight", "s_m": 5.0, "speed_mps": 8.0, "target_speed_mps": 8.0 },
+//! #         "partners": [] }"#;
+//! #     recrash_roads::check(recrash_roads::read_draft(json).expect("a draft").value).expect("a scenario").value
+//! # }
+//! use recrash_sim::{Controls, Run, Seat};
+//!
+//! let mut run = Run::new(&scenario(), Seat::Outside);
+//! while run.termination().is_none() {
+//!     let ego = run.observe().states[0];
+//!     let throttle = if ego.speed() < 8.0 { 0.3 } else { 0.0 };
+//!     run.step(Some(Controls { steer: 0.0, throttle }));
+//! }
+//! ```
+
+use crate::chassis::Controls;
+use crate::contacts::{collide, find_near};
+use crate::driver::Observation;
+use crate::ego::Ego;
+use crate::recorder::CastMember;
+use crate::scene::Scene;
+use crate::world::{Driver, Setting, State, Workspace, prepare};
+use recrash_model::geometry::Vec2;
+use recrash_model::rollout::{ActorState, Event, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
+use recrash_plan::constants::{STANDING_MPS, STUCK_STEPS};
+use recrash_plan::hold_still;
+use recrash_roads::Scenario;
+use std::sync::Arc;
+
+/// MetaDrive's rule for having arrived: this near to the end of the route. [m]
+const ARRIVAL_RANGE_M: f64 = 5.0;
+
+/// Steps and physics steps in a second. A time is a count divided by these, which gives the nearest number to the
+/// decimal that people read.
+const STEPS_PER_S: f64 = 10.0;
+const PHYSICS_STEPS_PER_S: f64 = 50.0;
+
+/// Who sits in the ego's seat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seat {
+    /// A driver of the simulator's own.
+    BuiltIn(Ego),
+    /// Whoever gives the controls to [`Run::step`].
+    Outside,
+}
+
+/// One run of one scenario, at one time.
+///
+/// Copies are independent, and every copy goes on with the same bytes. A step allocates nothing.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Shared with copies and snapshots; never changed while it is.
+    setting: Arc<Setting>,
+    state: State,
+    workspace: Workspace,
+}
+
+/// A run as it was at one time; see [`Run::snapshot`].
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    setting: Arc<Setting>,
+    state: State,
+}
+
+impl Run {
+    /// A run at time 0.
+    pub fn new(scenario: &Scenario, seat: Seat) -> Self {
+        let mut run = Self { setting: Arc::default(), state: State::default(), workspace: Workspace::default() };
+        run.reset(scenario, seat);
+        run
+    }
+
+    /// Starts over at time 0, with this scenario or another; the memory is used again.
+    pub fn reset(&mut self, scenario: &Scenario, seat: Seat) {
+        if Arc::get_mut(&mut self.setting).is_none() {
+            self.setting = Arc::default();
+        }
+        if let Some(setting) = Arc::get_mut(&mut self.setting) {
+            prepare(setting, &mut self.state, scenario, seat);
+        }
+        self.workspace.prepare(&self.setting);
+        self.sense();
+        self.conclude();
+    }
+
+    /// Everybody in the run: the ego, the partners in the scenario's order, then background traffic.
+    pub fn cast(&self) -> &[CastMember] {
+        &self.setting.cast
+    }
+
+    /// The world as it is now.
+    pub fn observe(&self) -> Observation<'_> {
+        let (scene, state) = (self.scene(), &self.state);
+        Observation {
+            step: state.step,
+            time_s: f64::from(state.step) / STEPS_PER_S,
+            route_s_m: scene.path_s(0),
+            route_t_m: scene.lanes.lane(scene.path_lane(0)).local(state.seen[0].pose.position).1,
+            states: &state.states,
+            seen: &state.seen,
+        }
+    }
+
+    /// How the run has ended; `None` while it goes on.
+    pub fn termination(&self) -> Option<Termination> {
+        self.state.termination
+    }
+
+    /// Goes on for 0.1 s, and tells how the run has ended, if it has. A run that has ended stays as it is.
+    ///
+    /// `ego` is what the ego does. A built-in ego needs none; where there is some, it is overruled for this step, and goes on
+    /// as if it had only watched. A seat without a driver and without controls rolls on.
+    pub fn step(&mut self, ego: Option<Controls>) -> Option<Termination> {
+        self.workspace.events.clear();
+        if self.state.termination.is_none() {
+            self.decide(ego);
+            self.advance();
+            self.state.step += 1;
+            self.sense();
+            self.conclude();
+        }
+        self.state.termination
+    }
+
+    /// The states that the last step began with, each with the controls chosen for it; those before a step was made are
+    /// without meaning.
+    pub fn decided(&self) -> &[ActorState] {
+        &self.workspace.decided
+    }
+
+    /// What happened during the last step, in order of time.
+    pub fn events(&self) -> &[Event] {
+        &self.workspace.events
+    }
+
+    /// Keeps the run as it is now. [`Run::restore`] brings it back, into this run or any other.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot { setting: Arc::clone(&self.setting), state: self.state.clone() }
+    }
+
+    /// Goes back to where the snapshot was taken; the scenario and the ego's seat become its own. Nothing is allocated where
+    /// this run has had as many road users before.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        if !Arc::ptr_eq(&self.setting, &snapshot.setting) {
+            self.setting = Arc::clone(&snapshot.setting);
+        }
+        self.state.clone_from(&snapshot.state);
+        self.workspace.prepare(&self.setting);
+    }
+
+    fn scene(&self) -> Scene<'_> {
+        scene(&self.setting, &self.state.seen, self.state.step)
+    }
+
+    /// Freezes the world for the next decision.
+    fn sense(&mut self) {
+        let (setting, state) = (&*self.setting, &mut self.state);
+        for ((seen, body), member) in state.seen.iter_mut().zip(&state.bodies).zip(&setting.cast) {
+            if !body.is_finite() {
+                state.diverged = true;
+                continue;
+            }
+            seen.pose = body.pose;
+            seen.forward = Vec2::from_heading(body.pose.heading);
+            seen.velocity = body.velocity();
+            seen.speed = body.speed();
+            if seen.present {
+                seen.place.localise(&setting.lanes, &setting.routes, body.pose.position, body.pose.heading);
+                seen.progress.follow(&setting.lanes, &setting.route_lanes, &seen.place, body.pose.position);
+                // Background traffic that has left the road goes on straight and is out of the game.
+                seen.present = seen.place.on_road || member.role != Role::Traffic;
+            }
+        }
+        let ego = &state.seen[0];
+        state.traffic_released |= !ego.place.on_first_road();
+        state.standing_steps = if ego.speed < STANDING_MPS { state.standing_steps + 1 } else { 0 };
+    }
+
+    /// Everybody decides on the same frozen world.
+    fn decide(&mut self, ego: Option<Controls>) {
+        let (setting, state) = (&*self.setting, &mut self.state);
+        let scene = scene(setting, &state.seen, state.step);
+        for (me, driver) in state.drivers.iter_mut().enumerate() {
+            let halted = state.halted[me];
+            state.controls[me] = if setting.cast[me].role == Role::Traffic && !state.traffic_released {
+                Controls::default()
+            } else {
+                match driver {
+                    Driver::MetadriveIdm(driver) if halted => {
+                        Controls { throttle: hold_still(scene.actors[me].speed), ..driver.decide(&scene, me) }
+                    }
+                    Driver::MetadriveIdm(driver) => driver.decide(&scene, me),
+                    Driver::Idm(driver) => driver.decide(&scene, me, &setting.crossings),
+                    Driver::Reference(driver) => driver.decide(&scene, me, &setting.crossings, &mut state.attention),
+                    Driver::Script(script) => script.decide(&scene, me, &setting.ways, &setting.crossings, halted),
+                    Driver::Outside => Controls::default(),
+                }
+            };
+        }
+        if let Some(controls) = ego {
+            state.controls[0] = controls.clipped();
+        }
+        // The states change hands: these are the decided ones now, and the others are written over after the step.
+        std::mem::swap(&mut state.states, &mut self.workspace.decided);
+        for (decided, controls) in self.workspace.decided.iter_mut().zip(&state.controls) {
+            (decided.steer, decided.throttle) = (controls.steer, controls.throttle);
+        }
+    }
+
+    /// Moves everybody through one step, and notes who touches whom.
+    fn advance(&mut self) {
+        let (setting, state, workspace) = (&*self.setting, &mut self.state, &mut self.workspace);
+        workspace.commands.clear();
+        for ((body, chassis), controls) in state.bodies.iter_mut().zip(&setting.chassis).zip(&state.controls) {
+            workspace.commands.push(body.command(chassis, *controls));
+        }
+        find_near(setting, state, &mut workspace.near);
+        for substep in 1..=SUBSTEPS {
+            for ((body, chassis), command) in state.bodies.iter_mut().zip(&setting.chassis).zip(&workspace.commands) {
+                body.advance(chassis, command);
+            }
+            if workspace.near.is_empty() {
+                continue;
+            }
+            let time_s = (f64::from(state.step) * SUBSTEPS as f64 + substep as f64) / PHYSICS_STEPS_PER_S;
+            collide(setting, state, workspace, time_s);
+        }
+    }
+
+    /// Decides whether the run is over, and writes down what can be observed. After the end nobody controls anything.
+    fn conclude(&mut self) {
+        self.state.termination = self.verdict();
+        if self.state.termination.is_some() {
+            self.state.controls.fill(Controls::default());
+        }
+        self.state.write_states();
+    }
+
+    /// Whether the run is over.
+    fn verdict(&self) -> Option<Termination> {
+        let (setting, state) = (&self.setting, &self.state);
+        let time_s = f64::from(state.step) / STEPS_PER_S;
+        let kind = if state.diverged {
+            TerminationKind::Diverged
+        } else if state.ego_contact {
+            TerminationKind::Contact
+        } else if self.has_arrived() {
+            TerminationKind::Arrived
+        } else if !state.seen[0].place.on_road {
+            TerminationKind::OffRoad
+        } else if state.standing_steps >= STUCK_STEPS && !self.anybody_moves() {
+            TerminationKind::Stuck
+        } else if time_s >= setting.duration_s - 0.5 * STEP_S {
+            TerminationKind::Timeout
+        } else {
+            return None;
+        };
+        Some(Termination { kind, time_s })
+    }
+
+    /// MetaDrive's rule: within 5 m of the end of the route's last road, on any of its lanes.
+    fn has_arrived(&self) -> bool {
+        let (setting, ego) = (&self.setting, &self.state.seen[0]);
+        if !ego.place.on_last_road() {
+            return false;
+        }
+        let lanes = setting.lanes.of_road(ego.place.road(&setting.routes));
+        lanes.iter().any(|&lane| {
+            let lane = setting.lanes.lane(lane);
+            let (s, t) = lane.local(ego.pose.position);
+            (s - lane.length_m).abs() < ARRIVAL_RANGE_M && t.abs() <= 0.5 * lane.width_m()
+        })
+    }
+
+    /// Whether anybody but the ego moves, or will because of its plan.
+    fn anybody_moves(&self) -> bool {
+        let state = &self.state;
+        (1..state.seen.len()).any(|actor| {
+            let plans = match &state.drivers[actor] {
+                Driver::Script(script) => !state.halted[actor] && script.has_plans(state.step),
+                Driver::MetadriveIdm(_) | Driver::Idm(_) | Driver::Reference(_) | Driver::Outside => false,
+            };
+            state.seen[actor].present && (plans || state.seen[actor].speed >= STANDING_MPS)
+        })
+    }
+}
+
+/// What everybody sees.
+fn scene<'a>(setting: &'a Setting, seen: &'a [crate::scene::Seen], step: u32) -> Scene<'a> {
+    Scene {
+        step,
+        lanes: &setting.lanes,
+        routes: &setting.routes,
+        route_lanes: &setting.route_lanes,
+        route_starts: &setting.route_starts,
+        actors: seen,
+        obstacles: &setting.obstacles,
+    }
+}

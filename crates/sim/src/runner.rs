@@ -1,0 +1,78 @@
+//! The loop over a run that the simulator owns: a driver decides, a recorder looks on.
+
+use crate::chassis::Controls;
+use crate::driver::{EgoDriver, Observation};
+use crate::ego::Ego;
+use crate::recorder::Recorder;
+use crate::run::{Run, Seat};
+use recrash_model::rollout::Termination;
+use recrash_roads::Scenario;
+use std::convert::Infallible;
+
+/// Runs scenarios from beginning to end, one after the other, in the memory of one [`Run`].
+#[derive(Debug, Clone, Default)]
+pub struct Runner {
+    run: Option<Run>,
+}
+
+impl Runner {
+    /// One without anything prepared.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Runs a scenario. It cannot fail: however a run goes, it ends with a [`Termination`].
+    pub fn run<R: Recorder>(&mut self, scenario: &Scenario, ego: Ego, recorder: &mut R) -> Termination {
+        let run = self.begin(scenario, Seat::BuiltIn(ego));
+        recorder.begin(scenario, ego.name(), run.cast());
+        let Ok(termination) = finish(run, recorder, |_| Ok::<_, Infallible>(None));
+        termination
+    }
+
+    /// Runs a scenario with a driver from outside.
+    ///
+    /// # Errors
+    /// The driver's own. What the recorder has of the run until then is not a whole one.
+    pub fn run_with<D: EgoDriver, R: Recorder>(
+        &mut self,
+        scenario: &Scenario,
+        driver: &mut D,
+        recorder: &mut R,
+    ) -> Result<Termination, D::Error> {
+        let run = self.begin(scenario, Seat::Outside);
+        driver.begin(scenario, run.cast())?;
+        recorder.begin(scenario, driver.name(), run.cast());
+        let termination = finish(run, recorder, |observation| driver.decide(observation).map(Some))?;
+        driver.end(termination)?;
+        Ok(termination)
+    }
+
+    fn begin(&mut self, scenario: &Scenario, seat: Seat) -> &mut Run {
+        match &mut self.run {
+            Some(run) => run.reset(scenario, seat),
+            none => *none = Some(Run::new(scenario, seat)),
+        }
+        self.run.as_mut().unwrap_or_else(|| unreachable!("there is a run by now"))
+    }
+}
+
+/// Steps a run to its end.
+fn finish<R: Recorder, E>(
+    run: &mut Run,
+    recorder: &mut R,
+    mut decide: impl FnMut(&Observation<'_>) -> Result<Option<Controls>, E>,
+) -> Result<Termination, E> {
+    loop {
+        if let Some(termination) = run.termination() {
+            recorder.step(run.observe().states);
+            recorder.end(termination);
+            return Ok(termination);
+        }
+        let controls = decide(&run.observe())?;
+        run.step(controls);
+        recorder.step(run.decided());
+        for event in run.events() {
+            recorder.event(event);
+        }
+    }
+}
