@@ -60,12 +60,12 @@ def test_scenic(crossing: Export, table: dict) -> None:
 def test_metadrive(crossing: Export, table: dict) -> None:
     """From the left arm lane n - 1 comes in at x = E + 10, the others w further on; the arm reaches from y = 20.5 m up
     (n = 2, w = 3.5 m), and s counts from its far end."""
-    (partner,) = json.loads(crossing.path("metadrive", ".metadrive.json").read_text())["partners"]
-    start, end, lane = partner["spawn_lane"]
+    (partner,) = json.loads(crossing.path("metadrive", ".metadrive.json").read_text())["run"]["partners"]
+    start, end, lane = partner["way"][0]
     assert (start, end) == ("-1X2_1_", "-1X2_0_")
     spec = crossing.scenario["map"]
     x = spec["approach_m"] + 10 + (spec["lanes"] - 1 - lane) * spec["lane_width_m"]
-    close((x, 20.5 + spec["arm_m"] - partner["spawn_s_m"], -math.pi / 2), table["metadrive"])
+    close((x, 20.5 + spec["arm_m"] - partner["s_m"], -math.pi / 2), table["metadrive"])
 
 
 def test_commonroad(crossing: Export, table: dict) -> None:

@@ -63,9 +63,10 @@ def test_metadrive_script_is_python_and_its_scenario_complete(exports: list[Expo
     for export in exports:
         ast.parse((export.folder / "metadrive" / "run_metadrive.py").read_text())
         scenario = json.loads(export.path("metadrive", ".metadrive.json").read_text())
-        assert scenario["map"]["block"] == export.scenario["map"]["type"]
-        assert [partner["id"] for partner in scenario["partners"]] == [p["id"] for p in export.scenario["partners"]]
-        assert len(scenario["obstacles"]) == len(export.scenario["obstacles"])
+        drawn = scenario["run"]
+        assert drawn["map"] == export.scenario["map"]
+        assert [partner["id"] for partner in drawn["partners"]] == [p["id"] for p in export.scenario["partners"]]
+        assert len(drawn["obstacles"]) == len(export.scenario["obstacles"])
 
 
 def test_metadrive_script_drives_each_map_as_our_simulator_does(cases: list[Export], tmp_path: Path) -> None:

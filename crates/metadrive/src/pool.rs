@@ -1,9 +1,10 @@
 //! The pool: several workers, faults mended, results in the order of the scenarios.
 
-use crate::protocol::{Drive, RunSpec, rollout, run_spec};
+use crate::protocol::{Drive, rollout, run_spec};
 use crate::worker::{Worker, WorkerFault};
 use crate::{METADRIVE_VERSION, MetadriveError};
 use recrash_model::rollout::Rollout;
+use recrash_plan::metadrive::Run;
 use recrash_roads::{RunError, Scenario, Simulator};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -130,7 +131,7 @@ impl Metadrive {
         &self,
         scenario: &Scenario,
         drive: &Drive,
-        spec: &RunSpec,
+        spec: &Run,
     ) -> Result<Result<Rollout, WorkerFault>, MetadriveError> {
         let mut slot = Slot { pool: self, worker: self.take() };
         let worker = match &mut slot.worker {

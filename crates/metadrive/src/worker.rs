@@ -1,17 +1,15 @@
 //! One worker process: started, asked, and ended.
 
 use crate::MetadriveError;
-use crate::protocol::{Answer, Done, Hello, Message, Request, RunSpec};
+use crate::protocol::{Answer, Done, Hello, Message, Request};
 use recrash_child::{Program, Silence, printable};
+use recrash_plan::metadrive::{Run, SCRIPT};
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-/// What the workers run.
-pub(crate) const SCRIPT: &str = include_str!("../worker/metadrive_worker.py");
-
 /// Reads the script from stdin, its length being the first argument: neither a temporary file nor a long command line.
-const BOOT: &str = "import sys; exec(compile(sys.stdin.buffer.read(int(sys.argv[1])), 'metadrive_worker.py', 'exec'))";
+const BOOT: &str = "import sys; exec(compile(sys.stdin.buffer.read(int(sys.argv[1])), 'run_metadrive.py', 'exec'))";
 
 /// The longest answer; the longest rollout of 17 actors has a few megabytes. [bytes]
 const MAX_ANSWER_BYTES: u64 = 64 << 20;
@@ -92,7 +90,7 @@ impl Worker {
     pub(crate) fn start(python: &Path, patience: Duration) -> Result<Self, MetadriveError> {
         let mut command = Command::new(python);
         command
-            .args(["-c", BOOT, &SCRIPT.len().to_string()])
+            .args(["-c", BOOT, &SCRIPT.len().to_string(), "--worker"])
             // Sets of strings are iterated somewhere inside; one seed for all workers.
             .env("PYTHONHASHSEED", "0")
             .env("PYTHONUTF8", "1")
@@ -124,7 +122,7 @@ impl Worker {
     }
 
     /// Runs one scenario. After any fault but [`WorkerFault::Raised`] the worker must not be used again.
-    pub(crate) fn run(&mut self, run: &RunSpec, patience: Duration) -> Result<Done, WorkerFault> {
+    pub(crate) fn run(&mut self, run: &Run, patience: Duration) -> Result<Done, WorkerFault> {
         self.requests += 1;
         let request = Request { id: self.requests, run };
         let mut line =

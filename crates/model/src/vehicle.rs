@@ -33,6 +33,8 @@ pub struct VehicleSpec {
     pub max_deceleration_mps2: f64,
     /// Deceleration the brakes ask for at full brake; where it is more than the tyres hold, they decide. [m/s^2]
     pub brake_demand_mps2: f64,
+    /// Sideways acceleration that its driver uses at most on a dry road; tyres hold 8.7. [m/s^2]
+    pub sideways_mps2: f64,
     /// Speed at which the engine is cut. [m/s]
     pub max_speed_mps: f64,
     /// Wheel angle at full steering. [rad]
@@ -52,6 +54,7 @@ const CAR: VehicleSpec = VehicleSpec {
     max_acceleration_mps2: 2.909_090_909_090_909,
     max_deceleration_mps2: 15.13,
     brake_demand_mps2: 27.272_727_272_727_273,
+    sideways_mps2: 7.0,
     max_speed_mps: 80.0 / 3.6,
     max_wheel_angle_rad: 40.0 * std::f64::consts::PI / 180.0,
 };
@@ -66,11 +69,16 @@ impl VehicleSpec {
             PartnerKind::PickupTruck | PartnerKind::FirstResponder => Self { length_m: 5.74, width_m: 2.3, ..CAR },
             PartnerKind::Van => Self { length_m: 5.4, width_m: 2.0, ..CAR },
             // AASHTO's single-unit truck SU-30 (9.1 m, wheelbase 6.1 m) and city bus (12.2 m, wheelbase 7.6 m).
-            PartnerKind::HeavyTruck => Self::heavy(9.1, 2.4, 6.1, 1.1, 6.0),
-            PartnerKind::Bus => Self::heavy(12.2, 2.6, 7.6, 1.0, 6.0),
+            // Sideways: a loaded truck may tip over from 0.35 g on (winkler1999), its driver keeps well below; passengers who
+            // stand are given 0.2 g (aashto2018).
+            PartnerKind::HeavyTruck => Self { sideways_mps2: 2.5, ..Self::heavy(9.1, 2.4, 6.1, 1.1, 6.0) },
+            PartnerKind::Bus => Self { sideways_mps2: 2.0, ..Self::heavy(12.2, 2.6, 7.6, 1.0, 6.0) },
             PartnerKind::Motorcycle => Self::light([2.2, 0.8], 1.4, [2.909, 8.0], 80.0 / 3.6),
-            PartnerKind::Cyclist => Self::light([1.8, 0.6], 1.1, [1.0, 3.4], 9.0),
-            PartnerKind::OtherNonMotorist => Self::light([1.2, 0.6], 0.9, [1.0, 3.4], 7.0),
+            // Who leans by 25 degrees turns with 4.5 m/s^2; assumed.
+            PartnerKind::Cyclist => Self { sideways_mps2: 4.5, ..Self::light([1.8, 0.6], 1.1, [1.0, 3.4], 9.0) },
+            PartnerKind::OtherNonMotorist => {
+                Self { sideways_mps2: 4.5, ..Self::light([1.2, 0.6], 0.9, [1.0, 3.4], 7.0) }
+            }
             PartnerKind::Pedestrian => Self::light([0.5, 0.5], 0.5, [1.5, 3.0], 3.0),
             // Long enough that it does not tip over when it brakes with 5 m/s^2.
             PartnerKind::Animal => Self::light([1.0, 0.4], 0.9, [2.909, 5.0], 12.0),

@@ -25,6 +25,9 @@ const MOST_VEHICLES: usize = 64;
 /// Free room to everything else at the start. [m]
 const FREE_ROOM_M: f64 = 1.0;
 
+/// MetaDrive draws the overtaking timer of its policy below this at the start (`LANE_CHANGE_FREQ`). [steps]
+const OVERTAKE_TIMER_STEPS: usize = 50;
+
 /// Below this density there is none (MetaDrive's own threshold).
 const LEAST_DENSITY: f64 = 1e-2;
 
@@ -39,6 +42,8 @@ pub struct TrafficPlacement {
     pub s_m: f64,
     /// Start in the world.
     pub pose: Pose,
+    /// How long it has been following already by the count of its overtaking timer. [steps]
+    pub overtake_timer_steps: u32,
 }
 
 /// The background traffic of a scenario; none below a density of 0.01.
@@ -85,7 +90,8 @@ pub fn background_traffic(scenario: &Scenario) -> Vec<TrafficPlacement> {
             continue;
         }
         taken.push(outline);
-        spawns.push(TrafficPlacement { kind, path, s_m: s, pose });
+        let overtake_timer_steps = rng.below(OVERTAKE_TIMER_STEPS) as u32;
+        spawns.push(TrafficPlacement { kind, path, s_m: s, pose, overtake_timer_steps });
     }
     spawns
 }

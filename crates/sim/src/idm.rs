@@ -6,13 +6,14 @@
 //! Equations and fields: `docs/models/idm.md`.
 
 use crate::chassis::Controls;
-use crate::give_way::{Crossing, GiveWay, Manners};
+use crate::give_way::GiveWay;
 use crate::scene::Scene;
 use crate::steering::LaneKeeper;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::record::Surface;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::{Crossing, Manners};
 
 /// Parameters of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]

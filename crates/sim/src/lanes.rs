@@ -111,6 +111,15 @@ impl PreparedLane {
         }
     }
 
+    /// Curvature of the centre line, positive to the left. [1/m]
+    #[inline]
+    pub(crate) fn curvature(&self) -> f64 {
+        match self.shape {
+            SegmentShape::Straight { .. } => 0.0,
+            SegmentShape::Arc { radius, turn, .. } => turn / radius,
+        }
+    }
+
     /// How far beside the lane its coordinates still mean something: to an arc's centre. [m]
     #[inline]
     pub(crate) fn reach(&self) -> f64 {

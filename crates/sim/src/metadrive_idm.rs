@@ -9,24 +9,12 @@ use crate::lanes::LaneIndex;
 use crate::scene::Scene;
 use crate::steering::LaneKeeper;
 use recrash_model::geometry::Vec2;
-use recrash_model::math;
+use recrash_plan::constants::SIGHT_M;
+use recrash_plan::{Lead, gap_law};
 use recrash_roads::RoadId;
 
 /// Metres per second to kilometres per hour.
 const KMH_PER_MPS: f64 = 3.6;
-
-/// Distance it wants behind a standing vehicle (`DISTANCE_WANTED`). [m]
-const STANDSTILL_DISTANCE_M: f64 = 10.0;
-
-/// Time headway (`TIME_WANTED`), but multiplied with km/h: in effect 5.4 s. [s]
-const TIME_HEADWAY_S: f64 = 1.5;
-
-/// Acceleration and comfortable deceleration (`ACC_FACTOR`, `DEACC_FACTOR`), as shares of full throttle.
-const ACCELERATION: f64 = 1.0;
-const DECELERATION: f64 = 5.0;
-
-/// It sees nothing farther ahead or behind than this (`MAX_LONG_DIST`). [m]
-const SIGHT_M: f64 = 30.0;
 
 /// Free space it wants on a lane before it changes there (`SAFE_LANE_CHANGE_DISTANCE`). [m]
 const SAFE_LANE_CHANGE_M: f64 = 15.0;
@@ -43,50 +31,9 @@ const CONTENT_KMH: f64 = 3.0;
 /// Steps of plain following between lane changes (`LANE_CHANGE_FREQ`).
 const LANE_CHANGE_PERIOD_STEPS: u32 = 50;
 
-/// MetaDrive draws the overtaking timer from 0..50 at the start and from 0..25 at every change of lane. Both backends
-/// take the middle instead, so that a rollout depends on nothing but its scenario.
-const TIMER_AT_START_STEPS: u32 = LANE_CHANGE_PERIOD_STEPS / 2;
+/// MetaDrive draws the timer from 0..25 at every change of lane. Both backends take the middle instead, so that a rollout
+/// depends on nothing but its scenario.
 const TIMER_AFTER_CHANGE_STEPS: u32 = LANE_CHANGE_PERIOD_STEPS / 4;
-
-/// What it asks for at exactly the speed it wants. MetaDrive's speed is the length of a velocity in single precision, which
-/// is never exactly the wanted one: a throttle of 0 would let the vehicle coast, and this hair of a brake lets it roll.
-const HAIR: f64 = -1e-15;
-
-/// Somebody or something in front.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Lead {
-    /// From centre to centre along the lane. [m]
-    pub(crate) distance_m: f64,
-    /// Its velocity. [m/s]
-    pub(crate) velocity: Vec2,
-    /// Its speed. [m/s]
-    pub(crate) speed_mps: f64,
-}
-
-/// The throttle MetaDrive's IDM asks for; braking below 0, not clipped.
-///
-/// `1 - (v / v0)^10 - (d* / d)^2` with `d* = 10 + 1.5 v + v dv / (2 sqrt 5)`, where the speeds are in **km/h** and the
-/// distances in metres. A negative `d*` (a lead that pulls away fast) is squared all the same, and brakes.
-#[inline]
-pub(crate) fn throttle(speed_mps: f64, target_mps: f64, forward: Vec2, velocity: Vec2, lead: Option<Lead>) -> f64 {
-    let ratio = speed_mps / if target_mps.abs() > 1e-2 { target_mps } else { 1e-2 };
-    let free = ACCELERATION * (1.0 - tenth_power(ratio));
-    let free = if free == 0.0 { HAIR } else { free };
-    let Some(lead) = lead else { return free };
-    let speed_kmh = speed_mps * KMH_PER_MPS;
-    let closing_kmh = (velocity - lead.velocity).dot(forward) * KMH_PER_MPS;
-    let comfort = 2.0 * (ACCELERATION * DECELERATION).sqrt();
-    let wanted = STANDSTILL_DISTANCE_M + TIME_HEADWAY_S * speed_kmh + speed_kmh * closing_kmh / comfort;
-    free - ACCELERATION * math::sq(wanted / lead.distance_m.max(1e-2))
-}
-
-/// `x^10` by multiplication.
-#[inline]
-fn tenth_power(x: f64) -> f64 {
-    let x2 = x * x;
-    let x4 = x2 * x2;
-    x4 * x4 * x2
-}
 
 /// The state of one such driver.
 #[derive(Debug, Clone, Copy)]
@@ -108,8 +55,9 @@ struct LaneView {
 }
 
 impl MetadriveIdm {
-    pub(crate) const fn new(target_mps: f64) -> Self {
-        Self { target_mps, keeper: LaneKeeper::new(), lane: None, overtake_timer: TIMER_AT_START_STEPS }
+    /// `overtake_timer` is how long it has been following already. [steps]
+    pub(crate) const fn new(target_mps: f64, overtake_timer: u32) -> Self {
+        Self { target_mps, keeper: LaneKeeper::new(), lane: None, overtake_timer }
     }
 
     pub(crate) fn decide(&mut self, scene: &Scene<'_>, me: usize) -> Controls {
@@ -120,7 +68,7 @@ impl MetadriveIdm {
         let (target, lead) = if routed { self.overtake(scene, me, lanes, lane, own) } else { (lane, own.front) };
         Controls {
             steer: self.keeper.steer(scene.lanes.lane(target), seen.pose, 0.0, 0.0),
-            throttle: throttle(seen.speed, self.target_mps, seen.forward, seen.velocity, lead),
+            throttle: gap_law(seen.speed, self.target_mps, seen.forward, seen.velocity, lead),
         }
         .clipped()
     }
@@ -244,45 +192,4 @@ fn view(scene: &Scene<'_>, me: usize, lane: LaneIndex) -> LaneView {
         consider(obstacle.lane, obstacle.s, Vec2::default(), 0.0);
     }
     view
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// 30 km/h in m/s.
-    const THIRTY: f64 = 30.0 / 3.6;
-
-    fn behind(distance_m: f64, lead_mps: f64) -> f64 {
-        let lead = Lead { distance_m, velocity: Vec2::new(lead_mps, 0.0), speed_mps: lead_mps };
-        throttle(THIRTY, THIRTY, Vec2::new(1.0, 0.0), Vec2::new(THIRTY, 0.0), Some(lead))
-    }
-
-    #[test]
-    fn a_free_road_is_driven_at_the_target_speed() {
-        let alone = |speed| throttle(speed, THIRTY, Vec2::new(1.0, 0.0), Vec2::new(speed, 0.0), None);
-        assert_eq!(alone(0.0), 1.0);
-        assert!(alone(THIRTY).abs() < 1e-12);
-        assert!((alone(0.5 * THIRTY) - (1.0 - 1.0 / 1024.0)).abs() < 1e-12);
-    }
-
-    #[test]
-    fn at_thirty_it_wants_fifty_five_metres_behind_an_equal() {
-        // d* = 10 + 1.5 * 30; at that distance the interaction is -1.
-        assert!((behind(55.0, THIRTY) + 1.0).abs() < 1e-12);
-        assert!((behind(27.5, THIRTY) + 4.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn at_thirty_it_wants_two_hundred_and_fifty_six_metres_behind_who_stands() {
-        // d* = 55 + 30 * 30 / (2 sqrt 5) = 256.2; seen at 29.5 m that is the -76 once measured.
-        assert!((behind(256.246_117_974_981_1, 0.0) + 1.0).abs() < 1e-9);
-        assert!((behind(29.5, 0.0) + 75.5).abs() < 0.1);
-    }
-
-    #[test]
-    fn a_lead_that_pulls_away_fast_is_braked_for() {
-        // 55 + 30 * (30 - 60) / (2 sqrt 5) = -146: negative, and squared.
-        assert!(behind(20.0, 2.0 * THIRTY) < -50.0);
-    }
 }

@@ -9,7 +9,7 @@
 
 use crate::chassis::Controls;
 use crate::emergency::EmergencyResponse;
-use crate::give_way::{Crossing, GiveWay, MERGED_M, Manners, Stretch};
+use crate::give_way::GiveWay;
 use crate::idm::{IdmParameters, curve_limit};
 use crate::scene::Scene;
 use crate::steering::LaneKeeper;
@@ -19,6 +19,8 @@ use recrash_model::math;
 use recrash_model::record::Surface;
 use recrash_model::rollout::STEP_S;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::constants::MERGED_M;
+use recrash_plan::{Crossing, Manners, Stretch};
 
 /// It looks this far ahead. [m]
 const SIGHT_M: f64 = 100.0;

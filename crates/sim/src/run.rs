@@ -28,21 +28,16 @@ use crate::driver::Observation;
 use crate::ego::Ego;
 use crate::recorder::CastMember;
 use crate::scene::Scene;
-use crate::script::stand;
 use crate::world::{Driver, Setting, State, Workspace, prepare};
 use recrash_model::geometry::Vec2;
 use recrash_model::rollout::{ActorState, Event, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
+use recrash_plan::constants::{STANDING_MPS, STUCK_STEPS};
+use recrash_plan::hold_still;
 use recrash_roads::Scenario;
 use std::sync::Arc;
 
 /// MetaDrive's rule for having arrived: this near to the end of the route. [m]
 const ARRIVAL_RANGE_M: f64 = 5.0;
-
-/// Below this speed a road user stands. [m/s]
-const STANDING_MPS: f64 = 0.3;
-
-/// The ego is stuck when it has stood this long and nobody else moves or is about to; assumed. [steps]
-const STUCK_STEPS: u32 = 200;
 
 /// Steps and physics steps in a second. A time is a count divided by these, which gives the nearest number to the
 /// decimal that people read.
@@ -201,12 +196,12 @@ impl Run {
             } else {
                 match driver {
                     Driver::MetadriveIdm(driver) if halted => {
-                        Controls { throttle: stand(scene.actors[me].speed), ..driver.decide(&scene, me) }
+                        Controls { throttle: hold_still(scene.actors[me].speed), ..driver.decide(&scene, me) }
                     }
                     Driver::MetadriveIdm(driver) => driver.decide(&scene, me),
                     Driver::Idm(driver) => driver.decide(&scene, me, &setting.crossings),
                     Driver::Reference(driver) => driver.decide(&scene, me, &setting.crossings, &mut state.attention),
-                    Driver::Script(script) => script.decide(&scene, me, &setting.moves, &setting.crossings, halted),
+                    Driver::Script(script) => script.decide(&scene, me, &setting.ways, &setting.crossings, halted),
                     Driver::Outside => Controls::default(),
                 }
             };

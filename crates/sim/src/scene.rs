@@ -76,6 +76,17 @@ impl Scene<'_> {
         progress.at as usize..progress.end as usize
     }
 
+    /// Heading and curvature (positive to the left) of an actor's path at a place not behind the lane it is beside;
+    /// behind the path's end it goes straight on. [rad, 1/m]
+    pub(crate) fn way_at(&self, actor: usize, s_m: f64) -> (f64, f64) {
+        let path = self.rest_of_path(actor);
+        let after = path.clone().skip(1).take_while(|&position| self.route_starts[position] <= s_m).count();
+        let position = path.start + after;
+        let lane = self.lanes.lane(self.route_lanes[position]);
+        let s = s_m - self.route_starts[position];
+        if s > lane.length_m { (lane.heading(lane.length_m), 0.0) } else { (lane.heading(s), lane.curvature()) }
+    }
+
     /// Where a point is along an actor's path: distance from its centre, offset to the right, and the way's direction
     /// there; `None` behind it, off its path's length, and where the path's next lane begins further away than `sight_m`.
     pub(crate) fn ahead(&self, actor: usize, point: Vec2, sight_m: f64) -> Option<(f64, f64, Vec2)> {

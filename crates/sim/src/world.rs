@@ -3,7 +3,6 @@
 use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
 use crate::contacts::actor_state;
 use crate::ego::Ego;
-use crate::give_way::Crossing;
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
@@ -15,8 +14,10 @@ use crate::script::Script;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{ActorState, Event, Role, Termination};
-use recrash_model::scenario::{LateralMove, Policy};
+use recrash_model::scenario::Policy;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
+use recrash_plan::{Crossing, Plan, Way};
 use recrash_roads::{Footprint, LanePath, Placement, RoadId, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement};
 
 /// What is fixed during a run.
@@ -30,7 +31,8 @@ pub(crate) struct Setting {
     pub(crate) route_lanes: Vec<LaneIndex>,
     pub(crate) route_starts: Vec<f64>,
     pub(crate) obstacles: Vec<SeenObstacle>,
-    pub(crate) moves: Vec<LateralMove>,
+    /// The partners' ways.
+    pub(crate) ways: Vec<Way>,
     pub(crate) crossings: Vec<Crossing>,
     pub(crate) duration_s: f64,
 }
@@ -160,23 +162,24 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
     let spec = VehicleSpec::of(scenario.ego().kind);
     let driver = match seat {
         Seat::Outside => Driver::Outside,
-        Seat::BuiltIn(Ego::MetadriveIdm) => Driver::MetadriveIdm(MetadriveIdm::new(target_mps)),
+        Seat::BuiltIn(Ego::MetadriveIdm) => {
+            Driver::MetadriveIdm(MetadriveIdm::new(target_mps, EGO_OVERTAKE_TIMER_STEPS))
+        }
         Seat::BuiltIn(Ego::Idm) => Driver::Idm(Idm::new(&spec, target_mps, surface)),
         Seat::BuiltIn(Ego::Reference) => Driver::Reference(Reference::new(&spec, target_mps, surface)),
     };
     enter(setting, state, surface, Entrance::of(Role::Ego, scenario.ego(), driver));
 
-    for (partner, placement) in draft.partners.iter().zip(scenario.partners()) {
-        let first_move = setting.moves.len() as u32;
-        setting.moves.extend_from_slice(&partner.lateral);
-        let moves = (first_move, setting.moves.len() as u32);
-        let driver = Driver::Script(Script::new(partner, placement.t_m, moves));
+    for (number, (partner, placement)) in draft.partners.iter().zip(scenario.partners()).enumerate() {
+        let plan = Plan::new(partner.kind, &partner.policy, placement.t_m, surface);
+        setting.ways.push(Way::new(scenario, number, &plan));
+        let driver = Driver::Script(Script::new(plan, number));
         enter(setting, state, surface, Entrance::of(Role::Partner, placement, driver));
     }
 
     let spawns = recrash_roads::background_traffic(scenario);
     for spawn in &spawns {
-        let driver = Driver::MetadriveIdm(MetadriveIdm::new(TRAFFIC_SPEED_MPS));
+        let driver = Driver::MetadriveIdm(MetadriveIdm::new(TRAFFIC_SPEED_MPS, spawn.overtake_timer_steps));
         let TrafficPlacement { kind, ref path, pose, .. } = *spawn;
         enter(
             setting,
@@ -277,7 +280,7 @@ impl Setting {
         self.route_lanes.clear();
         self.route_starts.clear();
         self.obstacles.clear();
-        self.moves.clear();
+        self.ways.clear();
         self.crossings.clear();
     }
 }

@@ -1,6 +1,7 @@
 //! From a narrative to a scenario: map, lanes, speeds and timing that make the told conflict happen.
 
 use super::limits::{LEAST_TOLD_SPEED_MPS, most_speed, most_speed_of};
+use super::rehearsal::holds_speed;
 use super::retry::{Plan, plan};
 use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_way, ground, stagings};
 use super::timing::{Course, Task, Timing, Wanted, best_timings};
@@ -64,6 +65,9 @@ pub fn staging_of(narrative: &Narrative, facts: &Facts) -> Option<Staging> {
         .or_else(|| ways.first())
         .copied()
 }
+
+/// Room behind the partner's start, in time at its speed; assumed. [s]
+const ROOM_TO_COME_LATER_S: f64 = 1.0;
 
 /// Everything that is decided before numbers are worked out.
 struct Stage<'a> {
@@ -129,11 +133,13 @@ impl<'a> Stage<'a> {
             })
             .collect();
         let (lane_plans, courses): (Vec<LanePlan>, Vec<Course>) = plans.into_iter().unzip();
+        let (policy, start_mps) = self.on_its_path();
+        let on_its_path = (&policy, start_mps);
         // The partner must fit on its way: where it would start before it, the ego starts farther on.
         let mut ego_start_m = EGO_START_M;
         let farthest_m = (approach_m - SHORTEST_LEAD_S * self.ego_mps).max(EGO_START_M);
         let least_m = self.least_start_m();
-        let mut timed = best_timings(&self.task(ego_start_m), &courses, &self.plan);
+        let mut timed = best_timings(&self.task(ego_start_m, on_its_path), &courses, &self.plan);
         for _ in 0..4 {
             let missing_m = timed.first().map_or(0.0, |(_, timing)| least_m - timing.partner_start_m);
             if missing_m <= 0.0 || ego_start_m >= farthest_m {
@@ -142,7 +148,7 @@ impl<'a> Stage<'a> {
             let partner_mps = timed.first().map_or(self.partner_mps, |(_, timing)| timing.partner_mps);
             let moved_m = missing_m / partner_mps.max(1.0) * self.ego_mps + 1.0;
             ego_start_m = round_to((ego_start_m + moved_m).min(farthest_m), 0.5);
-            timed = best_timings(&self.task(ego_start_m), &courses, &self.plan);
+            timed = best_timings(&self.task(ego_start_m, on_its_path), &courses, &self.plan);
         }
         let (position, timing) = timed.first().map_or((0, None), |(position, timing)| (*position, Some(*timing)));
         let lanes = lane_plans.get(position).copied().unwrap_or(self.staging.lanes[0]);
@@ -162,7 +168,7 @@ impl<'a> Stage<'a> {
         turn(self.ground, movement)
     }
 
-    fn task(&self, ego_start_m: f64) -> Task<'_> {
+    fn task<'b>(&'b self, ego_start_m: f64, (policy, start_mps): (&'b Policy, f64)) -> Task<'b> {
         Task {
             template: &self.narrative.template,
             ground: self.ground,
@@ -172,7 +178,8 @@ impl<'a> Stage<'a> {
             ego_start_m,
             ego_mps: self.ego_mps,
             partner_mps: self.partner_mps,
-            sets_off: self.sets_off(),
+            policy,
+            start_mps,
             wanted: Wanted {
                 sv: self.told.0,
                 cp: self.told.1,
@@ -182,17 +189,36 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// Nearest to the beginning of its way that the partner may start. [m]
+    /// Nearest to the beginning of its way that the partner may start: all of it on the road. One that sets off, and so
+    /// starts near, keeps room to come a little later, which tuning may want. [m]
     fn least_start_m(&self) -> f64 {
-        0.5 * VehicleSpec::of(self.kind).length_m + 1.0
+        let (_, start_mps) = self.on_its_path();
+        let later_m = if start_mps < self.partner_mps { ROOM_TO_COME_LATER_S * self.partner_mps } else { 0.0 };
+        0.5 * VehicleSpec::of(self.kind).length_m + 1.0 + later_m
     }
 
-    /// First speed and acceleration of a partner that had stood. [m/s, m/s^2]
-    fn sets_off(&self) -> Option<(f64, f64)> {
+    /// What a partner does whose path meets the ego's, and its first speed: one that had stood sets off. [m/s]
+    fn on_its_path(&self) -> (Policy, f64) {
         let stood = self.staging.conflict == ConflictKind::Paths
             && self.facts.cp_did(LongitudinalAction::WasStopped)
             && self.partner_mps > SETTING_OFF_MPS;
-        stood.then(|| (SETTING_OFF_MPS, SETTING_OFF_THROTTLE * VehicleSpec::of(self.kind).max_acceleration_mps2))
+        if stood {
+            let acceleration = SETTING_OFF_THROTTLE * VehicleSpec::of(self.kind).max_acceleration_mps2;
+            let policy = Policy::AccelThenBrake {
+                accel_mag: SETTING_OFF_THROTTLE,
+                accel_steps: ((self.partner_mps - SETTING_OFF_MPS) / acceleration * 10.0).ceil() as u32,
+                cruise_speed: self.partner_mps,
+                brake_step: 0,
+                brake_steps: 0,
+                speed_kp: None,
+            };
+            return (policy, SETTING_OFF_MPS);
+        }
+        if self.staging.beside.is_some() && self.narrative.template.work_zone {
+            // The intelligent driver model would stop for cones that narrow its lane.
+            return (holds_speed(self.partner_mps), self.partner_mps);
+        }
+        (Policy::IdmNominal { target_speed_mps: self.partner_mps }, self.partner_mps)
     }
 
     /// Puts a timing into the draft.
@@ -205,22 +231,7 @@ impl<'a> Stage<'a> {
                 let missing_s =
                     ((self.least_start_m() - timing.partner_start_m) / timing.partner_mps.max(1.0)).max(0.0);
                 partner.start = Start::ArrivalGap { arrival_gap_s: round_to(timing.start - missing_s, 0.01) };
-                partner.policy = Policy::IdmNominal { target_speed_mps: timing.partner_mps };
-                if self.staging.beside.is_some() && self.narrative.template.work_zone {
-                    // The intelligent driver model would stop for cones that narrow its lane.
-                    partner.policy = holds_speed(timing.partner_mps);
-                }
-                if let Some((start_mps, acceleration)) = self.sets_off() {
-                    partner.speed_mps = start_mps;
-                    partner.policy = Policy::AccelThenBrake {
-                        accel_mag: SETTING_OFF_THROTTLE,
-                        accel_steps: ((timing.partner_mps - start_mps) / acceleration * 10.0).ceil() as u32,
-                        cruise_speed: timing.partner_mps,
-                        brake_step: 0,
-                        brake_steps: 0,
-                        speed_kp: None,
-                    };
-                }
+                (partner.policy, partner.speed_mps) = self.on_its_path();
             }
             ConflictKind::Sideways => {
                 partner.start = Start::Offset { delta_s_m: timing.start, delta_t_m: timing.start_t_m };
@@ -354,11 +365,6 @@ impl<'a> Stage<'a> {
             });
         }
     }
-}
-
-/// Holds a speed, whoever and whatever is near.
-fn holds_speed(target_speed: f64) -> Policy {
-    Policy::SuddenBrake { target_speed, brake_step: 0, brake_steps: 0, speed_kp: None }
 }
 
 /// The turn that shows a movement: on a road without junction there is none.

@@ -4,8 +4,9 @@
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::record::ContactZone;
-use recrash_model::scenario::LateralMove;
+use recrash_model::record::{ContactZone, PartnerKind, Surface};
+use recrash_model::scenario::{LateralMove, Policy};
+use recrash_plan::{Alone, Plan, Way, drift};
 use recrash_roads::LanePath;
 
 /// Time step: at 20 m/s a metre. [s]
@@ -15,54 +16,63 @@ const FAR_M: f64 = 25.0;
 /// Headings this near to each other, or to opposite, are in line (`docs/models/contact-zones.md`). [rad]
 const ALIGNED_RAD: f64 = 30.0 * math::PI / 180.0;
 
-/// How one of the two moves along its path.
-#[derive(Debug, Clone, Copy)]
+/// How one of the two moves along its path: what its plan does with nobody else on the road (`recrash_plan`).
+#[derive(Debug, Clone)]
 pub struct Motion<'a> {
     /// Lanes it follows.
     pub path: &'a LanePath,
-    /// Half the length of its box. [m]
-    pub half_length_m: f64,
-    /// Half its width. [m]
-    pub half_width_m: f64,
     /// Start along the path. [m]
     pub start_m: f64,
-    /// Speed at the start. [m/s]
-    pub start_mps: f64,
-    /// With which it comes to its target speed. [m/s^2]
-    pub acceleration_mps2: f64,
-    /// Target speed, not below the first. [m/s]
-    pub target_mps: f64,
-    /// Start to the right of its lane's centre. [m]
-    pub start_t_m: f64,
-    /// A sideways move.
-    pub lateral: Option<LateralMove>,
+    plan: Plan,
+    way: Way,
+    alone: Alone,
 }
 
-impl Motion<'_> {
+impl<'a> Motion<'a> {
+    /// An ego, which holds its speed through bends too.
+    pub fn ego(path: &'a LanePath, start_m: f64, speed_mps: f64, until_s: f64) -> Self {
+        let plan = Plan::new(PartnerKind::PassengerCar, &holds_speed(speed_mps), 0.0, Surface::Dry);
+        let way = Way::default();
+        let alone = Alone::new(&plan, &way, start_m, speed_mps, until_s);
+        Self { path, start_m, plan, way, alone }
+    }
+
+    /// A partner from its start, along the path and to the right of it, and from its first speed on. [m, m, m/s]
+    pub fn partner(
+        path: &'a LanePath,
+        plan: Plan,
+        moves: Vec<LateralMove>,
+        start_m: f64,
+        start_mps: f64,
+        until_s: f64,
+    ) -> Self {
+        let way = Way::along(path, &plan, moves);
+        let alone = Alone::new(&plan, &way, start_m, start_mps, until_s);
+        Self { path, start_m, plan, way, alone }
+    }
+
     /// Distance driven after a time. [m]
     pub fn driven(&self, time_s: f64) -> f64 {
-        let speeding_up_s = (self.target_mps - self.start_mps).max(0.0) / self.acceleration_mps2.max(0.1);
-        let early = time_s.min(speeding_up_s);
-        self.start_mps * early
-            + 0.5 * self.acceleration_mps2 * early * early
-            + self.target_mps.max(self.start_mps) * (time_s - early)
+        self.alone.driven(time_s)
     }
 
     /// Offset to the right of the lane's centre, and how fast it grows. [m, m/s]
     fn offset(&self, time_s: f64) -> (f64, f64) {
-        let Some(step) = self.lateral else { return (self.start_t_m, 0.0) };
-        let share = ((time_s - step.start_s) / step.duration_s.max(0.1)).clamp(0.0, 1.0);
-        let rate = if share > 0.0 && share < 1.0 { (step.to_t_m - self.start_t_m) / step.duration_s } else { 0.0 };
-        (self.start_t_m + share * (step.to_t_m - self.start_t_m), rate)
+        self.way.line(&self.plan, time_s)
     }
 
     fn outline(&self, time_s: f64) -> OrientedBox {
         let (t, rate) = self.offset(time_s);
         let pose = self.path.pose(self.start_m + self.driven(time_s), t);
-        let drift = math::atan2(-rate, self.target_mps.max(1.0));
+        let drift = drift(rate, self.alone.speed(time_s), self.plan.greatest_drift_rad);
         let pose = Pose { heading: pose.heading + drift, ..pose };
-        OrientedBox::new(pose, 2.0 * self.half_length_m, 2.0 * self.half_width_m)
+        OrientedBox::new(pose, 2.0 * self.plan.half_length_m, 2.0 * self.plan.half_width_m)
     }
+}
+
+/// Holds a speed, whoever and whatever is near.
+pub fn holds_speed(target_speed: f64) -> Policy {
+    Policy::SuddenBrake { target_speed, brake_step: 0, brake_steps: 0, speed_kp: None }
 }
 
 /// How the two met.
@@ -126,8 +136,8 @@ pub fn rehearse(ego: &Motion, partner: &Motion, from_s: f64, until_s: f64) -> Op
         partner_zone,
         ego_turned: turned(&at_start.0, &a),
         partner_turned: turned(&at_start.1, &b),
-        ego_nose_m: ego.start_m + ego.driven(moment) + ego.half_length_m,
-        partner_shifted_m: (partner.offset(moment).0 - partner.start_t_m).abs(),
+        ego_nose_m: ego.start_m + ego.driven(moment) + ego.plan.half_length_m,
+        partner_shifted_m: (partner.offset(moment).0 - partner.plan.start_t_m).abs(),
         kind: kind_of(&a, ego_zone, &b, partner_zone),
     })
 }
@@ -197,18 +207,11 @@ mod tests {
         LanePath::new(network, network.route(approach, Turn::Straight).expect("a way straight on"), 0)
     }
 
-    fn motion(path: &LanePath, start_m: f64) -> Motion<'_> {
-        Motion {
-            path,
-            half_length_m: 2.0,
-            half_width_m: 1.0,
-            start_m,
-            start_mps: SPEED,
-            acceleration_mps2: 2.0,
-            target_mps: SPEED,
-            start_t_m: 0.0,
-            lateral: None,
-        }
+    /// A box of 4 m by 2 m that holds a speed.
+    fn motion(path: &LanePath, start_m: f64, speed_mps: f64) -> Motion<'_> {
+        let plan = Plan::new(PartnerKind::PassengerCar, &holds_speed(speed_mps), 0.0, Surface::Dry);
+        let plan = Plan { half_length_m: 2.0, half_width_m: 1.0, ..plan };
+        Motion::partner(path, plan, Vec::new(), start_m, speed_mps, 10.0)
     }
 
     /// A partner from the left that reaches the crossing point `gap_s` after the ego.
@@ -216,20 +219,9 @@ mod tests {
         let network = network();
         let (ego, other) = (path(&network, Approach::Same), path(&network, Approach::Left));
         let conflict = ego.conflict(&other, 2.0, 2.0).expect("they cross");
-        let ego = motion(&ego, conflict.s_a - 30.0);
-        let partner = motion(&other, conflict.s_b - 30.0 - gap_s * SPEED);
+        let ego = motion(&ego, conflict.s_a - 30.0, SPEED);
+        let partner = motion(&other, conflict.s_b - 30.0 - gap_s * SPEED, SPEED);
         rehearse(&ego, &partner, 0.0, 6.0).expect("they come near")
-    }
-
-    #[test]
-    fn twenty_metres_a_second_for_two_seconds_are_forty_metres_and_setting_off_takes_longer() {
-        let network = network();
-        let path = path(&network, Approach::Same);
-        let steady = Motion { start_mps: 20.0, target_mps: 20.0, ..motion(&path, 0.0) };
-        assert!((steady.driven(2.0) - 40.0).abs() < 1e-9);
-        // From 0 to 10 m/s at 2 m/s^2: 25 m in 5 s, then 10 m/s.
-        let setting_off = Motion { start_mps: 0.0, ..motion(&path, 0.0) };
-        assert!((setting_off.driven(6.0) - 35.0).abs() < 1e-9);
     }
 
     #[test]
@@ -256,8 +248,8 @@ mod tests {
     fn in_line_and_front_to_rear_is_a_rear_end_collision() {
         let network = network();
         let path = path(&network, Approach::Same);
-        let slow = Motion { start_mps: 5.0, target_mps: 5.0, ..motion(&path, 20.0) };
-        let meeting = rehearse(&motion(&path, 5.0), &slow, 0.0, 6.0).expect("they come near");
+        let slow = motion(&path, 20.0, 5.0);
+        let meeting = rehearse(&motion(&path, 5.0, SPEED), &slow, 0.0, 6.0).expect("they come near");
         assert_eq!(meeting.kind, Some(CollisionKind::RearEndByEgo));
         // 15 m apart, 4 m of cars, 5 m/s faster: 2.2 s.
         assert!((meeting.time_s - 2.2).abs() <= 0.05 + 1e-9, "{meeting:?}");
@@ -270,16 +262,5 @@ mod tests {
         let middle = middle_of_overlap(&at(0.0, 0.0), &at(3.0, 1.0)).expect("they overlap");
         assert!((middle.x - 1.5).abs() < 1e-9 && (middle.y - 0.5).abs() < 1e-9, "{middle:?}");
         assert_eq!(middle_of_overlap(&at(0.0, 0.0), &at(9.0, 0.0)), None);
-    }
-
-    #[test]
-    fn a_sideways_move_is_linear() {
-        let network = network();
-        let path = path(&network, Approach::Same);
-        let lateral = Some(LateralMove { start_s: 1.0, duration_s: 2.0, to_t_m: 3.0 });
-        let moving = Motion { lateral, ..motion(&path, 0.0) };
-        assert_eq!(moving.offset(0.5), (0.0, 0.0));
-        assert_eq!(moving.offset(2.0), (1.5, 1.5));
-        assert_eq!(moving.offset(9.0), (3.0, 0.0));
     }
 }

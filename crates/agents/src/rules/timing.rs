@@ -1,15 +1,16 @@
 //! Lanes and timing: rehearses every lane plan of a staging at many starts, and takes the start whose meeting is most
 //! like the told one.
 
-use super::rehearsal::{Meeting, Motion, rehearse};
-use super::retry::{Aim, Plan, Tried};
+use super::rehearsal::{Meeting, Motion, holds_speed, rehearse};
+use super::retry::{Aim, Plan as Attempt, Tried};
 use super::staging::{ConflictKind, Ground};
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::record::{ContactZone, PartnerKind};
-use recrash_model::scenario::{Approach, LateralMove, MapSpec, Turn};
+use recrash_model::record::{ContactZone, PartnerKind, Surface};
+use recrash_model::scenario::{Approach, LateralMove, MapSpec, Policy, Turn};
 use recrash_model::template::{Movement, Template};
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::Plan;
 use recrash_roads::{LanePath, RoadNetwork, RoadPart};
 
 /// Starts are looked at from minus to plus this arrival gap. [s]
@@ -59,8 +60,10 @@ pub struct Task<'a> {
     pub ego_mps: f64,
     /// The partner's target speed. [m/s]
     pub partner_mps: f64,
-    /// The partner's first speed, where it sets off, and its acceleration. [m/s, m/s^2]
-    pub sets_off: Option<(f64, f64)>,
+    /// What a partner whose path meets the ego's does, and its first speed. [m/s]
+    pub policy: &'a Policy,
+    /// See [`Self::policy`].
+    pub start_mps: f64,
     /// What is wanted.
     pub wanted: Wanted<'a>,
 }
@@ -138,7 +141,7 @@ pub struct Timing {
 }
 
 /// The best timing on each course, best course first: `(position in courses, timing)`.
-pub fn best_timings(task: &Task, courses: &[Course], plan: &Plan) -> Vec<(usize, Timing)> {
+pub fn best_timings(task: &Task, courses: &[Course], plan: &Attempt) -> Vec<(usize, Timing)> {
     let mut found: Vec<(usize, Timing)> = courses
         .iter()
         .enumerate()
@@ -157,25 +160,22 @@ pub fn best_timings(task: &Task, courses: &[Course], plan: &Plan) -> Vec<(usize,
 }
 
 /// Paths that cross or merge: looks for the arrival gap.
-fn time_paths(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
+fn time_paths(task: &Task, course: &Course, plan: &Attempt) -> Option<Timing> {
     let spec = VehicleSpec::of(task.kind);
     let ego_spec = VehicleSpec::of(PartnerKind::PassengerCar);
     let (ego_path, path) = (&course.ego.path, &course.partner.path);
     let conflict = ego_path.conflict(path, ego_spec.width_m, spec.width_m)?;
     let meets_s = (conflict.s_a - task.ego_start_m) / task.ego_mps;
-    let ego = plain(ego_path, ego_spec, task.ego_start_m, task.ego_mps);
-    // Who sets off arrives later than the arrival gap says, which counts with the target speed.
-    let lost_s = task.sets_off.map_or(0.0, |(start_mps, acceleration)| {
-        math::sq(task.partner_mps - start_mps) / (2.0 * acceleration * task.partner_mps)
-    });
-    let motion = |gap_s: f64| {
-        let mut motion = plain(path, spec, conflict.s_b - task.partner_mps * (meets_s + gap_s), task.partner_mps);
-        if let Some((start_mps, acceleration)) = task.sets_off {
-            (motion.start_mps, motion.acceleration_mps2) = (start_mps, acceleration);
-        }
-        motion
-    };
     let (from_s, until_s) = (meets_s - 5.0, meets_s + 5.0);
+    let ego = Motion::ego(ego_path, task.ego_start_m, task.ego_mps, until_s);
+    let does = partner_plan(task, task.policy, 0.0);
+    let motion = |gap_s: f64| {
+        let start_m = conflict.s_b - task.partner_mps * (meets_s + gap_s);
+        Motion::partner(path, does, Vec::new(), start_m, task.start_mps, until_s)
+    };
+    // Who sets off, or slows for a bend, arrives later than the arrival gap says, which counts with the target speed.
+    let lost_s = meets_s - motion(0.0).driven(meets_s) / task.partner_mps;
+    let lost_s = (lost_s * 100.0).round().max(0.0) / 100.0;
     let count = (2.0 * WIDEST_GAP_S / GAP_STEP_S).round() as usize;
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
         .map(|n| {
@@ -195,22 +195,13 @@ fn time_paths(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
     })
 }
 
-fn plain(path: &LanePath, spec: VehicleSpec, start_m: f64, speed_mps: f64) -> Motion<'_> {
-    Motion {
-        path,
-        half_length_m: 0.5 * spec.length_m,
-        half_width_m: 0.5 * spec.width_m,
-        start_m,
-        start_mps: speed_mps,
-        acceleration_mps2: 1.0,
-        target_mps: speed_mps,
-        start_t_m: 0.0,
-        lateral: None,
-    }
+/// The plan of the partner with a policy, from this offset to the right of its lane on.
+fn partner_plan(task: &Task, policy: &Policy, start_t_m: f64) -> Plan {
+    Plan::new(task.kind, policy, start_t_m, Surface::Dry)
 }
 
 /// Parallel paths: the partner drives beside the ego and comes over; looks for its place beside the ego.
-fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
+fn time_sideways(task: &Task, course: &Course, plan: &Attempt) -> Option<Timing> {
     let spec = VehicleSpec::of(task.kind);
     let ego_spec = VehicleSpec::of(PartnerKind::PassengerCar);
     let lane_m = course.network.map.carriageway().lane_width_m;
@@ -254,14 +245,14 @@ fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
         to_t_m: (to_t * task.towards * 20.0).round() / 20.0,
     };
     let start_t_m = tenths(from_t * task.towards);
-    let ego = plain(&course.ego.path, ego_spec, task.ego_start_m, task.ego_mps);
-    let motion = |shift_m: f64| Motion {
-        start_t_m,
-        lateral: Some(lateral),
-        ..plain(&course.partner.path, spec, partner_place + shift_m - partner_mps * meets_s, partner_mps)
+    let until_s = meets_s + 8.0;
+    let ego = Motion::ego(&course.ego.path, task.ego_start_m, task.ego_mps, until_s);
+    let does = partner_plan(task, &holds_speed(partner_mps), start_t_m);
+    let motion = |shift_m: f64| {
+        let start_m = partner_place + shift_m - partner_mps * meets_s;
+        Motion::partner(&course.partner.path, does, vec![lateral], start_m, partner_mps, until_s)
     };
     let count = (2.0 * WIDEST_SHIFT_M / SHIFT_STEP_M).round() as usize;
-    let until_s = meets_s + 8.0;
     // As the start is written in the scenario: ahead of the ego at time 0.
     let ahead = |shift_m: f64| motion(shift_m).start_m - task.ego_start_m;
     let tries: Vec<(f64, Option<Meeting>)> = (0..=count)
@@ -286,7 +277,7 @@ fn time_sideways(task: &Task, course: &Course, plan: &Plan) -> Option<Timing> {
 fn choose(
     task: &Task,
     course: &Course,
-    plan: &Plan,
+    plan: &Attempt,
     tries: &[(f64, Option<Meeting>)],
     middle: f64,
     near: f64,
@@ -309,13 +300,13 @@ fn choose(
 }
 
 /// Penalty of a start that is nearly one of the earlier tries.
-fn penalty(course: &Course, plan: &Plan, start: f64, near: f64) -> f64 {
+fn penalty(course: &Course, plan: &Attempt, start: f64, near: f64) -> f64 {
     let same = |tried: &&Tried| tried.lanes == course.lanes && tried.ego_lane == course.ego_lane;
     plan.tried.iter().filter(same).map(|tried| 4.0 * (1.0 - (tried.start - start).abs() / near).max(0.0)).sum()
 }
 
 /// How far a meeting is from the wanted one.
-fn score(task: &Task, course: &Course, plan: &Plan, shift: f64, meeting: &Meeting) -> f64 {
+fn score(task: &Task, course: &Course, plan: &Attempt, shift: f64, meeting: &Meeting) -> f64 {
     let mut score = 0.0;
     let wanted = &task.wanted;
     let touched = meeting.gap_m <= 0.0;
@@ -411,6 +402,8 @@ mod tests {
                     let partner = (staging.approach, turn(cp), lanes.partner);
                     let course = Course::new(&MapSpec::X(map), (turn(sv), lanes.ego), partner).expect("both ways");
                     let ground = ground(&template, staging);
+                    let partner_mps = most_speed(ground, turn(cp)).min(8.0);
+                    let policy = holds_speed(partner_mps);
                     let task = Task {
                         template: &template,
                         ground,
@@ -419,13 +412,14 @@ mod tests {
                         kind: PartnerKind::PassengerCar,
                         ego_start_m: 5.0,
                         ego_mps: most_speed(ground, turn(sv)).min(8.0),
-                        partner_mps: most_speed(ground, turn(cp)).min(8.0),
-                        sets_off: None,
+                        partner_mps,
+                        policy: &policy,
+                        start_mps: partner_mps,
                         wanted: Wanted { sv: &[], cp: &[], excluded: &[], partner_first: true },
                     };
                     let excluded = [CollisionKind::RearEndByEgo, CollisionKind::RearEndOfEgo, CollisionKind::HeadOn];
                     let wanted = Wanted { excluded: &excluded, ..task.wanted };
-                    let plan = Plan { aim: Aim::Touch, ..super::super::retry::plan(&[], true, false) };
+                    let plan = Attempt { aim: Aim::Touch, ..super::super::retry::plan(&[], true, false) };
                     let timing = time_paths(&Task { wanted, ..task }, &course, &plan);
                     let timing = timing.unwrap_or_else(|| panic!("{template} {staging:?} {lanes:?}: never meet"));
                     // The best plan of each way shows both movements fully; the others may leave a little to the tuner.

@@ -78,7 +78,7 @@ fn pieces(context: &Context<'_>, position: usize, driven: Option<&Driven>) -> Ve
     };
     let (mut from, mut from_m) = match partner.start {
         Start::Offset { delta_t_m, .. } => (number("start/delta_t_m".to_owned(), delta_t_m), delta_t_m),
-        Start::ArrivalGap { .. } => (Sum::constant(0.0), 0.0),
+        Start::ArrivalGap { .. } => (Sum::constant(placement.t_m), placement.t_m),
     };
     let mut list = Vec::new();
     // Before its first move it may be beside its line as well: in a bend a vehicle on tyres is.

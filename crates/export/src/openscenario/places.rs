@@ -48,7 +48,7 @@ pub(super) fn partner_start(context: &Context<'_>, position: usize) -> Element {
         Start::Offset { delta_t_m, .. } => {
             (context.names.reference(&format!("/partners/{position}/start/delta_t_m"), delta_t_m), delta_t_m)
         }
-        Start::ArrivalGap { .. } => ("0".to_owned(), 0.0),
+        Start::ArrivalGap { .. } => (number(rounded(placement.t_m)), placement.t_m),
     };
     start(context, placement, partner_along(context, position), t, t_m)
 }

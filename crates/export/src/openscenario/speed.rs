@@ -4,8 +4,9 @@ use super::Context;
 use super::driven::{Driven, corners};
 use crate::xml::{Element, number, rounded};
 use recrash_model::rollout::STEP_S;
-use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
+use recrash_model::scenario::Policy;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::{Alone, Plan, Way};
 
 /// Speeds nearer to their target than this have reached it. [m/s]
 const REACHED_MPS: f64 = 0.005;
@@ -24,23 +25,10 @@ pub(super) struct Phase {
     pub action: Element,
 }
 
-/// Speed at every step of 0.1 s.
-struct Curve(Vec<f64>);
-
-impl Curve {
-    fn at(&self, time_s: f64) -> f64 {
-        let position = (time_s / STEP_S).max(0.0);
-        let before = position.floor() as usize;
-        let last = self.0.len() - 1;
-        let (a, b) = (self.0[before.min(last)], self.0[(before + 1).min(last)]);
-        a + (b - a) * (position - position.floor())
-    }
-
-    /// Every step from one time to another, two at least.
-    fn between(&self, from_s: f64, to_s: f64) -> Vec<f64> {
-        let count = (((to_s - from_s) / STEP_S).round() as usize).max(1);
-        (0..=count).map(|step| self.at(from_s + step as f64 * STEP_S)).collect()
-    }
+/// The speed at every step from one time to another, two at least. [m/s]
+fn between(curve: &Alone, from_s: f64, to_s: f64) -> Vec<f64> {
+    let count = (((to_s - from_s) / STEP_S).round() as usize).max(1);
+    (0..=count).map(|step| curve.speed(from_s + step as f64 * STEP_S)).collect()
 }
 
 /// The parts of a partner's policy, in order of time.
@@ -48,8 +36,7 @@ pub(super) fn phases(context: &Context<'_>, position: usize, driven: Option<&Dri
     let draft = context.scenario.draft();
     let partner = &draft.partners[position];
     let spec = VehicleSpec::of(partner.kind);
-    let curve =
-        curve(&partner.policy, driven.map_or_else(|| vec![partner.speed_mps], Driven::speeds), &spec, draft.duration_s);
+    let curve = curve(context, position, driven);
     let end_s = draft.duration_s;
     let pointer = |field: &str| format!("/partners/{position}/policy/{field}");
     let named = |field: &str, value: f64| context.names.reference(&pointer(field), value);
@@ -183,10 +170,10 @@ fn longitudinal(action: Element) -> Element {
 
 /// From the speed it has to a target, along the curve between two times; in terms of the target's name, and of the
 /// speed at the start where that has one.
-fn approach(curve: &Curve, from_s: f64, to_s: f64, target: (&str, f64), start: Option<(&str, f64)>) -> Element {
+fn approach(curve: &Alone, from_s: f64, to_s: f64, target: (&str, f64), start: Option<(&str, f64)>) -> Element {
     let (name, target_mps) = target;
     let reached = |speed: f64| (speed - target_mps).abs() < REACHED_MPS;
-    if start.is_none_or(|(_, speed)| reached(speed)) && curve.between(from_s, to_s).iter().all(|&speed| reached(speed))
+    if start.is_none_or(|(_, speed)| reached(speed)) && between(curve, from_s, to_s).iter().all(|&speed| reached(speed))
     {
         return speed_at_once(name);
     }
@@ -222,13 +209,13 @@ fn plain_time(seconds: f64) -> String {
 
 /// The curve between two times as a speed profile of straight pieces.
 fn profile(
-    curve: &Curve,
+    curve: &Alone,
     from_s: f64,
     to_s: f64,
     write: impl Fn(f64) -> String,
     write_time: impl Fn(f64) -> String,
 ) -> Element {
-    let speeds = curve.between(from_s, to_s);
+    let speeds = between(curve, from_s, to_s);
     let mut distances = vec![0.0];
     for pair in speeds.windows(2) {
         distances.push(distances[distances.len() - 1] + 0.5 * (pair[0] + pair[1]) * STEP_S);
@@ -259,77 +246,12 @@ fn profile(
     longitudinal(Element::new("SpeedProfileAction").with("followingMode", "position").children(entries))
 }
 
-/// Speeds at the steps of a scenario: those given, and behind them what the policy does to the last with nobody else on
-/// the road (`docs/models/policies.md`, without tyres). [m/s]
-fn curve(policy: &Policy, mut speeds: Vec<f64>, spec: &VehicleSpec, duration_s: f64) -> Curve {
-    let steps = (duration_s / STEP_S).ceil() as usize;
-    for step in speeds.len()..=steps {
-        let before = u32::try_from(step - 1).unwrap_or(u32::MAX);
-        speeds.push(next_speed(policy, speeds[step - 1], before, spec));
-    }
-    Curve(speeds)
-}
-
-fn next_speed(policy: &Policy, speed: f64, step: u32, spec: &VehicleSpec) -> f64 {
-    let hold = |target: f64, gain: Option<f64>| gain.unwrap_or(DEFAULT_SPEED_KP) * (target - speed);
-    let braking = |from: u32, count: u32| (from..from.saturating_add(count)).contains(&step);
-    let throttle = match *policy {
-        Policy::SuddenBrake { brake_step, brake_steps, .. }
-        | Policy::AccelThenBrake { brake_step, brake_steps, .. }
-            if braking(brake_step, brake_steps) =>
-        {
-            -1.0
-        }
-        Policy::AccelThenBrake { accel_mag, accel_steps, .. } if step < accel_steps => accel_mag,
-        Policy::SuddenBrake { target_speed, speed_kp, .. } => hold(target_speed, speed_kp),
-        Policy::AccelThenBrake { cruise_speed, speed_kp, .. } => hold(cruise_speed, speed_kp),
-        Policy::IdmNominal { target_speed_mps } if target_speed_mps > 0.0 => {
-            1.0 - recrash_model::math::pow(speed / target_speed_mps, 10.0)
-        }
-        Policy::Stopped { depart_step, .. } if depart_step.is_none_or(|depart| step < depart) => -1.0,
-        Policy::Stopped { target_speed_mps, .. }
-        | Policy::Yielding { target_speed_mps, .. }
-        | Policy::IdmNominal { target_speed_mps } => hold(target_speed_mps, None),
-    }
-    .clamp(-1.0, 1.0);
-    let acceleration = if throttle < 0.0 {
-        (throttle * spec.brake_demand_mps2).max(-spec.max_deceleration_mps2)
-    } else if speed > spec.max_speed_mps {
-        0.0
-    } else {
-        throttle * spec.max_acceleration_mps2
-    };
-    (speed + acceleration * STEP_S).max(0.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use recrash_model::record::PartnerKind;
-
-    const CAR: VehicleSpec = VehicleSpec::of(PartnerKind::PassengerCar);
-
-    #[test]
-    fn full_brake_from_ten_metres_per_second_takes_two_thirds_of_a_second() {
-        let policy = Policy::SuddenBrake { target_speed: 10.0, brake_step: 0, brake_steps: 20, speed_kp: None };
-        let curve = curve(&policy, vec![10.0], &CAR, 2.0);
-        // 10 / 15.13 = 0.66 s: moving after 0.6 s, standing after 0.7 s.
-        assert!((curve.at(0.6) - (10.0 - 0.6 * 15.13)).abs() < 1e-9);
-        assert!(curve.at(0.7) < 1e-9);
-        assert_eq!(curve.at(2.0), 0.0);
-    }
-
-    #[test]
-    fn throttle_is_a_share_of_the_engines_acceleration() {
-        let policy = Policy::AccelThenBrake {
-            accel_mag: 0.5,
-            accel_steps: 20,
-            cruise_speed: 20.0,
-            brake_step: 200,
-            brake_steps: 1,
-            speed_kp: None,
-        };
-        let curve = curve(&policy, vec![8.0], &CAR, 2.0);
-        assert!((curve.at(2.0) - (8.0 + 2.0 * 0.5 * CAR.max_acceleration_mps2)).abs() < 1e-9);
-    }
+/// Speeds at the steps of a scenario: those of the rollout, and behind them what the plan does alone.
+fn curve(context: &Context<'_>, position: usize, driven: Option<&Driven>) -> Alone {
+    let draft = context.scenario.draft();
+    let (partner, placement) = (&draft.partners[position], &context.scenario.partners()[position]);
+    let plan = Plan::new(partner.kind, &partner.policy, placement.t_m, draft.environment.surface);
+    let way = Way::new(context.scenario, position, &plan);
+    let speeds = driven.map_or_else(|| vec![partner.speed_mps], Driven::speeds);
+    Alone::after(&plan, &way, placement.s_m, speeds, draft.duration_s)
 }

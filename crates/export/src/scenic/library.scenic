@@ -1,6 +1,5 @@
 # ---- driving: the same in every file -----------------------------------------------------------------------------
 
-GAIN = 0.3            # throttle per m/s of missing speed, as in recrash
 STEP = 0.1            # [s]
 IN_METADRIVE = 'metadrive' in Car.__module__
 
@@ -54,7 +53,7 @@ def steering(car, way, t):
 
 def pedals(car, command):
     """Throttle and brake for a command from -1 (full brake) to 1 (full throttle) in terms of recrash's vehicles."""
-    engine, demand, tyres = car.limits
+    engine, demand, tyres, comfortable = car.limits
     command = max(-1.0, min(1.0, command))
     acceleration = command * engine if command >= 0 else max(command * demand, -tyres)
     if acceleration >= 0:
@@ -68,9 +67,11 @@ def drive(car, way, command, t):
     throttle, brake = pedals(car, command)
     return (SetThrottleAction(throttle), SetBrakeAction(brake), SetSteerAction(steering(car, way, t)))
 
-def hold(car, speed):
-    """The command that holds a speed."""
-    return GAIN * (speed - car.speed)
+def hold(car, speed, gain=GAIN):
+    """The command that holds a speed, or comes down to it comfortably."""
+    engine, demand, tyres, comfortable = car.limits
+    acceleration = max(gain * engine * (speed - car.speed), -comfortable)
+    return acceleration / (engine if acceleration >= 0 else demand)
 
 def follow(car, way, speed):
     """MetaDrive's gap law: speed in km/h, gaps in m, blind to whatever is not ahead on its own way within 30 m."""
@@ -78,9 +79,9 @@ def follow(car, way, speed):
     for other in simulation().objects:
         point = shapely.geometry.Point(other.position.x, other.position.y)
         gap = way.project(point) - here
-        if other is not car and 0 < gap < 30 and way.distance(point) < 1.75:
+        if other is not car and 0 < gap < SIGHT and way.distance(point) < 1.75:
             v, dv = 3.6 * car.speed, 3.6 * (car.speed - getattr(other, 'speed', 0.0))
-            command = min(command, 1 - (car.speed / speed) ** 10 - ((10 + 1.5 * v + v * dv / 4.47) / gap) ** 2)
+            command = min(command, 1 - (car.speed / speed) ** 10 - ((STANDSTILL_DISTANCE + TIME_HEADWAY * v + v * dv / COMFORT) / gap) ** 2)
     return command
 
 def contact(a, b):

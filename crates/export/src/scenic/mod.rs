@@ -6,10 +6,14 @@ use crate::ExportFile;
 use crate::opendrive::DriveMap;
 use crate::openscenario::names::Declarations;
 use crate::xml::{number, rounded};
-use recrash_model::record::PartnerKind;
-use recrash_model::scenario::{ObstacleKind, Start};
+use recrash_model::record::{PartnerKind, Surface};
+use recrash_model::scenario::{DEFAULT_SPEED_KP, ObstacleKind, Policy};
 use recrash_model::tuning::Parameter;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::Plan;
+use recrash_plan::constants::{
+    ACCELERATION, DECELERATION, SIGHT_M, STANDSTILL_DISTANCE_M, STOPPING_MPS2, TIME_HEADWAY_S,
+};
 use recrash_roads::{LanePath, Placement, Scenario};
 use std::fmt::Write;
 
@@ -52,6 +56,7 @@ fn document(context: &Context<'_>) -> String {
     let mut text = header(context);
     text.push_str(&declarations(context));
     text.push('\n');
+    text.push_str(&constants());
     text.push_str(LIBRARY);
     text.push_str(&ways(context));
     text.push_str(&cast(context));
@@ -129,6 +134,25 @@ fn declarations(context: &Context<'_>) -> String {
     text
 }
 
+/// The numbers of `recrash_plan` that the library below needs.
+fn constants() -> String {
+    let mut text = String::from(
+        "# What recrash's plans mean (docs/models/policies.md): SI units, and MetaDrive's own for its gap law.\n",
+    );
+    for (name, value) in [
+        ("GAIN", DEFAULT_SPEED_KP),
+        ("STOPPING", STOPPING_MPS2),
+        ("SIGHT", SIGHT_M),
+        ("STANDSTILL_DISTANCE", STANDSTILL_DISTANCE_M),
+        ("TIME_HEADWAY", TIME_HEADWAY_S),
+        ("COMFORT", 2.0 * (ACCELERATION * DECELERATION).sqrt()),
+    ] {
+        let _ = writeln!(text, "{name} = {}", number(rounded(value)));
+    }
+    text.push('\n');
+    text
+}
+
 /// Everybody's way as a line of points.
 fn ways(context: &Context<'_>) -> String {
     let mut text = String::from(
@@ -180,16 +204,19 @@ fn cast(context: &Context<'_>) -> String {
 /// A road user at a place of its way.
 fn road_user(placement: &Placement, way: &str, s: &str, t: &str, speed: &str, behavior: &str, on_road: bool) -> String {
     let spec = VehicleSpec::of(placement.kind);
+    let stands = Policy::Stopped { depart_step: None, target_speed_mps: 0.0 };
+    let comfortable_mps2 = Plan::new(placement.kind, &stands, 0.0, Surface::Dry).comfortable_mps2;
     let class = if placement.kind == PartnerKind::Pedestrian { "Pedestrian" } else { "Car" };
     let mut text = format!(
         "new {class} at place({way}, {s}, {t}), facing direction({way}, {s}),\n    \
-         with length {}, with width {}, with limits ({}, {}, {}),\n    \
+         with length {}, with width {}, with limits ({}, {}, {}, {}),\n    \
          with speed {speed}, with requireVisible False",
         number(spec.length_m),
         number(spec.width_m),
         number(rounded(spec.max_acceleration_mps2)),
         number(rounded(spec.brake_demand_mps2)),
         number(rounded(spec.max_deceleration_mps2)),
+        number(rounded(comfortable_mps2)),
     );
     if !on_road {
         text.push_str(", with regionContainedIn everywhere");
@@ -276,12 +303,4 @@ fn constant(name: &str) -> String {
 /// Text that cannot end a documentation string.
 fn doc_text(text: &str) -> String {
     text.replace('\\', "/").replace('"', "'")
-}
-
-/// How far a partner starts to the right of its way. [m]
-fn start_offset(start: Start) -> f64 {
-    match start {
-        Start::Offset { delta_t_m, .. } => delta_t_m,
-        Start::ArrivalGap { .. } => 0.0,
-    }
 }

@@ -1,6 +1,6 @@
 //! The partners of a Scenic file: a behavior for each policy, and where each starts.
 
-use super::{Context, constant, road_user, start_offset};
+use super::{Context, constant, road_user};
 use crate::xml::{number, rounded};
 use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{Approach, DEFAULT_SPEED_KP, Policy, Start};
@@ -27,7 +27,7 @@ pub(super) fn behavior(context: &Context<'_>, position: usize) -> String {
     let hold = |speed: &str, gain: Option<f64>| match gain {
         None => format!("hold(self, {speed})"),
         Some(gain) if gain == DEFAULT_SPEED_KP => format!("hold(self, {speed})"),
-        Some(gain) => format!("{} * ({speed} - self.speed)", number(gain)),
+        Some(gain) => format!("hold(self, {speed}, {})", number(gain)),
     };
     let take = |command: &str| format!("take drive(self, {way}, {command}, {t})");
     let forever = |command: &str| format!("        while True:\n            {}\n", take(command));
@@ -67,13 +67,13 @@ pub(super) fn behavior(context: &Context<'_>, position: usize) -> String {
             if let Some(conflict) = conflict {
                 text.push_str("    try:\n");
                 text.push_str(&forever(&hold(&speed, None)));
-                // It stops short of the conflict while the ego is about to come: v^2 = 2 * 3 m/s^2 * distance.
+                // It stops short of the conflict while the ego is about to come: v^2 = 2 * deceleration * distance.
                 let (mine, theirs) = (number(rounded(conflict.s_b - 6.0)), number(rounded(conflict.s_a)));
                 let _ = writeln!(
                     text,
-                    "    interrupt when (0 < {mine} - along({way}, self) < self.speed ** 2 / 6 + 2\n            \
+                    "    interrupt when (0 < {mine} - along({way}, self) < self.speed ** 2 / (2 * STOPPING) + 2\n            \
                      and 0 < {theirs} - along(EGO_WAY, ego) < {gap} * max(ego.speed, 1)):\n        {}",
-                    take("-0.2")
+                    take("-STOPPING / self.limits[1]")
                 );
             }
         }
@@ -133,7 +133,7 @@ pub(super) fn instance(context: &Context<'_>, position: usize) -> String {
     };
     let t = match partner.start {
         Start::Offset { delta_t_m, .. } => at("start/delta_t_m", delta_t_m),
-        Start::ArrivalGap { .. } => "0".to_owned(),
+        Start::ArrivalGap { .. } => number(rounded(placement.t_m)),
     };
     let outline = recrash_model::geometry::OrientedBox::new(
         placement.pose,
@@ -166,10 +166,10 @@ fn target_name(context: &Context<'_>, position: usize) -> String {
 /// The lateral target over time.
 fn lateral_term(context: &Context<'_>, position: usize) -> String {
     let partner = &context.scenario.draft().partners[position];
-    let start = start_offset(partner.start);
+    let start = context.scenario.partners()[position].t_m;
     let start_text = match partner.start {
         Start::Offset { .. } => context.value(&format!("/partners/{position}/start/delta_t_m"), start),
-        Start::ArrivalGap { .. } => "0".to_owned(),
+        Start::ArrivalGap { .. } => number(rounded(start)),
     };
     if partner.lateral.is_empty() {
         return if start == 0.0 && context.parameters.is_empty() { "0".to_owned() } else { start_text };

@@ -4,7 +4,8 @@ use crate::common::{checked, crossing};
 use recrash_metadrive::{Drive, Metadrive, Options, inspect};
 use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
-use recrash_roads::background_traffic;
+use recrash_model::vehicle::VehicleSpec;
+use recrash_roads::{Scenario, background_traffic};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -223,6 +224,51 @@ fn every_kind_of_road_user_drives_walks_or_stands() {
         assert!(wanted.contains(&way), "{kind:?} went {way} m");
         assert!((last.y - first.y).abs() < 0.1 && last.speed() < 0.5, "{kind:?}: {last:?}");
     }
+}
+
+#[test]
+fn every_kind_holds_its_line_after_a_sideways_move_and_brakes_no_harder_than_planned() {
+    let Some(metadrive) = start("every_kind_holds_its_line_after_a_sideways_move") else { return };
+    let moving = PartnerKind::ALL.into_iter().filter(|kind| *kind != PartnerKind::FixedObject);
+    let cases: Vec<(PartnerKind, f64)> = moving
+        .flat_map(|kind| {
+            let fastest = VehicleSpec::of(kind).max_speed_mps.min(20.0);
+            [0.3, 0.65, 1.0].map(|share| (kind, (share * fastest * 100.0).floor() / 100.0))
+        })
+        .collect();
+    let scenarios: Vec<Scenario> = cases
+        .iter()
+        .map(|(kind, speed)| {
+            let mut draft = crossing();
+            draft["map"] = json!({"type": "S", "lanes": 3, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 300.0});
+            draft["duration_s"] = json!(15.5);
+            draft["ego"] =
+                json!({"turn": "straight", "lane": 1, "s_m": 5.0, "speed_mps": 1.0, "target_speed_mps": 1.0});
+            let partner = &mut draft["partners"][0];
+            partner["kind"] = serde_json::to_value(kind).expect("a word");
+            partner["approach"] = json!("same");
+            partner["start"] = json!({"delta_s_m": 20.0});
+            partner["speed_mps"] = json!(speed);
+            partner["policy"] =
+                json!({"type": "sudden_brake", "target_speed": speed, "brake_step": 0, "brake_steps": 0});
+            partner["lateral"] = json!([{"start_s": 1.0, "duration_s": 1.5, "to_t_m": 1.0}]);
+            checked(&draft)
+        })
+        .collect();
+    let mut bad = Vec::new();
+    let rollouts = metadrive.simulate_all(&scenarios, &Drive::MetadriveIdm, &|_| {});
+    for ((kind, speed), rollout) in cases.iter().zip(rollouts) {
+        let rollout = rollout.unwrap_or_else(|error| panic!("{kind:?}: {error}"));
+        let states = &rollout.actors[1].states;
+        let late = states.iter().skip(145);
+        let off_m = late.clone().map(|state| (state.y - (states[0].y - 1.0)).abs()).fold(0.0, f64::max);
+        let off_deg = late.map(|state| state.heading.to_degrees().abs()).fold(0.0, f64::max);
+        let hardest = states.windows(2).map(|pair| (pair[0].speed() - pair[1].speed()) / 0.1).fold(0.0, f64::max);
+        if states.len() < 150 || off_m > 0.05 || off_deg > 0.3 || hardest > 2.5 {
+            bad.push(format!("{kind:?} {speed}: {off_m:.3} m, {off_deg:.3} deg, {hardest:.1} m/s^2"));
+        }
+    }
+    assert!(bad.is_empty(), "{bad:#?}");
 }
 
 /// A run of two minutes whose worker is killed while it is at it.

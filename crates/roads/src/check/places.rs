@@ -18,6 +18,10 @@ const OBSTACLE_SPAWN_GAP_M: f64 = 0.2;
 /// Somebody on foot may start this far from where its way meets the ego's: beside the ego's lane. [m]
 const STEP_OUT_M: f64 = 3.0;
 
+/// Room in a bend is looked for in steps of this, up to so many of them. [m]
+const ROOM_STEP_M: f64 = 0.05;
+const MOST_ROOM_STEPS: u32 = 20;
+
 /// The longest arm a map may have. [m]
 const LONGEST_ARM_M: f64 = 300.0;
 
@@ -100,12 +104,36 @@ pub(super) fn partner(
             (offset_start(draft, partner, path, network, ego, &way, delta_s_m, remarks)?, delta_t_m)
         }
         Start::ArrivalGap { arrival_gap_s } => {
-            (timed_start(draft, partner, path, network, ego, &way, conflict, arrival_gap_s, remarks)?, 0.0)
+            let s = timed_start(draft, partner, path, network, ego, &way, conflict, arrival_gap_s, remarks)?;
+            (s, room_in_bend(network, &way, partner.kind, s))
         }
     };
     let pose = way.pose(s_m, t_m);
     let speed_mps = partner.speed_mps;
     Some(Placement { kind: partner.kind, path: way, s_m, t_m, pose, speed_mps, conflict })
+}
+
+/// The first place on its way at which the whole of a road user stands on the road: half of its length, where the way
+/// begins at the end of a road. [m]
+fn first_place(network: &RoadNetwork, way: &LanePath, kind: PartnerKind) -> f64 {
+    let half_m = 0.5 * VehicleSpec::of(kind).length_m;
+    if network.on_road(way.pose(-half_m, 0.0).position) { 0.0 } else { half_m }
+}
+
+/// How far to the right of its lane's centre a road user starts that comes along a bend: as little to the inside as keeps
+/// all of its corners on the road. A long one needs that at the outer edge. [m]
+fn room_in_bend(network: &RoadNetwork, way: &LanePath, kind: PartnerKind, s: f64) -> f64 {
+    let spec = VehicleSpec::of(kind);
+    let inside = -way.curvature(s).signum();
+    let fits = |t: f64| {
+        let corners = OrientedBox::new(way.pose(s, t), spec.length_m, spec.width_m).corners();
+        corners.into_iter().all(|corner| network.on_road(corner))
+    };
+    if way.curvature(s) == 0.0 {
+        return 0.0;
+    }
+    let steps = (0..=MOST_ROOM_STEPS).map(|step| inside * ROOM_STEP_M * f64::from(step));
+    steps.into_iter().find(|t| fits(*t)).unwrap_or(0.0)
 }
 
 /// The start of a partner given relative to the ego.
@@ -153,22 +181,24 @@ fn offset_start(
             return None;
         }
     };
+    let first = first_place(network, way, partner.kind);
     // A hair outside is rounding.
-    if s < -1e-9 || s > last + 1e-9 {
+    if s < first - 1e-9 || s > last + 1e-9 {
         let (least, most) = match partner.approach {
-            Approach::Opposite => (delta_s_m + s - last, delta_s_m + s),
-            _ => (delta_s_m - s, delta_s_m - s + last),
+            Approach::Opposite => (delta_s_m + s - last, delta_s_m + s - first),
+            _ => (delta_s_m - s + first, delta_s_m - s + last),
         };
         let message = format!(
             "{} m {} the ego is no place on the partner's way",
             shown(delta_s_m.abs()),
             if delta_s_m < 0.0 { "behind" } else { "ahead of" }
         );
-        let hint = format!("allowed: delta_s_m from {} to {} m, or a longer map", shown(least), shown(most));
+        let (least, most) = (shown(round_up(least)), shown(round_down(most)));
+        let hint = format!("allowed: delta_s_m from {least} to {most} m, or a longer map");
         remarks.error("scenario.start-off-road", at, message, hint);
         return None;
     }
-    Some(s.clamp(0.0, last))
+    Some(s.clamp(first, last))
 }
 
 /// The start of a partner given by when it reaches the conflict.
@@ -229,33 +259,34 @@ fn timed_start(
         PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist | PartnerKind::Animal => conflict.s_b - STEP_OUT_M,
         _ => arm_length(network, way).min(conflict.s_b),
     };
-    if (0.0..=arm).contains(&s) {
+    let first = first_place(network, way, partner.kind).min(arm);
+    if (first..=arm).contains(&s) {
         return Some(s);
     }
     let earliest = (conflict.s_b - arm) / target - ego_time;
-    let latest = conflict.s_b / target - ego_time;
+    let latest = (conflict.s_b - first) / target - ego_time;
     let message = format!(
         "to reach the conflict {} s {} the ego (which needs {} s) at {} m/s, the partner would have to start {}",
         shown(arrival_gap_s.abs()),
         if arrival_gap_s < 0.0 { "before" } else { "after" },
         shown(ego_time),
         shown(target),
-        if s < 0.0 {
-            format!("{} m before the beginning of its arm", shown(-s))
+        if s < first {
+            format!("{} m before the first place on its arm that has room for all of it", shown(first - s))
         } else {
             format!("{} m behind the end of its arm", shown(s - arm))
         }
     );
     let mut hint =
         format!("allowed: arrival_gap_s from {} to {} s", shown(round_up(earliest)), shown(round_down(latest)));
-    if s < 0.0 {
+    if s < first {
         let length = match (&draft.map, partner.approach) {
             (MapSpec::X(m), Approach::Left | Approach::Right | Approach::Opposite) => Some(m.arm_m),
             (MapSpec::T(m), Approach::Left | Approach::Right | Approach::Opposite) => Some(m.arm_m),
             (MapSpec::O(m), Approach::Left | Approach::Right | Approach::Opposite) => Some(m.arm_m),
             _ => None,
         };
-        match length.map(|arm_m| (arm_m - s).ceil()) {
+        match length.map(|arm_m| (arm_m + first - s).ceil()) {
             Some(needed) if needed <= LONGEST_ARM_M => hint.push_str(&format!(", or map.arm_m of {} m", shown(needed))),
             _ => hint.push_str(", or a slower partner, or an ego that starts nearer to the conflict"),
         }

@@ -1,6 +1,8 @@
 //! The check, rule by rule: one draft that passes, and for each rule the smallest change that breaks it.
 
+use recrash_model::geometry::OrientedBox;
 use recrash_model::scenario::{Approach, ScenarioDraft};
+use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{Diagnostic, Severity};
 use recrash_roads::{check, read_draft, write_draft};
 use serde_json::{Value, json};
@@ -197,12 +199,13 @@ fn the_hint_on_an_arrival_gap_gives_bounds_that_are_themselves_accepted() {
         "scenario.arrival-gap",
         "partners[0].start.arrival_gap_s",
     );
-    // At s = 0 it needs 100.5 / 10 s, 1.925 s more than the ego; at the arm's end 20.5 / 10 s, 6.075 s less.
-    assert_eq!(error.hint, "allowed: arrival_gap_s from -6.075 to 1.925 s, or map.arm_m of 261 m");
-    for gap in [-6.075, 1.925] {
+    // All of it on the road (s = 2.2575) it needs 98.24 / 10 s, 1.699 s more than the ego; at the arm's end 20.5 / 10 s,
+    // 6.075 s less.
+    assert_eq!(error.hint, "allowed: arrival_gap_s from -6.075 to 1.699 s, or map.arm_m of 264 m");
+    for gap in [-6.075, 1.699] {
         accepted(&[("/partners/0/start/arrival_gap_s", json!(gap))]);
     }
-    accepted(&[("/partners/0/start/arrival_gap_s", json!(20.0)), ("/map/arm_m", json!(261.0))]);
+    accepted(&[("/partners/0/start/arrival_gap_s", json!(20.0)), ("/map/arm_m", json!(264.0))]);
     refused(
         &[("/partners/0/start/arrival_gap_s", json!(-7.0))],
         "scenario.arrival-gap",
@@ -233,9 +236,9 @@ fn offsets_are_for_the_ego_s_own_road() {
         "scenario.start-off-road",
         "partners[0].start.delta_s_m",
     );
-    assert!(error.hint.starts_with("allowed: delta_s_m from -5 to "), "{error}");
-    // The arm ahead runs from x = 60 + 30.5 to 170.5; the ego starts at 5.
-    for (delta, fits) in [(85.0, false), (86.0, true), (165.0, true), (166.0, false)] {
+    assert!(error.hint.starts_with("allowed: delta_s_m from -2.742 to "), "{error}");
+    // The arm ahead runs from x = 60 + 30.5 to 170.5; the ego starts at 5; half a car must be on it too.
+    for (delta, fits) in [(85.0, false), (86.0, true), (163.2, true), (163.3, false)] {
         let changes = [("/partners/0/approach", json!("opposite")), ("/partners/0/start", json!({"delta_s_m": delta}))];
         assert_eq!(check(with(&changes)).is_ok(), fits, "{delta}");
     }
@@ -259,6 +262,27 @@ fn the_ring_has_half_a_circle_before_the_entry() {
     let ego_time = (conflict.s_a - 5.0) / 6.0;
     assert!(((conflict.s_b - partner.s_m) / 5.0 - ego_time).abs() < 1e-9);
     refused(&slow(5.0), "scenario.arrival-gap", "partners[0].start.arrival_gap_s");
+}
+
+#[test]
+fn a_bus_on_the_ring_starts_with_all_of_its_corners_on_the_road() {
+    let mut map = ring_map();
+    map["lanes"] = json!(1);
+    let scenario = accepted(&[
+        ("/map", map),
+        ("/ego/lane", json!(0)),
+        ("/ego/target_speed_mps", json!(6.0)),
+        ("/partners/0/lane_offset", json!(0)),
+        ("/partners/0/approach", json!("ring")),
+        ("/partners/0/kind", json!("bus")),
+        ("/partners/0/policy/target_speed_mps", json!(5.0)),
+        ("/partners/0/start/arrival_gap_s", json!(-4.0)),
+    ]);
+    let bus = &scenario.partners()[0];
+    let spec = VehicleSpec::of(bus.kind);
+    let corners = OrientedBox::new(bus.pose, spec.length_m, spec.width_m).corners();
+    assert!(corners.into_iter().all(|corner| scenario.network().on_road(corner)), "{bus:?}");
+    assert!(bus.t_m.abs() <= 1.0, "{}", bus.t_m);
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod behaviour;
 mod common;
 mod driven;
 mod parity;
+mod partners;
 mod reference;
 mod runs;
 mod vehicle;

@@ -1,4 +1,4 @@
-//! Closed loop against MetaDrive: the six trials and 44 random scenarios over all maps, from `oracle/closed_loop.py`.
+//! Closed loop against MetaDrive: the six trials and 44 random scenarios over all maps, from `crates/metadrive/examples/closed_loop.rs`.
 
 use recrash_model::geometry::Vec2;
 use recrash_model::rollout::{Rollout, TerminationKind};

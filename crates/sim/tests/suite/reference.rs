@@ -184,7 +184,7 @@ fn passes_a_parked_car_by_the_other_lane_but_waits_while_somebody_is_there() {
     let free = run(draft.clone());
     assert_eq!(ends(&free), TerminationKind::Arrived);
     assert!(!touches(&free));
-    let mut beside = lead(-4.0, 8.0);
+    let mut beside = lead(-2.7, 8.0);
     beside.id = "cp2".to_owned();
     beside.lane_offset = -1;
     draft.partners.push(beside);
@@ -210,7 +210,7 @@ fn cut_in(ahead_m: f64, slower_mps: f64) -> (Rollout, usize, f64) {
 
 #[test]
 fn a_cut_in_is_braked_for_after_1_15_s_and_fully_after_1_75_s() {
-    let (rollout, noticed, gap) = cut_in(27.2, 6.5);
+    let (rollout, noticed, gap) = cut_in(26.4, 6.5);
     // Less than two seconds to a collision, and more than the 12.1 m it takes to avoid it.
     assert!(gap < 13.0 && gap > EmergencyResponse::UN_R157.braking_distance(6.5) + 0.5, "{gap}");
     assert!(!touches(&rollout));

@@ -76,7 +76,7 @@ fn a_step_allocates_nothing() {
     let mut busy = alone(roundabout(2), Turn::Straight, 1, 5.0, 5.0);
     busy.traffic.density = 0.3;
     let mut crossing = alone(wide_cross(2), Turn::Straight, 1, 4.0, 4.0);
-    crossing.partners.push(steady(Approach::Left, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 5.0 }, 8.0));
+    crossing.partners.push(steady(Approach::Left, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 4.5 }, 8.0));
     for mut draft in [busy, crossing] {
         for ego in Ego::ALL {
             let mut runner = Runner::new();

@@ -1,13 +1,24 @@
-"""A MetaDrive worker: reads one JSON request a line from stdin, answers with one JSON line each.
+"""Runs a recrash scenario in plain MetaDrive 0.4.3, without recrash.
 
-recrash embeds this file and starts it; nobody has to call it by hand. The first line it writes is
+    pip install metadrive-simulator==0.4.3        (Python 3.8 to 3.11)
+    python run_metadrive.py SCENARIO.metadrive.json            a window from above where there is a display
+    python run_metadrive.py SCENARIO.metadrive.json --headless --trace states.json
+
+The last line printed is JSON: how it ended, when, and the least gap between the boxes of the ego and the partners.
+To test another system, replace `drive_ego`.
+
+recrash itself runs this same file as a worker, with `--worker`: it reads one JSON request a line from stdin and answers
+with one JSON line each. The first line that it writes then is
 
     {"hello": {"python": "3.11.7", "metadrive": "0.4.3", "problem": null}}
 
-then, for every {"id": 1, "run": {...}}, either {"id": 1, "done": {...}} or {"id": 1, "error": "..."}. What a run holds is
-written down in crates/metadrive/src/protocol.rs, how the world is set up in docs/models/metadrive-backend.md.
+and for every {"id": 1, "run": {...}} either {"id": 1, "done": {...}} or {"id": 1, "error": "..."}. What a run holds is
+written down in crates/plan/src/metadrive.rs. It brings every number with it: places, sizes, what each partner plans, and
+the constants that give plans their meaning; docs/models/policies.md says what they mean, metadrive-backend.md how the
+world is set up.
 """
 
+import argparse
 import json
 import math
 import os
@@ -15,20 +26,20 @@ import sys
 
 WANTED = "0.4.3"
 SUBSTEPS = 5
-STEP_S = 0.1
-STANDING_MPS = 0.3
-STUCK_STEPS = 200
-# Giving way, see docs/models/idm.md and policies.md.
-PATIENCE_STEPS = 30
-HORIZON_S = 12.0
-MERGED_M = 12.0
-COMMITTED_M = 1.0
-THEIR_ACCELERATION_MPS2 = 1.0
-GIVE_WAY_MPS2 = 3.0
+WORKER = "--worker" in sys.argv[1:]
 
-# Libraries may print what they like: the real stdout is ours alone, theirs goes to stderr.
-ANSWERS = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
-os.dup2(2, 1)
+if WORKER:
+    # Libraries may print what they like: the real stdout is ours alone, theirs goes to stderr.
+    ANSWERS = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
+    os.dup2(2, 1)
+
+
+def drive_ego(world, policy):
+    """[steering, throttle] of the ego, each -1 to 1, steering positive to the left. Here: MetaDrive's IDM policy.
+
+    `world.actors` holds everybody, the ego first; `world.env` is the MetaDrive environment.
+    """
+    return policy.act()
 
 
 def send(message):
@@ -55,13 +66,19 @@ def installed_version():
     return None
 
 
+def give_up(kind, detail="", version=None):
+    """Tells in one line why it cannot run."""
+    if not WORKER:
+        sys.exit("%s: %s; pip install metadrive-simulator==%s" % (kind, detail or version, WANTED))
+    hello(version, kind, detail)
+    sys.exit(0)
+
+
 VERSION = installed_version()
 if VERSION is None:
-    hello(kind="metadrive_missing")
-    sys.exit(0)
+    give_up("metadrive_missing")
 if VERSION != WANTED:
-    hello(VERSION, kind="metadrive_version", detail=VERSION)
-    sys.exit(0)
+    give_up("metadrive_version", VERSION, VERSION)
 try:
     from metadrive.component.map.pg_map import PGMap
     from metadrive.component.pg_space import ConstantSpace, ParameterSpace
@@ -81,8 +98,7 @@ try:
     from metadrive.policy.idm_policy import FrontBackObjects, IDMPolicy
     from panda3d.core import LVector3, Vec3
 except Exception as error:  # whatever it is, it is told in one line
-    hello(VERSION, kind="import_failed", detail="%s: %s" % (type(error).__name__, error))
-    sys.exit(0)
+    give_up("import_failed", "%s: %s" % (type(error).__name__, error), VERSION)
 
 # Pictures only; without it the engine would download its assets.
 BaseEngine.try_pull_asset = staticmethod(lambda *arguments, **options: None)
@@ -123,15 +139,8 @@ class ScenarioMap(PGMap):
     def _generate(self):
         spec = self._config["scenario"]
         parent, physics = self.engine.worldNP, self.engine.physics_world
-        first = FirstPGBlock(
-            self.road_network,
-            spec["lane_width_m"],
-            spec["lanes"],
-            parent,
-            physics,
-            length=spec["approach_m"],
-            ignore_intersection_checking=True,
-        )
+        size = (self.road_network, spec["lane_width_m"], spec["lanes"], parent, physics)
+        first = FirstPGBlock(*size, length=spec["approach_m"], ignore_intersection_checking=True)
         kind = BLOCKS[spec["type"]]
         if "arm_m" in spec:
             # The length of the arms is an attribute of the class.
@@ -171,26 +180,36 @@ class MiddleOfTheRange:
         return (low + high) // 2
 
 
-def stand(speed):
-    """Throttle that brakes to a stand and holds it: under a full brake MetaDrive's vehicles creep backwards."""
-    return -1.0 if speed > 0.5 else -0.1
+class Law:
+    """The constants of recrash's crates/plan, each by its name there; set by every run."""
+
+    step_s = 0.1
+
+
+def hold_still(speed):
+    """Throttle that brakes to a stand and holds it."""
+    return -1.0 if speed > Law.hold_below_mps else Law.hold_brake
+
+
+def wrap(angle):
+    return math.atan2(math.sin(angle), math.cos(angle))
 
 
 class FreePolicy(IDMPolicy):
     """MetaDrive's IDM policy at the speed somebody wants: the ego's and that of background traffic."""
 
-    target_mps = 30.0 / 3.6
+    target_mps, timer_steps = 30.0 / 3.6, 25
 
     def __init__(self, vehicle, random_seed):
         super().__init__(vehicle, random_seed)
         self.NORMAL_SPEED = self.target_speed = 3.6 * type(self).target_mps
-        self.overtake_timer = self.LANE_CHANGE_FREQ // 2
+        self.overtake_timer = type(self).timer_steps
         self.np_random = MiddleOfTheRange()
 
     def decide(self, world, me):
-        steering, throttle = self.act()
+        steering, throttle = drive_ego(world, self) if me == 0 else self.act()
         actor = world.actors[me]
-        return [steering, stand(actor.vehicle.speed) if actor.halted else throttle]
+        return [steering, hold_still(actor.vehicle.speed) if actor.halted else throttle]
 
     def has_plans(self, step):
         return False
@@ -206,9 +225,9 @@ class TrafficPolicy(FreePolicy):
 class Place:
     """Where an actor is on the lanes of its way; it never goes back."""
 
-    def __init__(self, network, way):
-        self.lanes = [network.get_lane((start, end, number)) for start, end, number in way]
-        self.starts = [0.0]
+    def __init__(self, network, spec):
+        self.lanes = [network.get_lane((start, end, number)) for start, end, number in spec["way"]]
+        self.starts = [spec["begins_m"]]
         for lane in self.lanes:
             self.starts.append(self.starts[-1] + lane.length)
         self.segment = 0
@@ -220,27 +239,58 @@ class Place:
             s, t = self.lanes[self.segment].local_coordinates(position)
         self.s, self.t = s, t
         self.path_s = self.starts[self.segment] + s
-        self.lane = self.lanes[self.segment]
+
+    def way_at(self, path_s):
+        """Heading and curvature (positive to the left) at a place not behind the lane it is on."""
+        segment = self.segment
+        while segment + 1 < len(self.lanes) and self.starts[segment + 1] <= path_s:
+            segment += 1
+        lane, s = self.lanes[segment], path_s - self.starts[segment]
+        if s > lane.length:
+            return lane.heading_theta_at(lane.length), 0.0
+        radius = getattr(lane, "radius", None)
+        return lane.heading_theta_at(s), lane.direction / radius if radius else 0.0
 
 
 class PartnerPolicy(IDMPolicy):
-    """A script along the way, with sideways moves; steering gains are those of the IDM policy."""
+    """What a plan asks for: the same law as recrash's crates/plan, function by function."""
 
     def __init__(self, vehicle, spec):
         super().__init__(vehicle, 0)
-        self.spec = spec
-        self.script = spec["policy"]
-        self.NORMAL_SPEED = self.target_speed = 3.6 * self.script.get("target_speed_mps", 0.0)
+        self.spec, self.plan, self.way = spec, spec["plan"], spec["partner_way"]
+        self.script = self.plan["speed"]
+        # Of the IDM policy the gap law is used, nothing else.
+        self.NORMAL_SPEED = self.target_speed = 3.6 * self.script["speed_mps"]
         self.enable_lane_change = False
         self.standing_steps = 0
+        self.last_heading = None
+
+    def waits(self, step):
+        return self.script["type"] == "wait" and (self.script["until"] is None or step < self.script["until"])
+
+    def has_plans(self, step):
+        script, kind = self.script, self.script["type"]
+        if kind == "wait":
+            return script["speed_mps"] > 0 and script["until"] is not None and step <= script["until"]
+        if kind == "timed":
+            return script["speed_mps"] > 0 or step < max(script["brake_until"], script["throttle_until"])
+        return False
+
+    def decide(self, world, me):
+        actor = world.actors[me]
+        if self.waits(world.step):
+            # The controllers begin when it sets off.
+            return [0.0, hold_still(actor.vehicle.speed)]
+        throttle = hold_still(actor.vehicle.speed) if actor.halted else self.pedal(world, me)
+        return [self.steer(world, actor), throttle]
 
     def lateral_target(self, time):
         """Offset wanted from the lane's centre, and its rate; a move takes over from wherever the last one is."""
-        offset, moves = self.spec["t_m"], self.spec["lateral"]
+        offset, moves = self.plan["start_t_m"], self.way["moves"]
         for position, move in enumerate(moves):
             if time < move["start_s"]:
                 return offset, 0.0
-            rate = (move["to_t_m"] - offset) / max(move["duration_s"], 1e-3)
+            rate = (move["to_t_m"] - offset) / max(move["duration_s"], Law.shortest_move_s)
             following = moves[position + 1]["start_s"] if position + 1 < len(moves) else math.inf
             until = min(following, move["start_s"] + move["duration_s"])
             if time < until:
@@ -248,39 +298,86 @@ class PartnerPolicy(IDMPolicy):
             offset += rate * max(until - move["start_s"], 0.0)
         return offset, 0.0
 
-    def decide(self, world, me):
-        actor = world.actors[me]
-        vehicle, place = actor.vehicle, actor.place
-        if self.waits(world.step):
-            # The controllers begin when it sets off.
-            return [0.0, stand(vehicle.speed)]
-        wanted, rate = self.lateral_target(world.step * STEP_S)
-        drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, 1.0))))
-        greatest = self.spec["greatest_drift_rad"]
+    def line(self, time):
+        """The line of its moves, each corner rounded."""
+        half = 0.5 * self.way["blend_s"]
+        if half <= 0.0:
+            return self.lateral_target(time)
+        before, now, after = (self.lateral_target(time + share * half)[0] for share in (-1, 0, 1))
+        return (before + 4.0 * now + after) / 6.0, (after - before) / (2.0 * half)
+
+    def steer(self, world, actor):
+        plan, vehicle, place = self.plan, actor.vehicle, actor.place
+        preview, greatest = Law.preview_s, plan["greatest_drift_rad"]
+        wanted, rate = self.line(world.step * Law.step_s + preview - Law.seen_late_s)
+        drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, Law.slow_mps))))
         drift = max(-greatest, min(greatest, drift))
-        error = place.lane.heading_theta_at(place.s + 1) + drift - vehicle.heading_theta
-        error = math.atan2(math.sin(error), math.cos(error))
-        steering = self.heading_pid.get_result(-error) + self.lateral_pid.get_result(-(place.t - wanted))
-        throttle = stand(vehicle.speed) if actor.halted else self.throttle(world, me)
-        return [steering, throttle]
 
-    def waits(self, step):
-        depart = self.script.get("depart_step")
-        return self.script["type"] == "stopped" and (depart is None or step < depart)
+        heading, speed, last = vehicle.heading_theta, vehicle.speed, self.last_heading
+        yaw_rate = 0.0 if last is None else wrap(heading - last) / Law.step_s
+        self.last_heading = heading
+        arm = plan["rear_axle_m"] - plan["slip_s"] * speed
+        lane, curvature = place.way_at(place.path_s)
+        here = wrap(heading + arm * curvature - lane)
+        lane, curvature = place.way_at(place.path_s + speed * preview)
+        ahead = wrap(heading + yaw_rate * preview + arm * curvature - lane)
+        offset = place.t - speed * preview * math.sin(0.5 * (here + ahead))
 
-    def throttle(self, world, me):
-        vehicle, script, kind = world.actors[me].vehicle, self.script, self.script["type"]
-        if kind in ("sudden_brake", "accel_then_brake"):
-            if script["brake_step"] <= world.step < script["brake_step"] + script["brake_steps"]:
-                return stand(vehicle.speed)
-            if kind == "accel_then_brake" and world.step < script["accel_steps"]:
-                return script["accel_mag"]
-            wanted = script["target_speed"] if kind == "sudden_brake" else script["cruise_speed"]
-            return script["speed_kp"] * (wanted - vehicle.speed)
-        if kind == "stopped":
-            return script["speed_kp"] * (script["target_speed_mps"] - vehicle.speed)
-        if kind == "yielding":
-            return self.give_way(world, me)
+        length = max(speed * Law.return_s, Law.return_wheelbases * plan["wheelbase_m"])
+        per_offset = 1.0 / length**2
+        per_course = max(2.0 / length - arm * per_offset, 1.0 / length)
+        angle = drift - (wanted - offset) * per_offset / per_course
+        angle = max(-greatest, min(greatest, angle))
+        bend = curvature / max(1.0 + curvature * offset, 0.1) + per_course * wrap(angle - ahead)
+        most = plan["sideways_mps2"] / max(speed, Law.slow_mps) ** 2
+        return math.atan(plan["wheelbase_m"] * max(-most, min(most, bend))) / plan["full_wheel_rad"]
+
+    def pedal(self, world, me):
+        plan, script, kind = self.plan, self.script, self.script["type"]
+        actor = world.actors[me]
+        speed, place = actor.vehicle.speed, actor.place
+        if kind == "timed" and script["brake_from"] <= world.step < script["brake_until"]:
+            return hold_still(speed)
+        if kind == "timed" and world.step < script["throttle_until"]:
+            wanted = self.meaning(script["throttle"])
+        elif kind == "follow":
+            wanted = self.meaning(self.gap_law(actor.vehicle))
+        else:
+            if script["speed_mps"] < Law.standing_mps and speed < Law.hold_below_mps:
+                return Law.hold_brake
+            wanted = max(plan["gain_per_s"] * (script["speed_mps"] - speed), -plan["comfortable_mps2"])
+        acceleration = wanted
+        stop = min([math.inf] + self.give_way(world, me) + self.blocked_ahead(world, place))
+        if -Law.committed_m <= stop < math.inf:
+            left = max(stop - Law.stop_short_m, 0.0)
+            at_line = math.sqrt(2.0 * plan["stopping_mps2"] * left)
+            if at_line < Law.standing_mps and speed < Law.hold_below_mps:
+                return Law.hold_brake
+            acceleration = min(acceleration, self.come_down(speed, 0.0, left, plan["stopping_mps2"]))
+        for bend in self.way["bends"]:
+            if bend["to_m"] > place.path_s:
+                left = max(bend["from_m"] - place.path_s, 0.0)
+                slower = self.come_down(speed, bend["speed_mps"], left, plan["comfortable_mps2"])
+                acceleration = min(acceleration, slower)
+        hardest = min(-plan["greatest_braking_mps2"], wanted)
+        acceleration = max(hardest, min(acceleration, plan["full_throttle_mps2"]))
+        if acceleration < 0.0:
+            return acceleration / plan["full_brake_mps2"]
+        return max(acceleration / max(plan["full_throttle_mps2"], 1e-3), Law.least_throttle)
+
+    def meaning(self, pedal):
+        """The acceleration that a pedal asks for."""
+        pedal = max(-1.0, min(1.0, pedal))
+        return pedal * self.plan["full_brake_mps2" if pedal < 0.0 else "full_throttle_mps2"]
+
+    @staticmethod
+    def come_down(speed, target, distance, deceleration):
+        """The acceleration along the parabola that ends at a place with a speed."""
+        on_parabola = math.sqrt(target * target + 2.0 * deceleration * distance)
+        slope = deceleration * speed / on_parabola if distance > 0.0 else 0.0
+        return (on_parabola - speed) / Law.catch_up_s - slope
+
+    def gap_law(self, vehicle):
         self.target_speed = self.NORMAL_SPEED
         front, distance = None, 5
         try:
@@ -293,59 +390,53 @@ class PartnerPolicy(IDMPolicy):
             pass
         return self.acceleration(front, distance)
 
-    def give_way(self, world, me):
-        """Waits where its way meets another's, see docs/models/policies.md."""
-        wanted, vehicle = self.script["target_speed_mps"], world.actors[me].vehicle
-        self.standing_steps = self.standing_steps + 1 if vehicle.speed < STANDING_MPS else 0
-        s = world.actors[me].place.path_s
-        lines = []
-        for crossing in self.spec["crossings"]:
-            ahead = crossing["mine"][0] - s
-            # A little past the line it goes on, whatever comes.
-            if ahead >= -COMMITTED_M and self.must_wait(world, me, crossing, ahead, s, wanted):
-                lines.append(max(ahead, 0.0))
-        if lines:
-            wanted = min(wanted, math.sqrt(2.0 * GIVE_WAY_MPS2 * max(min(lines) - 0.5, 0.0)))
-        return stand(vehicle.speed) if wanted < 0.3 else self.script["speed_kp"] * (wanted - vehicle.speed)
+    def blocked_ahead(self, world, place):
+        """Distances to obstacles that lie on its line."""
+        wanted, half = self.line(world.step * Law.step_s)[0], self.plan["half_width_m"] - Law.brushes_m
+        left, right = min(place.t, wanted) - half, max(place.t, wanted) + half
+        there = [each for each in self.way["blocked"] if each["left_m"] < right and each["right_m"] > left]
+        aheads = (each["from_m"] - self.plan["half_length_m"] - place.path_s for each in there)
+        return [ahead for ahead in aheads if ahead >= -Law.committed_m]
 
-    def must_wait(self, world, me, crossing, ahead, s, wanted):
-        number, merges = crossing["other"], crossing["merges"]
-        own_to = crossing["mine"][1]
-        their_from, their_to = crossing["theirs"]
-        other = world.actors[number]
+    def give_way(self, world, me):
+        """Distances to where it has to wait for others."""
+        if self.script["type"] != "give_way":
+            return []
+        speed, place = world.actors[me].vehicle.speed, world.actors[me].place
+        self.standing_steps = self.standing_steps + 1 if speed < Law.standing_mps else 0
+        aheads = []
+        for crossing in self.spec["crossings"]:
+            ahead = crossing["mine"]["from"] - place.path_s
+            if ahead >= -Law.committed_m and self.must_wait(world, me, crossing, ahead):
+                aheads.append(max(ahead, 0.0))
+        return aheads
+
+    def must_wait(self, world, me, crossing, ahead):
+        number, merges, mine, theirs = (crossing[name] for name in ("other", "merges", "mine", "theirs"))
+        own, other = world.actors[me], world.actors[number]
         if other.gone:
             return False
         other_s, other_speed = other.place.path_s, other.vehicle.speed
-        if other_s > (their_from + MERGED_M if merges else their_to):
+        if other_s > (theirs["from"] + Law.merged_m if merges else theirs["to"]):
             return False
-        if other_s > their_from:
+        if other_s > theirs["from"]:
             return True
-        own_speed = world.actors[me].vehicle.speed
-        if other_speed < STANDING_MPS:
-            return number < me and own_speed < STANDING_MPS and self.standing_steps < PATIENCE_STEPS
-        speed = max(own_speed, 0.5 * wanted, STANDING_MPS)
+        own_speed = own.vehicle.speed
+        if other_speed < Law.standing_mps:
+            patient = self.standing_steps < Law.patience_steps
+            return number < me and own_speed < Law.standing_mps and patient
+        speed = max(own_speed, 0.5 * self.script["speed_mps"], Law.standing_mps)
         own_entry = max(ahead, 0.0) / speed
-        own_exit = own_entry + 1.0 if merges else (own_to - s) / speed
-        way = their_from - other_s
+        own_exit = own_entry + Law.merging_s if merges else (mine["to"] - own.place.path_s) / speed
+        way = theirs["from"] - other_s
         # The earliest they can be there.
-        a = THEIR_ACCELERATION_MPS2
+        a = Law.their_acceleration_mps2
         their_entry = (math.sqrt(other_speed * other_speed + 2.0 * a * way) - other_speed) / a
-        their_exit = way / other_speed + 1.0 if merges else (their_to - other_s) / other_speed
-        if their_entry > HORIZON_S or own_entry > HORIZON_S:
+        their_exit = way / other_speed + Law.merging_s if merges else (theirs["to"] - other_s) / other_speed
+        if their_entry > Law.horizon_s or own_entry > Law.horizon_s:
             return False
         gap = self.script["gap_s"]
         return own_exit + gap > their_entry and their_exit + 0.5 * gap > own_entry
-
-    def has_plans(self, step):
-        script, kind = self.script, self.script["type"]
-        if kind == "stopped":
-            depart = script.get("depart_step")
-            return depart is not None and script["target_speed_mps"] > 0 and step <= depart
-        if kind in ("sudden_brake", "accel_then_brake"):
-            speed = script["target_speed"] if kind == "sudden_brake" else script["cruise_speed"]
-            until = max(script["brake_step"] + script["brake_steps"], script.get("accel_steps", 0))
-            return speed > 0 or step < until
-        return False
 
 
 class OpenLoopPolicy:
@@ -375,12 +466,9 @@ class Actor:
         vx, vy = self.vehicle.velocity
         return [float(x), float(y), float(heading), float(vx), float(vy)]
 
-    def leave(self):
-        self.gone = self.state()
-
     def go_on(self):
         x, y, heading, vx, vy = self.gone
-        self.gone = [x + vx * STEP_S, y + vy * STEP_S, heading, vx, vy]
+        self.gone = [x + vx * Law.step_s, y + vy * Law.step_s, heading, vx, vy]
 
 
 CLASSES = {}
@@ -419,13 +507,8 @@ def adjust_inertia(vehicle, body):
     length, width, height = body["chassis_length_m"], body["chassis_width_m"], vehicle.HEIGHT
     share = vehicle.MASS / 12.0
     # Panda's vehicles face along y.
-    vehicle.body.setInertia(
-        Vec3(
-            share * (length**2 + height**2),
-            share * (width**2 + height**2),
-            share * (length**2 + width**2),
-        )
-    )
+    about = (length**2 + height**2, width**2 + height**2, length**2 + width**2)
+    vehicle.body.setInertia(Vec3(*(share * each for each in about)))
 
 
 def nodes_of(spec):
@@ -439,36 +522,20 @@ def spawn_config(spec):
         "spawn_lane_index": (start, end, number),
         "spawn_longitude": spec["s_m"],
         # Far from its lane's centre MetaDrive would take it for a vehicle of another road; it is moved there later.
-        "spawn_lateral": 0.0,
-        "spawn_velocity": [spec["speed_mps"], 0.0],
-        "spawn_velocity_car_frame": True,
+        **{"spawn_lateral": 0.0, "spawn_velocity": [spec["speed_mps"], 0.0], "spawn_velocity_car_frame": True},
         "destination": spec["way"][-1][1],
     }
 
 
 def make_env():
-    return ScenarioEnv(
-        {
-            "use_render": False,
-            "log_level": 50,
-            "num_scenarios": 1,
-            "start_seed": 0,
-            "traffic_density": 0.0,
-            "agent_observation": DummyObservation,
-            "agent_policy": FreePolicy,
-            "vehicle_config": {"vehicle_model": "static_default", "show_navi_mark": False},
-            "random_spawn_lane_index": False,
-            "show_sidewalk": False,
-            "show_crosswalk": False,
-            # Recycled bodies keep the state of their solver: only new ones give the same bits again.
-            "force_destroy": True,
-            "out_of_road_done": False,
-            "on_continuous_line_done": False,
-            "crash_vehicle_done": False,
-            "crash_object_done": False,
-            "horizon": None,
-        }
-    )
+    # Recycled bodies keep the state of their solver: only new ones (force_destroy) give the same bits again.
+    ended_by_nothing = ("out_of_road_done", "on_continuous_line_done", "crash_vehicle_done", "crash_object_done")
+    config = dict.fromkeys(ended_by_nothing, False)
+    config.update(use_render=False, log_level=50, num_scenarios=1, start_seed=0, traffic_density=0.0, horizon=None)
+    config.update(agent_observation=DummyObservation, agent_policy=FreePolicy, force_destroy=True)
+    config.update(random_spawn_lane_index=False, show_sidewalk=False, show_crosswalk=False)
+    config["vehicle_config"] = {"vehicle_model": "static_default", "show_navi_mark": False}
+    return ScenarioEnv(config)
 
 
 class World:
@@ -483,9 +550,11 @@ class World:
 
     def set_up(self):
         env, spec = self.env, self.spec
+        for name, value in spec["constants"].items():
+            setattr(Law, name, value)
         ScenarioMapManager.spec = spec["map"]
         ego = spec["ego"]
-        FreePolicy.target_mps = ego["target_speed_mps"]
+        FreePolicy.target_mps, FreePolicy.timer_steps = ego["target_speed_mps"], ego["overtake_timer_steps"]
         vehicle_type["static_default"] = vehicle_class(ego["body"])
         env.config["agent_configs"]["default_agent"].update(spawn_config(ego))
         env.reset(seed=0)
@@ -500,6 +569,7 @@ class World:
         for other in spec["traffic"]:
             vehicle = self.spawn(other)
             TrafficPolicy.target_mps = other["target_speed_mps"]
+            TrafficPolicy.timer_steps = other["overtake_timer_steps"]
             self.actors.append(self.introduce(vehicle, TrafficPolicy(vehicle, 0), other))
         self.first_traffic = 1 + len(spec["partners"])
         self.obstacles = []
@@ -508,25 +578,22 @@ class World:
                 OBSTACLES[obstacle["kind"]],
                 lane=self.network.get_lane(tuple(obstacle["lane"])),
                 position=[obstacle["x"], obstacle["y"]],
-                heading_theta=obstacle["heading"],
-                static=True,
+                **{"heading_theta": obstacle["heading"], "static": True},
             )
             self.spawned.append(thing.id)
             self.obstacles.append((thing, math.hypot(obstacle["length_m"], obstacle["width_m"])))
 
     def spawn(self, spec):
-        vehicle = self.engine.spawn_object(
-            vehicle_class(spec["body"]),
-            vehicle_config=spawn_config(spec),
-            random_seed=0,
-            auto_fill_random_seed=False,
-        )
+        kind, config = vehicle_class(spec["body"]), spawn_config(spec)
+        vehicle = self.engine.spawn_object(kind, vehicle_config=config, random_seed=0, auto_fill_random_seed=False)
         self.spawned.append(vehicle.id)
         return vehicle
 
     def introduce(self, vehicle, policy, spec):
         adjust_inertia(vehicle, spec["body"])
-        place = Place(self.network, spec["way"])
+        # A contact is an event and pushes nobody, as in the native simulator: whoever has touched brakes, and is in nobody's way.
+        vehicle.body.setCollisionResponse(False)
+        place = Place(self.network, spec)
         if spec["t_m"] != 0.0:
             vehicle.set_position(place.lanes[0].position(spec["s_m"], spec["t_m"]))
         vehicle.after_step()
@@ -539,14 +606,14 @@ class World:
     def state(self, number, action):
         return self.actors[number].state() + [float(action[0]), float(action[1])]
 
-    def run(self):
+    def run(self, window=False):
         physics = self.engine.physics_world.dynamic_world
         tracks = [[] for _ in self.actors]
         touched = set()
         ego, standing = self.actors[0].vehicle, 0
         while True:
             self.released = self.released or ego.navigation.current_road.start_node != ENTRANCE
-            standing = standing + 1 if ego.speed < STANDING_MPS else 0
+            standing = standing + 1 if ego.speed < Law.standing_mps else 0
             end = self.verdict(touched, standing)
             actions = [[0.0, 0.0]] * len(self.actors)
             if end is None:
@@ -557,7 +624,7 @@ class World:
             for number, track in enumerate(tracks):
                 track.append(self.state(number, actions[number]))
             if end is not None:
-                return {"end": end, "time_s": self.step * STEP_S, "tracks": tracks, "events": self.events}
+                return {"end": end, "time_s": self.step * Law.step_s, "tracks": tracks, "events": self.events}
             present = [actor for actor in self.actors if actor.gone is None]
             for actor, action in zip(self.actors, actions):
                 if actor.gone is None:
@@ -565,7 +632,7 @@ class World:
             near = self.near_pairs()
             for substep in range(1, SUBSTEPS + 1):
                 self.engine.step_physics_world()
-                self.touch(physics, near, touched, actions, self.step * STEP_S + substep * 0.02)
+                self.touch(physics, near, touched, actions, self.step * Law.step_s + substep * 0.02)
             for thing, _ in self.obstacles:
                 # One that was hit keeps its place but gets a velocity, which the IDM would believe.
                 thing.body.setLinearVelocity(LVector3(0, 0, 0))
@@ -577,12 +644,14 @@ class World:
                 actor.place.update(actor.vehicle.position)
             self.remove_who_left()
             self.step += 1
+            if window:
+                self.env.render(mode="topdown", window=True, screen_size=(900, 700))
 
     def remove_who_left(self):
         """Background traffic that is on no lane any more is unseen and untouchable from then on."""
         for actor in self.actors[self.first_traffic :]:
             if actor.gone is None and self.is_off_road(actor.vehicle):
-                actor.leave()
+                actor.gone = actor.state()
                 self.spawned.remove(actor.vehicle.id)
                 self.engine.clear_objects([actor.vehicle.id], force_destroy=True)
 
@@ -638,9 +707,9 @@ class World:
                 return "arrived"
             if self.is_off_road(ego):
                 return "off_road"
-            if standing >= STUCK_STEPS and not self.anybody_moves():
+            if standing >= Law.stuck_steps and not self.anybody_moves():
                 return "stuck"
-        if self.step * STEP_S >= self.spec["duration_s"] - 0.5 * STEP_S:
+        if self.step * Law.step_s >= self.spec["duration_s"] - 0.5 * Law.step_s:
             return "timeout"
         return None
 
@@ -655,7 +724,7 @@ class World:
 
     def anybody_moves(self):
         return any(
-            actor.vehicle.speed >= STANDING_MPS or (not actor.halted and actor.policy.has_plans(self.step))
+            actor.vehicle.speed >= Law.standing_mps or (not actor.halted and actor.policy.has_plans(self.step))
             for actor in self.actors[1:]
             if actor.gone is None
         )
@@ -664,7 +733,8 @@ class World:
         self.engine.clear_objects(self.spawned, force_destroy=True)
 
 
-def main():
+def work():
+    """Answers requests until there are no more."""
     hello(VERSION)
     env = make_env()
     for line in sys.stdin.buffer:
@@ -683,4 +753,49 @@ def main():
     env.close()
 
 
-main()
+def least_gap(run, done):
+    """Least gap between the boxes of the ego and the partners at the steps, and its time; none at a contact."""
+    from shapely.geometry import Polygon
+
+    def outline(spec, state):
+        x, y, heading = state[:3]
+        c, s = math.cos(heading), math.sin(heading)
+        a, b = 0.5 * spec["body"]["length_m"], 0.5 * spec["body"]["width_m"]
+        return Polygon([(x + u * c - v * s, y + u * s + v * c) for u, v in ((a, b), (-a, b), (-a, -b), (a, -b))])
+
+    tracks, partners = done["tracks"], run["partners"]
+    touched = [event for event in done["events"] if event["a"] == 0 and 0 < event.get("b", 0) <= len(partners)]
+    least = [(0.0, event["time_s"]) for event in touched]
+    for number, partner in enumerate(partners, 1):
+        for step, (mine, theirs) in enumerate(zip(tracks[0], tracks[number])):
+            gap = outline(run["ego"], mine).distance(outline(partner, theirs))
+            least.append((gap, step * Law.step_s))
+    return min(least, default=(math.inf, None))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenario", help="an exported *.metadrive.json")
+    parser.add_argument("--headless", action="store_true", help="no window even where there is a display")
+    parser.add_argument("--trace", help="write every state to this JSON file")
+    arguments = parser.parse_args()
+    with open(arguments.scenario, encoding="utf-8") as source:
+        content = json.load(source)
+    run, env = content["run"], make_env()
+    world = World(env, run)
+    world.set_up()
+    display = os.name == "nt" or not {"DISPLAY", "WAYLAND_DISPLAY"}.isdisjoint(os.environ)
+    done = world.run(display and not arguments.headless)
+    env.close()
+    if arguments.trace:
+        actors = [spec["id"] for spec in [run["ego"]] + run["partners"] + run["traffic"]]
+        columns = ["x_m", "y_m", "heading_rad", "vx_mps", "vy_mps", "steering", "throttle"]
+        trace = {"step_s": Law.step_s, "columns": columns, "actors": actors, "states": list(zip(*done["tracks"]))}
+        with open(arguments.trace, "w", encoding="utf-8") as file:
+            json.dump(trace, file)
+    gap, when = least_gap(run, done)
+    last = {"min_gap_m": None if when is None else round(gap, 3), "min_gap_time_s": when and round(when, 2)}
+    print(json.dumps({"scenario": content["id"], "end": done["end"], "time_s": round(done["time_s"], 2), **last}))
+
+
+work() if WORKER else main()
