@@ -92,7 +92,7 @@ pub fn metadrive() -> Result {
         return missing("metadrive", said.lines().last().unwrap_or("its environment cannot be made"));
     }
     let arguments = ["test", "-p", "recrash-metadrive", "-p", "recrash-pipeline"];
-    let tests = ["--test", "real_metadrive", "--test", "parity"];
+    let tests = ["--test", "suite", "--", "real_metadrive::", "parity::"];
     cargo(&[&arguments[..], &tests].concat(), &[("RECRASH_METADRIVE_PYTHON", &metadrive)])
 }
 

@@ -1,8 +1,8 @@
 //! Our MiniLM beside sentence-transformers: the same texts, the same weights, the same threads, in turn in one run.
 
 use crate::error::PipelineError;
+use crate::options::Options;
 use crate::recording::read_records;
-use crate::suite::Options;
 use crate::weights::{find_weights, load};
 use rayon::prelude::*;
 use recrash_child::{Program, Silence, printable};

@@ -55,6 +55,30 @@ pub enum PipelineError {
         /// The suite.
         dir: PathBuf,
     },
+    /// A file that only a stage writes is not as it wrote it.
+    #[error("{}: changed by hand, which this file is not for: it tells what a run gave; run `recrash {stage}` to make it again", path.display())]
+    ChangedByHand {
+        /// Which file.
+        path: PathBuf,
+        /// The stage that writes it.
+        stage: &'static str,
+    },
+    /// The folder holds a suite of something else, whose results would be lost.
+    #[error("{} holds a suite of {what}; choose another --out, or replace it with --replace", dir.display())]
+    OtherSuite {
+        /// The folder.
+        dir: PathBuf,
+        /// What it is a suite of, and what it is not.
+        what: String,
+    },
+    /// A file names a program that the caller does not.
+    #[error(
+        "the suite wants to start the program `{program}` as the ego; a suite may be anybody's, so name it with --ego, or say --trust"
+    )]
+    Untrusted {
+        /// The program, as the suite names it.
+        program: String,
+    },
     /// The output folder holds something else.
     #[error("{} holds files but no suite.json, so it is not overwritten; choose another --out, or empty it", dir.display())]
     NotASuite {
@@ -156,7 +180,13 @@ impl PipelineError {
             | Self::Pull { .. }
             | Self::Threads(_)
             | Self::Ledger(_) => 1,
-            Self::MissingStage { .. } | Self::StaleStage { .. } | Self::NotASuite { .. } | Self::Usage(_) => 2,
+            Self::MissingStage { .. }
+            | Self::StaleStage { .. }
+            | Self::ChangedByHand { .. }
+            | Self::NotASuite { .. }
+            | Self::OtherSuite { .. }
+            | Self::Untrusted { .. }
+            | Self::Usage(_) => 2,
             Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
             Self::Missed { .. } => 5,

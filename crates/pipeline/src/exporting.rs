@@ -1,13 +1,14 @@
 //! Exports of a suite or of one scenario file.
 
-use crate::casework::{read_scenario, run_scenario};
 use crate::error::PipelineError;
 use crate::external::Patience;
+use crate::judging::run_scenario;
 use crate::profiles::load_profile;
+use crate::scenario_files::read_scenario;
 use crate::simulator::{SimulatorKind, start_simulator};
 use crate::stages::names;
 use crate::store::{Store, write_file_whole};
-use crate::suite::Suite;
+use crate::suite::{Suite, refuse_untrusted};
 use recrash_export::{ExportFile, ExportOptions, Format, PartnersAs};
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::selection::Selection;
@@ -28,6 +29,8 @@ pub struct ExportRequest {
     pub target: Option<PathBuf>,
     /// Whether files that are there already may be overwritten.
     pub force: bool,
+    /// Whether a program that only the suite names is started as the ego.
+    pub trust: bool,
 }
 
 /// What was exported.
@@ -46,7 +49,7 @@ pub struct ExportReport {
 /// # Errors
 /// The source is no suite and no file, or the target holds files already; then nothing is written.
 pub fn export(request: &ExportRequest) -> Result<ExportReport, PipelineError> {
-    let sources = sources(&request.source)?;
+    let sources = sources(&request.source, request.trust)?;
     let beside = if request.source.is_dir() { request.source.clone() } else { parent(&request.source) };
     let target = request.target.clone().unwrap_or_else(|| beside.join("exports"));
     let folders: Vec<(Format, PathBuf)> =
@@ -100,7 +103,7 @@ fn parent(file: &Path) -> PathBuf {
     file.parent().map_or_else(PathBuf::new, Path::to_owned)
 }
 
-fn sources(source: &Path) -> Result<Vec<ScenarioSource>, PipelineError> {
+fn sources(source: &Path, trust: bool) -> Result<Vec<ScenarioSource>, PipelineError> {
     let Some(options) = source.is_dir().then(|| Suite::saved_options(source)).transpose()? else {
         let ego = load_profile("paper")?.ego;
         return Ok(vec![ScenarioSource { path: source.to_owned(), parameters: Vec::new(), ego }]);
@@ -109,7 +112,8 @@ fn sources(source: &Path) -> Result<Vec<ScenarioSource>, PipelineError> {
         PipelineError::bad_input(format!("{} is not a suite: it holds no suite.json", source.display()))
     })?;
     let ego = options.ego.clone().map_or_else(|| load_profile(&options.profile).map(|p| p.ego), Ok)?;
-    let store = Store::create(source, write_file_whole)?;
+    refuse_untrusted(&ego, trust)?;
+    let store = Store::at(source);
     let selection: Selection = store.read_json(names::SELECTION)?;
     let of = |id: &str| {
         // A damaged log costs the ranges, not the scenario.

@@ -1,7 +1,7 @@
 //! Scenarios of other formats read back: our OpenSCENARIO, and the paper's JSON dialect.
 
-use crate::casework::{not_runnable, scenario_from};
 use crate::error::PipelineError;
+use crate::scenario_files::{not_runnable, scenario_from};
 use crate::store::{io, read_text, write_file_whole};
 use recrash_export::MAX_IMPORT_BYTES;
 use recrash_model::diagnostic::Diagnostic;

@@ -9,7 +9,6 @@
 mod agents;
 mod bench_sim;
 mod caches;
-mod casework;
 mod doctor;
 mod embed_bench;
 mod embedding;
@@ -17,34 +16,32 @@ mod error;
 mod evaluation;
 mod exporting;
 mod external;
-mod failures;
 mod fetching;
 mod importing;
+mod journal;
+mod judging;
 mod ledger;
 mod models;
+mod options;
 mod parity;
 mod profiles;
 mod progress;
 mod prompting;
 mod recording;
 mod responses;
+mod scenario_files;
 mod scoring;
 mod secrets;
-mod selecting;
 mod simulator;
 mod stages;
 mod store;
 mod suite;
-mod summary;
 #[cfg(feature = "parquet")]
 mod sweep;
-mod triage;
-mod view;
 mod weights;
 
 pub use agents::{AgentLog, Cast};
 pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
-pub use casework::{DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file};
 pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use embedding::EmbeddingKind;
@@ -52,11 +49,12 @@ pub use error::PipelineError;
 pub use evaluation::{Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate};
 pub use exporting::{ExportReport, ExportRequest, export};
 pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
-pub use failures::Failure;
 pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use importing::{ImportRequest, Imported, SourceFormat, import};
+pub use judging::run_scenario;
 pub use ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
 pub use models::{AnswerMode, ModelAccess};
+pub use options::{Options, RecordSource};
 pub use parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
     ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
@@ -72,12 +70,14 @@ pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
-pub use selecting::{SelectionStudy, StrategyStudy};
+pub use scenario_files::{FileRequest, FileRun, read_scenario, simulate_file};
 pub use simulator::{Simulator, SimulatorKind, check_choices, start_simulator};
-pub use stages::StageReport;
+pub use stages::{
+    CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary, SelectionStudy,
+    StageReport, StrategyStudy, Summary,
+};
 pub use store::{Store, WriteFile, remove_unfinished};
-pub use suite::{Options, RecordSource, Resources, Stage, Suite};
-pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+pub use suite::{Permissions, Resources, Stage, Suite};
 #[cfg(feature = "parquet")]
 pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
 pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};

@@ -1,12 +1,14 @@
 //! What a model would be asked, shown without asking it.
 
 use crate::agents::RULES;
-use crate::casework::{read_scenario, run_scenario};
 use crate::error::PipelineError;
+use crate::judging::run_scenario;
+use crate::options::Options;
 use crate::progress::NoProgress;
+use crate::scenario_files::read_scenario;
 use crate::scoring::Scoring;
 use crate::stages::{self, Cases, names};
-use crate::suite::{Options, Resources, Stage, Suite};
+use crate::suite::{Resources, Stage, Suite};
 use recrash_agents::llm::{
     Question, Role, TuneBrief, design_question, paraphrase_question, prompts_version, tune_question,
 };

@@ -2,8 +2,8 @@
 
 use crate::error::PipelineError;
 use crate::fetching::cached;
+use crate::options::{Options, RecordSource};
 use crate::store::{read_bytes, read_text, sha256, write_file_whole};
-use crate::suite::{Options, RecordSource};
 use recrash_model::Outcome;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::RecordSet;

@@ -1,6 +1,6 @@
 //! What a point of a search scores, and which points are refused. Described in `docs/models/tuning.md`.
 
-use crate::casework::run_scenario;
+use crate::judging::run_scenario;
 use crate::simulator::Simulator;
 use recrash_model::geometry::{OrientedBox, Pose};
 use recrash_model::math::wrap_angle;

@@ -108,12 +108,55 @@ impl Store {
         self.dir.join(name)
     }
 
+    /// Path of a file of the folder, once it is sure to lie in it: a suite may be a stranger's.
+    ///
+    /// # Errors
+    /// The name leads out of the folder, or through a link.
+    fn inside(&self, name: &str) -> Result<PathBuf, PipelineError> {
+        let path = self.path(name);
+        let outside = |why: &str| PipelineError::bad_input(format!("{}: {why}; it is left alone", path.display()));
+        if !is_plain_name(name) {
+            return Err(outside("a suite's file lies in the suite's folder, or in a folder of it"));
+        }
+        let link = |path: &Path| fs::symlink_metadata(path).is_ok_and(|is| is.file_type().is_symlink());
+        match path.parent().filter(|parent| *parent != self.dir && link(parent)) {
+            Some(_) => Err(outside("its folder is a link, and a suite's links are not followed")),
+            None => Ok(path),
+        }
+    }
+
+    /// Refuses what is no regular file of the folder: a pipe, a device, a link.
+    ///
+    /// # Errors
+    /// It is such a thing, or lies elsewhere.
+    pub(crate) fn must_be_a_file(&self, name: &str) -> Result<(), PipelineError> {
+        refuse_special(&self.inside(name)?)
+    }
+
+    /// Size and time of last change of a regular file; `None` for what is none, links among them.
+    pub(crate) fn stamp(&self, name: &str) -> Option<(u64, u64)> {
+        let is = fs::symlink_metadata(self.inside(name).ok()?).ok().filter(|is| is.file_type().is_file())?;
+        let changed = is.modified().ok()?.duration_since(std::time::UNIX_EPOCH).ok()?;
+        Some((is.len(), u64::try_from(changed.as_nanos()).ok()?))
+    }
+
+    /// Adds whole lines to the end of a file, which is made where it does not exist.
+    ///
+    /// # Errors
+    /// The file cannot be written, or is none.
+    pub(crate) fn append(&self, name: &str, lines: &[u8]) -> Result<(), PipelineError> {
+        let path = self.inside(name)?;
+        refuse_special(&path)?;
+        let add = || fs::OpenOptions::new().create(true).append(true).open(&path)?.write_all(lines);
+        add().map_err(|source| io("write", &path, source))
+    }
+
     /// Writes a file of the folder, and gives the hash of its content.
     ///
     /// # Errors
     /// The file cannot be written; what stood there before still stands.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<String, PipelineError> {
-        let path = self.path(name);
+        let path = self.inside(name)?;
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(|source| io("create", parent, source))?;
         }
@@ -134,7 +177,8 @@ impl Store {
     /// # Errors
     /// The file cannot be read, or is not what a stage wrote.
     pub fn read_json<T: DeserializeOwned>(&self, name: &str) -> Result<T, PipelineError> {
-        let path = self.path(name);
+        let path = self.inside(name)?;
+        refuse_special(&path)?;
         let text = read_bytes(&path, MAX_SUITE_FILE)?;
         let mut deserializer = serde_json::Deserializer::from_slice(&text);
         serde_path_to_error::deserialize(&mut deserializer)
@@ -143,20 +187,13 @@ impl Store {
 
     /// A file's bytes; none where it cannot be read.
     pub fn read_or_empty(&self, name: &str) -> Vec<u8> {
-        read_bytes(&self.path(name), MAX_SUITE_FILE).unwrap_or_default()
+        self.stamp(name).and_then(|_| read_bytes(&self.path(name), MAX_SUITE_FILE).ok()).unwrap_or_default()
     }
 
     /// Hash of a file's content; `None` where it is not there.
     pub fn hash(&self, name: &str) -> Option<String> {
-        let mut file = fs::File::open(self.path(name)).ok()?;
-        let mut hasher = Sha256::new();
-        let mut buffer = vec![0; 1 << 16];
-        loop {
-            match file.read(&mut buffer).ok()? {
-                0 => return Some(hex(&hasher.finalize())),
-                n => hasher.update(&buffer[..n]),
-            }
-        }
+        self.stamp(name)?;
+        file_hash(&self.path(name))
     }
 
     /// Removes a file that an earlier run wrote and this one does not. A file that is gone already is no error.
@@ -164,7 +201,10 @@ impl Store {
     /// # Errors
     /// The file cannot be removed.
     pub fn remove(&self, name: &str) -> Result<(), PipelineError> {
-        let path = self.path(name);
+        let path = self.inside(name)?;
+        if self.stamp(name).is_none() {
+            return Ok(());
+        }
         match fs::remove_file(&path) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(io("remove", &path, source)),
             _ => Ok(()),
@@ -174,6 +214,16 @@ impl Store {
 
 /// Writes to a temporary file beside the target, flushes it to the disk, then renames it.
 pub(crate) fn write_file_whole(path: &Path, content: &[u8]) -> std::io::Result<()> {
+    write_whole(path, content, true)
+}
+
+/// Writes to a temporary file beside the target, then renames it: whole or not at all for whoever reads it, as long as the
+/// machine runs. A suite has thousands of files, and one that a power cut spoils is found by its size or hash and made again.
+pub(crate) fn write_suite_file(path: &Path, content: &[u8]) -> std::io::Result<()> {
+    write_whole(path, content, false)
+}
+
+fn write_whole(path: &Path, content: &[u8], to_disk: bool) -> std::io::Result<()> {
     let dir = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY_PREFIX);
@@ -186,9 +236,31 @@ pub(crate) fn write_file_whole(path: &Path, content: &[u8]) -> std::io::Result<(
     let mut file = builder.tempfile_in(dir)?;
     let _unfinished = Unfinished::new(file.path());
     file.write_all(content)?;
-    file.as_file().sync_data()?;
+    if to_disk {
+        file.as_file().sync_data()?;
+    }
     file.persist(path).map_err(|e| e.error)?;
     Ok(())
+}
+
+/// Whether a name is that of a file in a suite: plain words, at most one folder deep.
+pub(crate) fn is_plain_name(name: &str) -> bool {
+    let plain = |part: &str| {
+        let letters = part.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c));
+        letters && !part.is_empty() && !part.starts_with('.') && part.len() <= 160
+    };
+    let parts: Vec<&str> = name.split('/').collect();
+    parts.len() <= 2 && parts.into_iter().all(plain)
+}
+
+/// Refuses what would block or lead elsewhere: a pipe, a device, a link. What is not there is nobody's business here.
+fn refuse_special(path: &Path) -> Result<(), PipelineError> {
+    match fs::symlink_metadata(path) {
+        Ok(is) if !is.file_type().is_file() => {
+            Err(PipelineError::bad_input(format!("{} is no regular file; a suite holds nothing else", path.display())))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Reads a file whole.
@@ -229,6 +301,19 @@ pub(crate) fn to_json<T: Serialize>(value: &T) -> Vec<u8> {
     let mut text = serde_json::to_vec_pretty(value).expect("nouns serialise");
     text.push(b'\n');
     text
+}
+
+/// SHA-256 of a regular file's content, in hexadecimal; `None` where it cannot be read.
+pub(crate) fn file_hash(path: &Path) -> Option<String> {
+    let mut file = fs::metadata(path).ok().filter(fs::Metadata::is_file).and_then(|_| fs::File::open(path).ok())?;
+    let mut hasher = Sha256::new();
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut buffer).ok()? {
+            0 => return Some(hex(&hasher.finalize())),
+            n => hasher.update(&buffer[..n]),
+        }
+    }
 }
 
 /// SHA-256 in hexadecimal.

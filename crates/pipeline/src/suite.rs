@@ -1,200 +1,32 @@
-//! The suite on disk: options, stages, and which units of work are done.
+//! The suite on disk: a folder with one stage after the other in it, and which units of work are done.
+//!
+//! A unit is made of its own inputs alone, and made again when one of them changed. What a person edited is kept, and the
+//! stages after it go on from there. A suite may come from a stranger: it is data, see [`Permissions`].
 
-use crate::agents::{Cast, RULES};
-use crate::embedding::EmbeddingKind;
+use crate::agents::RULES;
 use crate::error::PipelineError;
-use crate::external::Patience;
+use crate::external::{EGO_COMMAND_PREFIX, Patience};
+use crate::journal::{Journal, Made, Unit};
 use crate::models::{AnswerMode, ModelAccess, Models};
-use crate::profiles::load_profile;
+use crate::options::{Options, RecordSource};
 use crate::progress::Progress;
 use crate::recording;
-use crate::simulator::{Simulator, SimulatorKind, start_simulator};
-use crate::stages::names::FAILURE;
-use crate::stages::{self, StageReport};
-use crate::store::{Store, WriteFile, sha256, to_json, write_file_whole};
+use crate::simulator::{Simulator, start_simulator};
+use crate::stages::{self, StageReport, is_failure_file};
+use crate::store::{Store, WriteFile, sha256, to_json, write_suite_file};
 use recrash_agents::llm::Spent;
-use recrash_model::profile::{Dedupe, SystemProfile};
-use recrash_model::selection::{Strategy, Weighting};
-use recrash_model::{Diagnostic, Seed};
-use recrash_select::SelectOptions;
+use recrash_model::profile::SystemProfile;
+use recrash_model::{Diagnostic, Location, Seed, Severity};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The suite files' format tag.
-const SUITE_FORMAT: &str = "recrash.suite/1";
+const SUITE_FORMAT: &str = "recrash.suite/2";
 /// The file that makes a folder a suite.
 const SUITE_FILE: &str = "suite.json";
-
-/// Where crash records come from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RecordSource {
-    /// The built-in sample.
-    Sample,
-    /// SGO files, or those of another database where there is a mapping. A name that is no file here is looked up among
-    /// the downloaded ones.
-    Files(Vec<PathBuf>),
-}
-
-/// What the user chose. Everything that can change a byte of the results, and nothing else.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Options {
-    /// Crash records.
-    pub records: RecordSource,
-    /// Which reports of one incident are merged; as the profile has it where not given.
-    #[serde(default)]
-    pub dedupe: Option<Dedupe>,
-    /// Keeps the records of which this filter is true.
-    #[serde(default)]
-    pub filter: Option<String>,
-    /// Mapping file: the records are those of another database.
-    #[serde(default)]
-    pub mapping: Option<PathBuf>,
-    /// Profile: a built-in name or a path.
-    pub profile: String,
-    /// Scenarios to make.
-    pub budget: usize,
-    /// How the picks are chosen.
-    pub strategy: Strategy,
-    /// How much one record counts in sharing out the picks.
-    #[serde(default)]
-    pub weighting: Weighting,
-    /// Weight of a template against a narrative: the length of its one-hot vector in the clustering space.
-    #[serde(default = "default_template_weight")]
-    pub template_weight: f64,
-    /// Principal components of the embedding that enter the clustering space.
-    #[serde(default = "default_dimensions")]
-    pub dimensions: usize,
-    /// Runs of k-means, of which the best is kept.
-    #[serde(default = "default_restarts")]
-    pub restarts: usize,
-    /// Which embedding of the narratives.
-    #[serde(default)]
-    pub embedding: EmbeddingKind,
-    /// Folder with the files of the embedding model; looked for where not given.
-    #[serde(default)]
-    pub model_dir: Option<PathBuf>,
-    /// Who plays which role.
-    #[serde(default)]
-    pub cast: Cast,
-    /// Simulator.
-    #[serde(default)]
-    pub simulator: SimulatorKind,
-    /// Ego to run; the profile's where not given.
-    pub ego: Option<String>,
-    /// Points the search of each scenario may score.
-    pub tune_budget: usize,
-    /// Optimiser of the search.
-    pub searcher: String,
-    /// Seed of everything random.
-    pub seed: u64,
-}
-
-fn default_template_weight() -> f64 {
-    SelectOptions::default().template_weight
-}
-
-fn default_dimensions() -> usize {
-    SelectOptions::default().dimensions
-}
-
-fn default_restarts() -> usize {
-    SelectOptions::default().restarts
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            records: RecordSource::Sample,
-            dedupe: None,
-            filter: None,
-            mapping: None,
-            profile: "paper".into(),
-            budget: 20,
-            strategy: Strategy::Stratified,
-            weighting: Weighting::default(),
-            template_weight: default_template_weight(),
-            dimensions: default_dimensions(),
-            restarts: default_restarts(),
-            embedding: EmbeddingKind::default(),
-            model_dir: None,
-            cast: Cast::default(),
-            simulator: SimulatorKind::Native,
-            ego: None,
-            tune_budget: 160,
-            searcher: "cma".into(),
-            seed: 1,
-        }
-    }
-}
-
-impl Options {
-    /// The command that makes the suite, without the output folder.
-    pub fn command(&self) -> String {
-        let default = Self::default();
-        let mut words = vec!["recrash run".to_owned()];
-        if let RecordSource::Files(files) = &self.records {
-            words.extend(files.iter().map(|f| format!("--records {}", quoted(&f.to_string_lossy()))));
-        }
-        let mut option = |name: &str, value: String, default: String| {
-            if value != default {
-                words.push(format!("--{name} {}", quoted(&value)));
-            }
-        };
-        let mapping = self.mapping.as_ref().map(|file| file.to_string_lossy().into_owned());
-        option("mapping", mapping.unwrap_or_default(), String::new());
-        option("dedupe", self.dedupe.map(dedupe_name).unwrap_or_default(), String::new());
-        option("where", self.filter.clone().unwrap_or_default(), String::new());
-        option("profile", self.profile.clone(), default.profile);
-        option("budget", self.budget.to_string(), default.budget.to_string());
-        option("strategy", self.strategy.name().into(), default.strategy.name().into());
-        option("weighting", self.weighting.name().into(), default.weighting.name().into());
-        option("template-weight", self.template_weight.to_string(), default.template_weight.to_string());
-        option("dimensions", self.dimensions.to_string(), default.dimensions.to_string());
-        option("restarts", self.restarts.to_string(), default.restarts.to_string());
-        option("embedding", self.embedding.name().into(), default.embedding.name().into());
-        let model_dir = self.model_dir.as_ref().map(|dir| dir.to_string_lossy().into_owned());
-        option("model-dir", model_dir.unwrap_or_default(), String::new());
-        option("paraphrase", self.cast.paraphrase.clone(), default.cast.paraphrase);
-        option("design", self.cast.design.clone(), default.cast.design);
-        option("tune", self.cast.tune.clone(), default.cast.tune);
-        option("rounds", self.cast.rounds.to_string(), default.cast.rounds.to_string());
-        option("repairs", self.cast.repairs.to_string(), default.cast.repairs.to_string());
-        option("sim", self.simulator.name().into(), default.simulator.name().into());
-        option("ego", self.ego.clone().unwrap_or_default(), String::new());
-        option("tune-budget", self.tune_budget.to_string(), default.tune_budget.to_string());
-        option("searcher", self.searcher.clone(), default.searcher);
-        option("seed", self.seed.to_string(), default.seed.to_string());
-        words.join(" ")
-    }
-
-    /// The profile, with what the options change in it.
-    ///
-    /// # Errors
-    /// There is no such profile, or the file is none.
-    pub(crate) fn system_profile(&self) -> Result<SystemProfile, PipelineError> {
-        let mut profile = load_profile(&self.profile)?;
-        profile.records.dedupe = self.dedupe.unwrap_or(profile.records.dedupe);
-        Ok(profile)
-    }
-}
-
-fn dedupe_name(dedupe: Dedupe) -> String {
-    serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
-pub(crate) fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
 
 /// The stages, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -207,18 +39,28 @@ pub enum Stage {
     Narrate,
     /// Narratives to scenarios.
     Design,
-    /// Scenarios to rollouts, metrics and verdicts.
+    /// Scenarios to judged runs.
     Simulate,
     /// Scenarios to tuned scenarios.
     Tune,
+    /// Tuned scenarios to judged runs, and failures to what they are worth.
+    Triage,
     /// All of it to a page.
     Report,
 }
 
 impl Stage {
     /// Every stage, in order.
-    pub const ALL: [Self; 7] =
-        [Self::Records, Self::Select, Self::Narrate, Self::Design, Self::Simulate, Self::Tune, Self::Report];
+    pub const ALL: [Self; 8] = [
+        Self::Records,
+        Self::Select,
+        Self::Narrate,
+        Self::Design,
+        Self::Simulate,
+        Self::Tune,
+        Self::Triage,
+        Self::Report,
+    ];
 
     /// Name of the stage and of its subcommand.
     pub fn name(self) -> &'static str {
@@ -229,35 +71,93 @@ impl Stage {
             Self::Design => "design",
             Self::Simulate => "simulate",
             Self::Tune => "tune",
+            Self::Triage => "triage",
             Self::Report => "report",
         }
     }
 }
 
+/// What `suite.json` holds.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-struct State {
+struct Saved {
     format: String,
     version: String,
     options: Options,
-    units: BTreeMap<String, Unit>,
-}
-
-/// A finished unit of work: the hash of what went in, and the files that came out with theirs.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Unit {
-    inputs: String,
-    outputs: BTreeMap<String, String>,
 }
 
 /// Files of a unit: name and content.
 pub(crate) type Files = Vec<(String, Vec<u8>)>;
 
+/// What became of a unit of work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Course {
+    /// It was done.
+    Done,
+    /// It was there already.
+    Skipped,
+    /// A person edited what it wrote, which is kept.
+    Edited,
+    /// The same, and what it would be made of has changed since.
+    EditedAndOld,
+}
+
+/// A unit of work: its name, what decides it, and which of its files people may edit.
+pub(crate) struct Work<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Everything that decides what comes out.
+    pub inputs: &'a [String],
+    /// Files that a person may edit: they are kept.
+    pub editable: &'a [String],
+}
+
+/// What the caller allows a run to do with a suite that is there already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Permissions {
+    /// Makes a suite of other records or of another profile in its place.
+    pub replace: bool,
+    /// Takes back what people edited.
+    pub discard_edits: bool,
+    /// Chooses the picks anew; without it, those of the last choice stay when records come in.
+    pub reselect: bool,
+    /// Starts programs that the suite names; without it only those that the caller names.
+    pub trust: bool,
+}
+
+/// What a run may use of the machine, and what it may do. No byte of the results depends on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resources {
+    /// Worker threads; as many as there are cores where not given.
+    pub threads: Option<usize>,
+    /// Python interpreter for MetaDrive.
+    pub python: PathBuf,
+    /// How long answers of an external ego are waited for.
+    pub patience: Patience,
+    /// How models are asked.
+    pub models: ModelAccess,
+    /// What it may do with what is there.
+    pub permissions: Permissions,
+}
+
+impl Default for Resources {
+    fn default() -> Self {
+        Self {
+            threads: None,
+            python: "python3".into(),
+            patience: Patience::default(),
+            models: ModelAccess::default(),
+            permissions: Permissions::default(),
+        }
+    }
+}
+
 /// A suite on disk.
 pub struct Suite {
     store: Store,
     profile: SystemProfile,
-    state: Mutex<State>,
+    journal: Mutex<Journal>,
     options: Options,
+    permissions: Permissions,
     threads: rayon::ThreadPool,
     /// As many threads as questions may be under way; absent where nobody is asked over the network.
     askers: Option<rayon::ThreadPool>,
@@ -269,44 +169,23 @@ pub struct Suite {
     _lock: Option<File>,
 }
 
-/// What a run may use of the machine. No byte of the results depends on it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Resources {
-    /// Worker threads; as many as there are cores where not given.
-    pub threads: Option<usize>,
-    /// Python interpreter for MetaDrive.
-    pub python: PathBuf,
-    /// How long answers of an external ego are waited for.
-    pub patience: Patience,
-    /// How models are asked.
-    pub models: ModelAccess,
-}
-
-impl Default for Resources {
-    fn default() -> Self {
-        let python = "python3".into();
-        Self { threads: None, python, patience: Patience::default(), models: ModelAccess::default() }
-    }
-}
-
 impl Suite {
     /// The options of the suite in a folder; `None` where there is no suite in it.
     ///
     /// # Errors
     /// The suite file is damaged.
     pub fn saved_options(dir: &Path) -> Result<Option<Options>, PipelineError> {
-        if !dir.join(SUITE_FILE).exists() {
-            return Ok(None);
-        }
-        Ok(Some(read_state(&Store::at(dir))?.options))
+        let there = dir.join(SUITE_FILE).symlink_metadata().is_ok();
+        there.then(|| Ok(read_saved(&Store::at(dir))?.options)).transpose()
     }
 
     /// Opens the suite in a folder, or makes one.
     ///
     /// # Errors
-    /// The folder cannot be used, holds something else, or the options name no profile.
+    /// The folder cannot be used, holds something else or a suite of other records or of another profile, or the options
+    /// name no profile.
     pub fn open(dir: &Path, options: Options, resources: Resources) -> Result<Self, PipelineError> {
-        Self::open_with(dir, options, resources, write_file_whole)
+        Self::open_with(dir, options, resources, write_suite_file)
     }
 
     /// As [`Suite::open`], with another way of writing files.
@@ -321,18 +200,27 @@ impl Suite {
     ) -> Result<Self, PipelineError> {
         options.system_profile()?;
         recording::read_filter(&options)?;
+        let before = Self::saved_options(dir)?;
+        if let Some(saved) = before.as_ref().filter(|_| !resources.permissions.replace) {
+            refuse_other(dir, saved, &options)?;
+        }
         let store = Store::create(dir, write_file)?;
         let lock = lock_folder(dir)?;
-        let units = if dir.join(SUITE_FILE).exists() {
-            read_state(&store)?.units
-        } else if is_empty(&store)? {
-            BTreeMap::new()
-        } else {
+        if before.is_none() && !is_empty(&store)? {
             return Err(PipelineError::NotASuite { dir: dir.to_owned() });
-        };
+        }
         store.remove_leftovers()?;
-        let suite = Self::set_up(store, options, resources, units, lock)?;
-        suite.save(&suite.lock())?;
+        let mut journal = Journal::read(&store)?;
+        journal.tidy(&store)?;
+        let suite = Self::set_up(store, options, resources, journal, lock)?;
+        let saved = Saved {
+            format: SUITE_FORMAT.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            options: suite.options.clone(),
+        };
+        if before.as_ref() != Some(&suite.options) {
+            suite.store.write(SUITE_FILE, &to_json(&saved))?;
+        }
         Ok(suite)
     }
 
@@ -342,32 +230,42 @@ impl Suite {
     /// There is no suite in the folder, or its file is damaged.
     pub(crate) fn look(dir: &Path) -> Result<Self, PipelineError> {
         let store = Store::at(dir);
-        let State { options, units, .. } = read_state(&store)?;
-        Self::set_up(store, options, Resources::default(), units, None)
+        let options = read_saved(&store)?.options;
+        let journal = Journal::read(&store)?;
+        Self::set_up(store, options, Resources::default(), journal, None)
     }
 
     fn set_up(
         store: Store,
         options: Options,
         resources: Resources,
-        units: BTreeMap<String, Unit>,
+        journal: Journal,
         lock: Option<File>,
     ) -> Result<Self, PipelineError> {
         let profile = options.system_profile()?;
         let threads = thread_pool(resources.threads.unwrap_or(0))?;
-        let state = State {
-            format: SUITE_FORMAT.into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            options: options.clone(),
-            units,
-        };
         let has_model = !options.cast.models().is_empty();
         let opened = has_model.then(|| Models::open(&store, &options.cast, &resources.models)).transpose()?;
         let (models, remarks) = opened.map_or((None, Vec::new()), |(models, remarks)| (Some(models), remarks));
         let asks = has_model && resources.models.mode == AnswerMode::Live;
         let askers = asks.then(|| thread_pool(resources.models.concurrency)).transpose()?;
-        let (state, python, patience) = (Mutex::new(state), resources.python, resources.patience);
-        Ok(Self { store, profile, state, options, threads, askers, python, patience, models, remarks, _lock: lock })
+        let Resources { python, patience, permissions, .. } = resources;
+        let journal = Mutex::new(journal);
+        let (_lock, threads) = (lock, threads);
+        Ok(Self {
+            store,
+            profile,
+            journal,
+            options,
+            permissions,
+            threads,
+            askers,
+            python,
+            patience,
+            models,
+            remarks,
+            _lock,
+        })
     }
 
     /// Runs one stage; the stages before must be finished.
@@ -380,7 +278,7 @@ impl Suite {
             Stage::Narrate => cast.paraphrase != RULES,
             Stage::Design => cast.design != RULES,
             Stage::Tune => cast.tune != RULES,
-            Stage::Records | Stage::Select | Stage::Simulate | Stage::Report => false,
+            Stage::Records | Stage::Select | Stage::Simulate | Stage::Triage | Stage::Report => false,
         };
         match self.askers.as_ref().filter(|_| by_model) {
             Some(askers) => askers.install(|| stages::run(self, stage, progress)),
@@ -418,15 +316,25 @@ impl Suite {
         self.options.ego.as_deref().unwrap_or(&self.profile.ego)
     }
 
+    /// What the caller allows.
+    pub(crate) fn permissions(&self) -> Permissions {
+        self.permissions
+    }
+
     /// The suite's folder.
     pub fn store(&self) -> &Store {
         &self.store
     }
 
     /// The simulator with the ego in it.
+    ///
+    /// # Errors
+    /// It cannot be set up, or the ego is a program that only the suite names.
     pub(crate) fn simulator(&self) -> Result<Box<dyn Simulator>, PipelineError> {
+        let ego = self.ego();
+        refuse_untrusted(ego, self.permissions.trust)?;
         let workers = self.threads.current_num_threads();
-        start_simulator(self.options.simulator, self.ego(), &self.python, workers, self.patience)
+        start_simulator(self.options.simulator, ego, &self.python, workers, self.patience)
     }
 
     /// The models' side; absent where the rules play every role.
@@ -443,69 +351,121 @@ impl Suite {
         Seed(self.options.seed)
     }
 
-    /// Does a unit of work, unless it is done: the same inputs gave files that are still there. Gives whether it was
-    /// skipped. A failure is tried again.
+    /// Does a unit of work, unless it is done: the same inputs gave files that are still there. A failure is tried again.
+    /// Files that a person edited are kept, and so is the rest of their unit.
     pub(crate) fn unit(
         &self,
-        name: &str,
-        inputs: &[&[u8]],
-        work: impl FnOnce() -> Result<Files, PipelineError>,
-    ) -> Result<bool, PipelineError> {
-        let inputs = hash_all(inputs);
-        let before = self.lock().units.get(name).cloned();
-        if let Some(unit) = &before
-            && unit.inputs == inputs
-            && !unit.outputs.keys().any(|file| file.ends_with(FAILURE))
-            && unit.outputs.iter().all(|(file, hash)| self.store.hash(file).as_ref() == Some(hash))
-        {
-            return Ok(true);
+        work: &Work,
+        make: impl FnOnce() -> Result<Files, PipelineError>,
+    ) -> Result<Course, PipelineError> {
+        let inputs = hash_all(work.inputs);
+        let before = self.lock().get(work.name).cloned();
+        if let Some(unit) = &before {
+            let is_current = unit.inputs == inputs;
+            let edited = !self.edits(unit, work.editable).is_empty();
+            if edited && !self.permissions.discard_edits {
+                return Ok(if is_current { Course::Edited } else { Course::EditedAndOld });
+            }
+            let failed = unit.outputs.keys().any(|file| is_failure_file(file));
+            if is_current && !failed && unit.outputs.iter().all(|(file, made)| self.is_as_made(file, made)) {
+                return Ok(Course::Skipped);
+            }
         }
         let mut outputs = BTreeMap::new();
-        for (file, content) in work()? {
+        for (file, content) in make()? {
             let hash = self.store.write(&file, &content)?;
-            outputs.insert(file, hash);
+            let (size, changed_ns) = self.store.stamp(&file).unwrap_or_default();
+            outputs.insert(file, Made { hash, size, changed_ns });
         }
         for stale in before.iter().flat_map(|unit| unit.outputs.keys()).filter(|file| !outputs.contains_key(*file)) {
             self.store.remove(stale)?;
         }
-        let mut state = self.lock();
-        state.units.insert(name.to_owned(), Unit { inputs, outputs });
-        self.save(&state)?;
-        Ok(false)
+        self.lock().note(&self.store, work.name, Unit { inputs, outputs })?;
+        Ok(Course::Done)
     }
 
-    /// Forgets the units of a stage that are not among `names`, and removes their files.
-    pub(crate) fn keep_only(&self, stage: Stage, names: &[String]) -> Result<(), PipelineError> {
-        let mut state = self.lock();
+    /// Whether a file still is what its unit wrote.
+    fn is_as_made(&self, file: &str, made: &Made) -> bool {
+        match self.store.stamp(file) {
+            None => false,
+            Some((size, _)) if size != made.size => false,
+            Some((_, changed_ns)) if changed_ns == made.changed_ns => true,
+            // Another time and the same size: a copy of the suite, or an edit.
+            Some(_) => self.store.hash(file).as_ref() == Some(&made.hash),
+        }
+    }
+
+    /// Files of a unit that a person edited.
+    fn edits(&self, unit: &Unit, editable: &[String]) -> Vec<String> {
+        let there = |file: &str| self.store.stamp(file).is_some();
+        let edited =
+            |(file, made): &(&String, &Made)| editable.contains(*file) && there(file) && !self.is_as_made(file, made);
+        unit.outputs.iter().filter(edited).map(|(file, _)| file.clone()).collect()
+    }
+
+    /// Files of a finished unit that a person edited; none of an unfinished one.
+    pub(crate) fn edited(&self, unit: &str, editable: &[String]) -> Vec<String> {
+        let unit = self.lock().get(unit).cloned();
+        unit.map_or_else(Vec::new, |unit| self.edits(&unit, editable))
+    }
+
+    /// Forgets the units of a stage that are not among `names`, and removes their files but those a person edited, which
+    /// are told of.
+    pub(crate) fn keep_only(
+        &self,
+        stage: Stage,
+        names: &[String],
+        editable: impl Fn(&str) -> Vec<String>,
+    ) -> Result<Vec<Diagnostic>, PipelineError> {
         let prefix = format!("{}/", stage.name());
-        let stale: Vec<String> =
-            state.units.keys().filter(|unit| unit.starts_with(&prefix) && !names.contains(unit)).cloned().collect();
-        for name in &stale {
-            let unit = state.units.remove(name);
-            for file in unit.iter().flat_map(|unit| unit.outputs.keys()) {
-                self.store.remove(file)?;
+        let all = self.lock().beginning_with(&prefix);
+        let mut remarks = Vec::new();
+        for name in all.iter().filter(|unit| !names.contains(unit)) {
+            let edited = self.edited(name, &editable(name.strip_prefix(&prefix).unwrap_or(name)));
+            let Some(unit) = self.lock().forget(&self.store, name)? else { continue };
+            for file in unit.outputs.keys() {
+                if edited.contains(file) && !self.permissions.discard_edits {
+                    let message = "is no longer part of the suite; it was edited by hand, and is kept";
+                    let location = Location { file: Some(file.clone()), ..Location::default() };
+                    remarks.push(Diagnostic::new(Severity::Warning, "suite.edit-left-over", location, message));
+                } else {
+                    self.store.remove(file)?;
+                }
             }
         }
-        if !stale.is_empty() {
-            self.save(&state)?;
-        }
-        Ok(())
+        Ok(remarks)
     }
 
     /// Hash of a file that a finished unit wrote, as it is now: a person may have edited it.
     pub(crate) fn output_hash(&self, stage: Stage, unit: &str, file: &str) -> Result<String, PipelineError> {
-        let finished = self.lock().units.get(unit).is_some_and(|u| u.outputs.contains_key(file));
-        let hash = finished.then(|| self.store.hash(file)).flatten();
+        let made = self.lock().get(unit).and_then(|unit| unit.outputs.get(file).cloned());
+        let hash =
+            made.and_then(|made| if self.is_as_made(file, &made) { Some(made.hash) } else { self.store.hash(file) });
         hash.ok_or_else(|| PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() })
     }
 
-    /// Refuses a unit that was made of something else.
-    pub(crate) fn must_be_made_of(&self, stage: Stage, unit: &str, inputs: &[String]) -> Result<(), PipelineError> {
-        let inputs: Vec<&[u8]> = inputs.iter().map(String::as_bytes).collect();
-        match self.lock().units.get(unit) {
-            None => Err(PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() }),
-            Some(made) if made.inputs != hash_all(&inputs) => Err(self.stale(stage)),
-            Some(_) => Ok(()),
+    /// One hash of all files of a finished unit, as they are now.
+    pub(crate) fn outputs_hash(&self, unit: &str) -> String {
+        let Some(unit) = self.lock().get(unit).cloned() else { return String::new() };
+        let hash = |(file, made): (&String, &Made)| {
+            let now = if self.is_as_made(file, made) { Some(made.hash.clone()) } else { self.store.hash(file) };
+            format!("{file} {}", now.unwrap_or_default())
+        };
+        unit.outputs.iter().map(hash).collect::<Vec<_>>().join("\n")
+    }
+
+    /// Refuses a unit that was made of something else, or whose files are not as they were made though nobody may edit them.
+    pub(crate) fn must_be_current(&self, stage: Stage, work: &Work) -> Result<(), PipelineError> {
+        let Some(unit) = self.lock().get(work.name).cloned() else {
+            return Err(PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() });
+        };
+        let edited = self.edits(&unit, work.editable);
+        if unit.inputs != hash_all(work.inputs) && edited.is_empty() {
+            return Err(self.stale(stage));
+        }
+        match unit.outputs.iter().find(|(file, made)| !edited.contains(file) && !self.is_as_made(file, made)) {
+            Some((file, _)) => Err(PipelineError::ChangedByHand { path: self.store.path(file), stage: stage.name() }),
+            None => Ok(()),
         }
     }
 
@@ -514,13 +474,42 @@ impl Suite {
         PipelineError::StaleStage { dir: self.store.dir().to_owned(), stage: stage.name() }
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> MutexGuard<'_, Journal> {
+        self.journal.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
 
-    fn save(&self, state: &State) -> Result<(), PipelineError> {
-        self.store.write(SUITE_FILE, &to_json(state)).map(drop)
+/// Refuses to start a program that a file names: a suite may be a stranger's.
+///
+/// # Errors
+/// The ego is a program, and the caller neither named it nor trusts the suite.
+pub(crate) fn refuse_untrusted(ego: &str, trust: bool) -> Result<(), PipelineError> {
+    if trust || !ego.starts_with(EGO_COMMAND_PREFIX) {
+        return Ok(());
     }
+    Err(PipelineError::Untrusted { program: ego.to_owned() })
+}
+
+/// Refuses to make a suite of other records, or of another profile, where there is one already: its results would be lost.
+/// Further files beside those it was made of are welcome.
+fn refuse_other(dir: &Path, saved: &Options, options: &Options) -> Result<(), PipelineError> {
+    let files = |source: &RecordSource| match source {
+        RecordSource::Sample => vec!["the built-in sample".to_owned()],
+        RecordSource::Files(paths) => {
+            let name = |path: &PathBuf| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+            paths.iter().map(name).collect()
+        }
+    };
+    let (before, now) = (files(&saved.records), files(&options.records));
+    if let Some(missing) = before.iter().find(|file| !now.contains(file)) {
+        let what = format!("records of {missing}, which these are not ({})", now.join(", "));
+        return Err(PipelineError::OtherSuite { dir: dir.to_owned(), what });
+    }
+    if saved.profile != options.profile {
+        let what = format!("profile \"{}\", not of \"{}\"", saved.profile, options.profile);
+        return Err(PipelineError::OtherSuite { dir: dir.to_owned(), what });
+    }
+    Ok(())
 }
 
 fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, PipelineError> {
@@ -538,7 +527,7 @@ fn lock_folder(dir: &Path) -> Result<Option<File>, PipelineError> {
     }
 }
 
-fn read_state(store: &Store) -> Result<State, PipelineError> {
+fn read_saved(store: &Store) -> Result<Saved, PipelineError> {
     let unusable = |problem: String| {
         PipelineError::bad_input(format!(
             "{}: {problem}; nothing can go on in this folder: choose another --out (with a copy of ledger/ in it, answers \
@@ -546,14 +535,15 @@ fn read_state(store: &Store) -> Result<State, PipelineError> {
             store.path(SUITE_FILE).display()
         ))
     };
-    let state: State = store.read_json(SUITE_FILE).map_err(|error| match error {
+    let saved: serde_json::Value = store.read_json(SUITE_FILE).map_err(|error| match error {
         PipelineError::Damaged { problem, .. } => unusable(problem),
         other => other,
     })?;
-    if state.format != SUITE_FORMAT {
-        return Err(unusable(format!("format is \"{}\"; this version reads \"{SUITE_FORMAT}\"", state.format)));
+    let format = saved["format"].as_str().unwrap_or_default().to_owned();
+    if format != SUITE_FORMAT {
+        return Err(unusable(format!("format is \"{format}\"; this version reads \"{SUITE_FORMAT}\"")));
     }
-    Ok(state)
+    serde_json::from_value(saved).map_err(|error| unusable(error.to_string()))
 }
 
 fn is_empty(store: &Store) -> Result<bool, PipelineError> {
@@ -567,33 +557,11 @@ fn is_empty(store: &Store) -> Result<bool, PipelineError> {
 }
 
 /// One hash of several inputs and of the code of this program.
-fn hash_all(inputs: &[&[u8]]) -> String {
+fn hash_all(inputs: &[String]) -> String {
     let mut all = concat!(env!("CARGO_PKG_VERSION"), " ", env!("RECRASH_CODE")).as_bytes().to_vec();
     for input in inputs {
         all.extend((input.len() as u64).to_le_bytes());
-        all.extend_from_slice(input);
+        all.extend_from_slice(input.as_bytes());
     }
     sha256(&all)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_command_names_what_differs_from_the_defaults_and_quotes_it() {
-        assert_eq!(Options::default().command(), "recrash run");
-        let options = Options {
-            records: RecordSource::Files(vec!["my file.csv".into()]),
-            dedupe: Some(Dedupe::Incident),
-            filter: Some("road = street".into()),
-            budget: 5,
-            strategy: Strategy::Kmeans,
-            ..Options::default()
-        };
-        assert_eq!(
-            options.command(),
-            "recrash run --records 'my file.csv' --dedupe incident --where 'road = street' --budget 5 --strategy kmeans"
-        );
-    }
 }

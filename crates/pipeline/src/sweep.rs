@@ -3,14 +3,14 @@
 //! What is in memory is one row group, whatever the number of rollouts; rows come in the order of their numbers, and the
 //! file has the same bytes for any number of threads. Columns: `docs/sweep.md`.
 
-use crate::casework::read_scenario;
 use crate::error::PipelineError;
 use crate::external::Patience;
 use crate::profiles::load_profile;
+use crate::scenario_files::read_scenario;
 use crate::simulator::{Simulator, SimulatorKind, start_simulator};
 use crate::stages::names;
 use crate::store::{Store, Unfinished, write_file_whole};
-use crate::suite::Suite;
+use crate::suite::{Suite, refuse_untrusted};
 use rayon::prelude::*;
 use recrash_agents::parameters;
 use recrash_metrics::{findings, measure};
@@ -81,6 +81,8 @@ pub struct SweepRequest<'a> {
     pub seed: u64,
     /// Worker threads; as many as there are cores where not given.
     pub threads: Option<usize>,
+    /// Whether a program that only the suite names is started as the ego.
+    pub trust: bool,
 }
 
 /// What came of a sweep.
@@ -138,6 +140,7 @@ impl Sweep {
         let profile = load_profile(request.profile.unwrap_or(default))?;
         let saved_ego = saved.as_ref().and_then(|options| options.ego.clone());
         let ego = request.ego.map(str::to_owned).or(saved_ego).unwrap_or_else(|| profile.ego.clone());
+        refuse_untrusted(&ego, request.trust || request.ego.is_some())?;
         let files = scenario_files(request.source)?;
         let bases = files.iter().map(|file| base(file, request.vary, &profile)).collect::<Result<Vec<_>, _>>()?;
         let mut pointers: Vec<String> = Vec::new();

@@ -1,7 +1,7 @@
 //! JUnit XML, in the form that Jenkins, GitLab and GitHub actions read.
 
 use crate::results::other_egos;
-use crate::view::{CaseView, RunView, SuiteView};
+use crate::view::{CaseRow, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{Answer, Check};
 use recrash_model::triage::Triage;
@@ -11,10 +11,10 @@ use std::fmt::Write;
 pub fn render(suite: &SuiteView) -> String {
     let designed: Vec<String> =
         suite.cases.iter().map(|case| test_case(suite, case, case.before.as_ref(), "as designed")).collect();
-    let tuned: Vec<&CaseView> = suite.cases.iter().filter(|case| case.after.is_some()).collect();
+    let tuned: Vec<&CaseRow> = suite.cases.iter().filter(|case| case.after.is_some()).collect();
     let tuned_cases: Vec<String> =
         tuned.iter().map(|case| test_case(suite, case, case.after.as_ref(), "tuned")).collect();
-    let failed = |run: Option<&RunView>| usize::from(run.is_some_and(|run| run.failed()));
+    let failed = |run: Option<&RunRow>| usize::from(run.is_some_and(|run| run.failed()));
     let failed_designed: usize = suite.cases.iter().map(|case| failed(case.before.as_ref())).sum();
     let failed_tuned: usize = tuned.iter().map(|case| failed(case.after.as_ref())).sum();
     let skipped = suite.cases.iter().filter(|case| case.before.is_none()).count();
@@ -55,7 +55,7 @@ pub fn render(suite: &SuiteView) -> String {
     text
 }
 
-fn test_case(suite: &SuiteView, case: &CaseView, run: Option<&RunView>, name: &str) -> String {
+fn test_case(suite: &SuiteView, case: &CaseRow, run: Option<&RunRow>, name: &str) -> String {
     let time = run.and_then(|run| fixed(run.metrics.duration_s, 3)).unwrap_or_else(|| "0".to_owned());
     let mut text = format!(
         "    <testcase classname=\"recrash.{}.{}\" name=\"{}\" time=\"{time}\">\n",
@@ -90,32 +90,37 @@ fn test_case(suite: &SuiteView, case: &CaseView, run: Option<&RunView>, name: &s
 }
 
 /// The triage, which is about the last run.
-fn triage_of<'a>(case: &'a CaseView, run: &RunView) -> Option<&'a Triage> {
+fn triage_of<'a>(case: &'a CaseRow, run: &RunRow) -> Option<&'a Triage> {
     case.triage.as_ref().filter(|_| case.last_run().is_some_and(|last| std::ptr::eq(run, last)))
 }
 
 /// What a person reads when the test has failed.
-fn told(case: &CaseView, run: &RunView) -> String {
+fn told(case: &CaseRow, run: &RunRow) -> String {
     let gap = run
         .min_gap_m()
         .and_then(|gap| fixed(gap, 2))
         .map_or("no gap was measured".to_owned(), |gap| format!("{gap} m"));
-    let faithful = match run.faithful() {
-        Answer::Yes => "yes".to_owned(),
-        Answer::Unchecked => "not all checked".to_owned(),
-        Answer::No => {
-            let told = |check: &Check| {
-                format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed)
-            };
-            format!("no ({})", run.verdict.failures().map(told).collect::<Vec<_>>().join("; "))
-        }
+    let checked =
+        |check: &Check| format!("{}: expected {}, observed {}", check.kind.label(), check.expected, check.observed);
+    let listed = |answer: Answer, checks: Vec<&Check>| {
+        format!("{} ({})", answer.label(), checks.into_iter().map(checked).collect::<Vec<_>>().join("; "))
     };
-    let origin = case.narrative.as_ref().map_or("nobody said", |narrative| narrative.origin.label());
+    let faithful = match case.faithful().map(|_| run.faithful()) {
+        None => "there is no record to be true to".to_owned(),
+        Some(Answer::Yes) => Answer::Yes.label().to_owned(),
+        Some(Answer::Unchecked) => listed(Answer::Unchecked, run.verdict.unchecked().collect()),
+        Some(Answer::No) => listed(Answer::No, run.verdict.failures().collect()),
+    };
+    let origin = words::provenance(case.origin.as_ref(), case.told.as_ref());
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
         format!("\n{}: {}\nother egos: {}", triage.class.label(), triage.class.meaning(), other_egos(triage))
     });
+    let edited = match &case.edited[..] {
+        [] => String::new(),
+        files => format!("\nedited by hand: {}", files.join(", ")),
+    };
     format!(
-        "template: {}\ntells: {origin}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}\nagain: {}",
+        "template: {}\ntells: {origin}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
         case.template,
         words::name(&run.metrics.termination),
         run.rerun_command

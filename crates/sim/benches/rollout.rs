@@ -8,7 +8,7 @@ use recrash_roads::Scenario;
 use recrash_sim::{Ego, RolloutRecorder, Runner, SummaryRecorder};
 use std::hint::black_box;
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 /// The ego straight across an intersection, a partner that turns left in front of it, late enough to miss it.

@@ -11,7 +11,7 @@ use recrash_roads::{Placement, Scenario, check, read_draft};
 use recrash_sim::{Ego, simulate};
 use serde_json::{Value, json};
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 fn main() {

@@ -3,7 +3,7 @@
 use recrash_model::scenario::{Approach, Start, Turn};
 use recrash_sim::{Ego, Runner, SummaryRecorder};
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 fn main() {

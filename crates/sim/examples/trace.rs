@@ -2,7 +2,7 @@
 
 use recrash_sim::{Ego, simulate};
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 fn main() {

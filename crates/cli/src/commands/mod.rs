@@ -105,6 +105,11 @@ pub enum Command {
     /// Stage 6: search each scenario's parameters for the nearest failure that is still true to the record.
     #[command(after_help = TUNE_EXAMPLES)]
     Tune(SuiteArgs),
+    /// Stage 7: run the tuned scenarios, and where the system fails, run the other egos too.
+    #[command(
+        after_help = "Examples:\n  recrash triage                 the tuned scenarios of suite/\n  recrash triage --ego idm       another system under test in the same tuned scenarios"
+    )]
+    Triage(SuiteArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
     #[command(after_help = REPORT_EXAMPLES)]
     Report(SuiteArgs),
@@ -139,10 +144,19 @@ pub enum Command {
 impl Command {
     /// Whether the same command goes on where it was stopped: what works in a suite, or with a ledger.
     pub fn goes_on(&self) -> bool {
-        use Command::{Design, Eval, Narrate, Records, Report, Run, Select, Simulate, Tune};
+        use Command::{Design, Eval, Narrate, Records, Report, Run, Select, Simulate, Triage, Tune};
         matches!(
             self,
-            Run(_) | Records(_) | Select(_) | Narrate(_) | Design(_) | Simulate(_) | Tune(_) | Report(_) | Eval(_)
+            Run(_)
+                | Records(_)
+                | Select(_)
+                | Narrate(_)
+                | Design(_)
+                | Simulate(_)
+                | Tune(_)
+                | Triage(_)
+                | Report(_)
+                | Eval(_)
         )
     }
 }
@@ -161,6 +175,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Design(args) => stage::run(args, Stage::Design, output),
         Command::Simulate(args) => simulate::run(args, output),
         Command::Tune(args) => stage::run(args, Stage::Tune, output),
+        Command::Triage(args) => stage::run(args, Stage::Triage, output),
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),

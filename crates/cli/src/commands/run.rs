@@ -128,13 +128,12 @@ fn show(summary: &Summary, dir: &Path) {
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
     let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"]);
     for case in &summary.cases {
-        let verdict = match &case.tuned {
-            Some(run) => match run.faithful {
-                Answer::Yes => "faithful",
-                Answer::Unchecked => "not all checked",
-                Answer::No => "NOT FAITHFUL",
-            },
-            None => "NOT RUN",
+        let verdict = match (case.faithful(), &case.tuned) {
+            (Some(Answer::Yes), _) => "faithful",
+            (Some(Answer::Unchecked), _) => "not all checked",
+            (Some(Answer::No), _) => "NOT FAITHFUL",
+            (None, Some(_)) => "no record",
+            (None, None) => "NOT RUN",
         };
         rows.add_row(vec![
             Cell::new(&case.id),
@@ -179,8 +178,16 @@ fn show(summary: &Summary, dir: &Path) {
     );
     let [own, other, invented] = summary.origins();
     println!("  told: {own} of their own record, {other} of another real record, {invented} invented");
-    let [yes, no, unchecked] = [Answer::Yes, Answer::No, Answer::Unchecked].map(|answer| summary.faithful(answer));
-    println!("  faithful to what they tell: {yes} yes, {no} no, {unchecked} not all checked");
+    for (place, name, count) in [(0, "their own record", own), (1, "another record", other)] {
+        let [yes, no, unchecked] = [Answer::Yes, Answer::No, Answer::Unchecked].map(|a| summary.faithful(a)[place]);
+        println!(
+            "  of the {count} of {name}: {yes} show every fact told, {no} do not, {unchecked} could not all be checked"
+        );
+    }
+    let edited = summary.cases.iter().filter(|case| !case.edited.is_empty()).count();
+    if edited > 0 {
+        println!("  {edited} edited by hand, and kept");
+    }
     for (class, count) in summary.failure_classes() {
         println!("  {count:>4} {}: {}", class.label(), class.meaning());
     }

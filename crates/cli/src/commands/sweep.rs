@@ -43,6 +43,9 @@ pub struct SweepArgs {
     /// Ego: metadrive-idm, idm, reference, or a program as 'cmd:PROGRAM ARGS'. [default: the suite's, else the profile's]
     #[arg(long, value_name = "NAME|cmd:PROGRAM")]
     pub ego: Option<String>,
+    /// Start the program that the suite names as its ego.
+    #[arg(long)]
+    pub trust: bool,
     /// Seconds such a program may take for an answer; six times that to start.
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600), default_value_t = 10)]
     pub ego_timeout: u16,
@@ -69,6 +72,7 @@ pub fn run(args: &SweepArgs, output: Output) -> Result<(), PipelineError> {
         patience: Patience { start: 6 * answer, answer },
         seed: args.seed,
         threads: args.threads.map(usize::from),
+        trust: args.trust,
     })?;
     if let Some(number) = args.rollout {
         return write_scenario(&sweep.draft(number)?, &args.out);

@@ -5,6 +5,7 @@
 //! gets a new one.
 
 mod command;
+mod fingerprint;
 mod process;
 mod protocol;
 
@@ -17,6 +18,15 @@ use recrash_model::rollout::Rollout;
 use recrash_roads::{RunError, Scenario, Simulator};
 use recrash_sim::{Native, RolloutRecorder, Runner};
 use std::sync::{Mutex, PoisonError};
+
+/// What an ego is, for telling whether a result is of it as it is now: its name, and a program's files.
+///
+/// # Errors
+/// The command cannot be read.
+pub(crate) fn identity(ego: &str) -> Result<String, PipelineError> {
+    let command = EgoCommand::parse(ego).map_err(PipelineError::bad_input)?;
+    Ok(command.map_or_else(|| ego.to_owned(), |command| fingerprint::fingerprint(&command)))
+}
 
 /// The native simulator with a program as the ego, ready to drive. It may be shared between threads.
 pub struct ExternalEgo {

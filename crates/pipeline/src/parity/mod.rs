@@ -10,10 +10,11 @@ pub use draw::random_scenario;
 pub use open_loop::{OpenLoop, OpenLoopLimit, OpenLoopRequest, open_loop};
 pub use tables::ParityTable;
 
-use crate::casework::{judge, read_scenario};
 use crate::error::PipelineError;
+use crate::judging::judge;
 use crate::profiles::load_profile;
 use crate::progress::{Progress, ProgressEvent};
+use crate::scenario_files::read_scenario;
 use crate::stages::names;
 use crate::store::{Store, to_json, write_file_whole};
 use crate::suite::Suite;
@@ -215,7 +216,7 @@ fn of_suite(dir: &Path) -> Result<(Vec<Named>, SystemProfile), PipelineError> {
             dir.display()
         )));
     }
-    let store = Store::create(dir, write_file_whole)?;
+    let store = Store::at(dir);
     if !store.path(names::SELECTION).exists() {
         return Err(PipelineError::MissingStage { dir: dir.to_owned(), missing: "design" });
     }

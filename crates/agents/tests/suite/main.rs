@@ -1,0 +1,8 @@
+//! Tests of the crate as its users see it, in one binary: a file a subject.
+
+mod accounts;
+mod designs;
+mod narratives;
+mod real_records;
+mod support;
+mod worked_examples;

@@ -1,0 +1,57 @@
+//! Helpers of the command's tests.
+
+pub mod scripted;
+pub mod server;
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+
+/// The command, with a budget small enough for a test where it makes suites.
+pub fn recrash(arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("recrash").expect("the binary is built with its tests");
+    command.args(arguments);
+    command
+}
+
+/// A folder to run commands in.
+pub struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Runs a command in the folder; gives exit code, standard output and standard error.
+    pub fn run(&self, arguments: &[&str]) -> (i32, String, String) {
+        let mut command = recrash(arguments);
+        // Nothing that the user has counts: no proxy, and no weights of an embedding model.
+        command.current_dir(self.folder.path()).env("RECRASH_CACHE", self.path("cache")).env("HOME", self.path("home"));
+        for name in ["http_proxy", "HTTP_PROXY", "all_proxy", "ALL_PROXY", "XDG_CACHE_HOME", "HF_HOME", "HF_HUB_CACHE"]
+        {
+            command.env_remove(name);
+        }
+        for name in ["VIRTUAL_ENV", "CONDA_PREFIX", "RECRASH_EMBEDDING", "RECRASH_PYTHON"] {
+            command.env_remove(name);
+        }
+        let output = command.output().unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+    }
+
+    pub fn records(&self, extra: &[&str]) -> serde_json::Value {
+        let arguments: Vec<&str> = ["records", "--json"].iter().chain(extra).copied().collect();
+        let (code, shown, error) = self.run(&arguments);
+        assert_eq!(code, 0, "{error}");
+        serde_json::from_str(&shown).unwrap()
+    }
+}

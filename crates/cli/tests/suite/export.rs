@@ -1,0 +1,178 @@
+//! Exports and imports as a user meets them: folders, exit codes, and the way there and back.
+
+use crate::common::recrash;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Wrong usage.
+const USAGE: i32 = 2;
+/// Input that cannot be used.
+const BAD_INPUT: i32 = 3;
+
+const SMALL: [&str; 6] = ["--budget", "4", "--tune-budget", "12", "--seed", "5"];
+
+/// A scenario in the paper's own dialect.
+const DIALECT: &str = r#"{"id": "dialect", "map_type": "X", "ego_turn": "straight", "lead_turn": "straight",
+  "partners": [{"direction": "same", "delta_s_m": 20.0, "delta_t_m": 0.0, "policy": "sudden_brake",
+    "params": {"target_speed": 6.0, "brake_step": 30, "brake_steps": 20}}]}"#;
+
+/// A small suite, and a folder for what is made of it.
+struct Case {
+    folder: tempfile::TempDir,
+}
+
+impl Case {
+    fn with_suite() -> Self {
+        let case = Self { folder: tempfile::tempdir().unwrap() };
+        let suite = case.path("suite");
+        recrash(&["run", "--quiet", "--out", suite.to_str().unwrap()]).args(SMALL).assert().success();
+        case
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The tuned scenarios, by id.
+    fn scenarios(&self) -> Vec<(String, PathBuf)> {
+        let names = names_in(&self.path("suite/6-tuned"));
+        let ids = names.iter().filter_map(|name| name.strip_suffix(".run.json"));
+        ids.map(|id| (id.to_owned(), self.path(&format!("suite/6-tuned/{id}.json")))).collect()
+    }
+
+    /// Runs the command in this folder; gives its exit code and what it printed.
+    fn run(&self, arguments: &[&str]) -> (i32, String) {
+        let output = recrash(arguments).current_dir(self.folder.path()).output().unwrap();
+        let shown = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(!shown.contains("panicked"), "{shown}");
+        (output.status.code().unwrap(), shown)
+    }
+
+    fn json(&self, arguments: &[&str]) -> Value {
+        let output = recrash(arguments).arg("--json").current_dir(self.folder.path()).output().unwrap();
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}: {output:?}"))
+    }
+}
+
+fn names_in(folder: &Path) -> BTreeSet<String> {
+    std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+}
+
+#[test]
+fn every_scenario_of_a_suite_comes_back_with_the_state_hash_it_had() {
+    let case = Case::with_suite();
+    for (how, target) in [("actions", "acting"), ("trajectory", "recorded")] {
+        let (code, shown) = case.run(&["export", "suite", "--to", "openscenario", "--as", how, "--to-dir", target]);
+        assert_eq!(code, 0, "{shown}");
+        for (id, file) in case.scenarios() {
+            let source = format!("{target}/openscenario/{id}.xosc");
+            let text = std::fs::read_to_string(case.path(&source)).unwrap();
+            assert_eq!(text.contains("<FollowTrajectoryAction>"), how == "trajectory", "{source}");
+            let copy = format!("{target}-{id}.json");
+            let imported = case.json(&["import", &source, "--out", &copy, "--simulate"]);
+            let run: Value = serde_json::from_slice(&std::fs::read(file.with_extension("run.json")).unwrap()).unwrap();
+            assert_eq!(imported["run"]["rollout"]["state_hash"], run["rollout"]["state_hash"], "{source}");
+            let again = case.json(&["simulate", &copy]);
+            assert_eq!(again["rollout"]["state_hash"], run["rollout"]["state_hash"], "{copy}");
+            let remarks = imported["imported"]["diagnostics"].as_array().unwrap();
+            let edits = remarks.iter().filter(|remark| remark["code"].as_str().unwrap().starts_with("openscenario"));
+            assert_eq!(edits.collect::<Vec<_>>(), Vec::<&Value>::new(), "{source}");
+        }
+    }
+}
+
+#[test]
+fn a_damaged_scenario_is_named_and_the_rest_is_exported() {
+    let case = Case::with_suite();
+    let scenarios = case.scenarios();
+    let (damaged, file) = &scenarios[0];
+    std::fs::write(file, "{ damaged").unwrap();
+    let (code, shown) = case.run(&["export", "suite", "--to", "metadrive,commonroad"]);
+    assert_eq!(code, BAD_INPUT, "{shown}");
+    assert!(shown.contains("1 scenario was not exported; the other 3 were"), "{shown}");
+    assert!(shown.contains(&format!("{damaged}.json")) && shown.contains("line 1"), "{shown}");
+    let written = names_in(&case.path("suite/exports/commonroad"));
+    let rest: BTreeSet<String> = scenarios[1..].iter().map(|(id, _)| format!("{id}.cr.xml")).collect();
+    assert_eq!(written, rest);
+
+    let one = file.to_str().unwrap();
+    let (code, shown) = case.run(&["export", one, "--to", "scenic", "--to-dir", "one"]);
+    assert_eq!(code, BAD_INPUT);
+    assert!(shown.contains("the scenario was not exported") && !shown.contains("other"), "{shown}");
+}
+
+#[test]
+fn an_unknown_format_and_a_folder_that_is_no_suite_are_refused() {
+    let case = Case { folder: tempfile::tempdir().unwrap() };
+    let (code, shown) = case.run(&["export", "suite", "--to", "opendrive"]);
+    assert_eq!(code, USAGE);
+    assert!(shown.contains("opendrive") && shown.contains("openscenario, scenic, metadrive, commonroad"), "{shown}");
+    std::fs::create_dir(case.path("empty")).unwrap();
+    let (code, shown) = case.run(&["export", "empty", "--to", "scenic"]);
+    assert_eq!(code, BAD_INPUT);
+    assert!(shown.contains("empty") && shown.contains("suite.json"), "{shown}");
+}
+
+#[test]
+fn a_target_with_files_in_it_is_left_alone() {
+    let case = Case { folder: tempfile::tempdir().unwrap() };
+    std::fs::write(case.path("dialect.json"), DIALECT).unwrap();
+    std::fs::create_dir_all(case.path("exports/scenic")).unwrap();
+    std::fs::write(case.path("exports/scenic/mine.txt"), "mine").unwrap();
+    let export = ["export", "dialect.json", "--to", "commonroad,scenic"];
+    let (code, shown) = case.run(&export);
+    assert_eq!(code, BAD_INPUT);
+    assert!(shown.contains("scenic") && shown.contains("--force") && shown.contains("--to-dir"), "{shown}");
+    assert_eq!(names_in(&case.path("exports/scenic")), BTreeSet::from(["mine.txt".to_owned()]));
+    assert!(!case.path("exports/commonroad").exists(), "nothing is written before the question is settled");
+    let (code, shown) = case.run(&[&export[..], &["--force"]].concat());
+    assert_eq!(code, 0, "{shown}");
+    assert!(case.path("exports/scenic/mine.txt").exists() && case.path("exports/scenic/dialect.scenic").exists());
+}
+
+#[test]
+fn the_papers_dialect_is_imported_and_run() {
+    let case = Case { folder: tempfile::tempdir().unwrap() };
+    std::fs::write(case.path("theirs.json"), DIALECT).unwrap();
+    let (code, shown) = case.run(&["import", "theirs.json", "--simulate"]);
+    assert_eq!(code, 0, "{shown}");
+    assert!(shown.contains("dialect.json") && shown.contains("state hash"), "{shown}");
+    let written: Value = serde_json::from_slice(&std::fs::read(case.path("dialect.json")).unwrap()).unwrap();
+    assert_eq!(written["format"], "recrash.scenario/1");
+    assert_eq!(written["partners"][0]["policy"]["brake_step"], 30);
+
+    let (code, shown) = case.run(&["import", "theirs.json"]);
+    assert_eq!(code, BAD_INPUT);
+    assert!(shown.contains("dialect.json") && shown.contains("--force") && shown.contains("--out"), "{shown}");
+    let (code, shown) = case.run(&["import", "theirs.json", "--out", "new.json"]);
+    assert_eq!(code, 0, "{shown}");
+    assert!(shown.contains("recrash simulate new.json"), "{shown}");
+}
+
+#[test]
+fn what_cannot_be_imported_says_where_and_why() {
+    let case = Case { folder: tempfile::tempdir().unwrap() };
+    let cases: [(&str, &[u8], &[&str]); 6] = [
+        ("cut.xosc", b"<?xml version=\"1.0\"?>\n<OpenSCENARIO>\n  <FileHeader", &["line 3"]),
+        (
+            "other.xosc",
+            b"<OpenSCENARIO>\n<FileHeader revMajor=\"1\"/></OpenSCENARIO>",
+            &["line 2", "FileHeader", "recrash"],
+        ),
+        ("map.xosc", b"<OpenDRIVE/>", &["line 1", "<OpenDRIVE>", "<OpenSCENARIO>"]),
+        ("bytes.xosc", b"\xff\xfe\x00", &["not a text file"]),
+        ("empty.json", b"", &["line 1", "is the file complete"]),
+        ("dialect.json", b"{\"map_type\": \"Q\"}", &["map", "\"Q\""]),
+    ];
+    for (name, content, words) in cases {
+        std::fs::write(case.path(name), content).unwrap();
+        let (code, shown) = case.run(&["import", name, "--out", "never.json"]);
+        assert_eq!(code, BAD_INPUT, "{name}: {shown}");
+        assert!(shown.contains(name) && words.iter().all(|word| shown.contains(word)), "{name} {words:?}: {shown}");
+    }
+    let (code, shown) = case.run(&["import", "nowhere.xosc"]);
+    assert_eq!(code, BAD_INPUT);
+    assert!(shown.contains("nowhere.xosc") && shown.contains("check the path"), "{shown}");
+    assert!(!case.path("never.json").exists());
+}

@@ -1,0 +1,16 @@
+//! Tests of the crate as its users see it, in one binary: a file a subject.
+
+mod bad_input;
+mod batch;
+mod common;
+mod contradictions;
+mod egos;
+mod eval;
+mod export;
+mod live;
+mod records;
+mod repeatable;
+mod selection;
+mod suite_folder;
+mod sweep;
+mod tools;

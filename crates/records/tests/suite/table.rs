@@ -1,0 +1,96 @@
+//! Tables of records and how the records are spread.
+
+use crate::common::builder::{row, second};
+use crate::common::{ingest_bytes, paper};
+use recrash_model::record::Edition;
+use recrash_records::{SAMPLE_CSV, SourceText, TableRows, distributions, ingest, record_table};
+
+fn cells(csv: &[u8]) -> Vec<Vec<String>> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(csv);
+    reader.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect()
+}
+
+#[test]
+fn a_csv_table_has_a_row_a_record_and_nothing_where_nothing_is_known() {
+    let narrative = "It said \"stop\",\nand went.";
+    let changes = [
+        ("Narrative", narrative),
+        ("Incident Date", "JUN-2024"),
+        ("Incident Time (24:00)", "7:05"),
+        ("SV Contact Area - Front", "Y"),
+        ("SV Contact Area - Left", "Y"),
+    ];
+    let text =
+        second(&[row(Edition::Second, "1-1", &changes), row(Edition::Second, "1-2", &[("Roadway Type", "Bridge")])]);
+    let set = ingest_bytes(text.as_bytes()).value;
+    let usable = cells(&record_table(&set, TableRows::Usable).to_csv());
+    let all = cells(&record_table(&set, TableRows::All).to_csv());
+    assert_eq!((usable.len(), all.len()), (2, 3));
+    assert_eq!(usable[..2], all[..2]);
+    let cell = |row: usize, name: &str| {
+        let column = all[0].iter().position(|other| other == name).unwrap_or_else(|| panic!("{name}"));
+        all[row][column].clone()
+    };
+    assert_eq!(cell(1, "report"), "1-1");
+    assert_eq!(cell(1, "version"), "1");
+    assert_eq!(
+        (cell(1, "year"), cell(1, "month"), cell(1, "time_of_day_min")),
+        ("2024".into(), "6".into(), "425".into())
+    );
+    assert_eq!(cell(1, "narrative"), narrative);
+    assert_eq!(cell(1, "sv_zones"), "front;left");
+    assert_eq!(cell(1, "sv_speed_mps"), "4.4704");
+    assert_eq!(cell(1, "template"), "intersection-left-straight");
+    assert_eq!((cell(1, "usable"), cell(1, "lost")), ("true".into(), String::new()));
+    assert_eq!((cell(2, "road"), cell(2, "year"), cell(2, "surface")), (String::new(), String::new(), String::new()));
+    assert_eq!((cell(2, "usable"), cell(2, "lost").as_str()), ("false".into(), "road type not expressible"));
+}
+
+#[test]
+fn the_sample_spreads_as_its_generator_says() {
+    let set = ingest(&[SourceText { name: "sample.csv", bytes: SAMPLE_CSV.as_bytes() }], &paper()).unwrap().value;
+    let all = distributions(&set);
+    let names: Vec<&str> = all.iter().map(|d| d.field.as_str()).collect();
+    assert_eq!(names, ["entity", "road", "sv_movement", "cp_movement", "partner", "severity", "year", "month"]);
+    for distribution in &all {
+        let records: usize = distribution.values.iter().map(|v| v.records).sum();
+        let usable: usize = distribution.values.iter().map(|v| v.usable).sum();
+        assert_eq!((records, usable), (set.records.len(), set.usable.len()), "{}", distribution.field);
+    }
+    let road = |name: &str| all[1].values.iter().find(|v| v.value == name).map(|v| v.usable);
+    assert_eq!((road("intersection"), road("highway"), road("traffic_circle")), (Some(214), Some(20), Some(1)));
+}
+
+#[cfg(feature = "parquet")]
+mod parquet_files {
+    use super::*;
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+
+    #[test]
+    fn a_parquet_table_reads_back_as_the_csv_table() {
+        let set = ingest(&[SourceText { name: "sample.csv", bytes: SAMPLE_CSV.as_bytes() }], &paper()).unwrap().value;
+        let table = record_table(&set, TableRows::All);
+        let bytes = table.to_parquet();
+        assert_eq!(bytes, table.to_parquet());
+        let csv = cells(&table.to_csv());
+        let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).unwrap();
+        assert_eq!(reader.metadata().file_metadata().num_rows() as usize, set.records.len());
+        let mut rows = 0;
+        for (row, wanted) in reader.get_row_iter(None).unwrap().zip(&csv[1..]) {
+            for ((name, field), wanted) in row.unwrap().into_columns().into_iter().zip(wanted) {
+                let found = match field {
+                    Field::Null => String::new(),
+                    Field::Str(text) => text,
+                    Field::Long(number) => number.to_string(),
+                    Field::Double(number) => number.to_string(),
+                    Field::Bool(flag) => flag.to_string(),
+                    other => panic!("{name}: {other:?}"),
+                };
+                assert_eq!(found, *wanted, "{name}");
+            }
+            rows += 1;
+        }
+        assert_eq!(rows, set.records.len());
+    }
+}

@@ -1,0 +1,11 @@
+//! Tests of the crate as its users see it, in one binary: a file a subject.
+
+mod any_draft;
+mod check;
+mod common;
+mod docs;
+mod drawing;
+mod fuzz_corpus;
+mod metadrive_lanes;
+mod networks;
+mod read;

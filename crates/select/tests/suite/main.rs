@@ -1,0 +1,5 @@
+//! Tests of the crate as its users see it, in one binary: a file a subject.
+
+mod choice;
+mod common;
+mod crash_files;

@@ -1,0 +1,9 @@
+//! Tests of the crate as its users see it, in one binary: a file a subject.
+
+mod behaviour;
+mod common;
+mod driven;
+mod parity;
+mod reference;
+mod runs;
+mod vehicle;
