@@ -63,7 +63,8 @@ fn finished(server: &Server, out: &Path, extra: &[&str]) -> Value {
     assert_eq!(cases.len(), SCENARIOS);
     for case in cases {
         let id = case["id"].as_str().unwrap();
-        assert!(case["first"]["faithful"].as_bool().unwrap(), "{case}");
+        // Nothing failed; what could not be checked is no matter of the model's.
+        assert!(["yes", "unchecked"].contains(&case["first"]["faithful"].as_str().unwrap()), "{case}");
         assert!(case["tuned"].is_object() && case["failure"].is_null(), "{case}");
         recrash(&["simulate", "--quiet", out.join(format!("4-scenarios/{id}.json")).to_str().unwrap()])
             .assert()
