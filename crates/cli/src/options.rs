@@ -162,12 +162,21 @@ impl SuiteArgs {
         Suite::open(&self.out, self.options(base), self.resources())
     }
 
-    /// The suite a stage works on, with what was typed over what is saved there.
+    /// The suite a stage works on, with what was typed over what is saved there; begun where there is none.
     ///
     /// # Errors
     /// As [`SuiteArgs::open`].
-    pub fn open_saved(&self) -> Result<Suite, PipelineError> {
+    pub fn open_or_begin(&self) -> Result<Suite, PipelineError> {
         self.open(Suite::saved_options(&self.out)?.unwrap_or_default())
+    }
+
+    /// The suite a stage works on, with what was typed over what is saved there.
+    ///
+    /// # Errors
+    /// As [`SuiteArgs::open`], or there is no suite: a mistyped folder is not made.
+    pub fn open_saved(&self) -> Result<Suite, PipelineError> {
+        let saved = Suite::saved_options(&self.out)?;
+        self.open(saved.ok_or_else(|| PipelineError::NoSuite { dir: self.out.clone() })?)
     }
 
     /// What was typed, over `base`.

@@ -33,6 +33,15 @@ pub enum PipelineError {
         /// Why.
         why: String,
     },
+    /// A stage is to work on a suite that is not there.
+    #[error(
+        "there is no suite in {}: it holds no suite.json; check the folder, or begin one there with `recrash records --out {}`",
+        dir.display(), dir.display()
+    )]
+    NoSuite {
+        /// The folder.
+        dir: PathBuf,
+    },
     /// A stage needs an earlier one.
     #[error("{}: there is no finished stage \"{missing}\" in it; run `recrash {missing} --out {}` first", dir.display(), dir.display())]
     MissingStage {
@@ -168,9 +177,9 @@ impl PipelineError {
         matches!(self, Self::WaitingForBatch { .. } | Self::BudgetSpent(_))
     }
 
-    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input and models that refuse, 4 for
-    /// a run that the same command goes on with (a batch is to be sent, a cap is reached), 5 for results that miss what
-    /// is asked for.
+    /// The process's exit code: 1 for files that are there and cannot be read, files that cannot be written, and threads; 2
+    /// for wrong usage; 3 for input that is not there or cannot be used, and models that refuse; 4 for a run that the same
+    /// command goes on with (a batch is to be sent, a cap is reached); 5 for results that miss what is asked for.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
@@ -180,7 +189,8 @@ impl PipelineError {
             | Self::Pull { .. }
             | Self::Threads(_)
             | Self::Ledger(_) => 1,
-            Self::MissingStage { .. }
+            Self::NoSuite { .. }
+            | Self::MissingStage { .. }
             | Self::StaleStage { .. }
             | Self::ChangedByHand { .. }
             | Self::NotASuite { .. }
@@ -202,5 +212,11 @@ fn hint(source: &std::io::Error) -> &'static str {
             "; free some space and run the same command again: finished work is kept"
         }
         _ => "",
+    }
+}
+
+impl From<RunError> for PipelineError {
+    fn from(error: RunError) -> Self {
+        Self::not_run(&error)
     }
 }

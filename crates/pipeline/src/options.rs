@@ -1,10 +1,11 @@
 //! What the user chose, and the command that says it.
 
-use crate::agents::Cast;
 use crate::embedding::EmbeddingKind;
 use crate::error::PipelineError;
+use crate::files::paths::quoted;
+use crate::models::cast::Cast;
 use crate::profiles::load_profile;
-use crate::simulator::SimulatorKind;
+use crate::simulators::SimulatorKind;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::selection::{Strategy, Weighting};
 use recrash_select::SelectOptions;
@@ -155,6 +156,25 @@ impl Options {
         words.join(" ")
     }
 
+    /// Refuses paths that a suite file cannot hold.
+    ///
+    /// # Errors
+    /// A path is not UTF-8.
+    pub(crate) fn must_be_text(&self) -> Result<(), PipelineError> {
+        let records: &[PathBuf] = match &self.records {
+            RecordSource::Sample => &[],
+            RecordSource::Files(files) => files,
+        };
+        let all = records.iter().chain(&self.mapping).chain(&self.model_dir);
+        match all.into_iter().find(|path| path.to_str().is_none()) {
+            None => Ok(()),
+            Some(path) => Err(PipelineError::bad_input(format!(
+                "{}: the path is not UTF-8, and a suite keeps its paths as text; rename it, or use a link with another name",
+                path.display()
+            ))),
+        }
+    }
+
     /// The profile, with what the options change in it.
     ///
     /// # Errors
@@ -168,15 +188,6 @@ impl Options {
 
 fn dedupe_name(dedupe: Dedupe) -> String {
     serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
-pub(crate) fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }
 
 #[cfg(test)]

@@ -231,7 +231,7 @@ function drawContact(pen, x, y, k) {
 function encounterOf(run) {
   if (run.encounter !== undefined) return run.encounter;
   const event = ['contact', 'obstacle', 'gap'].map((kind) => run.events.find((candidate) => candidate.kind === kind)).find(Boolean);
-  run.encounter = event ? { time: event.time, text: event.text, at: placeOf(run, event.time) } : null;
+  run.encounter = event ? { time: event.time, kind: event.kind, at: placeOf(run, event.time) } : null;
   return run.encounter;
 }
 
@@ -260,7 +260,8 @@ function drawEncounter(pen, run, time, toX, toY, k) {
   pen.arc(x, y, r, 0, 2 * Math.PI);
   pen.stroke();
   pen.setLineDash([]);
-  pill(pen, `${encounter.text} in ${fixed(encounter.time - time, 1)} s`, x, y + r + 14, colours.contact, colours['scene-ink']);
+  const name = { contact: 'contact', obstacle: 'obstacle contact', gap: 'least gap' }[encounter.kind];
+  pill(pen, `${name} in ${fixed(encounter.time - time, 1)} s`, x, y + r + 14, colours.contact, colours['scene-ink']);
 }
 
 const corners = (actor, state) => {

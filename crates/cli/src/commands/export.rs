@@ -1,7 +1,7 @@
 //! `recrash export`: the scenarios in the formats of other tools.
 
 use crate::output::{self, Output};
-use anstream::println;
+use crate::screen::println;
 use clap::Args;
 use recrash_pipeline::{ExportReport, ExportRequest, Format, PartnersAs, PipelineError};
 use std::path::{Path, PathBuf};

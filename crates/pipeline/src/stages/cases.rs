@@ -1,8 +1,9 @@
 //! The cases of a suite: what the stages after selection share.
 
-use super::{failures, names};
+use super::failures;
 use crate::error::PipelineError;
-use crate::scenario_files::read_scenario;
+use crate::reading::scenarios::read_scenario;
+use crate::suite::names;
 use crate::suite::{Stage, Suite};
 use recrash_agents::{Brief, expectation};
 use recrash_model::Seed;

@@ -1,14 +1,15 @@
 //! Narratives to scenarios: the loop of design, check, rollout and verdict.
 
 use super::cases::{brief, text_of};
-use super::{Bench, CaseStage, names, player};
-use crate::agents::{RULES, unusable};
+use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
-use crate::judging::run_scenario;
-use crate::simulator::Simulator;
-use crate::store::to_json;
+use crate::files::store::to_json;
+use crate::models::cast::{RULES, unusable};
+use crate::simulators::Simulator;
+use crate::suite::names;
 use crate::suite::{Files, Stage};
 use recrash_agents::{Brief, Design, Feedback, Problem, Rules, inexpressible, narrative_contradictions};
+use recrash_lab::run_scenario;
 use recrash_model::metrics::{Check, Expectation};
 use recrash_model::narrative::Narrative;
 use recrash_model::scenario::{Author, ScenarioDraft};

@@ -1,11 +1,17 @@
 //! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
 
-use super::{CASE_STAGES, names};
+use super::CASE_STAGES;
+use super::summary::RunSummary;
 use crate::error::PipelineError;
-use crate::store::to_json;
+use crate::files::store::to_json;
+use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
+use rayon::prelude::*;
 use recrash_model::Diagnostic;
 use recrash_model::diagnostic::{Location, Severity};
+use recrash_model::metrics::Answer;
+use recrash_model::run::JudgedRun;
+use recrash_model::selection::Selection;
 use serde::{Deserialize, Serialize};
 
 /// Why a scenario went no further.
@@ -50,6 +56,34 @@ pub(crate) fn at(suite: &Suite, id: &str, stage: Stage) -> Option<Failure> {
     suite.store().stamp(&file).is_some().then(|| {
         suite.store().read_json(&file).unwrap_or_else(|e| Failure { stage: stage.name().into(), why: e.to_string() })
     })
+}
+
+/// The scenarios of a suite whose run is not true to its record, after simulating, as designed or as tuned: a remark each.
+///
+/// # Errors
+/// A file of the suite cannot be read.
+pub fn unfaithful(suite: &Suite, stage: Stage) -> Result<Vec<Diagnostic>, PipelineError> {
+    let file: fn(&str) -> String = match stage {
+        Stage::Simulate => names::first_run,
+        Stage::Triage => names::tuned_run,
+        _ => return Ok(Vec::new()),
+    };
+    let selection: Selection = suite.store().read_json(names::SELECTION)?;
+    let ids: Vec<&String> = selection.clusters.iter().map(|cluster| &cluster.scenario_id).collect();
+    let judged = |id: &&String| -> Result<Option<Diagnostic>, PipelineError> {
+        if !suite.store().path(&file(id)).exists() {
+            return Ok(None);
+        }
+        let run: JudgedRun = suite.store().read_json(&file(id))?;
+        let remark = || {
+            let why = RunSummary::new(&run).unfaithful.join("; ");
+            let location = Location { file: Some((*id).clone()), ..Location::default() };
+            Diagnostic::new(Severity::Warning, "scenario.unfaithful", location, format!("not faithful: {why}"))
+        };
+        Ok((run.faithful() == Answer::No).then(remark))
+    };
+    let all: Vec<Option<Diagnostic>> = suite.in_pool(|| ids.par_iter().map(judged).collect::<Result<_, _>>())?;
+    Ok(all.into_iter().flatten().collect())
 }
 
 /// For people.

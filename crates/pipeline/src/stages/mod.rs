@@ -7,7 +7,6 @@
 mod cases;
 mod design;
 mod failures;
-pub mod names;
 mod narrate;
 mod records;
 mod report;
@@ -20,16 +19,15 @@ mod view;
 
 pub(crate) use cases::{Cases, brief};
 pub use design::{DesignAttempt, DesignLog};
-pub use failures::Failure;
-pub(crate) use names::is_failure_file;
+pub use failures::{Failure, unfaithful};
 pub use select::{SelectionStudy, StrategyStudy};
 pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
 
-use crate::agents::RULES;
 use crate::error::PipelineError;
-use crate::external;
+use crate::models::cast::RULES;
 use crate::progress::{Progress, ProgressEvent};
-use crate::simulator::Simulator;
+use crate::simulators::Simulator;
+use crate::simulators::external;
 use crate::suite::{Course, Files, Stage, Suite, Work};
 use rayon::prelude::*;
 use recrash_agents::llm::prompts_version;
@@ -84,16 +82,22 @@ pub struct StageReport {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Runs one stage.
-pub(crate) fn run(suite: &Suite, stage: Stage, progress: &dyn Progress) -> Result<StageReport, PipelineError> {
-    let work = StageWork { suite, stage, progress };
-    match stage {
-        Stage::Records => records::run(&work),
-        Stage::Select => select::run(&work),
-        Stage::Report => report::run(&work),
+/// Runs one stage of a suite; the stages before must be finished.
+///
+/// # Errors
+/// A stage before is missing, the input is bad, or a file cannot be read or written. Finished units stay.
+pub fn run_stage(suite: &Suite, stage: Stage, progress: &dyn Progress) -> Result<StageReport, PipelineError> {
+    suite.on_threads(stage, || run(&StageWork { suite, stage, progress }))
+}
+
+fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
+    match work.stage {
+        Stage::Records => records::run(work),
+        Stage::Select => select::run(work),
+        Stage::Report => report::run(work),
         _ => {
-            let declared = CASE_STAGES.iter().find(|declared| declared.stage == stage);
-            per_case(&work, declared.unwrap_or_else(|| unreachable!("every other stage works case by case")))
+            let declared = CASE_STAGES.iter().find(|declared| declared.stage == work.stage);
+            per_case(work, declared.unwrap_or_else(|| unreachable!("every other stage works case by case")))
         }
     }
 }

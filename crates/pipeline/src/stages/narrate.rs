@@ -1,10 +1,11 @@
 //! Picks to narratives.
 
 use super::cases::{brief, text_of};
-use super::{Bench, CaseStage, names, player};
-use crate::agents;
+use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
-use crate::store::to_json;
+use crate::files::store::to_json;
+use crate::models::cast;
+use crate::suite::names;
 use crate::suite::{Files, Stage};
 use recrash_model::selection::Cluster;
 
@@ -25,7 +26,7 @@ fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let suite = bench.suite;
     let records = bench.cases.records_of(cluster);
     let brief = brief(suite, cluster, &records);
-    let (narrative, log) = agents::paraphrase(suite.models(), &suite.options().cast, &brief)?;
+    let (narrative, log) = cast::paraphrase(suite.models(), &suite.options().cast, &brief)?;
     let id = &cluster.scenario_id;
     Ok(vec![(names::narrative(id), to_json(&narrative)), (names::narrative_log(id), to_json(&log))])
 }

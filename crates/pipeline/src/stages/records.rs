@@ -1,10 +1,11 @@
 //! The first stage: crash files to records.
 
-use super::{StageReport, StageWork, cases, names};
+use super::{StageReport, StageWork, cases};
 use crate::error::PipelineError;
-use crate::recording::RecordInput;
-use crate::store::{to_compact_json, to_json};
+use crate::files::store::{to_compact_json, to_json};
+use crate::reading::records::RecordInput;
 use crate::suite::Suite;
+use crate::suite::names;
 use recrash_model::Outcome;
 
 /// Runs the stage.

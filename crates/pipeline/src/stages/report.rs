@@ -2,13 +2,14 @@
 
 use super::summary::{CaseSummary, summarise};
 use super::{
-    CASE_STAGES, Cases, DesignLog, Failure, StageReport, StageWork, case_inputs, cases, edited_files, failures, names,
+    CASE_STAGES, Cases, DesignLog, Failure, StageReport, StageWork, case_inputs, cases, edited_files, failures,
     records, unit_name, view,
 };
-use crate::agents::AgentLog;
 use crate::error::PipelineError;
-use crate::recording::RecordInput;
-use crate::store::{to_compact_json, to_json};
+use crate::files::store::{to_compact_json, to_json};
+use crate::models::cast::AgentLog;
+use crate::reading::records::RecordInput;
+use crate::suite::names;
 use crate::suite::{Files, Stage, Suite, Work};
 use recrash_model::Diagnostic;
 use recrash_model::narrative::Narrative;
@@ -173,13 +174,15 @@ fn read_case<'a>(suite: &Suite, cluster: &'a Cluster) -> Result<Case<'a>, Pipeli
     let failure = failures::before(suite, id, Stage::Report);
     let made = |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
     let narrative = made(Stage::Narrate)
-        .then(|| Ok((store.read_json(&names::narrative(id))?, store.read_json(&names::narrative_log(id))?)))
+        .then(|| -> Result<_, PipelineError> {
+            Ok((store.read_json(&names::narrative(id))?, store.read_json(&names::narrative_log(id))?))
+        })
         .transpose()?;
     let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
     let first =
         made(Stage::Simulate).then(|| ran(suite, id, &names::scenario(id), &names::first_run(id))).transpose()?;
     let tuned = made(Stage::Triage)
-        .then(|| {
+        .then(|| -> Result<_, PipelineError> {
             let (log, agent) = (store.read_json(&names::tune_log(id))?, store.read_json(&names::tune_agent(id))?);
             Ok(Tuned { ran: ran(suite, id, &names::tuned(id), &names::tuned_run(id))?, log, agent })
         })

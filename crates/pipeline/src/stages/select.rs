@@ -1,9 +1,10 @@
 //! The second stage: records to picks; and studies of the choice.
 
-use super::{StageReport, StageWork, cases, names};
+use super::{StageReport, StageWork, cases};
 use crate::embedding::{Embeds, KeptRows, for_strategy};
 use crate::error::PipelineError;
-use crate::store::{sha256, to_compact_json, to_json};
+use crate::files::store::{sha256, to_compact_json, to_json};
+use crate::suite::names;
 use crate::suite::{Stage, Suite, Work};
 use rayon::prelude::*;
 use recrash_model::record::{CrashRecord, RecordSet};

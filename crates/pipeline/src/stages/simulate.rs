@@ -1,11 +1,12 @@
 //! Scenarios to judged runs.
 
 use super::cases::scenario;
-use super::{Bench, CaseStage, names};
+use super::{Bench, CaseStage};
 use crate::error::PipelineError;
-use crate::judging::run_scenario;
-use crate::store::to_compact_json;
+use crate::files::store::to_compact_json;
+use crate::suite::names;
 use crate::suite::{Files, Stage};
+use recrash_lab::run_scenario;
 use recrash_model::selection::Cluster;
 
 /// The stage.

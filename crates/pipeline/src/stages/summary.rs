@@ -3,7 +3,7 @@
 use super::failures::Failure;
 use super::report::Case;
 use super::{Cases, DesignLog};
-use crate::agents::{AgentLog, Cast, RULES};
+use crate::models::cast::{AgentLog, Cast, RULES};
 use crate::options::RecordSource;
 use crate::suite::Suite;
 use recrash_model::metrics::{Answer, Check};
@@ -169,7 +169,7 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
-    fn new(run: &JudgedRun) -> Self {
+    pub(crate) fn new(run: &JudgedRun) -> Self {
         let told = |c: &Check| format!("{}: expected {}, observed {}", c.kind.label(), c.expected, c.observed);
         Self {
             min_gap_m: run.metrics.min_gap.map(|gap| gap.value),

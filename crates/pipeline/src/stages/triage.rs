@@ -1,11 +1,13 @@
 //! Tuned scenarios to judged runs; and where the system fails, how the other egos fare there.
 
 use super::cases::scenario;
-use super::{Bench, CaseStage, names};
+use super::{Bench, CaseStage};
 use crate::error::PipelineError;
-use crate::judging::{run_scenario, triage};
-use crate::store::{to_compact_json, to_json};
+use crate::files::store::{to_compact_json, to_json};
+use crate::simulators::built_in;
+use crate::suite::names;
 use crate::suite::{Files, Stage};
+use recrash_lab::{run_scenario, triage};
 use recrash_model::selection::Cluster;
 use recrash_model::triage::TRIAGE_FORMAT;
 
@@ -26,7 +28,7 @@ fn work(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let run = run_scenario(&scenario, bench.simulator(), suite.profile(), Some(&expectation))?;
     let mut files = vec![(names::tuned_run(id), to_compact_json(&run))];
     if run.failed() {
-        let (triage, reference) = triage(&scenario, suite.ego(), &run.findings, suite.profile())?;
+        let (triage, reference) = triage(&scenario, suite.ego(), &run.findings, suite.profile(), &built_in())?;
         files.push((names::triage(id), to_json(&triage)));
         files.extend(reference.map(|run| (names::reference_run(id), to_compact_json(&run))));
     }

@@ -1,14 +1,15 @@
 //! Scenarios to tuned scenarios: the nearest failure that stays true to the record.
 
 use super::cases::{brief, case_seed, scenario, text_of};
-use super::{Bench, CaseStage, names, player};
-use crate::agents::{self, AgentLog, RULES};
+use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
-use crate::scoring::{Scoring, is_sound_contact};
-use crate::store::{to_compact_json, to_json};
+use crate::files::store::{to_compact_json, to_json};
+use crate::models::cast::{self, AgentLog, RULES};
+use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
 use recrash_agents::llm::TuneBrief;
 use recrash_agents::parameters;
+use recrash_lab::{Scoring, is_sound_contact};
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::Cluster;
 use recrash_model::tuning::{TuneLog, TunePoint};
@@ -73,7 +74,7 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
                     (log, agent)
                 }
                 Err(error) => {
-                    let why = agents::unusable(error)?;
+                    let why = cast::unusable(error)?;
                     (search(), AgentLog::fallback(name, repairs.get(), why))
                 }
             }

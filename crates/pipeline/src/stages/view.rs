@@ -1,10 +1,13 @@
 //! The suite as the report sees it.
 
+use super::Cases;
 use super::report::{Case, Ran};
 use super::summary::Summary;
-use super::{Cases, names};
-use crate::options::{Options, RecordSource, quoted};
+use crate::files::paths::quoted;
+use crate::options::{Options, RecordSource};
+use crate::reading::named;
 use crate::suite::Suite;
+use crate::suite::names;
 use recrash_metrics::series;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_report::{CaseRow, CaseView, RunRow, RunTrace, RunView, SuiteView, Thumbnail};
@@ -124,10 +127,11 @@ pub(super) fn rerun_command(suite: &Suite, file: &str) -> String {
     let (options, default) = (suite.options(), Options::default());
     let mut command = format!("recrash simulate {file}");
     if options.profile != default.profile {
-        command += &format!(" --profile {}", quoted(&options.profile));
+        let profile = named::profile_from_folder(suite.store().dir(), &options.profile);
+        command += &format!(" --profile {}", quoted(&profile));
     }
     if options.simulator != default.simulator {
         command += &format!(" --sim {}", options.simulator.name());
     }
-    command + &format!(" --ego {}", quoted(suite.ego()))
+    command + &format!(" --ego {}", quoted(&named::ego_from_folder(suite.store().dir(), suite.ego())))
 }

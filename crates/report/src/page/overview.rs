@@ -113,7 +113,8 @@ fn tiles(context: &Context) -> Markup {
                 html! { (thousands(s.failed_before)) (arrow()) (thousands(s.failed_after)) span.of { " of " (thousands(s.ran)) } },
                 html! {
                     "as designed, after tuning"
-                    @for (class, count) in &s.classes { br; (thousands(*count)) " " (class.label()) }
+                    @if !s.classes.is_empty() { ": " }
+                    @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
                 },
                 Some((share(s.failed_after, s.ran), "bad")),
             ))

@@ -1,5 +1,6 @@
 //! The page in a real browser: headless Chromium runs `tests/browser/check.mjs` on a made-up suite, a hostile one,
-//! an empty one, and one of two thousand scenarios. Needs node, Chromium and `npm ci` in `tests/browser`; says so where one is missing.
+//! an empty one, and one of two thousand scenarios. Needs node, Chromium and `npm ci` in `tests/browser`; says so where one
+//! is missing.
 
 use crate::suite;
 use std::path::{Path, PathBuf};
