@@ -61,7 +61,7 @@ fn outcomes(out: &Path, role: &str) -> Vec<String> {
     let summary = summary(out);
     let cases = summary["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 5);
-    cases.iter().map(|case| case[role].as_str().unwrap().to_owned()).collect()
+    cases.iter().map(|case| case[role]["outcome"].as_str().unwrap().to_owned()).collect()
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn replay_without_an_answer_says_which() {
     let folder = tempfile::tempdir().unwrap();
     let (code, shown) = run(&folder.path().join("suite"), "replay");
     assert_eq!(code, 3, "{shown}");
-    assert!(shown.contains("the ledger has no answer") && shown.contains("paraphrase of 0"), "{shown}");
+    assert!(shown.contains("the ledger has no answer") && shown.contains("(paraphrase of "), "{shown}");
 }
 
 #[test]
@@ -273,7 +273,7 @@ fn a_question_without_a_usable_answer_is_asked_as_often_as_answers_are_repaired(
     assert_eq!(code, 0, "{shown}");
     let summary = summary(&out);
     let mut outcomes: Vec<&str> =
-        summary["cases"].as_array().unwrap().iter().map(|case| case["narrated"].as_str().unwrap()).collect();
+        summary["cases"].as_array().unwrap().iter().map(|case| case["narrated"]["outcome"].as_str().unwrap()).collect();
     outcomes.sort_unstable();
     assert_eq!(outcomes, ["fallback", "first answer"]);
     assert!(summary.to_string().contains("no usable answer in 2 batches"), "{}", summary["models"]);
@@ -306,7 +306,9 @@ fn damaged_pending_questions_are_written_again_and_the_answers_taken_in() {
     }
     let summary = summary(&out);
     for case in summary["cases"].as_array().unwrap() {
-        assert_eq!((&case["narrated"], &case["designed"]), (&json!("first answer"), &json!("first answer")));
+        for role in ["narrated", "designed"] {
+            assert_eq!(case[role]["outcome"], "first answer", "{case}");
+        }
     }
 }
 

@@ -598,18 +598,19 @@ fn a_typing_error_is_told_before_any_question_is_asked() {
     assert_eq!(server.requests().len(), 0);
 }
 
-/// An ego that tells everything it knows, in every way it has, and drives in no scenario.
+/// An ego that tells everything it knows, in every way it has, and drives in no scenario. Which way depends on the scenario, since every
+/// one gets a new process.
 const TELLTALE: &str = r#"
 import json, os, sys
 known = " ".join(f"{name}={value}" for name, value in os.environ.items()) + " " + open(sys.argv[1]).read()
 for line in sys.stdin:
     message = json.loads(line)
-    number = message.get("scenario", "00")[:2]
+    way = sum(map(ord, message.get("scenario", ""))) % 3
     if message["type"] == "hello":
         print(json.dumps({"type": "ready", "protocol": "recrash.ego/1"}), flush=True)
-    elif number == "01":
+    elif way == 0:
         sys.exit(known)
-    elif number == "02":
+    elif way == 1:
         print(known, flush=True)
     elif message["type"] != "end":
         print(json.dumps({"type": "error", "message": known}), flush=True)
