@@ -585,9 +585,14 @@ fn a_typing_error_is_told_before_any_question_is_asked() {
     ] {
         for command in ["run", "narrate"] {
             let folder = Folder::new();
+            if command == "narrate" {
+                for before in ["records", "select"] {
+                    recrash(&[before, "--quiet", "--out"]).arg(folder.suite()).assert().success();
+                }
+            }
             let output = recrash(&[command, "--quiet", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
                 .arg(folder.suite())
-                .args(OPTIONS)
+                .args(["--budget", "3"])
                 .args(typed)
                 .output()
                 .unwrap();
