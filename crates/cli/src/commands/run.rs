@@ -129,7 +129,7 @@ fn show(summary: &Summary, dir: &Path) {
     coverage(&summary.coverage, &summary.templates);
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
     let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"])
-        .without_first(&["findings", "from", "designed", "failure"]);
+        .without_first(&["findings", "from", "designed", "failure", "tuned"]);
     for case in &summary.cases {
         let verdict = match (case.faithful(), &case.tuned) {
             (Some(Answer::Yes), _) => "faithful",

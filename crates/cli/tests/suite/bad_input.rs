@@ -313,5 +313,5 @@ fn a_report_is_of_one_system_and_one_set_of_records() {
     }
     let (code, shown) = with(&["report", "--records", case.file("other.csv", SAMPLE_CSV).to_str().unwrap()]);
     assert_eq!(code, USAGE, "the records are of another file: {shown}");
-    assert_says(&shown, &["\"records\"", "recrash records --out"]);
+    assert_says(&shown, &["records of the built-in sample", "--replace"]);
 }

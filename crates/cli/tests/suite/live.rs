@@ -63,7 +63,8 @@ fn finished(server: &Server, out: &Path, extra: &[&str]) -> Value {
     assert_eq!(cases.len(), SCENARIOS);
     for case in cases {
         let id = case["id"].as_str().unwrap();
-        assert_ne!(case["first"]["faithful"], "no", "{case}");
+        // Nothing failed; what could not be checked is no matter of the model's.
+        assert!(["yes", "unchecked"].contains(&case["first"]["faithful"].as_str().unwrap()), "{case}");
         assert!(case["tuned"].is_object() && case["failure"].is_null(), "{case}");
         recrash(&["simulate", "--quiet", out.join(format!("4-scenarios/{id}.json")).to_str().unwrap()])
             .assert()
@@ -131,6 +132,10 @@ fn good_answers_are_taken_and_replay_gives_the_same_bytes_without_a_network() {
     recrash(&arguments).args(OPTIONS).assert().success();
     for file in files_below(&folder.suite()) {
         let name = file.strip_prefix(folder.suite()).unwrap();
+        // The order in which units were done is of this disk.
+        if name == Path::new("units.jsonl") {
+            continue;
+        }
         assert!(
             std::fs::read(&file).unwrap() == std::fs::read(again.suite().join(name)).unwrap(),
             "{}",
@@ -589,9 +594,14 @@ fn a_typing_error_is_told_before_any_question_is_asked() {
     ] {
         for command in ["run"] {
             let folder = Folder::new();
+            if command == "narrate" {
+                for before in ["records", "select"] {
+                    recrash(&[before, "--quiet", "--out"]).arg(folder.suite()).assert().success();
+                }
+            }
             let output = recrash(&[command, "--quiet", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
                 .arg(folder.suite())
-                .args(OPTIONS)
+                .args(["--budget", "3"])
                 .args(typed)
                 .output()
                 .unwrap();
@@ -602,18 +612,19 @@ fn a_typing_error_is_told_before_any_question_is_asked() {
     assert_eq!(server.requests().len(), 0);
 }
 
-/// An ego that tells everything it knows, in every way it has, and drives in no scenario.
+/// An ego that tells everything it knows, in every way it has, and drives in no scenario. Which way depends on the scenario, since every
+/// one gets a new process.
 const TELLTALE: &str = r#"
 import json, os, sys
 known = " ".join(f"{name}={value}" for name, value in os.environ.items()) + " " + open(sys.argv[1]).read()
 for line in sys.stdin:
     message = json.loads(line)
-    number = message.get("scenario", "00")[:2]
+    way = sum(map(ord, message.get("scenario", ""))) % 3
     if message["type"] == "hello":
         print(json.dumps({"type": "ready", "protocol": "recrash.ego/1"}), flush=True)
-    elif number == "01":
+    elif way == 0:
         sys.exit(known)
-    elif number == "02":
+    elif way == 1:
         print(known, flush=True)
     elif message["type"] != "end":
         print(json.dumps({"type": "error", "message": known}), flush=True)

@@ -155,7 +155,7 @@ struct Absent;
 
 #[cfg(not(feature = "live"))]
 impl Answers for Absent {
-    fn answer(&self, _question: &Question) -> Result<Exchange, recrash_agents::llm::AskError> {
+    fn answer(&self, _question: &recrash_agents::llm::Question) -> Result<Exchange, recrash_agents::llm::AskError> {
         let why = "this recrash was built without live models; build it with the feature `live`, or give --llm batch";
         Err(recrash_agents::llm::AskError::Refused(why.into()))
     }
