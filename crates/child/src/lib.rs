@@ -1,26 +1,34 @@
 //! Programs that are started: asked line by line ([`Program`]), or run to their end ([`run`]). Whatever one of them does,
-//! it is waited for so long and no longer, no more than so much of what it says is kept, and none of them is left running.
+//! it is waited for so long and no longer, no more than so much of what it says is kept, and none of them is left running,
+//! nor anything that it started. It sees of our environment what a program needs, and no key ([`let_through`]).
 //!
 //! What this crate does **not** do: it does not look at what is said.
 
+mod environment;
+mod group;
+
+pub use environment::{PASS_VARIABLE, let_through};
+pub use group::end_all;
+
+use group::Group;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How much of a pipe is kept that nobody waits for: the last of it. [bytes]
 const KEPT_BYTES: usize = 1 << 16;
 
-/// Longest last words. [characters]
-const LONGEST_COMPLAINT: usize = 300;
+/// Longest last words; whoever shows them looks through them first. [characters]
+const LONGEST_COMPLAINT: usize = 8_192;
 
 /// How long a program may take to end that has closed its output, and then its last words to come.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// A running program that answers in lines. It is ended with this value.
 pub struct Program {
-    child: Child,
+    child: Group,
     /// To the thread that writes to its stdin: a program that does not read must not stop us.
     stdin: Option<Sender<Vec<u8>>>,
     lines: Receiver<Result<String, Silence>>,
@@ -49,11 +57,10 @@ impl Program {
     /// # Errors
     /// What the system says where it cannot be started.
     pub fn start(command: &mut Command, longest_line: u64) -> io::Result<Self> {
-        let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = piped.spawn()?;
-        let lines = read_lines(child.stdout.take(), longest_line);
-        let stderr = Tail::of(child.stderr.take());
-        let stdin = child.stdin.take().map(write_all);
+        let mut child = Group::start(command.stdin(Stdio::piped()))?;
+        let lines = read_lines(child.leader.stdout.take(), longest_line);
+        let stderr = Tail::of(child.leader.stderr.take());
+        let stdin = child.leader.stdin.take().map(write_all);
         Ok(Self { child, stdin, lines, stderr })
     }
 
@@ -80,20 +87,14 @@ impl Program {
     /// Closes its input, at which a healthy program ends by itself, and waits for that.
     pub fn dismiss(&mut self, patience: Duration) {
         self.stdin = None;
-        wait(&mut self.child, patience);
+        self.child.wait(patience);
     }
 
     fn ended(&mut self) -> Silence {
-        let status = wait(&mut self.child, LAST_WORDS);
+        let status = self.child.wait(LAST_WORDS);
         let complaint = self.stderr.text();
         let last = complaint.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or_default();
         Silence::Ended { status, complaint: printable(last, LONGEST_COMPLAINT) }
-    }
-}
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        end(&mut self.child);
     }
 }
 
@@ -113,36 +114,17 @@ pub struct Finished {
 /// # Errors
 /// What the system says where it cannot be started.
 pub fn run(command: &mut Command, patience: Duration) -> io::Result<Option<Finished>> {
-    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
-    let (stdout, stderr) = (Tail::of(child.stdout.take()), Tail::of(child.stderr.take()));
-    let status = wait(&mut child, patience);
-    if status.is_none() {
-        end(&mut child);
-    }
+    let mut child = Group::start(command.stdin(Stdio::null()))?;
+    let (stdout, stderr) = (Tail::of(child.leader.stdout.take()), Tail::of(child.leader.stderr.take()));
+    let status = child.wait(patience);
+    // What it left running keeps the pipes open, and would be waited for.
+    drop(child);
     Ok(status.map(|status| Finished { status, stdout: stdout.text(), stderr: stderr.text() }))
 }
 
 /// The beginning of a text without control characters: it comes from another program.
 pub fn printable(text: &str, longest: usize) -> String {
     text.chars().filter(|c| !c.is_control()).take(longest).collect()
-}
-
-/// Waits for its end, but no longer than this.
-fn wait(child: &mut Child, longest: Duration) -> Option<ExitStatus> {
-    let until = Instant::now() + longest;
-    loop {
-        match child.try_wait() {
-            Ok(Some(status)) => return Some(status),
-            Ok(None) if Instant::now() < until => std::thread::sleep(Duration::from_millis(5)),
-            _ => return None,
-        }
-    }
-}
-
-/// Ends it where it has not ended by itself.
-fn end(child: &mut Child) {
-    let _ = child.kill();
-    let _ = child.wait();
 }
 
 /// Writes everything that is sent; ends when the pipe or the channel closes.
@@ -221,6 +203,7 @@ impl Tail {
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
+    use std::time::Instant;
 
     const LONG: Duration = Duration::from_secs(20);
 
@@ -259,6 +242,27 @@ mod tests {
         let begun = Instant::now();
         assert_eq!(run("exec sleep 60", Duration::from_millis(50)), None);
         assert!(begun.elapsed() < LONG);
+    }
+
+    /// Whether any program runs with this word among its arguments.
+    fn runs(word: &str) -> bool {
+        let told = Command::new("ps").args(["-A", "-o", "args"]).output().expect("ps");
+        String::from_utf8_lossy(&told.stdout).lines().any(|line| line.contains(word))
+    }
+
+    #[test]
+    fn nothing_behind_a_wrapper_is_left_running() {
+        // Behind a wrapper that waits, and behind one that has ended; each sleeps for a time that nobody else does.
+        for (script, word) in [("sleep 61.171; true", "sleep 61.171"), ("sleep 61.172 & echo begun", "sleep 61.172")] {
+            let mut program = Program::start(&mut shell(script), 100).expect("a shell");
+            let _ = program.ask(Vec::new(), Duration::from_millis(500));
+            assert!(runs(word), "{word}");
+            drop(program);
+            assert!(!runs(word), "{word}");
+        }
+        let begun = Instant::now();
+        assert_eq!(super::run(&mut shell("sleep 61.173; true"), Duration::from_millis(300)).expect("a shell"), None);
+        assert!(!runs("sleep 61.173") && begun.elapsed() < LONG);
     }
 
     #[test]

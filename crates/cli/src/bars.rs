@@ -1,5 +1,6 @@
 //! Progress: bars with counts and time left on a terminal, one plain line per stage elsewhere.
 
+use crate::screen::one_line;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use recrash_pipeline::{Progress, ProgressEvent};
 use std::io::{IsTerminal, Write};
@@ -42,7 +43,7 @@ impl Progress for Bars {
             ProgressEvent::Advanced { unit, skipped, .. } => {
                 if let Some(current) = current.as_mut() {
                     current.skipped += usize::from(skipped);
-                    current.bar.set_message(unit.to_owned());
+                    current.bar.set_message(one_line(unit));
                     current.bar.inc(1);
                 }
             }

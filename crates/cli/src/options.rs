@@ -5,7 +5,8 @@ use clap::Args;
 use recrash_model::profile::Dedupe;
 use recrash_model::selection::{Strategy, Weighting};
 use recrash_pipeline::{
-    EmbeddingKind, FILTER_HELP, Options, Patience, PipelineError, RecordSource, Resources, SimulatorKind, Suite,
+    EmbeddingKind, FILTER_HELP, Options, Patience, Permissions, PipelineError, RecordSource, Resources, SimulatorKind,
+    Suite,
 };
 use std::path::PathBuf;
 use std::time::Duration;
@@ -96,6 +97,18 @@ pub struct SuiteArgs {
     /// Seed of everything random. [default: 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// Make this suite in the place of one of other records or of another profile; its results are lost.
+    #[arg(long, help_heading = "What is there already")]
+    pub replace: bool,
+    /// Make anew what was edited by hand; without it, edited files are kept and the stages after them go on from there.
+    #[arg(long, help_heading = "What is there already")]
+    pub discard_edits: bool,
+    /// Choose the picks anew; without it, those of the last choice stay when records come in.
+    #[arg(long, help_heading = "What is there already")]
+    pub reselect: bool,
+    /// Start the program that the suite names as its ego; without it, only one named with --ego.
+    #[arg(long, help_heading = "What is there already")]
+    pub trust: bool,
     /// Worker threads; the results do not depend on it. [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -149,12 +162,21 @@ impl SuiteArgs {
         Suite::open(&self.out, self.options(base), self.resources())
     }
 
-    /// The suite a stage works on, with what was typed over what is saved there.
+    /// The suite a stage works on, with what was typed over what is saved there; begun where there is none.
     ///
     /// # Errors
     /// As [`SuiteArgs::open`].
-    pub fn open_saved(&self) -> Result<Suite, PipelineError> {
+    pub fn open_or_begin(&self) -> Result<Suite, PipelineError> {
         self.open(Suite::saved_options(&self.out)?.unwrap_or_default())
+    }
+
+    /// The suite a stage works on, with what was typed over what is saved there.
+    ///
+    /// # Errors
+    /// As [`SuiteArgs::open`], or there is no suite: a mistyped folder is not made.
+    pub fn open_saved(&self) -> Result<Suite, PipelineError> {
+        let saved = Suite::saved_options(&self.out)?;
+        self.open(saved.ok_or_else(|| PipelineError::NoSuite { dir: self.out.clone() })?)
     }
 
     /// What was typed, over `base`.
@@ -175,7 +197,14 @@ impl SuiteArgs {
     /// What may be used of the machine.
     pub fn resources(&self) -> Resources {
         let (threads, python) = (self.threads.map(usize::from), self.python.clone());
-        Resources { threads, python, patience: self.patience(), models: self.models.access.access() }
+        let permissions = self.permissions();
+        Resources { threads, python, patience: self.patience(), models: self.models.access.access(), permissions }
+    }
+
+    /// What may be done with a suite that is there already.
+    pub fn permissions(&self) -> Permissions {
+        let Self { replace, discard_edits, reselect, .. } = *self;
+        Permissions { replace, discard_edits, reselect, trust: self.trust || self.ego.is_some() }
     }
 
     /// How long a program that is the ego is waited for.

@@ -1,13 +1,10 @@
-//! How results reach people and programs: JSON, tables, lines. Colours only on a terminal.
+//! How results reach people and programs: JSON, errors, remarks. Colours only on a terminal.
 
 use crate::bars::Bars;
-use anstream::{eprintln, println};
-use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, Table, presets};
-use owo_colors::OwoColorize;
+use crate::screen::{self, bold, dim, eprintln, println, red, yellow};
 use recrash_model::diagnostic::{Diagnostic, Severity};
-use recrash_pipeline::{NoProgress, PipelineError, Progress, StageReport};
+use recrash_pipeline::{NoProgress, PipelineError, Progress, StageReport, Suite, quoted};
 use serde::Serialize;
-use std::io::Write;
 
 /// Remarks of one stage that are shown one by one.
 const REMARKS_SHOWN: usize = 8;
@@ -35,14 +32,15 @@ impl Output {
 
 /// Prints a value as JSON.
 pub fn json<T: Serialize>(value: &T) {
-    let text = serde_json::to_string_pretty(value).unwrap_or_default();
-    // A reader that has seen enough (`| head`) is no error.
-    let _ = writeln!(std::io::stdout(), "{text}");
+    // Paths are told as text, so that every result can be.
+    let mut text = serde_json::to_vec_pretty(value).expect("results serialise");
+    text.push(b'\n');
+    screen::raw(&text);
 }
 
 /// Prints why the command stopped.
 pub fn error(error: &PipelineError) {
-    eprintln!("{} {error}", "error:".red().bold());
+    eprintln!("{} {error}", bold(red("error:")));
     if let PipelineError::BadInput { diagnostics, .. } = error {
         for diagnostic in diagnostics.iter().take(REMARKS_SHOWN) {
             remark(diagnostic);
@@ -50,6 +48,19 @@ pub fn error(error: &PipelineError) {
         if diagnostics.len() > REMARKS_SHOWN {
             eprintln!("  ... and {} more", diagnostics.len() - REMARKS_SHOWN);
         }
+    }
+}
+
+/// Prints that the standard output cannot be written.
+pub fn cannot_print(error: &std::io::Error) {
+    eprintln!("{} cannot write the standard output: {error}", bold(red("error:")));
+}
+
+/// Prints what is wrong with what was typed, in the words of the command line's library.
+pub fn usage(text: &str) {
+    match text.trim_end().strip_prefix("error:") {
+        Some(what) => eprintln!("{}{what}", bold(red("error:"))),
+        None => eprintln!("{}", text.trim_end()),
     }
 }
 
@@ -69,28 +80,25 @@ pub fn interrupted(goes_on: bool) {
     }
 }
 
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
-
 /// Prints one remark.
 pub fn remark(diagnostic: &Diagnostic) {
     match diagnostic.severity {
-        Severity::Error => eprintln!("  {} {diagnostic}", "error".red()),
-        Severity::Warning => eprintln!("  {} {diagnostic}", "warning".yellow()),
-        Severity::Note => eprintln!("  {} {diagnostic}", "note".dimmed()),
+        Severity::Error => eprintln!("  {} {diagnostic}", red("error")),
+        Severity::Warning => eprintln!("  {} {diagnostic}", yellow("warning")),
+        Severity::Note => eprintln!("  {} {diagnostic}", dim("note")),
     }
 }
 
 /// Prints the remarks of a stage.
 pub fn remarks(report: &StageReport) {
     remark_list(&report.diagnostics, "in the files of the suite");
+}
+
+/// Prints what there is to say about the answers of a batch: every line, because each was paid for.
+pub fn batch_remarks(suite: &Suite, output: Output) {
+    if !output.quiet {
+        suite.remarks().iter().for_each(remark);
+    }
 }
 
 /// Prints remarks, warnings and errors one by one, as far as there is room, and where to find the rest.
@@ -103,7 +111,7 @@ pub fn remark_list(diagnostics: &[Diagnostic], the_rest: &str) {
     for (code, count, first) in notes_by_code(diagnostics) {
         match count {
             1 => remark(first),
-            _ => eprintln!("  {} {count} x {code}, the first: {}", "note".dimmed(), first.message),
+            _ => eprintln!("  {} {count} x {code}, the first: {}", dim("note"), first.message),
         }
     }
 }
@@ -120,21 +128,7 @@ fn notes_by_code(diagnostics: &[Diagnostic]) -> Vec<(&str, usize, &Diagnostic)> 
     groups
 }
 
-/// A table with a header.
-pub fn table(header: &[&str]) -> Table {
-    let mut table = Table::new();
-    // A line under the header and none between rows: a table of 20 scenarios fits on a screen.
-    table.load_style(presets::NOTHING.header_separator(LineStyle::new(' ', '\u{2500}', '\u{2500}', ' ')));
-    table.set_header(header.iter().map(|h| Cell::new(h).add_attribute(Attribute::Bold)));
-    table
-}
-
-/// A cell with a number, to the right.
-pub fn number(value: impl ToString) -> Cell {
-    Cell::new(value).set_alignment(CellAlignment::Right)
-}
-
 /// Prints a heading.
 pub fn title(text: &str) {
-    println!("\n{}", text.bold());
+    println!("\n{}", bold(text));
 }

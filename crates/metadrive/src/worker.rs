@@ -146,7 +146,7 @@ impl Worker {
         let line = self.program.ask(bytes, patience).map_err(|silence| match silence {
             Silence::Hung => WorkerFault::Hung { seconds: patience.as_secs() },
             Silence::TooLong => WorkerFault::Rubbish { beginning: "more than 64 MiB in one line".to_owned() },
-            Silence::Ended { complaint, .. } => WorkerFault::Died { complaint },
+            Silence::Ended { complaint, .. } => WorkerFault::Died { complaint: printable(&complaint, 300) },
         })?;
         serde_json::from_str(&line).map_err(|_| WorkerFault::Rubbish { beginning: printable(&line, 80) })
     }

@@ -106,7 +106,8 @@ fn hardest_phantom_braking(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along])
     let release_steps = (RELEASE_S / time_of(1)).round() as usize;
     let brake = Brake::of(scene);
     let mut hardest: Option<Timed> = None;
-    for step in 0..scene.steps().saturating_sub(1) {
+    // What was there before the first step nobody has recorded: until it would be forgotten, nothing is judged.
+    for step in release_steps..scene.steps().saturating_sub(1) {
         let deceleration = brake.deceleration(scene, step);
         if deceleration < LEAST_BRAKING_MPS2 || hardest.is_some_and(|hardest| deceleration <= hardest.value) {
             continue;
@@ -284,6 +285,7 @@ fn is_unmarked(way: &EgoWay<'_>, segment: usize) -> bool {
 pub fn following(scene: &Scene<'_>, way: &EgoWay<'_>, ego: &Along, actor: usize, step: usize) -> Option<Following> {
     let outline = &scene.outlines[actor][step];
     let other = Along::of(way, outline, ego.segment);
-    let (speed, other_speed) = (scene.speed(0, step), scene.speed(actor, step));
-    Following::find(ego, speed, &other, other_speed, scene.acceleration(actor, step))
+    let speed = scene.velocity(0, step).dot(ego.forward);
+    let leader_speed = scene.velocity(actor, step).dot(other.forward);
+    Following::find(ego, speed, &other, leader_speed, scene.acceleration(actor, step))
 }

@@ -13,9 +13,9 @@ const FARTHEST_M: f64 = 110.0;
 /// The ego behind a leader in its corridor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Following {
-    /// Free space from the ego's front to the leader's rear, along the ego's way. [m]
+    /// How far the ego goes along its way until its box touches the leader's. [m]
     pub gap_m: f64,
-    /// Speed of the ego. [m/s]
+    /// Speed of the ego along its way. [m/s]
     pub speed_mps: f64,
     /// Speed of the leader along the ego's way. [m/s]
     pub leader_speed_mps: f64,
@@ -24,24 +24,20 @@ pub struct Following {
 }
 
 impl Following {
-    /// Whether `other` leads the ego: ahead of it, across at least partly in front of it, and going its way.
+    /// Whether `other` leads the ego: ahead of it, across at least partly in front of it, and going its way. Speeds are
+    /// those along the ego's way, where each of them is.
     pub fn find(
         ego: &Along,
         speed_mps: f64,
         other: &Along,
-        other_speed_mps: f64,
-        other_acceleration_mps2: f64,
+        leader_speed_mps: f64,
+        leader_acceleration_mps2: f64,
     ) -> Option<Self> {
         if !other.goes_along() {
             return None;
         }
-        let gap_m = ego.free_space_to(other, 0.0).filter(|&gap| gap <= FARTHEST_M)?;
-        Some(Self {
-            gap_m,
-            speed_mps,
-            leader_speed_mps: other_speed_mps * other.cos,
-            leader_acceleration_mps2: other_acceleration_mps2,
-        })
+        let gap_m = ego.way_to_contact(other).filter(|&gap| gap <= FARTHEST_M)?;
+        Some(Self { gap_m, speed_mps, leader_speed_mps, leader_acceleration_mps2 })
     }
 
     /// Time headway: `gap / v`. `None` below 1 m/s. [s]

@@ -1,5 +1,6 @@
 //! A rollout made ready for measuring: boxes per step, the window that counts, and positions along the ego's way.
 
+use crate::swept::time_to_collision;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, Rollout, STEP_S};
@@ -166,6 +167,10 @@ pub struct Along {
     pub segment: usize,
     /// Cosine of the heading relative to the way.
     pub cos: f64,
+    /// Unit vector of the way there.
+    pub forward: Vec2,
+    /// The box with the way straightened: x along it, y to its left.
+    pub outline: OrientedBox,
     /// Half of the extent along the way. [m]
     pub half_along: f64,
     /// Half of the extent across it. [m]
@@ -177,12 +182,15 @@ impl Along {
     pub fn of(way: &EgoWay<'_>, outline: &OrientedBox, hint: usize) -> Self {
         let place = way.path.project(outline.centre, hint);
         let forward = forward_at(way, outline.centre, place);
-        let (cos, sin) = (outline.axis.dot(forward), outline.axis.cross(forward).abs());
+        let (cos, turned) = (outline.axis.dot(forward), forward.cross(outline.axis));
+        let sin = turned.abs();
         Self {
             s: place.s,
             t: place.t,
             segment: place.segment,
             cos,
+            forward,
+            outline: OrientedBox { centre: Vec2::new(place.s, -place.t), axis: Vec2::new(cos, turned), ..*outline },
             half_along: outline.half_length * cos.abs() + outline.half_width * sin,
             half_across: outline.half_length * sin + outline.half_width * cos.abs(),
         }
@@ -209,6 +217,14 @@ impl Along {
         }
         let free = other.s - self.s - other.half_along - self.half_along;
         (free > 0.0).then_some(free)
+    }
+
+    /// How far this box goes along the way until it touches `other`, both turned as they are; `None` where it never does, or
+    /// does already. [m]
+    pub fn way_to_contact(&self, other: &Self) -> Option<f64> {
+        // The time to collision at 1 m/s is the distance.
+        let way = time_to_collision(&self.outline, Vec2::new(1.0, 0.0), &other.outline, Vec2::default());
+        way.filter(|&way| way > 0.0)
     }
 
     /// Whether the box drives within 45 degrees of the way.

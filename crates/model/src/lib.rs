@@ -21,6 +21,7 @@ pub mod run;
 pub mod scenario;
 pub mod seed;
 pub mod selection;
+pub mod spreadsheet;
 pub mod template;
 pub mod triage;
 pub mod tuning;

@@ -88,7 +88,7 @@ pub enum Edition {
 /// Where a record came from.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Provenance {
-    /// File name without folders.
+    /// File name, without folders where no other file read has it.
     pub file: String,
     /// Edition of the file.
     pub edition: Edition,

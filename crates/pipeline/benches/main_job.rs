@@ -1,7 +1,7 @@
 //! The main job and its parts: `cargo bench -p recrash-pipeline`. Committed runs are in `bench-runs/`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use recrash_pipeline::{NoProgress, Options, Resources, Stage, Suite, load_profile};
+use recrash_pipeline::{NoProgress, Options, Resources, Stage, Suite, load_profile, run_stage};
 use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText};
 use recrash_select::SelectOptions;
 use std::hint::black_box;
@@ -44,7 +44,7 @@ fn whole_run(criterion: &mut Criterion) {
             let folder = tempfile::tempdir().unwrap();
             let suite = Suite::open(folder.path(), Options::default(), Resources::default()).unwrap();
             for stage in Stage::ALL {
-                suite.run_stage(stage, &NoProgress).unwrap();
+                run_stage(&suite, stage, &NoProgress).unwrap();
             }
         });
     });

@@ -33,6 +33,15 @@ pub enum PipelineError {
         /// Why.
         why: String,
     },
+    /// A stage is to work on a suite that is not there.
+    #[error(
+        "there is no suite in {}: it holds no suite.json; check the folder, or begin one there with `recrash records --out {}`",
+        dir.display(), dir.display()
+    )]
+    NoSuite {
+        /// The folder.
+        dir: PathBuf,
+    },
     /// A stage needs an earlier one.
     #[error("{}: there is no finished stage \"{missing}\" in it; run `recrash {missing} --out {}` first", dir.display(), dir.display())]
     MissingStage {
@@ -54,6 +63,30 @@ pub enum PipelineError {
     Busy {
         /// The suite.
         dir: PathBuf,
+    },
+    /// A file that only a stage writes is not as it wrote it.
+    #[error("{}: changed by hand, which this file is not for: it tells what a run gave; run `recrash {stage}` to make it again", path.display())]
+    ChangedByHand {
+        /// Which file.
+        path: PathBuf,
+        /// The stage that writes it.
+        stage: &'static str,
+    },
+    /// The folder holds a suite of something else, whose results would be lost.
+    #[error("{} holds a suite of {what}; choose another --out, or replace it with --replace", dir.display())]
+    OtherSuite {
+        /// The folder.
+        dir: PathBuf,
+        /// What it is a suite of, and what it is not.
+        what: String,
+    },
+    /// A file names a program that the caller does not.
+    #[error(
+        "the suite wants to start the program `{program}` as the ego; a suite may be anybody's, so name it with --ego, or say --trust"
+    )]
+    Untrusted {
+        /// The program, as the suite names it.
+        program: String,
     },
     /// The output folder holds something else.
     #[error("{} holds files but no suite.json, so it is not overwritten; choose another --out, or empty it", dir.display())]
@@ -128,9 +161,10 @@ impl PipelineError {
         Self::BadInput { what: what.into(), diagnostics: Vec::new() }
     }
 
-    /// What one scenario failed of.
+    /// What one scenario failed of. It ends up in a file of the suite, and may be in a program's own words: keys are blacked
+    /// out.
     pub fn scenario(id: &str, why: impl ToString) -> Self {
-        Self::Scenario { id: id.to_owned(), why: why.to_string() }
+        Self::Scenario { id: id.to_owned(), why: crate::secrets::scrubber().scrub(&why.to_string()) }
     }
 
     /// What a simulator failed of.
@@ -143,9 +177,9 @@ impl PipelineError {
         matches!(self, Self::WaitingForBatch { .. } | Self::BudgetSpent(_))
     }
 
-    /// The process's exit code: 1 for files and threads, 2 for wrong usage, 3 for bad input and models that refuse, 4 for
-    /// a run that the same command goes on with (a batch is to be sent, a cap is reached), 5 for results that miss what
-    /// is asked for.
+    /// The process's exit code: 1 for files that are there and cannot be read, files that cannot be written, and threads; 2
+    /// for wrong usage; 3 for input that is not there or cannot be used, and models that refuse; 4 for a run that the same
+    /// command goes on with (a batch is to be sent, a cap is reached); 5 for results that miss what is asked for.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Io { source, action: "read", .. } if source.kind() == std::io::ErrorKind::NotFound => 3,
@@ -155,7 +189,14 @@ impl PipelineError {
             | Self::Pull { .. }
             | Self::Threads(_)
             | Self::Ledger(_) => 1,
-            Self::MissingStage { .. } | Self::StaleStage { .. } | Self::NotASuite { .. } | Self::Usage(_) => 2,
+            Self::NoSuite { .. }
+            | Self::MissingStage { .. }
+            | Self::StaleStage { .. }
+            | Self::ChangedByHand { .. }
+            | Self::NotASuite { .. }
+            | Self::OtherSuite { .. }
+            | Self::Untrusted { .. }
+            | Self::Usage(_) => 2,
             Self::BadInput { .. } | Self::Scenario { .. } | Self::Damaged { .. } | Self::ModelRefused(_) => 3,
             Self::AnswerPending | Self::WaitingForBatch { .. } | Self::BudgetSpent(_) => 4,
             Self::Missed { .. } => 5,
@@ -171,5 +212,11 @@ fn hint(source: &std::io::Error) -> &'static str {
             "; free some space and run the same command again: finished work is kept"
         }
         _ => "",
+    }
+}
+
+impl From<RunError> for PipelineError {
+    fn from(error: RunError) -> Self {
+        Self::not_run(&error)
     }
 }

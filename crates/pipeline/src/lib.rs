@@ -6,75 +6,64 @@
 //!
 //! What this crate does **not** do: it prints nothing. Progress is told through [`Progress`], results are values.
 
-mod agents;
-mod bench_sim;
-mod caches;
-mod casework;
-mod doctor;
-mod embed_bench;
 mod embedding;
 mod error;
-mod evaluation;
-mod exporting;
-mod external;
-mod failures;
-mod fetching;
-mod importing;
-mod ledger;
+mod files;
 mod models;
-mod parity;
+mod options;
 mod profiles;
 mod progress;
-mod prompting;
-mod recording;
-mod scoring;
-mod selecting;
-mod simulator;
+mod reading;
+mod secrets;
+mod simulators;
 mod stages;
-mod store;
 mod suite;
-mod summary;
-#[cfg(feature = "parquet")]
-mod sweep;
-mod triage;
-mod view;
-mod weights;
+mod tools;
 
-pub use agents::{AgentLog, Cast};
-pub use bench_sim::{SimBench, SimBenchRequest, bench_sim};
-pub use casework::{DesignAttempt, DesignLog, FileRequest, FileRun, read_scenario, run_scenario, simulate_file};
-pub use doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
-pub use embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use embedding::EmbeddingKind;
-pub use error::PipelineError;
-pub use evaluation::{Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate};
-pub use exporting::{ExportReport, ExportRequest, export};
-pub use external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
-pub use failures::Failure;
-pub use fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
-pub use importing::{ImportRequest, Imported, SourceFormat, import};
-pub use ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
-pub use models::{AnswerMode, ModelAccess};
-pub use parity::{
-    Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
-    ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
+pub use embedding::weights::{
+    PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model,
 };
+pub use error::PipelineError;
+pub use files::output::{Begun, Output, Outputs};
+pub use files::paths::quoted;
+pub use files::store::{Store, WriteFile, remove_unfinished};
+pub use models::cast::{AgentLog, Cast};
+pub use models::ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};
+pub use models::{AnswerMode, ModelAccess};
+pub use options::{Options, RecordSource};
 pub use profiles::{PROFILE_NAMES, load_profile};
 pub use progress::{NoProgress, Progress, ProgressEvent};
-pub use prompting::{Prompt, PromptRequest, prompt};
-pub use recording::{TableFormat, read_records, write_records};
+pub use reading::fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
+pub use reading::records::{TableFormat, read_records, record_outputs, write_records};
+pub use reading::scenarios::{FileRequest, FileRun, read_scenario, simulate_file};
 pub use recrash_agents::llm::{Caps, Role, Spent};
+pub use recrash_child::end_all as end_programs;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
+pub use recrash_lab::run_scenario;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
-pub use selecting::{SelectionStudy, StrategyStudy};
-pub use simulator::{Simulator, SimulatorKind, start_simulator};
-pub use stages::StageReport;
-pub use store::{Store, WriteFile, remove_unfinished};
-pub use suite::{Options, RecordSource, Resources, Stage, Suite};
-pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+pub use simulators::external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
+pub use simulators::{Simulator, SimulatorKind, start_simulator};
+pub use stages::{
+    CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary, SelectionStudy,
+    StageReport, StrategyStudy, Summary, run_stage, unfaithful,
+};
+pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
+pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
+pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
+pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
+pub use tools::evaluation::{
+    Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate,
+};
+pub use tools::exporting::{ExportReport, ExportRequest, export};
+pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
+pub use tools::parity::{
+    Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
+    ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
+};
+pub use tools::prompting::{Prompt, PromptRequest, prompt};
 #[cfg(feature = "parquet")]
-pub use sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary, write_scenario};
-pub use weights::{PullRequest, Pulled, Weights, WeightsSource, find_weights, is_published_model, pull_model};
+pub use tools::sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};

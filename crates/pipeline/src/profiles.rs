@@ -25,7 +25,7 @@ pub fn load_profile(name_or_path: &str) -> Result<SystemProfile, PipelineError> 
             PROFILE_NAMES.join(", ")
         )));
     }
-    let text = crate::store::read_text(path, 1 << 20)?;
+    let text = crate::files::store::read_text(path, 1 << 20)?;
     parse(&text, name_or_path)
 }
 

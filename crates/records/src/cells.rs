@@ -103,7 +103,9 @@ fn parse_month(text: &str) -> Option<YearMonth> {
     };
     let named = |text: &str| NAMES.iter().position(|name| text.to_ascii_lowercase().starts_with(name)).map(|i| i + 1);
     let month = named(month).and_then(|month| u16::try_from(month).ok()).or_else(|| whole_number(month))?;
-    let year = whole_number(year).map(|year| if year < 100 { 2000 + year } else { year })?;
+    // Two digits leave the century out; "0000" leaves nothing out, and is no year.
+    let in_century = year.trim().len() == 2;
+    let year = whole_number(year).map(|year| if in_century { 2000 + year } else { year })?;
     let month = u8::try_from(month).ok().filter(|month| (1..=12).contains(month))?;
     (2000..2100).contains(&year).then_some(YearMonth { year, month })
 }
@@ -162,7 +164,7 @@ mod tests {
         for text in ["JUN-2025", "Jun-25", "June 2025", "2025-06", "06/2025", "6/15/2025", " jun-2025 "] {
             assert_eq!(year_month(text), Cell::Value(YearMonth { year: 2025, month: 6 }), "{text}");
         }
-        for odd in ["2025", "13/2025", "JUN-1925", "Smarch-2025", "-", "1-2-3-4"] {
+        for odd in ["2025", "13/2025", "JUN-1925", "Smarch-2025", "-", "1-2-3-4", "JAN-0000", "JAN-0", "JAN-025"] {
             assert_eq!(year_month(odd), Cell::Unreadable, "{odd}");
         }
     }

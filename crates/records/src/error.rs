@@ -23,9 +23,17 @@ pub enum IngestError {
         /// File name.
         file: String,
         /// Its size, in bytes.
-        bytes: usize,
+        bytes: u64,
         /// The limit, in bytes.
         limit: usize,
+    },
+    /// The system does not give the bytes.
+    #[error("{file}: it cannot be read to its end: {why}; check the disk, or get the file again")]
+    Unreadable {
+        /// File name.
+        file: String,
+        /// What the system said.
+        why: String,
     },
     /// The file is no text.
     #[error("{file}: this is {looks_like}, not a CSV file; expected comma-separated text; {hint}")]
@@ -76,6 +84,13 @@ pub enum IngestError {
         /// The edition it looks like.
         edition: &'static str,
     },
+}
+
+impl IngestError {
+    /// What the system said about a file.
+    pub(crate) fn unreadable(file: &str, error: &std::io::Error) -> Self {
+        Self::Unreadable { file: file.to_owned(), why: error.to_string() }
+    }
 }
 
 fn quoted(names: &[&str]) -> String {

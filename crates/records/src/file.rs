@@ -1,17 +1,17 @@
 //! One file: bytes in, records and rejected rows out, in file order.
 
+use crate::MAX_FILE_BYTES;
 use crate::columns::{Columns, NotAHeader, Recognised, edition_name, recognise};
 use crate::error::{IngestError, is_binary, other_format};
 use crate::notes::Notes;
 use crate::row::{self, Draft};
+use crate::stream::{Bytes, Stream};
 use crate::text::{decode, excerpt};
-use crate::{MAX_FILE_BYTES, SourceText};
 use csv::ByteRecord;
 use recrash_model::record::{Edition, Reject, RejectReason, SourceFile};
 use recrash_model::{Diagnostic, Location, Severity};
-use sha2::{Digest, Sha256};
 use std::borrow::Cow;
-use std::io::Cursor;
+use std::io::{Cursor, Read, SeekFrom};
 
 /// Characters that part the fields: the published comma, and what spreadsheets write instead.
 const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
@@ -29,7 +29,10 @@ const MOST_HEADERS: usize = 100;
 
 /// How many times its own size of a file is read again at most, to save rows behind unclosed quotes. A file can be built
 /// in which every line swallows all that follow; without a bound its time would grow with the square of its size.
-const MOST_REREADS: usize = 16;
+const MOST_REREADS: u64 = 16;
+
+/// How much of a file is looked at to tell UTF-16 without a mark: no more than a header. [byte]
+const PROBED_FOR_UTF16: usize = 512;
 
 /// What one file holds.
 #[derive(Debug)]
@@ -44,66 +47,112 @@ pub struct FileContent {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// SHA-256 in hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
-}
+/// How much of a file is looked at before it is read. [byte]
+const HEAD_BYTES: usize = 1 << 16;
 
 /// Reads one file.
-pub fn read_file(source: &SourceText<'_>, sha256: &str) -> Result<FileContent, IngestError> {
-    let file = || source.name.to_owned();
-    if source.bytes.len() > MAX_FILE_BYTES {
-        return Err(IngestError::TooLarge { file: file(), bytes: source.bytes.len(), limit: MAX_FILE_BYTES });
+pub fn read_file(name: &str, bytes: &mut dyn Bytes, sha256: &str) -> Result<FileContent, IngestError> {
+    let file = || name.to_owned();
+    let unreadable = |error| IngestError::unreadable(name, &error);
+    let length = bytes.seek(SeekFrom::End(0)).map_err(unreadable)?;
+    if length > MAX_FILE_BYTES as u64 {
+        return Err(IngestError::TooLarge { file: file(), bytes: length, limit: MAX_FILE_BYTES });
     }
-    let bytes = without_byte_order_mark(source.bytes);
-    if bytes.trim_ascii().is_empty() {
+    bytes.rewind().map_err(unreadable)?;
+    let mut head = Vec::new();
+    Read::take(&mut *bytes, HEAD_BYTES as u64).read_to_end(&mut head).map_err(unreadable)?;
+    let (encoding, mark) = encoding_of(&head);
+    if encoding != encoding_rs::UTF_8 {
+        bytes.rewind().map_err(unreadable)?;
+        let mut whole = Vec::new();
+        bytes.read_to_end(&mut whole).map_err(unreadable)?;
+        let text = encoding.decode(&whole).0.into_owned();
+        drop(whole);
+        return read_file(name, &mut Cursor::new(text.into_bytes()), sha256);
+    }
+    let head = &head[mark..];
+    if head.trim_ascii().is_empty() && is_blank(bytes).map_err(unreadable)? {
         return Err(IngestError::Empty { file: file() });
     }
-    if let Some((looks_like, hint)) = other_format(&bytes) {
+    if let Some((looks_like, hint)) = other_format(head) {
         return Err(IngestError::NotText { file: file(), looks_like, hint });
     }
-    let (delimiter, recognised) = match first_header(&bytes) {
+    let (delimiter, recognised) = match first_header(bytes, mark).map_err(unreadable)? {
         Ok(found) => found,
         Err((_, NotAHeader::Missing { edition, names })) => {
             return Err(IngestError::MissingColumns { file: file(), edition: edition_name(edition), missing: names });
         }
-        Err((_, NotAHeader::Unknown)) if is_binary(&bytes) => {
+        Err((_, NotAHeader::Unknown)) if is_binary(head) => {
             let (looks_like, hint) = ("a binary file", "give the CSV file as NHTSA publishes it");
             return Err(IngestError::NotText { file: file(), looks_like, hint });
         }
         Err((start, NotAHeader::Unknown)) => return Err(IngestError::UnknownHeader { file: file(), start }),
     };
     let edition = recognised.columns.edition;
-    let content = FileReader::new(source.name, sha256, recognised).read(&bytes, delimiter);
+    let stream = Stream::new(bytes, mark).map_err(unreadable)?;
+    let content = FileReader::new(name, sha256, recognised).read(stream, delimiter).map_err(unreadable)?;
     if content.sources.iter().all(|part| part.rows == 0) {
         return Err(IngestError::HeaderOnly { file: file(), edition: edition_name(edition) });
     }
     Ok(content)
 }
+/// The encoding by a file's first bytes, and the length of its mark: UTF-16 (a spreadsheet's "Unicode text") with a mark or
+/// without one, else UTF-8.
+fn encoding_of(head: &[u8]) -> (&'static encoding_rs::Encoding, usize) {
+    let unmarked = || (unmarked_utf16(head).unwrap_or(encoding_rs::UTF_8), 0);
+    encoding_rs::Encoding::for_bom(head).unwrap_or_else(unmarked)
+}
 
-/// The bytes without a UTF-8 mark; UTF-16 with a mark (a spreadsheet's "Unicode text") is converted.
-fn without_byte_order_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
-    match encoding_rs::Encoding::for_bom(bytes) {
-        Some((encoding, mark)) if encoding == encoding_rs::UTF_8 => Cow::Borrowed(&bytes[mark..]),
-        Some((encoding, _)) => Cow::Owned(encoding.decode(bytes).0.into_owned().into_bytes()),
-        None => Cow::Borrowed(bytes),
+/// The bytes without a UTF-8 mark; UTF-16 is converted.
+fn as_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+    match encoding_of(bytes) {
+        (encoding, mark) if encoding == encoding_rs::UTF_8 => Cow::Borrowed(&bytes[mark..]),
+        (encoding, _) => Cow::Owned(encoding.decode(bytes).0.into_owned().into_bytes()),
     }
 }
 
+/// Whether there is nothing but blanks.
+fn is_blank(bytes: &mut dyn Bytes) -> std::io::Result<bool> {
+    bytes.rewind()?;
+    let mut buffer = vec![0; HEAD_BYTES];
+    let mut is_first = true;
+    loop {
+        let read = bytes.read(&mut buffer)?;
+        let mark = if std::mem::take(&mut is_first) { encoding_of(&buffer[..read]).1 } else { 0 };
+        if read == 0 || !buffer[mark..read].trim_ascii().is_empty() {
+            return Ok(read == 0);
+        }
+    }
+}
+
+/// Tells UTF-16 without a mark by its header: of the Latin letters there, every second byte is zero.
+fn unmarked_utf16(bytes: &[u8]) -> Option<&'static encoding_rs::Encoding> {
+    let probe = &bytes[..bytes.len().min(PROBED_FOR_UTF16)];
+    let zeros = |first: usize| probe.iter().skip(first).step_by(2).filter(|byte| **byte == 0).count();
+    let (even, odd, half) = (zeros(0), zeros(1), probe.len() / 2);
+    match (even * 10, odd * 10) {
+        (none, all) if none <= half && all >= 9 * half && half > 0 => Some(encoding_rs::UTF_16LE),
+        (all, none) if none <= half && all >= 9 * half && half > 0 => Some(encoding_rs::UTF_16BE),
+        _ => None,
+    }
+}
+
+/// The delimiter and the columns; or how the first line starts, and why it is no header.
+type HeaderFound = Result<(u8, Recognised), (String, NotAHeader)>;
+
 /// The header on the first line, by the delimiter that makes one of it.
-fn first_header(bytes: &[u8]) -> Result<(u8, Recognised), (String, NotAHeader)> {
+fn first_header(bytes: &mut dyn Bytes, mark: usize) -> std::io::Result<HeaderFound> {
     let mut failure = None;
     for delimiter in DELIMITERS {
         let mut row = ByteRecord::new();
-        // An in-memory reader without UTF-8 checks and with flexible widths has no way to fail.
-        let _ = reader(bytes, delimiter).read_byte_record(&mut row);
+        reader(Stream::new(&mut *bytes, mark)?, delimiter).read_byte_record(&mut row)?;
         match recognise(&names(&row)) {
-            Ok(recognised) => return Ok((delimiter, recognised)),
+            Ok(recognised) => return Ok(Ok((delimiter, recognised))),
             Err(NotAHeader::Unknown) if failure.is_some() => {}
             Err(problem) => failure = Some((excerpt(&names(&row).join(",")), problem)),
         }
     }
-    Err(failure.unwrap_or((String::new(), NotAHeader::Unknown)))
+    Ok(Err(failure.unwrap_or((String::new(), NotAHeader::Unknown))))
 }
 
 /// A table of any header, for mapped files.
@@ -119,9 +168,9 @@ pub struct RawTable {
 
 /// Reads a table of any header. The delimiter is the one that makes the most columns of the first line. An unclosed
 /// quote takes the rows below it with it: without knowing the columns there is no telling where one begins.
-pub fn raw_table(source: &SourceText<'_>) -> Result<RawTable, IngestError> {
-    let file = || source.name.to_owned();
-    let bytes = without_byte_order_mark(source.bytes);
+pub fn raw_table(name: &str, bytes: &[u8]) -> Result<RawTable, IngestError> {
+    let file = || name.to_owned();
+    let bytes = as_utf8(bytes);
     if bytes.trim_ascii().is_empty() {
         return Err(IngestError::Empty { file: file() });
     }
@@ -133,11 +182,12 @@ pub fn raw_table(source: &SourceText<'_>) -> Result<RawTable, IngestError> {
     }
     let width = |delimiter: u8| {
         let mut row = ByteRecord::new();
-        let _ = reader(&bytes, delimiter).read_byte_record(&mut row);
+        // An in-memory reader without UTF-8 checks and with flexible widths has no way to fail.
+        let _ = reader(Cursor::new(&*bytes), delimiter).read_byte_record(&mut row);
         row.len()
     };
     let delimiter = DELIMITERS.into_iter().rev().max_by_key(|&delimiter| width(delimiter)).unwrap_or(b',');
-    let mut reader = reader(&bytes, delimiter);
+    let mut reader = reader(Cursor::new(&*bytes), delimiter);
     let mut row = ByteRecord::new();
     let mut table = RawTable { header: Vec::new(), rows: Vec::new(), malformed: Vec::new() };
     let mut number = 0;
@@ -151,7 +201,7 @@ pub fn raw_table(source: &SourceText<'_>) -> Result<RawTable, IngestError> {
             table.malformed.push((number, format!("{} fields instead of {}", row.len(), table.header.len())));
         } else if row.iter().any(|field| field.len() > LONGEST_FIELD_BYTES) {
             table.malformed.push((number, format!("a field is longer than {LONGEST_FIELD_BYTES} bytes")));
-        } else if Span::of(&row, reader.position(), &bytes).ends_inside_quotes() {
+        } else if in_memory(&row, reader.position(), &bytes).ends_inside_quotes() {
             table.malformed.push((number, "the file ends inside a quoted field".to_owned()));
         } else {
             table.rows.push((number, row.clone()));
@@ -160,8 +210,15 @@ pub fn raw_table(source: &SourceText<'_>) -> Result<RawTable, IngestError> {
     Ok(table)
 }
 
-fn reader(bytes: &[u8], delimiter: u8) -> csv::Reader<Cursor<&[u8]>> {
-    csv::ReaderBuilder::new().has_headers(false).flexible(true).delimiter(delimiter).from_reader(Cursor::new(bytes))
+fn reader<R: Read>(bytes: R, delimiter: u8) -> csv::Reader<R> {
+    csv::ReaderBuilder::new().has_headers(false).flexible(true).delimiter(delimiter).from_reader(bytes)
+}
+
+/// A row of a table in memory.
+fn in_memory<'a>(row: &ByteRecord, end: &csv::Position, bytes: &'a [u8]) -> Span<'a> {
+    let start = row.position().map_or(0, |position| position.byte() as usize);
+    let end = (end.byte() as usize).min(bytes.len());
+    Span::of(row, bytes.get(start..end).unwrap_or_default(), end == bytes.len())
 }
 
 fn names(row: &ByteRecord) -> Vec<String> {
@@ -188,17 +245,25 @@ impl<'a> FileReader<'a> {
         this
     }
 
-    fn read(mut self, bytes: &[u8], delimiter: u8) -> FileContent {
+    fn read(mut self, bytes: Stream<'_>, delimiter: u8) -> std::io::Result<FileContent> {
+        let length = bytes.length();
         let mut reader = reader(bytes, delimiter);
         let mut row = ByteRecord::new();
         let mut header_pending = true;
         let mut reread = 0;
         let mut headers = 1;
-        while let Ok(true) = reader.read_byte_record(&mut row) {
+        loop {
+            let begin = reader.position().byte();
+            reader.get_mut().forget_before(begin);
+            if !reader.read_byte_record(&mut row)? {
+                break;
+            }
             if std::mem::take(&mut header_pending) {
                 continue;
             }
-            let span = Span::of(&row, reader.position(), bytes);
+            let end = reader.position().byte();
+            let start = row.position().map_or(begin, csv::Position::byte);
+            let span = Span::of(&row, reader.get_ref().between(start, end), end >= length);
             if is_header(&row)
                 && headers < MOST_HEADERS
                 && let Ok(recognised) = recognise(&names(&row))
@@ -220,13 +285,12 @@ impl<'a> FileReader<'a> {
                 Err((problem, hint)) => {
                     self.reject(&row, &span, problem, hint);
                     if let Some(position) = span.next_row_inside(delimiter) {
-                        reread += span.end() - position.byte() as usize;
-                        if reread > MOST_REREADS * bytes.len() {
+                        reread += span.end() - position.byte();
+                        if reread > MOST_REREADS * length {
                             self.give_up(&span);
                             break;
                         }
-                        // A reader over bytes in memory can be put anywhere inside them.
-                        let _ = reader.seek(position);
+                        reader.seek(position)?;
                     }
                 }
             }
@@ -239,7 +303,7 @@ impl<'a> FileReader<'a> {
             self.tell(Severity::Warning, "records.malformed-row", self.in_file(), message);
         }
         self.content.diagnostics.extend(self.notes.diagnostics(self.name));
-        self.content
+        Ok(self.content)
     }
 
     /// Takes over a header: the first one, or one further down where files were put one after the other.
@@ -349,25 +413,23 @@ fn is_header(row: &ByteRecord) -> bool {
 /// The bytes of one row.
 struct Span<'a> {
     raw: &'a [u8],
-    start: usize,
+    start: u64,
     line: u64,
     is_last: bool,
 }
 
 impl<'a> Span<'a> {
-    fn of(row: &ByteRecord, end: &csv::Position, bytes: &'a [u8]) -> Self {
-        let (start, line) = row.position().map_or((0, 0), |position| (position.byte() as usize, position.line()));
-        let end = (end.byte() as usize).min(bytes.len());
-        let whole = bytes.get(start..end).unwrap_or_default();
+    fn of(row: &ByteRecord, whole: &'a [u8], is_last: bool) -> Self {
+        let (start, line) = row.position().map_or((0, 0), |position| (position.byte(), position.line()));
         // The reader counts the line end and the blank lines before a row as part of it.
         let blank = whole.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
         let lines = whole[..blank].iter().filter(|byte| **byte == b'\n').count() as u64;
-        Self { raw: &whole[blank..], start: start + blank, line: line + lines, is_last: end == bytes.len() }
+        Self { raw: &whole[blank..], start: start + blank as u64, line: line + lines, is_last }
     }
 
     /// Position of the first byte behind the row.
-    fn end(&self) -> usize {
-        self.start + self.raw.len()
+    fn end(&self) -> u64 {
+        self.start + self.raw.len() as u64
     }
 
     /// Whether this is the file's last row, cut inside a quoted field.
@@ -384,7 +446,7 @@ impl<'a> Span<'a> {
             let rest = &self.raw[offset + 1..];
             if looks_like_row_start(rest, delimiter) {
                 let mut position = csv::Position::new();
-                position.set_byte((self.start + offset + 1) as u64).set_line(line);
+                position.set_byte(self.start + offset as u64 + 1).set_line(line);
                 return Some(position);
             }
         }

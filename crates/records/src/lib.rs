@@ -22,6 +22,7 @@ mod notes;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod row;
+mod stream;
 mod table;
 mod text;
 
@@ -32,12 +33,14 @@ pub use filter::{FILTER_HELP, Filter, FilterError};
 pub use mapping::{MAPPING_FORMAT, MAX_MAPPING_BYTES, Mapping, MappingError};
 #[cfg(feature = "parquet")]
 pub use parquet::ParquetWriter;
-pub use table::{Column, RecordTable, TableRows, record_table};
+pub use stream::{Bytes, sha256};
+pub use table::{Column, RecordTable, TableRows, record_table, write_csv};
 
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason};
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
 use row::Draft;
+use std::io::Cursor;
 
 /// Name of the built-in sample.
 pub const SAMPLE_NAME: &str = "built-in sample";
@@ -52,10 +55,18 @@ pub const MAX_FILE_BYTES: usize = 1 << 30;
 /// A file's content and the name it is called by.
 #[derive(Debug, Clone, Copy)]
 pub struct SourceText<'a> {
-    /// Name for messages and provenance, without folders.
+    /// Name for messages and provenance: without folders, or with as many as tell files of one name apart.
     pub name: &'a str,
     /// The whole content.
     pub bytes: &'a [u8],
+}
+
+/// A file that is read as it goes, and the name it is called by.
+pub struct SourceBytes<'a> {
+    /// Name for messages and provenance: without folders, or with as many as tell files of one name apart.
+    pub name: &'a str,
+    /// The content.
+    pub bytes: Box<dyn Bytes + 'a>,
 }
 
 /// What may be asked of [`ingest_with`] beyond the profile.
@@ -84,6 +95,21 @@ pub fn ingest_with(
     profile: &SystemProfile,
     options: &IngestOptions<'_>,
 ) -> Result<Outcome<RecordSet>, IngestError> {
+    fn source<'a>(file: &SourceText<'a>) -> SourceBytes<'a> {
+        SourceBytes { name: file.name, bytes: Box::new(Cursor::new(file.bytes)) }
+    }
+    ingest_sources(files.iter().map(source).collect(), profile, options)
+}
+
+/// As [`ingest_with`], of files that are read as it goes: in memory is what is kept of them.
+///
+/// # Errors
+/// As [`ingest_with`].
+pub fn ingest_sources(
+    files: Vec<SourceBytes<'_>>,
+    profile: &SystemProfile,
+    options: &IngestOptions<'_>,
+) -> Result<Outcome<RecordSet>, IngestError> {
     if files.is_empty() {
         return Err(IngestError::NoFiles);
     }
@@ -94,7 +120,11 @@ pub fn ingest_with(
     let mut diagnostics = Vec::new();
     for (number, content) in read(files, options, &mut diagnostics)?.into_iter().enumerate() {
         sources.extend(content.sources);
-        drafts.extend(content.drafts);
+        if drafts.is_empty() {
+            drafts = content.drafts;
+        } else {
+            drafts.extend(content.drafts);
+        }
         file_of_draft.resize(drafts.len(), number);
         rejects.extend(content.rejects.into_iter().map(|reject| (number, reject)));
         diagnostics.extend(content.diagnostics);
@@ -139,24 +169,27 @@ pub fn ingest_with(
 
 /// Every file, read; the same content twice counts once.
 fn read(
-    files: &[SourceText<'_>],
+    files: Vec<SourceBytes<'_>>,
     options: &IngestOptions<'_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<Vec<file::FileContent>, IngestError> {
     let mut hashes: Vec<String> = Vec::new();
     let mut different = Vec::new();
-    for source in files {
-        let hash = file::sha256(source.bytes);
+    for mut source in files {
+        let hash = stream::sha256(&mut *source.bytes).map_err(|e| IngestError::unreadable(source.name, &e))?;
         if hashes.contains(&hash) {
             diagnostics.push(same_file_twice(source.name));
         } else {
             hashes.push(hash);
-            different.push(*source);
+            different.push(source);
         }
     }
     match options.mapping {
-        Some(mapping) => mapping::read_mapped(&different, mapping),
-        None => different.iter().zip(&hashes).map(|(source, hash)| file::read_file(source, hash)).collect(),
+        Some(mapping) => mapping::read_mapped(different, &hashes, mapping),
+        None => {
+            let with_hash = different.iter_mut().zip(&hashes);
+            with_hash.map(|(source, hash)| file::read_file(source.name, &mut *source.bytes, hash)).collect()
+        }
     }
 }
 

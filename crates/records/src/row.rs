@@ -25,7 +25,13 @@ pub struct Draft {
 /// The row's report id and version, where they can be read.
 pub fn record_ref(row: &ByteRecord, columns: &Columns) -> Option<RecordRef> {
     let report_id = decode(row.get(columns.report_id)?).0.trim().to_owned();
-    let version = decode(row.get(columns.report_version)?).0.trim().parse().ok()?;
+    let version = decode(row.get(columns.report_version)?).0;
+    // Spreadsheets and data frames write whole numbers as `1.0`.
+    let version = match version.trim().split_once('.') {
+        Some((whole, zeros)) if !zeros.is_empty() && zeros.bytes().all(|digit| digit == b'0') => whole.parse(),
+        _ => version.trim().parse(),
+    };
+    let version = version.ok()?;
     let plausible = !report_id.is_empty() && report_id.len() <= 40;
     plausible.then_some(RecordRef { report_id, version })
 }

@@ -2,7 +2,9 @@
 
 use crate::fields::{Field, FieldValue};
 use recrash_model::record::{CrashRecord, RecordSet, Reject};
+use recrash_model::spreadsheet::inert;
 use std::collections::BTreeMap;
+use std::io::Write;
 
 /// Parts several codes in one cell: `front;front_left`.
 const CODE_SEPARATOR: &str = ";";
@@ -39,30 +41,75 @@ pub struct RecordTable {
     pub rows: usize,
 }
 
+/// Rows of a CSV table that are put together at once.
+const CHUNK: usize = 4096;
+
 /// Records as a table: every field of `Field::ALL`, then the report's version and row, the template, whether the
 /// record is usable and, if not, why.
 pub fn record_table(set: &RecordSet, rows: TableRows) -> RecordTable {
-    let mut usable = vec![false; set.records.len()];
-    set.usable.iter().for_each(|&i| usable[i] = true);
-    let shown: Vec<usize> = (0..set.records.len()).filter(|&i| rows == TableRows::All || usable[i]).collect();
-    let records = || shown.iter().map(|&i| &set.records[i]);
+    let source = TableSource::new(set);
+    source.table(&source.shown(rows))
+}
 
-    let mut columns: Vec<(&'static str, Column)> =
-        Field::ALL.into_iter().map(|field| (field.name(), column(field, records()))).collect();
-    let rejects: BTreeMap<(&str, u64), &Reject> = set.rejects.iter().map(|r| ((r.file.as_str(), r.row), r)).collect();
-    let reason = |record: &CrashRecord| {
+/// Writes [`record_table`] as CSV, with a few thousand rows in memory: a header, commas, quotes where needed, UTF-8, a line
+/// feed behind each row; `true` and `false`, and nothing where a value is missing. Texts that a spreadsheet would run as
+/// formulas are made inert ([`recrash_model::spreadsheet`]). Gives the number of rows.
+///
+/// # Errors
+/// The sink cannot be written.
+pub fn write_csv(set: &RecordSet, rows: TableRows, sink: impl Write) -> std::io::Result<usize> {
+    let source = TableSource::new(set);
+    let shown = source.shown(rows);
+    let mut writer = csv::Writer::from_writer(sink);
+    source.table(&[]).write_header(&mut writer)?;
+    for chunk in shown.chunks(CHUNK) {
+        source.table(chunk).write_rows(&mut writer)?;
+    }
+    writer.flush()?;
+    Ok(shown.len())
+}
+
+/// Records, and what a table tells about each beside its fields.
+struct TableSource<'a> {
+    set: &'a RecordSet,
+    usable: Vec<bool>,
+    rejects: BTreeMap<(&'a str, u64), &'a Reject>,
+}
+
+impl<'a> TableSource<'a> {
+    fn new(set: &'a RecordSet) -> Self {
+        let mut usable = vec![false; set.records.len()];
+        set.usable.iter().for_each(|&i| usable[i] = true);
+        let rejects = set.rejects.iter().map(|r| ((r.file.as_str(), r.row), r)).collect();
+        Self { set, usable, rejects }
+    }
+
+    /// Positions of the records that are shown.
+    fn shown(&self, rows: TableRows) -> Vec<usize> {
+        (0..self.set.records.len()).filter(|&i| rows == TableRows::All || self.usable[i]).collect()
+    }
+
+    fn reason(&self, record: &CrashRecord) -> Option<String> {
         let place = (record.provenance.file.as_str(), record.provenance.row);
-        rejects.get(&place).map(|reject| reject.reason.label().to_owned())
-    };
-    let whole = |number: u64| i64::try_from(number).ok();
-    columns.insert(1, ("version", Column::Whole(records().map(|r| Some(i64::from(r.id.version))).collect())));
-    columns.extend([
-        ("row", Column::Whole(records().map(|r| whole(r.provenance.row)).collect())),
-        ("template", Column::Text(records().map(|r| r.template().map(|template| template.slug())).collect())),
-        ("usable", Column::Flag(shown.iter().map(|&i| Some(usable[i])).collect())),
-        ("lost", Column::Text(shown.iter().map(|&i| if usable[i] { None } else { reason(&set.records[i]) }).collect())),
-    ]);
-    RecordTable { columns, rows: shown.len() }
+        self.rejects.get(&place).map(|reject| reject.reason.label().to_owned())
+    }
+
+    /// The table of these records.
+    fn table(&self, shown: &[usize]) -> RecordTable {
+        let records = || shown.iter().map(|&i| &self.set.records[i]);
+        let mut columns: Vec<(&'static str, Column)> =
+            Field::ALL.into_iter().map(|field| (field.name(), column(field, records()))).collect();
+        let whole = |number: u64| i64::try_from(number).ok();
+        let lost = |&i: &usize| if self.usable[i] { None } else { self.reason(&self.set.records[i]) };
+        columns.insert(1, ("version", Column::Whole(records().map(|r| Some(i64::from(r.id.version))).collect())));
+        columns.extend([
+            ("row", Column::Whole(records().map(|r| whole(r.provenance.row)).collect())),
+            ("template", Column::Text(records().map(|r| r.template().map(|template| template.slug())).collect())),
+            ("usable", Column::Flag(shown.iter().map(|&i| Some(self.usable[i])).collect())),
+            ("lost", Column::Text(shown.iter().map(lost).collect())),
+        ]);
+        RecordTable { columns, rows: shown.len() }
+    }
 }
 
 /// A field of some records as a column.
@@ -91,19 +138,15 @@ fn column<'a>(field: Field, records: impl Iterator<Item = &'a CrashRecord>) -> C
 }
 
 impl RecordTable {
-    /// The table as CSV: a header, commas, quotes where needed, UTF-8, a line feed behind each row; `true` and `false`,
-    /// and nothing where a value is missing.
-    pub fn to_csv(&self) -> Vec<u8> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let mut write = |fields: Vec<String>| {
-            // Into memory, and every row has the header's width.
-            writer.write_record(fields).expect("a row of the header's width is written into memory");
-        };
-        write(self.columns.iter().map(|(name, _)| (*name).to_owned()).collect());
+    fn write_header<W: Write>(&self, writer: &mut csv::Writer<W>) -> std::io::Result<()> {
+        Ok(writer.write_record(self.columns.iter().map(|(name, _)| *name))?)
+    }
+
+    fn write_rows<W: Write>(&self, writer: &mut csv::Writer<W>) -> std::io::Result<()> {
         for row in 0..self.rows {
-            write(self.columns.iter().map(|(_, column)| column.cell(row)).collect());
+            writer.write_record(self.columns.iter().map(|(_, column)| column.cell(row)))?;
         }
-        writer.into_inner().unwrap_or_default()
+        Ok(())
     }
 }
 
@@ -113,7 +156,7 @@ impl Column {
             values.get(row).and_then(Option::as_ref).map(T::to_string).unwrap_or_default()
         }
         match self {
-            Self::Text(values) => text(values, row),
+            Self::Text(values) => inert(&text(values, row)).into_owned(),
             Self::Whole(values) => text(values, row),
             Self::Number(values) => text(values, row),
             Self::Flag(values) => text(values, row),

@@ -1,4 +1,4 @@
-// Data blocks and small helpers. The blocks hold whole numbers as differences; see src/data.rs.
+// Data and small helpers. Columns hold whole numbers as differences; see src/data.rs.
 
 const one = (selector, root = document) => root.querySelector(selector);
 const all = (selector, root = document) => [...root.querySelectorAll(selector)];
@@ -9,6 +9,19 @@ function svg(name, attributes = {}, text) {
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
   if (text !== undefined) element.textContent = text;
   return element;
+}
+
+/** Names every cell of tables with a head, for windows too narrow for columns. */
+function nameCells(root) {
+  for (const table of all('table.plain:has(thead)', root)) {
+    const names = all('thead tr > *', table).map((head) => head.textContent);
+    table.classList.add('folds');
+    for (const row of all('tbody tr', table)) {
+      [...row.cells].forEach((cell, i) => {
+        if (names[i] && cell.tagName === 'TD') cell.dataset.label = names[i];
+      });
+    }
+  }
 }
 
 const readBlock = (id) => JSON.parse(document.getElementById(id).textContent);
@@ -60,22 +73,23 @@ function readRun(raw) {
     nearest,
     accelerations: raw.accelerations.map(([actor, values]) => ({ actor, values: running(values, 100) })),
     minGap: raw.minGap ? { value: raw.minGap[0], time: raw.minGap[1] } : null,
+    events: raw.events.map(([time, kind, text]) => ({ time, kind, text })),
   };
 }
 
 const cases = new Map();
 
-/** The case at this position of the suite, read on first use. */
-function readCase(position) {
-  if (!cases.has(position)) {
-    const raw = readBlock(`case-data-${position}`);
+/** A case by its name, read on first use; `rawCase` knows where it stands. */
+function readCase(name) {
+  if (!cases.has(name)) {
+    const raw = rawCase(name);
     const drawing = {
       surfaces: raw.surfaces.map(polyline),
       lines: raw.lines.map(([kind, points]) => ({ kind, points: polyline(points) })),
     };
-    cases.set(position, { id: raw.id, drawing, before: readRun(raw.before), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });
+    cases.set(name, { id: raw.id, drawing, before: readRun(raw.before), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });
   }
-  return cases.get(position);
+  return cases.get(name);
 }
 
 /** A value of a column between two steps. */

@@ -1,13 +1,12 @@
-// Which section is seen, keys that work everywhere, copying, facts and their words.
+// Which section is seen, keys that work everywhere, copying.
 
-const pages = all('.page');
-const caseSections = all('.page.case');
 const replays = new Map();
-let currentPage = null;
+let currentPage = one('.page.current');
+let overviewScroll = 0;
 
 const replayOf = (section) => {
   if (!one('.stage', section)) return null;
-  const { before, after } = readCase(Number(section.dataset.case));
+  const { before, after } = readCase(section.dataset.case);
   if (!before && !after) return null;
   if (!replays.has(section)) replays.set(section, new Replay(section));
   return replays.get(section);
@@ -22,67 +21,68 @@ function rememberPlace(section) {
   }
 }
 
+/** What the address names: the place, and the tab where there is one. */
+function address() {
+  try {
+    return decodeURIComponent(location.hash.slice(1)).split('~');
+  } catch {
+    return [''];
+  }
+}
+
+/** Draws a scenario that is seen and whose file has come. */
+function enter(section) {
+  if (section !== currentPage || !('filled' in section.dataset)) return;
+  const replay = replayOf(section);
+  if (replay) {
+    replay.plots.forEach((plot) => plot.draw());
+    replay.draw();
+  }
+  chooseTab(section, chosenTab);
+  tell(one('h1', section).textContent);
+}
+
 function go() {
-  const [id, tab] = decodeURIComponent(location.hash.slice(1)).split('~');
-  const target = document.getElementById(id);
-  const page = target?.closest('.page') ?? pages[0];
+  const [id, tab] = address();
+  const isCase = positions.has(id);
+  const page = isCase ? caseSection(id, enter) : document.getElementById(id)?.closest('.page') ?? one('#overview');
   if (tab) chosenTab = tab;
   const isNew = page !== currentPage;
-  if (isNew && currentPage) replays.get(currentPage)?.pause();
-  currentPage = page;
-  pages.forEach((other) => other.classList.toggle('current', other === page));
-  const isCase = page.classList.contains('case');
+  if (isNew) {
+    if (currentPage.id === 'overview') overviewScroll = scrollY;
+    replays.get(currentPage)?.pause();
+    currentPage.classList.remove('current');
+    page.classList.add('current');
+    currentPage = page;
+  }
   all('.top nav a').forEach((link) => {
     if (link.hash === `#${page.id}`) link.setAttribute('aria-current', 'page');
     else link.removeAttribute('aria-current');
   });
-  one('#case-jump').value = isCase ? page.id : '';
-  const at = caseSections.indexOf(page);
-  one('#case-previous').disabled = caseSections.length === 0 || at === 0;
-  one('#case-next').disabled = caseSections.length === 0 || at === caseSections.length - 1;
+  const at = isCase ? listed.indexOf(positions.get(id)) : -1;
+  one('#case-place').textContent = at < 0 ? '' : `${at + 1} of ${listed.length}`;
+  one('#case-previous').disabled = listed.length === 0 || at === 0;
+  one('#case-next').disabled = listed.length === 0 || at === listed.length - 1;
   if (isCase) {
-    const replay = replayOf(page);
-    if (replay) {
-      replay.plots.forEach((plot) => plot.draw());
-      replay.draw();
-    }
-    chooseTab(page, chosenTab);
+    makeRoom(page, (section) => replays.delete(section));
+    enter(page);
   }
   if (isNew) {
-    scrollTo(0, 0);
-    tell(one('h1', page).textContent);
+    scrollTo(0, page.id === 'overview' ? overviewScroll : 0);
+    if (!isCase) tell(one('h1', page).textContent);
   }
 }
 
 function goToCase(step) {
-  const at = caseSections.indexOf(currentPage);
-  const next = caseSections[at < 0 ? (step > 0 ? 0 : -1) : at + step];
-  if (next) location.hash = next.id;
+  const at = currentPage.classList.contains('case') ? listed.indexOf(positions.get(currentPage.id)) : -1;
+  const next = listed[at < 0 ? (step > 0 ? 0 : listed.length - 1) : at + step];
+  if (next !== undefined) location.hash = `case-${stems[next]}`;
 }
 
-function setUpFacts() {
-  // A fact lights its words, or its columns in the record it names.
-  const light = (section, numbers, columns, record) => {
-    const on = (element, yes) => element.classList.toggle('on', yes);
-    all('mark', section).forEach((mark) => on(mark, mark.dataset.facts.split(' ').some((number) => numbers.includes(number))));
-    all('.facts tr[data-fact]', section).forEach((row) => on(row, numbers.includes(row.dataset.fact)));
-    const fits = (row) => columns.some((column) => row.dataset.columns.includes(column) || column.includes(row.dataset.columns));
-    all('tr[data-columns]', section).forEach((row) => on(row, row.closest('.record').dataset.record === record && fits(row)));
-  };
-  for (const section of caseSections) {
-    const look = (event) => {
-      const row = event.target.closest?.('tr[data-fact]');
-      const mark = event.target.closest?.('mark');
-      if (row) light(section, [row.dataset.fact], row.dataset.column ? [row.dataset.column] : [], row.dataset.record);
-      else if (mark) light(section, mark.dataset.facts.split(' '), []);
-      else light(section, [], []);
-      if (row && event.type === 'focusin') one('mark.on, .record tr.on', section)?.scrollIntoView({ block: 'nearest' });
-    };
-    const panel = one('.story', section);
-    panel?.addEventListener('pointerover', look);
-    panel?.addEventListener('focusin', look);
-    panel?.addEventListener('pointerleave', () => light(section, [], []));
-  }
+function find() {
+  location.hash = 'overview';
+  go();
+  one('#case-search')?.focus();
 }
 
 async function copy(button) {
@@ -111,11 +111,7 @@ function onKey(event) {
     '[': () => goToCase(-1),
     ']': () => goToCase(1),
     '?': () => one('#help').showModal(),
-    '/': () => {
-      location.hash = 'overview';
-      go();
-      one('#case-search')?.focus();
-    },
+    '/': find,
   };
   if (acts[event.key]) {
     event.preventDefault();
@@ -126,35 +122,32 @@ function onKey(event) {
   const own = event.target.closest('button, a, summary, [role=tab], pre, svg[tabindex]');
   if (own && (event.key === ' ' || event.key.startsWith('Arrow') || event.key === 'Home' || event.key === 'End')) return;
   if (event.target.matches('input[type=range]') && (event.key.startsWith('Arrow') || event.key === 'Home' || event.key === 'End')) return;
-  const replay = currentPage && replays.get(currentPage);
+  const replay = replays.get(currentPage);
   if (replay && replayKey(replay, event)) event.preventDefault();
 }
 
-document.documentElement.classList.add('js');
 readColours();
+nameCells(document);
 setUpTable();
 setUpMap();
 setUpFacts();
-caseSections.forEach(setUpTabs);
-const drawThumbs = setUpThumbs();
-all('[data-copy]').forEach((button) => button.addEventListener('click', () => copy(button)));
+addEventListener('click', (event) => {
+  const button = event.target.closest?.('[data-copy]');
+  if (button) copy(button);
+});
 one('#help-open').addEventListener('click', () => one('#help').showModal());
+one('#case-find').addEventListener('click', find);
 one('#case-previous').addEventListener('click', () => goToCase(-1));
 one('#case-next').addEventListener('click', () => goToCase(1));
-one('#case-jump').addEventListener('change', (event) => {
-  if (event.target.value) location.hash = event.target.value;
-});
 addEventListener('hashchange', go);
 addEventListener('keydown', onKey);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   readColours();
-  drawThumbs();
   replays.forEach((replay) => replay.draw());
 });
 addEventListener('beforeprint', () => {
   all('.page.current details').forEach((details) => (details.open = true));
   replays.get(currentPage)?.act('closest');
-  drawThumbs();
 });
-addEventListener('resize', () => currentPage?.classList.contains('case') && chooseTab(currentPage, chosenTab));
+addEventListener('resize', () => 'filled' in currentPage.dataset && chooseTab(currentPage, chosenTab));
 go();

@@ -18,17 +18,18 @@ function setUpMap() {
   const show = (index) => {
     if (!suite.map[index]) return;
     current = index;
-    const [id, entity, when, place, template, cluster, words] = suite.map[index];
+    const [id, entity, when, place, cluster, words] = suite.map[index];
+    const [number, stem] = suite.clusters[cluster];
+    const template = one(`.legend [data-template="${marks[index].dataset.template}"] span`)?.textContent ?? 'no template';
     ring.setAttribute('cx', places[index][0]);
     ring.setAttribute('cy', places[index][1]);
     const link = document.createElement('a');
-    const scenario = all('.case-link').find((a) => Number.parseInt(a.textContent, 10) === cluster);
-    if (scenario) {
-      link.href = scenario.hash;
-      link.textContent = `scenario ${scenario.textContent}`;
+    if (positions.has(`case-${stem}`)) {
+      link.href = `#case-${stem}`;
+      link.textContent = `scenario ${stem}`;
     }
     const where = line('p', [when, place, entity].filter(Boolean).join(' \u00b7 '), 'muted');
-    const what = line('p', `${template}; cluster ${cluster} `);
+    const what = line('p', `${template}; cluster ${number} `);
     what.append(link);
     detail.replaceChildren(line('b', id, 'mono'), where, what, line('p', words, 'words'));
   };

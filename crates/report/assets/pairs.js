@@ -1,7 +1,8 @@
 // The page of runs side by side: every pair with a replay of its own, made when it comes into sight.
 
-document.documentElement.classList.add('js');
+const rawCase = (position) => readBlock(`case-data-${position}`);
 readColours();
+nameCells(document);
 const replays = new Map();
 const observer = new IntersectionObserver((entries) => {
   for (const { target, isIntersecting } of entries) {
@@ -9,7 +10,6 @@ const observer = new IntersectionObserver((entries) => {
     const replay = new Replay(target);
     replays.set(target, replay);
     replay.show('both');
-    replay.act('closest');
     replay.plots.forEach((plot) => plot.draw());
   }
 }, { rootMargin: '300px' });

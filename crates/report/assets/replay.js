@@ -1,16 +1,20 @@
 // The replay of one scenario: time, which run, camera, and the controls that move them.
 
 const MODES = ['before', 'after', 'both', 'reference'];
-const CAMERAS = ['fit', 'follow', 'map'];
+/** How long before the encounter a replay opens. [s] */
+const LEAD_S = 1.5;
+/** Kinds of events, the gravest first: what a mark for several of them looks like. */
+const GRAVITY = ['contact', 'obstacle', 'gap', 'braking', 'finding', 'end'];
 
 class Replay {
   constructor(section) {
     this.section = section;
-    this.kase = readCase(Number(section.dataset.case));
+    this.kase = readCase(section.dataset.case);
     this.root = one('.replay', section);
     this.views = one('.views', section);
     this.scrub = one('.scrub', section);
     this.clock = one('.clock', section);
+    this.marks = one('.marks', section);
     this.time = 0;
     this.rate = 1;
     this.loop = false;
@@ -22,6 +26,7 @@ class Replay {
     this.bounds = boundsOf(this.kase.drawing.surfaces.flat());
     this.bind();
     this.show(this.kase.after ? 'after' : 'before');
+    this.seek((encounterOf(this.told[1])?.time ?? 0) - LEAD_S);
     new ResizeObserver(() => this.draw()).observe(this.views);
   }
 
@@ -76,7 +81,39 @@ class Replay {
     });
     this.scrub.max = this.end;
     this.scrub.step = this.runs[0][1].step;
+    this.mark();
     this.seek(Math.min(this.time, this.end));
+  }
+
+  /** Marks on the slider: the events of the run that is told, those that fall together as one. */
+  mark() {
+    const groups = [];
+    for (const event of this.told[1].events) {
+      const last = groups[groups.length - 1];
+      if (last && event.time - last[0].time < 0.012 * this.end + 0.051) last.push(event);
+      else groups.push([event]);
+    }
+    this.moments = groups.map((events) => {
+      const grave = [...events].sort((a, b) => GRAVITY.indexOf(a.kind) - GRAVITY.indexOf(b.kind))[0];
+      return { time: grave.time, kind: grave.kind, text: events.map((event) => event.text).join('; ') };
+    });
+    this.marks.replaceChildren(...this.moments.map(({ time, kind, text }) => {
+      const button = document.createElement('button');
+      button.type = 'button';
+      button.className = `event ${kind}`;
+      button.title = `${fixed(time, 1)} s: ${text}`;
+      button.setAttribute('aria-label', button.title);
+      button.style.left = `${(100 * clamp(time, 0, this.end)) / (this.end || 1)}%`;
+      button.addEventListener('click', () => this.toMoment({ time, text }));
+      return button;
+    }));
+  }
+
+  toMoment(moment) {
+    if (!moment) return;
+    this.pause();
+    this.seek(moment.time);
+    tell(`${fixed(moment.time, 1)} seconds: ${moment.text}`);
   }
 
   look(camera) {
@@ -113,6 +150,8 @@ class Replay {
       on: () => this.step(0.1),
       'back-far': () => this.step(-1),
       'on-far': () => this.step(1),
+      'event-back': () => this.toMoment(this.moments.filter(({ time }) => time < this.time - 0.01).pop()),
+      'event-on': () => this.toMoment(this.moments.find(({ time }) => time > this.time + 0.01)),
       closest: () => closest && (this.pause(), this.seek(closest.time)),
       loop: () => {
         this.loop = !this.loop;
@@ -194,7 +233,7 @@ class Replay {
 
 const KEYS = {
   ' ': 'play', ArrowLeft: 'back', ArrowRight: 'on', Home: 'start', End: 'end', m: 'closest', b: 'mode', f: 'follow',
-  l: 'loop', '+': 'zoom-in', '=': 'zoom-in', '-': 'zoom-out', 0: 'reset',
+  ',': 'event-back', '.': 'event-on', l: 'loop', '+': 'zoom-in', '=': 'zoom-in', '-': 'zoom-out', 0: 'reset',
 };
 
 /** What a key does to the replay; whether it did something. */
@@ -203,22 +242,4 @@ function replayKey(replay, event) {
   if (!act) return false;
   replay.act(event.shiftKey && (act === 'back' || act === 'on') ? `${act}-far` : act);
   return true;
-}
-
-/** Small pictures of the moment of the least gap, for the table. Drawn when they come into sight. */
-function setUpThumbs() {
-  const draw = (canvas) => {
-    const kase = readCase(Number(canvas.dataset.case));
-    const run = kase.after ?? kase.before;
-    const time = run ? run.minGap?.time ?? run.end : 0;
-    const points = run ? run.actors.filter((actor) => actor.role !== 'traffic').map((actor) => stateAt(actor, run, time)).map(({ x, y }) => [x, y]) : kase.drawing.surfaces.flat();
-    if (!points.length) return;
-    drawScene(canvas, kase, run, time, frame(boundsOf(points), 96, 60, run ? 6.5 : 2, [0, 0], 0.2, 4.6), { bare: true });
-  };
-  const thumbs = all('.thumb');
-  const observer = new IntersectionObserver((entries) => {
-    for (const entry of entries) if (entry.isIntersecting) draw(entry.target);
-  }, { rootMargin: '200px' });
-  thumbs.forEach((thumb) => observer.observe(thumb));
-  return () => thumbs.filter((thumb) => thumb.clientWidth).forEach(draw);
 }

@@ -23,7 +23,7 @@ function frame(box, width, height, margin, [aside, above], least, most) {
 /** Ego and partners now, and where they are nearest: always in the picture, the nearer the larger. */
 function interesting(run, time) {
   const points = [];
-  const closest = run.minGap ? run.minGap.time : run.end;
+  const closest = encounterOf(run)?.time ?? run.end;
   for (const actor of run.actors) {
     if (actor.role === 'traffic') continue;
     const [now, then] = [stateAt(actor, run, time), stateAt(actor, run, closest)];
@@ -32,9 +32,9 @@ function interesting(run, time) {
   return points;
 }
 
-function drawScene(canvas, kase, run, time, camera, options = {}) {
+function drawScene(canvas, kase, run, time, camera) {
   const ratio = window.devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth || 96, canvas.clientHeight || 60];
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
@@ -50,19 +50,18 @@ function drawScene(canvas, kase, run, time, camera, options = {}) {
     pen.beginPath();
     points.forEach(([x, y], i) => (i ? pen.lineTo(toX(x), toY(y)) : pen.moveTo(toX(x), toY(y))));
   };
-  drawRoad(pen, kase.drawing, trace, k, options.bare);
-  if (!run) return;
+  drawRoad(pen, kase.drawing, trace, k);
   run.obstacles.forEach((obstacle) => drawObstacle(pen, obstacle, toX(obstacle.x), toY(obstacle.y), k));
   const order = [...run.actors.keys()].reverse();
   for (const i of order) if (run.actors[i].role !== 'traffic') drawTrail(pen, run, run.actors[i], time, trace, k);
   for (const i of order) drawActor(pen, run.actors[i], stateAt(run.actors[i], run, time), toX, toY, k);
-  run.contacts.filter((contact) => contact.time <= time + 0.051).forEach((contact) => drawContact(pen, toX(contact.x), toY(contact.y), k, options));
-  if (options.bare) return;
+  run.contacts.filter((contact) => contact.time <= time + 0.051).forEach((contact) => drawContact(pen, toX(contact.x), toY(contact.y), k));
+  drawEncounter(pen, run, time, toX, toY, k);
   drawLabels(pen, run, time, toX, toY, k);
   drawScale(pen, k, height);
 }
 
-function drawRoad(pen, drawing, trace, k, bare) {
+function drawRoad(pen, drawing, trace, k) {
   pen.setLineDash([]);
   pen.lineJoin = 'round';
   // A rim about every area, then the areas over it: what stays is the kerb around all of them.
@@ -92,7 +91,6 @@ function drawRoad(pen, drawing, trace, k, bare) {
   pen.lineCap = 'butt';
   pen.lineJoin = 'round';
   for (const line of drawing.lines) {
-    if (bare && line.kind === 'guide') continue;
     const [colour, breadth, dashes] = looks[line.kind];
     pen.strokeStyle = colour;
     pen.lineWidth = clamp(breadth * k, 0.7, 3);
@@ -211,8 +209,8 @@ function drawActor(pen, actor, state, toX, toY, k) {
   pen.restore();
 }
 
-function drawContact(pen, x, y, k, options) {
-  const r = options.bare ? 6 : clamp(1.5 * k, 9, 22);
+function drawContact(pen, x, y, k) {
+  const r = clamp(1.5 * k, 9, 22);
   pen.beginPath();
   for (let i = 0; i < 16; i++) {
     const radius = i % 2 ? r * 0.5 : r;
@@ -227,6 +225,43 @@ function drawContact(pen, x, y, k, options) {
   pen.strokeStyle = '#b00020';
   pen.lineWidth = 1.6;
   pen.stroke();
+}
+
+/** When and where the ego is touched or nearest to another: the moment a replay is about. */
+function encounterOf(run) {
+  if (run.encounter !== undefined) return run.encounter;
+  const event = ['contact', 'obstacle', 'gap'].map((kind) => run.events.find((candidate) => candidate.kind === kind)).find(Boolean);
+  run.encounter = event ? { time: event.time, kind: event.kind, at: placeOf(run, event.time) } : null;
+  return run.encounter;
+}
+
+function placeOf(run, time) {
+  const contact = run.contacts.find((candidate) => Math.abs(candidate.time - time) < run.step);
+  const ego = stateAt(run.actors[0], run, time);
+  if (contact) return [contact.x, contact.y];
+  const gap = ({ values }) => valueAt(values, run, time);
+  const near = run.gaps.filter((candidate) => run.actors[candidate.actor] && Number.isFinite(gap(candidate))).sort((a, b) => gap(a) - gap(b))[0];
+  if (!near) return [ego.x, ego.y];
+  const other = run.actors[near.actor];
+  const [p, q] = nearestPoints(run.actors[0], ego, other, stateAt(other, run, time));
+  return [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2];
+}
+
+/** A ring about the place of the encounter, as long as it lies ahead. */
+function drawEncounter(pen, run, time, toX, toY, k) {
+  const encounter = encounterOf(run);
+  if (!encounter || time > encounter.time - 0.05) return;
+  const [x, y] = [toX(encounter.at[0]), toY(encounter.at[1])];
+  const r = clamp(2 * k, 12, 30);
+  pen.strokeStyle = colours.contact;
+  pen.lineWidth = 2;
+  pen.setLineDash([5, 4]);
+  pen.beginPath();
+  pen.arc(x, y, r, 0, 2 * Math.PI);
+  pen.stroke();
+  pen.setLineDash([]);
+  const name = { contact: 'contact', obstacle: 'obstacle contact', gap: 'least gap' }[encounter.kind];
+  pill(pen, `${name} in ${fixed(encounter.time - time, 1)} s`, x, y + r + 14, colours.contact, colours['scene-ink']);
 }
 
 const corners = (actor, state) => {

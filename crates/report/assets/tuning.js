@@ -3,7 +3,7 @@
 function drawTuning(section) {
   const plot = one('.tune-plot', section);
   if (!plot || !plot.clientWidth) return;
-  const log = readCase(Number(section.dataset.case)).tune;
+  const log = readCase(section.dataset.case).tune;
   if (!log || !log.points.length) return;
   const points = log.points.map(([objective, gap, failed, by, refused, values], number) => ({ number, objective, gap, failed, by: log.by[by], refused: refused.map((i) => log.reasons[i]), values }));
   const [width, height] = [plot.clientWidth, plot.clientHeight];

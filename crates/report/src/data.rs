@@ -1,54 +1,117 @@
-//! The data blocks the page's scripts read: whole numbers in columns, each value as the difference from the one before.
+//! The data the page's scripts read. The suite's stands in the page: one column a key to sort, filter or search by. A case's
+//! stands in its own file: whole numbers in columns, each value as the difference from the one before.
 //!
 //! Positions are in mm (of the road: cm), headings in 1e-4 rad, speeds in mm/s, accelerations in cm/s^2. A value that
 //! is not finite is `null`, and the next difference counts from the last finite one. `assets/data.js` reads it back.
 
-use crate::anchor::Anchors;
+use crate::anchor;
+use crate::page::{Context, cluster_map};
 use crate::pairs::{PairView, RunTrace};
-use crate::view::{CaseView, RunView, SuiteView};
+use crate::search;
+use crate::view::{CaseRow, CaseView, RunRow, RunView};
 use crate::words;
 use recrash_model::geometry::{OrientedBox, Vec2};
-use recrash_model::metrics::Series;
-use recrash_model::record::PartnerKind;
+use recrash_model::metrics::{Answer, FindingKind, Series};
+use recrash_model::record::{CrashRecord, PartnerKind};
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
 use recrash_model::run::JudgedRun;
 use recrash_model::tuning::TuneLog;
 use recrash_roads::RoadDrawing;
 use serde_json::{Value, json};
 
-/// JSON that may stand inside a `script` element: nothing in it can close the element or open a comment.
+/// JSON that may stand inside a `script` element or file: nothing in it can close the element, open a comment or end a line.
 pub fn embed(value: &Value) -> String {
-    value.to_string().replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
+    let mut text = value.to_string();
+    for (letter, code) in
+        [('<', "\\u003c"), ('>', "\\u003e"), ('&', "\\u0026"), ('\u{2028}', "\\u2028"), ('\u{2029}', "\\u2029")]
+    {
+        text = text.replace(letter, code);
+    }
+    text
 }
 
 /// What the scripts need of the suite as a whole.
-pub fn suite(suite: &SuiteView, anchors: &Anchors) -> Value {
+pub fn suite(context: &Context) -> Value {
+    let suite = context.suite;
     let records = &suite.records.records;
-    let map: Vec<Value> = suite
-        .selection
-        .map
-        .iter()
-        .filter_map(|point| {
-            let record = records.get(point.record)?;
+    let map: Vec<Value> = cluster_map::shown(suite)
+        .into_iter()
+        .map(|point| {
+            let record = &records[point.record];
             let when = record.when.map_or_else(String::new, |when| when.to_string());
-            let cluster = suite.selection.clusters.get(point.cluster)?;
-            Some(json!([
+            json!([
                 words::clean(&record.id.to_string(), 60),
                 words::clean(&record.entity, 60),
                 when,
                 words::clean(&record.place, 60),
-                record.template().map_or_else(String::new, |template| words::template(&template)),
-                cluster.number,
-                words::clean(&record.narrative, 160),
-            ]))
+                point.cluster,
+                words::clean(&record.narrative, 90),
+            ])
         })
         .collect();
     json!({
-        "anchors": anchors.cases(),
         "minGap": suite.profile.failure.min_gap_m,
         "hardBraking": suite.profile.failure.hard_braking_mps2,
         "map": map,
+        "clusters": suite.selection.clusters.iter().map(|cluster| json!([cluster.number, anchor::stem(&cluster.scenario_id)])).collect::<Vec<_>>(),
+        "rows": rows(context),
     })
+}
+
+/// Columns of the table, one value a case.
+fn rows(context: &Context) -> Value {
+    let cases = || context.suite.cases.iter().enumerate();
+    let told = |position: usize| context.told.at(position);
+    let texts = |of: &dyn Fn(&CrashRecord) -> String| {
+        let mut names: Vec<String> = Vec::new();
+        let of: Vec<Option<usize>> = cases()
+            .map(|(i, _)| told(i).map(|record| index_of(&mut names, words::clean(&of(record), 80).into_owned())))
+            .collect();
+        json!([names, of])
+    };
+    let numbers = |of: &dyn Fn(&CaseRow) -> Option<f64>| {
+        cases().map(|(_, case)| of(case).map_or(Value::Null, |value| short(value, 3))).collect::<Vec<_>>()
+    };
+    let last = |case: &CaseRow, of: fn(&RunRow) -> Option<f64>| case.last_run().and_then(of);
+    json!({
+        "stems": cases().map(|(_, case)| anchor::stem(&case.scenario_id)).collect::<Vec<_>>(),
+        "operator": texts(&|record| record.entity.clone()),
+        "city": texts(&|record| record.place.clone()),
+        "kind": texts(&search::partner),
+        "injury": texts(&search::injury),
+        "harm": cases().map(|(i, _)| told(i).and_then(|record| record.severity.known()).map(|severity| severity as usize)).collect::<Vec<_>>(),
+        "before": numbers(&|case| case.before.as_ref().and_then(|run| run.min_gap_m())),
+        "after": numbers(&|case| last(case, |run| run.min_gap_m())),
+        "impact": numbers(&|case| last(case, |run| Some(run.metrics.contact.as_ref()?.relative_speed_mps))),
+        "findings": numbers(&|case| last(case, |run| Some(finding_weight(&run.finding_kinds())))),
+        "faithful": numbers(&|case| Some(match case.faithful()? { Answer::Yes => 3.0, Answer::Unchecked => 2.0, Answer::No => 1.0 })),
+        "tags": cases().map(|(_, case)| tags(case)).collect::<Vec<_>>(),
+        "words": cases().map(|(i, case)| search::words_of(case, told(i))).collect::<Vec<_>>(),
+    })
+}
+
+/// Failures count more than odd behaviour.
+fn finding_weight(kinds: &[FindingKind]) -> f64 {
+    kinds.iter().map(|kind| if kind.is_failure() { 100.0 } else { 1.0 }).sum()
+}
+
+/// What a case can be filtered by.
+fn tags(case: &CaseRow) -> String {
+    let failed = case.last_run().map(|run| run.failed());
+    let origin = case.origin.as_ref().map_or("", |origin| origin.name());
+    let holds = [
+        ("failed", failed == Some(true)),
+        ("passed", failed == Some(false)),
+        ("faithful", case.faithful() == Some(Answer::Yes)),
+        ("unfaithful", case.faithful() == Some(Answer::No)),
+        ("unchecked", case.faithful() == Some(Answer::Unchecked)),
+        ("own", origin == "own"),
+        ("other", origin == "other"),
+        ("invented", origin == "invented"),
+        ("refused", case.refused.is_some()),
+        ("edited", !case.edited.is_empty()),
+    ];
+    holds.iter().filter(|(_, holds)| *holds).map(|(tag, _)| *tag).collect::<Vec<_>>().join(" ")
 }
 
 /// What the scripts need of one case.
@@ -119,7 +182,40 @@ fn trace(run: &JudgedRun, series: &Series) -> Value {
         "gaps": series.partners.iter().map(|p| json!([p.actor, column(p.gap_m.iter().copied(), 1000.0)])).collect::<Vec<_>>(),
         "accelerations": accelerations,
         "minGap": run.metrics.min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
+        "events": events(run),
     })
+}
+
+/// What is worth a look, in the order of time: when, what kind, and in words.
+fn events(run: &JudgedRun) -> Vec<Value> {
+    let rollout = &run.rollout;
+    let name = |actor: usize| rollout.actors.get(actor).map_or("somebody", |track| &track.id);
+    let mut events: Vec<(f64, &str, String)> = Vec::new();
+    for event in &rollout.events {
+        events.push(match &event.kind {
+            EventKind::Contact { a, b, .. } => {
+                (event.time_s, "contact", format!("contact of {} and {}", name(*a), name(*b)))
+            }
+            EventKind::ObstacleContact { actor, .. } => {
+                (event.time_s, "obstacle", format!("{} touches an obstacle", name(*actor)))
+            }
+        });
+    }
+    if let Some(gap) = run.metrics.min_gap {
+        let value = words::fixed(gap.value, 2).map_or_else(String::new, |value| format!(" {value} m"));
+        events.push((gap.time_s, "gap", format!("least gap{value}")));
+    }
+    for finding in &run.findings {
+        let told = matches!(finding.kind, FindingKind::Contact | FindingKind::ObstacleContact | FindingKind::NearMiss);
+        if !told {
+            let kind = if finding.kind == FindingKind::HardBraking { "braking" } else { "finding" };
+            events.push((finding.time_s, kind, finding.kind.label().to_owned()));
+        }
+    }
+    events.push((rollout.termination.time_s, "end", format!("end: {}", words::name(&rollout.termination.kind))));
+    events.retain(|(time_s, ..)| time_s.is_finite());
+    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    events.into_iter().map(|(time_s, kind, text)| json!([short(time_s, 3), kind, words::clean(&text, 120)])).collect()
 }
 
 fn actor(track: &ActorTrack) -> Value {

@@ -1,4 +1,8 @@
-//! The report of a suite: one self-contained HTML page, JUnit XML and a CSV table, each a function of a [`SuiteView`].
+//! The report of a suite: an HTML page with one file a scenario beside it, JUnit XML and a CSV table.
+//!
+//! The page is a function of a [`SuiteView`], which holds what the tables say; the file of a scenario is a function of that
+//! scenario's [`CaseView`] and nothing else, and is read when somebody looks at the scenario. So a suite of thousands opens
+//! at once, and a scenario that changed is written alone.
 //!
 //! What this crate does **not** do: it opens no file, measures nothing, and loads nothing from a network, neither when it
 //! runs nor when the page is looked at.
@@ -9,20 +13,35 @@ mod junit;
 mod page;
 mod pairs;
 mod results;
+mod search;
 mod summary;
+mod thumbnail;
 mod view;
 mod words;
 
 pub use pairs::{PairView, PairsView, RunTrace, TableView};
 pub use recrash_roads::{LineKind, RoadDrawing, RoadLine};
-pub use view::{CaseView, RunView, SuiteView};
+pub use thumbnail::Thumbnail;
+pub use view::{CaseContext, CaseRow, CaseView, RunRow, RunView, SuiteView};
 
-/// The page. Same view, same bytes; all text of records and models is escaped, and nothing on it can load anything.
+/// The page. Same view, same bytes; all text of records and models is escaped, and nothing on it can load anything but the
+/// files of its own scenarios, [`case_file_name`], from beside it.
 pub fn html(suite: &SuiteView) -> String {
     page::render(suite)
 }
 
-/// The page of runs side by side, with the same promises as [`html`].
+/// The file of one scenario: data for the page, as one call of one function with one JSON value. It depends on the context,
+/// the case and the row only.
+pub fn case_file(context: &CaseContext, case: &CaseView, row: &CaseRow) -> String {
+    page::case_file(context, case, row)
+}
+
+/// Where the page looks for it, from its own folder: `report/ID.js`, with an id that is not plain letters made so.
+pub fn case_file_name(scenario_id: &str) -> String {
+    format!("report/{}.js", anchor::stem(scenario_id))
+}
+
+/// The page of runs side by side: one document, with the same promises as [`html`].
 pub fn pairs_html(pairs: &PairsView) -> String {
     page::render_pairs(pairs)
 }

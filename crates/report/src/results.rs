@@ -1,11 +1,12 @@
 //! The results as a table for spreadsheets and data frames.
 
-use crate::view::{CaseView, RunView, SuiteView};
+use crate::view::{CaseRow, RunRow, SuiteView};
 use crate::words::{self, fixed};
-use recrash_model::metrics::{PartnerMetrics, Timed};
+use recrash_model::metrics::{Check, PartnerMetrics, Timed};
+use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 40] = [
+const HEADER: [&str; 44] = [
     "scenario",
     "run",
     "road",
@@ -23,6 +24,7 @@ const HEADER: [&str; 40] = [
     "failed",
     "faithful",
     "not_faithful_because",
+    "unchecked_because",
     "findings",
     "min_gap_m",
     "min_gap_time_s",
@@ -37,42 +39,44 @@ const HEADER: [&str; 40] = [
     "ego_zone",
     "other_zone",
     "relative_speed_mps",
+    "ego_contact_speed_mps",
+    "other_contact_speed_mps",
     "ego_max_deceleration_mps2",
     "ego_max_lane_departure_m",
     "termination",
     "duration_s",
-    "state_hash",
+    "run_id",
     "failure_class",
     "other_egos",
     "refused_because",
+    "edited_files",
     "command",
 ];
 
 /// The table.
 pub fn render(suite: &SuiteView) -> String {
-    let mut text = String::new();
-    push_row(&mut text, HEADER.iter().map(|&name| name.to_owned()));
+    let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
+    // Into memory, and every row has the header's width.
+    let mut write = |cells: Vec<String>| {
+        let cells = cells.iter().map(|text| cell(text));
+        writer.write_record(cells).expect("a row of the header's width");
+    };
+    write(HEADER.map(str::to_owned).into());
     for case in &suite.cases {
-        let runs = [("as designed", &case.before), ("tuned", &case.after)];
-        let mut any = false;
-        for (name, run) in runs {
-            if let Some(run) = run {
-                any = true;
-                push_row(&mut text, row(suite, case, name, Some(run)));
-            }
+        for (name, run) in case.runs() {
+            write(row(suite, case, name, Some(run)));
         }
-        if !any {
-            push_row(&mut text, row(suite, case, "not run", None));
+        if case.last_run().is_none() {
+            write(row(suite, case, "not run", None));
         }
     }
-    text
+    String::from_utf8(writer.into_inner().unwrap_or_default()).expect("made of texts")
 }
 
-fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) -> Vec<String> {
+fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> Vec<String> {
     let t = case.template;
     let cluster = suite.cluster(case);
-    let origin = case.narrative.as_ref().map_or("", |narrative| narrative.origin.name());
-    let told = case.narrative.as_ref().and_then(|narrative| narrative.told_record());
+    let origin = case.origin.as_ref().map_or("", |origin| origin.name());
     let mut row = vec![
         case.scenario_id.clone(),
         name.to_owned(),
@@ -83,15 +87,15 @@ fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) ->
         cluster.map_or_else(String::new, |cluster| cluster.number.to_string()),
         suite.case_records(case).next().map_or_else(String::new, |record| record.id.to_string()),
         origin.to_owned(),
-        told.map_or_else(String::new, ToString::to_string),
+        case.told.as_ref().map_or_else(String::new, ToString::to_string),
         suite.profile.name.clone(),
         suite.ego.clone(),
         suite.simulator.clone(),
         suite.seed.to_string(),
     ];
     match run {
-        Some(run) => row.extend(measured(run)),
-        None => row.extend(std::iter::repeat_n(String::new(), 22)),
+        Some(run) => row.extend(measured(case, run)),
+        None => row.extend(std::iter::repeat_n(String::new(), 25)),
     }
     // The triage is about the last run.
     let is_last = run.is_some_and(|run| case.last_run().is_some_and(|last| std::ptr::eq(run, last)));
@@ -99,6 +103,7 @@ fn row(suite: &SuiteView, case: &CaseView, name: &str, run: Option<&RunView>) ->
     row.push(triage.map_or_else(String::new, |triage| triage.class.label().to_owned()));
     row.push(triage.map_or_else(String::new, other_egos));
     row.push(case.refused.clone().unwrap_or_default());
+    row.push(case.edited.join("; "));
     row.push(run.map_or_else(String::new, |run| run.rerun_command.clone()));
     row
 }
@@ -113,18 +118,20 @@ pub fn other_egos(triage: &Triage) -> String {
     told.collect::<Vec<_>>().join("; ")
 }
 
-fn measured(run: &RunView) -> Vec<String> {
+fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
     let m = &run.metrics;
     let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
     let worst = |of: fn(&PartnerMetrics) -> Option<Timed>| m.partners.iter().filter_map(of).map(|timed| timed.value);
     let least = |of| number(worst(of).min_by(f64::total_cmp));
     let contact = m.contact.as_ref();
     let kinds: Vec<&str> = run.finding_kinds().into_iter().map(|kind| kind.label()).collect();
-    let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
+    let named = |checks: Vec<&Check>| checks.iter().map(|check| check.kind.label()).collect::<Vec<_>>().join("; ");
     vec![
         run.failed().to_string(),
-        run.faithful().label().to_owned(),
-        why.join("; "),
+        // Nobody's crash has no record to be true to.
+        case.faithful().map_or("", |_| run.faithful().label()).to_owned(),
+        named(run.verdict.failures().collect()),
+        named(run.verdict.unchecked().collect()),
         kinds.join("; "),
         number(run.min_gap_m()),
         number(m.min_gap.map(|gap| gap.time_s)),
@@ -139,54 +146,17 @@ fn measured(run: &RunView) -> Vec<String> {
         contact.map_or("", |contact| contact.ego_zone.label()).to_owned(),
         contact.map_or("", |contact| contact.other_zone.label()).to_owned(),
         number(contact.map(|contact| contact.relative_speed_mps)),
+        number(contact.map(|contact| contact.ego_speed_mps)),
+        number(contact.map(|contact| contact.other_speed_mps)),
         number(Some(m.ego.max_deceleration.value)),
         number(Some(m.ego.max_lane_departure.value)),
         words::name(&m.termination),
         number(Some(m.duration_s)),
-        run.rollout.state_hash.clone(),
+        run.id.clone(),
     ]
 }
 
-fn push_row(text: &mut String, cells: impl IntoIterator<Item = String>) {
-    for (position, cell) in cells.into_iter().enumerate() {
-        if position > 0 {
-            text.push(',');
-        }
-        push_cell(text, &cell);
-    }
-    text.push_str("\r\n");
-}
-
-/// A cell. Texts that a spreadsheet would take for a formula get an apostrophe; numbers stay as they are.
-fn push_cell(text: &mut String, cell: &str) {
-    let cell = words::clean(cell, words::LONGEST_TEXT);
-    let formula = cell.starts_with(['=', '+', '-', '@', '\t']) && cell.parse::<f64>().is_err();
-    let quoted = cell.contains(['"', ',', '\n', '\r']) || formula;
-    if quoted {
-        text.push('"');
-    }
-    if formula {
-        text.push('\'');
-    }
-    text.push_str(&cell.replace('"', "\"\""));
-    if quoted {
-        text.push('"');
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_are_quoted_and_formulas_are_defused() {
-        let written = |cell: &str| {
-            let mut text = String::new();
-            push_cell(&mut text, cell);
-            text
-        };
-        assert_eq!(written("a,\"b\""), "\"a,\"\"b\"\"\"");
-        assert_eq!(written("=HYPERLINK(1)"), "\"'=HYPERLINK(1)\"");
-        assert_eq!(written("-1.5"), "-1.5");
-    }
+/// A cell, which no spreadsheet takes for a formula.
+fn cell(text: &str) -> String {
+    inert(&words::clean(text, words::LONGEST_TEXT)).into_owned()
 }

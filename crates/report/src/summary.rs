@@ -1,7 +1,8 @@
 //! The headline numbers, computed once, so that no two places of the report can disagree.
 
-use crate::view::{CaseView, RunView, SuiteView};
+use crate::view::{CaseRow, SuiteView};
 use recrash_model::metrics::Answer;
+use recrash_model::run::Judgement;
 use recrash_model::triage::FailureClass;
 
 /// How a run ended for the ego.
@@ -17,7 +18,7 @@ pub enum Result {
 
 impl Result {
     /// Of a run.
-    pub fn of(run: Option<&RunView>) -> Self {
+    pub fn of(run: Option<&Judgement>) -> Self {
         match run {
             Some(run) if run.failed() => Self::Failed,
             Some(_) => Self::Passed,
@@ -51,12 +52,14 @@ pub struct Summary {
     pub refused: usize,
     /// Scenarios that tell their own record, another one, and nobody's crash.
     pub origins: [usize; 3],
-    /// Scenarios whose last run shows every fact told.
-    pub faithful: usize,
-    /// Scenarios whose last run shows something else.
-    pub unfaithful: usize,
     /// Scenarios that tell their own record and whose last run shows every fact told.
     pub own_faithful: usize,
+    /// Scenarios that tell their own record and whose last run shows something else.
+    pub own_unfaithful: usize,
+    /// Scenarios that tell another record and whose last run shows every fact told.
+    pub other_faithful: usize,
+    /// Scenarios in which a person edited a file.
+    pub edited: usize,
     /// Scenarios the ego fails as designed.
     pub failed_before: usize,
     /// Scenarios the ego fails after tuning.
@@ -74,12 +77,10 @@ pub struct Summary {
 impl Summary {
     /// Of a suite.
     pub fn of(suite: &SuiteView) -> Self {
-        let count = |holds: &dyn Fn(&CaseView) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
-        let tells = |case: &CaseView, name: &str| {
-            case.narrative.as_ref().is_some_and(|narrative| narrative.origin.name() == name)
-        };
-        let answers = |case: &CaseView, answer| case.last_run().is_some_and(|run| run.faithful() == answer);
-        let gaps = |of: &dyn Fn(&CaseView) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
+        let count = |holds: &dyn Fn(&CaseRow) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
+        let tells = |case: &CaseRow, name: &str| case.origin.as_ref().is_some_and(|origin| origin.name() == name);
+        let answers = |case: &CaseRow, answer| case.faithful() == Some(answer);
+        let gaps = |of: &dyn Fn(&CaseRow) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
         Self {
             rows: suite.records.files.iter().map(|file| file.rows).sum(),
             usable: suite.records.usable.len(),
@@ -87,9 +88,10 @@ impl Summary {
             ran: count(&|case| case.last_run().is_some()),
             refused: count(&|case| case.refused.is_some()),
             origins: ["own", "other", "invented"].map(|name| count(&|case| tells(case, name))),
-            faithful: count(&|case| answers(case, Answer::Yes)),
-            unfaithful: count(&|case| answers(case, Answer::No)),
             own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
+            own_unfaithful: count(&|case| tells(case, "own") && answers(case, Answer::No)),
+            other_faithful: count(&|case| tells(case, "other") && answers(case, Answer::Yes)),
+            edited: count(&|case| !case.edited.is_empty()),
             failed_before: count(&|case| case.before.as_ref().is_some_and(|run| run.failed())),
             failed_after: count(&|case| case.last_run().is_some_and(|run| run.failed())),
             classes: FailureClass::ALL
@@ -110,7 +112,7 @@ impl Summary {
 }
 
 /// Whether tuning brought the partner closer, where the ego did not fail as designed.
-fn closer(case: &CaseView) -> Option<bool> {
+fn closer(case: &CaseRow) -> Option<bool> {
     let (before, after) = (case.before.as_ref()?, case.after.as_ref()?);
     Some(!before.failed() && after.min_gap_m()? < before.min_gap_m()?)
 }

@@ -1,21 +1,26 @@
 //! What the pipeline hands to this crate: one suite, read only. Everything the page shows is computed from it.
 //!
+//! A suite is its light part, [`SuiteView`] with one [`CaseRow`] a scenario, from which come the overview, JUnit and CSV. The
+//! heavy part, a [`CaseView`] with tracks and series, is needed for one scenario at a time, and never for all of them.
+//!
 //! Nothing is said twice: strategy, budget and embedding stand in [`Selection`], limits in [`SystemProfile`],
 //! files and their hashes in [`RecordSet`].
 
 use crate::pairs::RunTrace;
+use crate::thumbnail::Thumbnail;
 use recrash_model::Diagnostic;
-use recrash_model::metrics::Series;
-use recrash_model::narrative::Narrative;
+use recrash_model::metrics::{Answer, Series};
+use recrash_model::narrative::{Narrative, Origin};
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::{CrashRecord, RecordSet};
-use recrash_model::run::JudgedRun;
+use recrash_model::record::{CrashRecord, RecordRef, RecordSet};
+use recrash_model::run::{JudgedRun, Judgement};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
 use recrash_model::triage::Triage;
 use recrash_model::tuning::TuneLog;
 use recrash_roads::RoadDrawing;
+use serde::{Deserialize, Serialize};
 
 /// A whole suite.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,15 +50,15 @@ pub struct SuiteView {
     /// Templates, clusters, picks, coverage.
     pub selection: Selection,
     /// One case per pick, in the order of the suite.
-    pub cases: Vec<CaseView>,
+    pub cases: Vec<CaseRow>,
     /// Remarks of every stage.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// One scenario of the suite, with everything it came from and everything it showed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CaseView {
-    /// Scenario id.
+/// What the tables say of one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseRow {
+    /// Scenario id. No two of a suite are the same.
     pub scenario_id: String,
     /// Template it stands for.
     pub template: Template,
@@ -61,6 +66,40 @@ pub struct CaseView {
     pub cluster: Option<usize>,
     /// Positions in [`RecordSet::records`] of the records to show: the pick first, then a few of its neighbours.
     pub records: Vec<usize>,
+    /// Whose crash the narrative tells, where one was written.
+    pub origin: Option<Origin>,
+    /// The record that is told; none where the crash is invented.
+    pub told: Option<RecordRef>,
+    /// Text of the narrative, to search in; empty where none was written.
+    pub narrative: String,
+    /// The scenario as designed. `None` only where it was refused before it could run.
+    pub before: Option<RunRow>,
+    /// The scenario as tuned, where tuning kept another point.
+    pub after: Option<RunRow>,
+    /// How the other egos fare in the last run's scenario, where the ego under test fails it.
+    pub triage: Option<Triage>,
+    /// Why the scenario was refused, where it was.
+    pub refused: Option<String>,
+    /// Files of this scenario that a person edited.
+    pub edited: Vec<String>,
+    /// A small picture of the last run.
+    pub thumbnail: Option<Thumbnail>,
+}
+
+/// What the tables say of one run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunRow {
+    /// What is said about it.
+    pub judgement: Judgement,
+    /// The command that runs this scenario again.
+    pub rerun_command: String,
+}
+
+/// Everything behind one scenario: what it came from and what it showed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseView {
+    /// Scenario id, the row's.
+    pub scenario_id: String,
     /// The narrative, where one was written.
     pub narrative: Option<Narrative>,
     /// The road, to draw under the replay. Before and after tuning share it.
@@ -92,15 +131,58 @@ pub struct RunView {
     pub rerun_command: String,
 }
 
+/// What a scenario's own file needs besides the scenario: nothing that another scenario could change.
+#[derive(Debug, Clone, Copy)]
+pub struct CaseContext<'a> {
+    /// Ego that was run.
+    pub ego: &'a str,
+    /// The records that row and cluster name by position. Only those are read.
+    pub records: &'a [CrashRecord],
+    /// The cluster that the scenario stands for, where it does.
+    pub cluster: Option<&'a Cluster>,
+}
+
 impl SuiteView {
     /// The cluster a case stands for.
-    pub fn cluster(&self, case: &CaseView) -> Option<&Cluster> {
+    pub fn cluster(&self, case: &CaseRow) -> Option<&Cluster> {
         self.selection.clusters.get(case.cluster?)
     }
 
+    /// What the file of this case needs of the suite.
+    pub fn context(&self, case: &CaseRow) -> CaseContext<'_> {
+        CaseContext { ego: &self.ego, records: &self.records.records, cluster: self.cluster(case) }
+    }
+
     /// The records a case shows, the pick first.
-    pub fn case_records<'a>(&'a self, case: &'a CaseView) -> impl Iterator<Item = &'a CrashRecord> {
+    pub fn case_records<'a>(&'a self, case: &'a CaseRow) -> impl Iterator<Item = &'a CrashRecord> {
         case.records.iter().filter_map(|&position| self.records.records.get(position))
+    }
+}
+
+impl<'a> CaseContext<'a> {
+    /// The records a case shows, the pick first.
+    pub fn case_records(&self, case: &CaseRow) -> impl Iterator<Item = &'a CrashRecord> {
+        let records = self.records;
+        case.records.iter().filter_map(move |&position| records.get(position))
+    }
+}
+
+impl CaseRow {
+    /// The run the verdict is about: the tuned one, or the scenario as designed where tuning kept it.
+    pub fn last_run(&self) -> Option<&RunRow> {
+        self.after.as_ref().or(self.before.as_ref())
+    }
+
+    /// The runs with their names.
+    pub fn runs(&self) -> Vec<(&'static str, &RunRow)> {
+        named(&self.before, &self.after)
+    }
+
+    /// Whether the last run is true to the record that is told. There is no answer where the scenario did not run, and none
+    /// where nobody's crash is told: an invented course has no record to be true to.
+    pub fn faithful(&self) -> Option<Answer> {
+        let invented = matches!(self.origin, Some(Origin::Invented { .. }));
+        self.last_run().filter(|_| !invented).map(|run| run.faithful())
     }
 }
 
@@ -108,6 +190,24 @@ impl CaseView {
     /// The run the verdict is about: the tuned one, or the scenario as designed where tuning kept it.
     pub fn last_run(&self) -> Option<&RunView> {
         self.after.as_ref().or(self.before.as_ref())
+    }
+
+    /// The runs with their names.
+    pub fn runs(&self) -> Vec<(&'static str, &RunView)> {
+        named(&self.before, &self.after)
+    }
+}
+
+fn named<'a, T>(before: &'a Option<T>, after: &'a Option<T>) -> Vec<(&'static str, &'a T)> {
+    let named = [("as designed", before), ("tuned", after)];
+    named.into_iter().filter_map(|(name, run)| Some((name, run.as_ref()?))).collect()
+}
+
+impl std::ops::Deref for RunRow {
+    type Target = Judgement;
+
+    fn deref(&self) -> &Judgement {
+        &self.judgement
     }
 }
 

@@ -1,7 +1,7 @@
 //! From nouns to words and numbers to text, the same everywhere on the page.
 
-use recrash_model::narrative::{FactSource, FactValue};
-use recrash_model::record::{Coded, ContactZone, MPS_PER_MPH};
+use recrash_model::narrative::{FactSource, FactValue, Origin};
+use recrash_model::record::{Coded, ContactZone, MPS_PER_MPH, RecordRef};
 use recrash_model::template::Template;
 use serde::Serialize;
 use serde_json::Value;
@@ -41,6 +41,11 @@ pub fn thousands(n: usize) -> String {
         text.push(digit);
     }
     text
+}
+
+/// Bytes as hexadecimal digits.
+pub fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Untrusted text made fit to print: control characters replaced, and no longer than `longest` characters.
@@ -138,6 +143,14 @@ pub fn source(source: &FactSource) -> (&'static str, Cow<'_, str>) {
         FactSource::Words { words, .. } => ("words", Cow::Owned(format!("\u{201c}{}\u{201d}", clean(words, 400)))),
         FactSource::Assumed { why } => ("assumed", clean(why, 400)),
     }
+}
+
+/// Whose crash is told, such as `another record, 90000-1001/1: the pick is redacted`.
+pub fn provenance(origin: Option<&Origin>, told: Option<&RecordRef>) -> String {
+    let Some(origin) = origin else { return "no narrative was written".to_owned() };
+    let record = told.map_or_else(String::new, |record| format!(", {record}"));
+    let reason = origin.reason().map_or_else(String::new, |reason| format!(": {reason}"));
+    format!("{}{record}{reason}", origin.label())
 }
 
 /// A template in few words, such as "Intersection, SV straight, CP left turn".

@@ -6,10 +6,13 @@ use crate::matrix::{distance, squared_distance};
 use crate::pca::principal_components;
 use crate::space::ClusteringSpace;
 use crate::strategy::Group;
+use recrash_model::hash::Fnv;
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::RecordSet;
+use recrash_model::record::{RecordRef, RecordSet};
 use recrash_model::selection::{Cluster, Coverage, MapPoint, Selection, TemplateCount};
+use recrash_model::template::Template;
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
+use std::collections::BTreeMap;
 
 /// The selection that these groups make.
 pub(crate) fn selection(
@@ -22,8 +25,9 @@ pub(crate) fn selection(
     let mut groups: Vec<&Group> = groups.iter().collect();
     // Templates are in the order of size already.
     groups.sort_by_key(|group| (space.template_of[group.pick()], group.members.iter().min().copied()));
-    let clusters: Vec<Cluster> =
+    let mut clusters: Vec<Cluster> =
         groups.iter().enumerate().map(|(i, group)| cluster(records, space, i + 1, group)).collect();
+    name(&mut clusters);
     let templates = space
         .observed
         .iter()
@@ -61,12 +65,46 @@ fn cluster(records: &RecordSet, space: &ClusteringSpace, number: usize, group: &
     let to_pick = |&row: &usize| distance(space.points.row(row), space.points.row(pick));
     Cluster {
         number,
-        scenario_id: format!("{number:02}-{}", template.slug()),
+        scenario_id: scenario_id(&template, &records.records[pick_index].id),
         template,
         pick: records.records[pick_index].id.clone(),
         pick_index,
         members: group.members.iter().map(|&row| space.positions[row]).collect(),
         radius: group.members.iter().map(to_pick).fold(0.0, f64::max),
+    }
+}
+
+/// Name of the scenario of a pick: its template and its report. Neither changes when other records come or go, or a later
+/// version of the report does.
+fn scenario_id(template: &Template, pick: &RecordRef) -> String {
+    let report = &pick.report_id;
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if report.len() <= LONGEST_REPORT_ID && report.chars().all(plain) {
+        return format!("{}-{report}", template.slug());
+    }
+    let mut hash = Fnv::default();
+    hash.write_text(report);
+    format!("{}-{}", template.slug(), hash.hexadecimal())
+}
+
+/// Report ids up to this length stand in names of files as they are. [characters]
+const LONGEST_REPORT_ID: usize = 32;
+
+/// Tells apart what shares a name: several versions of one report may be picks where nothing is merged.
+fn name(clusters: &mut [Cluster]) {
+    let mut taken: BTreeMap<String, usize> = BTreeMap::new();
+    for cluster in clusters.iter() {
+        *taken.entry(cluster.scenario_id.clone()).or_default() += 1;
+    }
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    for cluster in clusters.iter_mut().filter(|cluster| taken[&cluster.scenario_id] > 1) {
+        cluster.scenario_id = format!("{}-v{}", cluster.scenario_id, cluster.pick.version);
+        // One report in two files.
+        let times = seen.entry(cluster.scenario_id.clone()).or_default();
+        *times += 1;
+        if *times > 1 {
+            cluster.scenario_id = format!("{}-{times}", cluster.scenario_id);
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod greedy;
 mod kmeans;
 mod lexical;
 mod matrix;
+mod onward;
 #[cfg(test)]
 mod oracle;
 mod pca;
@@ -153,6 +154,23 @@ pub fn select_with(
 ) -> Result<Outcome<Selection>, SelectError> {
     let space = space::ClusteringSpace::new(records, profile, options, embedding)?;
     let groups = strategy::choose(&space, options);
+    Ok(assemble::selection(records, profile, options, &space, &groups))
+}
+
+/// As [`select_with`], going on from an earlier choice as long as that holds: its picks stay, and records that came in join
+/// them or become picks where there is room. `earlier` holds positions in [`RecordSet::records`], each group's pick first.
+///
+/// # Errors
+/// As [`select_with`].
+pub fn select_onward(
+    records: &RecordSet,
+    profile: &SystemProfile,
+    options: &SelectOptions,
+    embedding: &Embedding,
+    earlier: &[Vec<usize>],
+) -> Result<Outcome<Selection>, SelectError> {
+    let space = space::ClusteringSpace::new(records, profile, options, embedding)?;
+    let groups = onward::go_on(&space, earlier, options.budget).unwrap_or_else(|| strategy::choose(&space, options));
     Ok(assemble::selection(records, profile, options, &space, &groups))
 }
 

@@ -48,6 +48,10 @@ const LANE_CHANGE_PERIOD_STEPS: u32 = 50;
 const TIMER_AT_START_STEPS: u32 = LANE_CHANGE_PERIOD_STEPS / 2;
 const TIMER_AFTER_CHANGE_STEPS: u32 = LANE_CHANGE_PERIOD_STEPS / 4;
 
+/// What it asks for at exactly the speed it wants. MetaDrive's speed is the length of a velocity in single precision, which
+/// is never exactly the wanted one: a throttle of 0 would let the vehicle coast, and this hair of a brake lets it roll.
+const HAIR: f64 = -1e-15;
+
 /// Somebody or something in front.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Lead {
@@ -67,6 +71,7 @@ pub(crate) struct Lead {
 pub(crate) fn throttle(speed_mps: f64, target_mps: f64, forward: Vec2, velocity: Vec2, lead: Option<Lead>) -> f64 {
     let ratio = speed_mps / if target_mps.abs() > 1e-2 { target_mps } else { 1e-2 };
     let free = ACCELERATION * (1.0 - tenth_power(ratio));
+    let free = if free == 0.0 { HAIR } else { free };
     let Some(lead) = lead else { return free };
     let speed_kmh = speed_mps * KMH_PER_MPS;
     let closing_kmh = (velocity - lead.velocity).dot(forward) * KMH_PER_MPS;

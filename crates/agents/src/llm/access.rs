@@ -1,18 +1,20 @@
 //! How live models are reached, and how patiently.
 
 use crate::llm::prices::PriceTable;
-use crate::llm::secrets::Secret;
+use crate::llm::secrets::{Scrubber, Secret};
 use crate::llm::spending::Caps;
 
 /// How live models are asked. No byte of a question depends on it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct LiveOptions {
     /// Address of an OpenAI-compatible server (Ollama, vLLM, llama.cpp); the model's own provider where not given.
     pub base_url: Option<String>,
-    /// Key for `base_url`. The key of a provider is read from its own variable, such as `OPENAI_API_KEY`.
+    /// Key for `base_url`.
     pub key: Option<Secret>,
-    /// Every key that must not be seen in an answer or an error.
-    pub secrets: Vec<Secret>,
+    /// Key of a provider by the name of its variable, such as `OPENAI_API_KEY`.
+    pub provider_key: fn(&str) -> Option<Secret>,
+    /// Blacks out every key that must not be seen in an answer or an error.
+    pub scrubber: Scrubber,
     /// Longest time for one answer. [s]
     pub timeout_s: f64,
     /// How often a question is asked again after a passing fault: 429, 5xx, a time-out, a broken connection.
@@ -27,7 +29,9 @@ impl LiveOptions {
     /// Patience that suits hosted models and small local ones; nothing capped, nothing priced.
     pub fn new(prices: PriceTable) -> Self {
         let (timeout_s, retries) = (300.0, 4);
-        Self { base_url: None, key: None, secrets: Vec::new(), timeout_s, retries, caps: Caps::default(), prices }
+        let scrubber = Scrubber::default();
+        let (base_url, key, provider_key, caps): (_, _, fn(&str) -> _, _) = (None, None, |_| None, Caps::default());
+        Self { base_url, key, provider_key, scrubber, timeout_s, retries, caps, prices }
     }
 
     /// Checks what can be wrong before anything is asked. `models` are those that will be asked.

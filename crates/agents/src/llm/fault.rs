@@ -1,9 +1,9 @@
 //! A provider's fault, as this program acts on it.
 
 use crate::llm::access::LiveOptions;
-use crate::llm::secrets::redact;
-use genai::resolver;
+use crate::llm::live::{CONNECT_S, MOST_BYTES};
 use serde_json::Value;
+use ureq::http::{HeaderMap, Uri};
 
 /// Longest text of a provider's that is passed on. [characters]
 const LONGEST_TEXT: usize = 240;
@@ -19,6 +19,8 @@ pub enum Fault {
     Refused(String),
     /// The server takes no such request: perhaps without the schema.
     Request(String),
+    /// The answer has no end: asking again would cost the same once more.
+    Endless(String),
     /// Asking again may help.
     Passing {
         /// What is wrong.
@@ -31,45 +33,46 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Sorts an error.
-    pub fn of(error: &genai::Error, options: &LiveOptions) -> Self {
-        use genai::Error::{
-            ChatResponseGeneration, NoAuthData, NoAuthResolver, RequiresApiKey, Resolver, WebAdapterCall, WebModelCall,
-        };
-        use genai::webc::Error as Web;
-        let passing = |why: String, reachable| Self::Passing { why, retry_after_s: None, reachable };
-        let broken = "its answer was cut off, or is not what the protocol says".to_owned();
+    /// Sorts an error of the client's.
+    pub fn of(error: &ureq::Error, url: &str, options: &LiveOptions) -> Self {
+        use std::io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable, NotFound};
+        use ureq::{Error, Timeout};
+        let unreachable =
+            |why: &str| Self::Passing { why: unreachable(url, why), retry_after_s: None, reachable: false };
         match error {
-            Resolver { resolver_error: resolver::Error::ApiKeyEnvNotFound { env_name }, model_iden } => {
-                let model = &model_iden.model_name;
-                Self::Refused(format!("{model} needs a key: set the environment variable {env_name} to it"))
+            Error::Timeout(Timeout::Connect | Timeout::Resolve) => {
+                unreachable(&format!("no connection within {} s", options.timeout_s.min(CONNECT_S)))
             }
-            RequiresApiKey { model_iden } | NoAuthData { model_iden } | NoAuthResolver { model_iden } => {
-                Self::Refused(format!("{} needs a key in the environment", model_iden.model_name))
-            }
-            WebModelCall { webc_error, .. } | WebAdapterCall { webc_error, .. } => match webc_error {
-                Web::ResponseFailedStatus { status, body, headers } => {
-                    let header = |name: &str| headers.get(name).and_then(|value| value.to_str().ok());
-                    let retry_after_s = retry_after_s(header("retry-after-ms"), header("retry-after"));
-                    Self::of_status(status.as_u16(), &provider_text(body, options), retry_after_s)
-                }
-                Web::Reqwest(e) if e.is_timeout() => {
-                    passing(format!("no answer within {} s (--timeout)", options.timeout_s), true)
-                }
-                Web::Reqwest(e) if e.is_builder() => Self::Refused("the address or the key cannot be sent".to_owned()),
-                Web::Reqwest(e) if e.is_connect() => {
-                    let host = e.url().and_then(|url| url.host_str()).unwrap_or("the server");
-                    let port = e.url().and_then(|url| url.port()).map(|port| format!(":{port}")).unwrap_or_default();
-                    passing(
-                        format!("cannot connect to {host}{port} ({}); is it running? {}", innermost(e), WHERE),
-                        false,
-                    )
-                }
-                _ => passing(broken, true),
+            Error::Timeout(_) => Self::Passing {
+                why: format!("no whole answer within {} s (--timeout)", options.timeout_s),
+                retry_after_s: None,
+                reachable: true,
             },
-            ChatResponseGeneration { .. } => passing(broken, true),
-            other => Self::Request(presentable(&other.to_string(), options)),
+            Error::BodyExceedsLimit(_) => Self::Endless(format!("its answer is longer than {MOST_BYTES} bytes")),
+            Error::BadUri(_) | Error::Http(_) | Error::InvalidProxyUrl => {
+                Self::Refused("the address or the key cannot be sent".to_owned())
+            }
+            Error::HostNotFound => unreachable("its name is not known"),
+            Error::ConnectionFailed => unreachable("no connection"),
+            Error::Io(e) if matches!(e.kind(), ConnectionRefused | HostUnreachable | NetworkUnreachable | NotFound) => {
+                unreachable(&e.to_string())
+            }
+            Error::Tls(_) | Error::Rustls(_) => unreachable(&presentable(&error.to_string(), options)),
+            _ => Self::broken(),
         }
+    }
+
+    /// An answer that is none.
+    pub fn broken() -> Self {
+        let why = "its answer was cut off, or is not what the protocol says".to_owned();
+        Self::Passing { why, retry_after_s: None, reachable: true }
+    }
+
+    /// Sorts an answer with another status than 200.
+    pub fn of_response(status: u16, headers: &HeaderMap, body: &[u8], options: &LiveOptions) -> Self {
+        let header = |name: &str| headers.get(name).and_then(|value| value.to_str().ok());
+        let retry_after_s = retry_after_s(header("retry-after-ms"), header("retry-after"));
+        Self::of_status(status, &provider_text(&String::from_utf8_lossy(body), options), retry_after_s)
     }
 
     fn of_status(status: u16, text: &str, retry_after_s: Option<f64>) -> Self {
@@ -77,6 +80,10 @@ impl Fault {
         match status {
             401 | 403 | 407 => Self::Refused(format!("the provider refuses the key ({told}); check its variable")),
             402 => Self::Refused(format!("the provider wants to be paid first ({told})")),
+            300..=399 => Self::Refused(format!(
+                "the server sends questions to another address ({told}), and keys are sent to none but the given one; give \
+                 that one with --base-url"
+            )),
             404 | 405 | 410 => Self::Refused(format!(
                 "the provider knows no such model or address ({told}); check the name of the model, and --base-url"
             )),
@@ -105,35 +112,33 @@ fn provider_text(body: &str, options: &LiveOptions) -> String {
 
 /// The beginning of a stranger's text, on one line, without keys and control characters.
 fn presentable(text: &str, options: &LiveOptions) -> String {
-    let text = redact(text, &options.secrets);
+    let text = options.scrubber.scrub(text);
     let words: Vec<&str> =
         text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|w| !w.is_empty()).collect();
     words.join(" ").chars().take(LONGEST_TEXT).collect()
 }
 
-/// What the operating system said.
-fn innermost(error: &impl std::error::Error) -> String {
-    let mut cause = error.source();
-    let mut text = "no connection".to_owned();
-    while let Some(inner) = cause {
-        text = inner.to_string();
-        cause = inner.source();
-    }
-    text.chars().take(LONGEST_TEXT).collect()
+/// That nobody answers at the host of an address, which may hold more than may be shown.
+pub fn unreachable(url: &str, why: &str) -> String {
+    let uri: Option<Uri> = url.parse().ok();
+    let host = uri.as_ref().and_then(Uri::host).unwrap_or("the server");
+    let port = uri.as_ref().and_then(Uri::port_u16).map(|port| format!(":{port}")).unwrap_or_default();
+    format!("cannot connect to {host}{port} ({why}); is it running? {WHERE}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::llm::{PriceTable, Secret};
+    use crate::llm::{PriceTable, Scrubber, Secret};
 
     fn options() -> LiveOptions {
-        LiveOptions { secrets: vec![Secret::new("sk-planted")], ..LiveOptions::new(PriceTable::built_in()) }
+        let scrubber = Scrubber::new(&[Secret::new("sk-planted")]);
+        LiveOptions { scrubber, ..LiveOptions::new(PriceTable::built_in()) }
     }
 
     #[test]
     fn statuses_are_sorted_by_what_follows_from_them() {
-        for status in [401, 403, 404] {
+        for status in [301, 307, 401, 403, 404] {
             assert!(matches!(Fault::of_status(status, "", None), Fault::Refused(_)), "{status}");
         }
         for status in [408, 429, 500, 503, 529] {

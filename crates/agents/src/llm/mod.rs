@@ -2,7 +2,8 @@
 //! of times, and then the caller lets the rules take over.
 //!
 //! A role makes a [`Question`]; [`Answers`] answers it: live, from a batch, or from the ledger. So prompts, repairs and
-//! fallback are one path for every provider, and a provider is known to `live.rs` only.
+//! fallback are one path for every provider, and a provider is known to
+//! `providers.rs` and `wire.rs` only.
 
 mod access;
 mod answers;
@@ -14,20 +15,23 @@ mod fault;
 mod live;
 mod prices;
 mod prompts;
+#[cfg(feature = "live")]
+mod providers;
 mod question;
 mod schema;
 mod secrets;
 mod spending;
+mod wire;
 
 pub use access::LiveOptions;
-pub use answers::{Answers, AskError, Batch, Ledger, Replay};
-pub use batch::{read_responses, request_line};
+pub use answers::{Answers, AskError, Batch, Ledger, Replay, Tried};
+pub use batch::{LONGEST_RESPONSE, Responses, request_line};
 #[cfg(feature = "live")]
 pub use live::Live;
 pub use prices::{ModelPrice, PriceTable, plain_name};
 pub use prompts::{TuneBrief, version as prompts_version};
 pub use question::{Asked, EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
-pub use secrets::Secret;
+pub use secrets::{Scrubber, Secret};
 pub use spending::{Caps, Spending, Spent};
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
@@ -152,7 +156,7 @@ impl LanguageModel<'_> {
     ) -> Result<T, AgentError> {
         loop {
             let exchange = self.answers.answer(&question)?;
-            let found = extract::json_object(&exchange.answer).map_err(|why| vec![why]).and_then(&accept);
+            let found = extract::json_object(&exchange.answer).map_err(|why| vec![why]).and_then(|json| accept(&json));
             let problems = match found {
                 Ok(value) => return Ok(value),
                 Err(problems) => problems,
@@ -270,7 +274,7 @@ fn origin(replaces_record: Option<String>, facts: &[Fact], brief: &Brief) -> Ori
 
 fn push_repair(question: &mut Question, answer: String, problems: &[String]) -> Result<(), AgentError> {
     // Some providers take no empty turn.
-    let answer = if answer.trim().is_empty() { "(no answer)".to_owned() } else { answer };
+    let answer = if answer.trim().is_empty() { "(no answer)".to_owned() } else { question::bounded_turn(&answer) };
     question.turns.push(Turn { speaker: Speaker::Assistant, text: answer });
     question.turns.push(Turn { speaker: Speaker::User, text: prompts::repair(problems)? });
     question.purpose.attempt += 1;

@@ -1,10 +1,10 @@
 //! `recrash bench embed`: our MiniLM beside sentence-transformers.
 
 use crate::options::SourceArgs;
-use crate::output::{self, Output, number, table};
-use anstream::{eprintln, println};
+use crate::output::{self, Output};
+use crate::screen::{eprintln, println};
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use recrash_pipeline::{EmbedBench, EmbedBenchRequest, Options, PipelineError, bench_embedding};
 use std::path::PathBuf;
 

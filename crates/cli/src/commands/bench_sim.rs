@@ -1,9 +1,9 @@
 //! `recrash bench sim`: the native simulator beside MetaDrive, on the same scenarios.
 
-use crate::output::{self, Output, number, table};
-use anstream::println;
+use crate::output::{self, Output};
+use crate::screen::println;
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use recrash_pipeline::{PipelineError, SimBench, SimBenchRequest, bench_sim};
 use std::path::PathBuf;
 use std::time::Duration;

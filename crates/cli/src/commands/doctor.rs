@@ -1,10 +1,9 @@
 //! `recrash doctor`: what is installed, and how to get the rest.
 
-use crate::output::{self, Output, table};
-use anstream::println;
+use crate::output::{self, Output};
+use crate::screen::{bold, println};
+use crate::table::{Cell, table};
 use clap::Args;
-use comfy_table::Cell;
-use owo_colors::OwoColorize;
 use recrash_pipeline::{DoctorItem, DoctorRequest, DoctorState, PipelineError, doctor};
 use std::path::PathBuf;
 
@@ -52,6 +51,6 @@ fn show(items: &[DoctorItem]) {
         println!("\nTo get the rest (all of it is optional):");
     }
     for item in lacking {
-        println!("  {:<16} {}", item.name.bold(), item.remedy);
+        println!("  {} {}", bold(format!("{:<16}", item.name)), item.remedy);
     }
 }

@@ -1,10 +1,10 @@
 //! `recrash eval`: how well an agent reads records, by labels that people wrote.
 
 use crate::model_options::AccessArgs;
-use crate::output::{self, Output, number, table, title};
-use anstream::{eprintln, println};
+use crate::output::{self, Output, title};
+use crate::screen::{eprintln, println};
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use recrash_pipeline::{Evaluation, EvaluationRequest, FieldScore, Half, HalfScore, PipelineError, evaluate};
 use std::path::PathBuf;
 

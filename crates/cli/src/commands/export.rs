@@ -1,7 +1,7 @@
 //! `recrash export`: the scenarios in the formats of other tools.
 
 use crate::output::{self, Output};
-use anstream::println;
+use crate::screen::println;
 use clap::Args;
 use recrash_pipeline::{ExportReport, ExportRequest, Format, PartnersAs, PipelineError};
 use std::path::{Path, PathBuf};
@@ -34,6 +34,9 @@ pub struct ExportArgs {
     /// Overwrite files that are there already.
     #[arg(long)]
     pub force: bool,
+    /// Start the program that the suite names as its ego; the exports hold what it drives.
+    #[arg(long)]
+    pub trust: bool,
 }
 
 /// Writes the scenarios.
@@ -48,6 +51,7 @@ pub fn run(args: &ExportArgs, output: Output) -> Result<(), PipelineError> {
         partners_as,
         target: args.to_dir.clone(),
         force: args.force,
+        trust: args.trust,
     })?;
     if output.json {
         output::json(&report);

@@ -1,7 +1,7 @@
 //! `recrash fetch`: downloads NHTSA's crash file.
 
 use crate::output::{self, Output};
-use anstream::{eprintln, println};
+use crate::screen::{eprintln, println};
 use clap::Args;
 use recrash_pipeline::{CrashKind, FetchLimits, FetchRequest, Fetched, PipelineError, PublishedEdition};
 use std::path::PathBuf;

@@ -2,7 +2,7 @@
 
 use super::simulate;
 use crate::output::{self, Output};
-use anstream::println;
+use crate::screen::println;
 use clap::Args;
 use recrash_pipeline::{
     FileRequest, ImportRequest, Imported, Options, Patience, PipelineError, SimulatorKind, SourceFormat,
@@ -66,7 +66,10 @@ pub fn run(args: &ImportArgs, output: Output) -> Result<(), PipelineError> {
         show(&args.source, &imported);
         match replayed {
             Some(replayed) => simulate::show(&replayed),
-            None => println!("run it with: recrash simulate {}", imported.file.display()),
+            None => println!(
+                "run it with: recrash simulate {}",
+                recrash_pipeline::quoted(&imported.file.display().to_string())
+            ),
         }
     }
     Ok(())

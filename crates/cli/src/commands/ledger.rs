@@ -1,9 +1,9 @@
 //! `recrash ledger`: what models were asked, what they answered, and what it cost.
 
-use crate::output::{self, Output, number, table, title};
-use anstream::println;
+use crate::output::{self, Output, title};
+use crate::screen::println;
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use recrash_pipeline::{LedgerReport, LedgerSum, PipelineError, ledger};
 use std::path::PathBuf;
 

@@ -16,6 +16,7 @@ mod records;
 mod run;
 mod schema;
 mod select;
+mod shell;
 mod simulate;
 mod stage;
 #[cfg(feature = "parquet")]
@@ -36,9 +37,10 @@ Examples:
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
-Exit codes: 0 done; 1 a file could not be read or written; 2 wrong usage; 3 the input cannot be used;
+Exit codes: 0 done; 1 a file that is there could not be read, or one could not be written; 2 wrong usage;
+  3 the input is not there or cannot be used;
   4 the run stopped and the same command goes on: questions wait for a batch, or a cap is reached;
-  5 a share or speed that is asked for was missed; 130 interrupted";
+  5 a share or speed that is asked for was missed, or what simulate and tune ran is not true to its record; 130 interrupted";
 
 const RUN_EXAMPLES: &str = "\
 Examples:
@@ -60,7 +62,9 @@ Examples:
 const TUNE_EXAMPLES: &str = "\
 Examples:
   recrash tune                                           160 points for each scenario of suite/
-  recrash tune --out paper-suite --searcher halton --tune-budget 500";
+  recrash tune --out paper-suite --searcher halton --tune-budget 500
+
+Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
 const REPORT_EXAMPLES: &str = "\
 Examples:
   recrash report                                         of the suite in suite/
@@ -105,6 +109,11 @@ pub enum Command {
     /// Stage 6: search each scenario's parameters for the nearest failure that is still true to the record.
     #[command(after_help = TUNE_EXAMPLES)]
     Tune(SuiteArgs),
+    /// Stage 6 again for other egos: run the tuned scenarios, and where the system fails, run the other egos too.
+    #[command(
+        after_help = "Examples:\n  recrash triage                 the tuned scenarios of suite/\n  recrash triage --ego idm       another system under test in the same tuned scenarios"
+    )]
+    Triage(SuiteArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
     #[command(after_help = REPORT_EXAMPLES)]
     Report(SuiteArgs),
@@ -134,15 +143,28 @@ pub enum Command {
     /// Print the JSON Schema of scenario files.
     #[command(after_help = SCHEMA_EXAMPLES)]
     Schema,
+    /// Print the completions of a shell.
+    Completions(shell::CompletionArgs),
+    /// Write the manual pages.
+    Man(shell::ManArgs),
 }
 
 impl Command {
     /// Whether the same command goes on where it was stopped: what works in a suite, or with a ledger.
     pub fn goes_on(&self) -> bool {
-        use Command::{Design, Eval, Narrate, Records, Report, Run, Select, Simulate, Tune};
+        use Command::{Design, Eval, Narrate, Records, Report, Run, Select, Simulate, Triage, Tune};
         matches!(
             self,
-            Run(_) | Records(_) | Select(_) | Narrate(_) | Design(_) | Simulate(_) | Tune(_) | Report(_) | Eval(_)
+            Run(_)
+                | Records(_)
+                | Select(_)
+                | Narrate(_)
+                | Design(_)
+                | Simulate(_)
+                | Tune(_)
+                | Triage(_)
+                | Report(_)
+                | Eval(_)
         )
     }
 }
@@ -157,10 +179,11 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Run(args) => run::run(args, output),
         Command::Records(args) => records::run(args, output),
         Command::Select(args) => select::run(args, output),
-        Command::Narrate(args) => stage::run(args, Stage::Narrate, output),
-        Command::Design(args) => stage::run(args, Stage::Design, output),
+        Command::Narrate(args) => stage::run(args, &[Stage::Narrate], output),
+        Command::Design(args) => stage::run(args, &[Stage::Design], output),
         Command::Simulate(args) => simulate::run(args, output),
-        Command::Tune(args) => stage::run(args, Stage::Tune, output),
+        Command::Tune(args) => stage::run(args, &[Stage::Tune, Stage::Triage], output),
+        Command::Triage(args) => stage::run(args, &[Stage::Triage], output),
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
@@ -175,6 +198,11 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         #[cfg(feature = "parquet")]
         Command::Sweep(args) => sweep::run(args, output),
         Command::Schema => schema::run(),
+        Command::Completions(args) => {
+            shell::completions(args);
+            Ok(())
+        }
+        Command::Man(args) => shell::man(args, output),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `recrash model`: the files of the embedding model.
 
 use crate::output::{self, Output};
-use anstream::{eprintln, println};
+use crate::screen::{eprintln, println};
 use clap::{Args, Subcommand};
 use recrash_pipeline::{PipelineError, PullRequest, find_weights, is_published_model, pull_model};
 use std::path::PathBuf;

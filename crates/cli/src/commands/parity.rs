@@ -1,10 +1,9 @@
 //! `recrash parity`: the same scenarios on the native simulator and on MetaDrive, side by side.
 
-use crate::output::{self, Output, number, table};
-use anstream::println;
+use crate::output::{self, Output};
+use crate::screen::println;
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
-use owo_colors::OwoColorize;
 use recrash_pipeline::{
     OpenLoop, OpenLoopRequest, Parity, ParityRequest, ParitySource, PipelineError, open_loop, parity,
 };
@@ -117,8 +116,8 @@ fn show_open_loop(result: &OpenLoop) {
         let worst = limit.apart_m.last().copied().unwrap_or(0.0);
         let verdict = match (limit.wanted_m, limit.passed()) {
             (None, _) => String::new(),
-            (Some(_), true) => "reached".green().to_string(),
-            (Some(_), false) => "missed".red().to_string(),
+            (Some(_), true) => "reached".to_owned(),
+            (Some(_), false) => "missed".to_owned(),
         };
         rows.add_row(vec![
             number(limit.steer),

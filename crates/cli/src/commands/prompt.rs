@@ -2,7 +2,7 @@
 
 use crate::options::SourceArgs;
 use crate::output::{self, Output, title};
-use anstream::println;
+use crate::screen::println;
 use clap::Args;
 use recrash_pipeline::{Options, PipelineError, Prompt, PromptRequest, Role, prompt};
 use std::path::PathBuf;

@@ -1,17 +1,17 @@
 //! `recrash records`: what is in crash files, and what of it can be used.
 
 use crate::options::SourceArgs;
-use crate::output::{self, Output, number, table, title};
-use anstream::println;
+use crate::output::{self, Output, title};
+use crate::screen::{one_line, println};
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use recrash_model::Outcome;
 use recrash_model::record::{FunnelStep, RecordSet, RejectReason};
 use recrash_pipeline::{
-    Distribution, Options, PipelineError, Resources, Stage, Suite, TableFormat, TableRows, distributions, read_records,
-    write_records,
+    Distribution, Options, Output as File, PipelineError, Resources, Stage, Suite, TableFormat, TableRows,
+    distributions, read_records, record_outputs, run_stage, write_records,
 };
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Values of a distribution that are shown.
 const VALUES_SHOWN: usize = 8;
@@ -62,6 +62,16 @@ impl RecordsArgs {
         let base = source.over(base);
         Options { profile: self.profile.clone().unwrap_or(base.profile), ..base }
     }
+
+    /// The tables that are asked for.
+    fn tables(&self, options: &Options) -> Result<Vec<(TableFormat, File)>, PipelineError> {
+        let mut wanted = Vec::new();
+        wanted.extend(self.csv.iter().map(|path| (TableFormat::Csv, path)));
+        #[cfg(feature = "parquet")]
+        wanted.extend(self.parquet.iter().map(|path| (TableFormat::Parquet, path)));
+        let mut outputs = record_outputs(options, self.out.as_deref());
+        wanted.into_iter().map(|(format, path)| Ok((format, outputs.claim(path)?))).collect()
+    }
 }
 
 /// Reads crash files and shows what is in them.
@@ -69,19 +79,23 @@ impl RecordsArgs {
 /// # Errors
 /// A file cannot be read or written.
 pub fn run(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
+    let saved = args.out.as_deref().map(Suite::saved_options).transpose()?.flatten();
+    let options = args.over(saved.unwrap_or_default());
+    let tables = args.tables(&options)?;
     let (records, diagnostics) = match &args.out {
         None => {
-            let Outcome { value, diagnostics } = read_records(&args.over(Options::default()))?;
+            let Outcome { value, diagnostics } = read_records(&options)?;
             (value, diagnostics)
         }
         Some(out) => {
-            let base = Suite::saved_options(out)?.unwrap_or_default();
-            let suite = Suite::open(out, args.over(base), Resources::default())?;
-            let report = suite.run_stage(Stage::Records, &*output.progress())?;
+            let suite = Suite::open(out, options, Resources::default())?;
+            let report = run_stage(&suite, Stage::Records, &*output.progress())?;
             (suite.store().read_json("1-records.json")?, report.diagnostics)
         }
     };
-    let written = write_tables(args, &records)?;
+    let rows = if args.all { TableRows::All } else { TableRows::Usable };
+    let write = |(format, output): &(TableFormat, File)| write_records(&records, rows, *format, output);
+    let written = tables.iter().map(write).collect::<Result<Vec<usize>, _>>()?;
     let shown = distributions(&records);
     if output.json {
         output::json(&serde_json::json!({
@@ -95,19 +109,11 @@ pub fn run(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
         funnel(&records.funnel);
         sum(&records);
         show_distributions(&shown);
-        written.iter().for_each(|(path, rows)| show_written(path, *rows));
+        for (rows, (_, table)) in written.iter().zip(&tables) {
+            println!("{rows} records in {}", table.name().display());
+        }
     }
     Ok(())
-}
-
-/// Writes the tables that were asked for; gives each file with its rows.
-fn write_tables(args: &RecordsArgs, records: &RecordSet) -> Result<Vec<(PathBuf, usize)>, PipelineError> {
-    let rows = if args.all { TableRows::All } else { TableRows::Usable };
-    let mut wanted = Vec::new();
-    wanted.extend(args.csv.iter().map(|path| (TableFormat::Csv, path)));
-    #[cfg(feature = "parquet")]
-    wanted.extend(args.parquet.iter().map(|path| (TableFormat::Parquet, path)));
-    wanted.into_iter().map(|(format, path)| Ok((path.clone(), write_records(records, rows, format, path)?))).collect()
 }
 
 /// Prints the files read.
@@ -153,15 +159,10 @@ fn show_distributions(all: &[Distribution]) {
             .values
             .iter()
             .take(VALUES_SHOWN)
-            .map(|count| format!("{} {}/{}", count.value, count.records, count.usable))
+            .map(|count| format!("{} {}/{}", one_line(&count.value), count.records, count.usable))
             .collect();
         let more = distribution.values.len().saturating_sub(VALUES_SHOWN);
         let more = if more > 0 { format!(", and {more} more") } else { String::new() };
         println!("  {:<12} {}{more}", distribution.field, shown.join(", "));
     }
-}
-
-/// Prints that a table was written.
-fn show_written(path: &Path, rows: usize) {
-    println!("{rows} records in {}", path.display());
 }

@@ -3,13 +3,14 @@
 use super::records::funnel;
 use super::select::{coverage, tables};
 use crate::options::SuiteArgs;
-use crate::output::{self, Output, number, table, title};
-use anstream::{eprintln, println};
-use comfy_table::Cell;
-use owo_colors::OwoColorize;
+use crate::output::{self, Output, title};
+use crate::screen::{bold, eprintln, one_line, println, yellow};
+use crate::table::{Cell, number, table};
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
-use recrash_pipeline::{ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary};
+use recrash_pipeline::{
+    ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage,
+};
 use std::path::Path;
 
 /// Runs every stage.
@@ -18,12 +19,14 @@ use std::path::Path;
 /// The first stage's that stops.
 pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
     let suite = args.open(Options::default())?;
+    output::batch_remarks(&suite, output);
+    check_choices(&suite)?;
     if output.tables() {
         heading(&suite);
     }
     let progress = output.progress();
     for stage in Stage::ALL {
-        let report = suite.run_stage(stage, &*progress)?;
+        let report = run_stage(&suite, stage, &*progress)?;
         if output.tables() {
             output::remarks(&report);
         }
@@ -37,7 +40,7 @@ pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
 /// A stage before it is not done.
 pub fn report(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
     let suite = args.open_saved()?;
-    suite.run_stage(Stage::Report, &*output.progress())?;
+    run_stage(&suite, Stage::Report, &*output.progress())?;
     finish(&suite, output)
 }
 
@@ -62,7 +65,7 @@ fn heading(suite: &Suite) {
     let options = suite.options();
     eprintln!(
         "{} {}: profile {}, ego {}, budget {}, seed {} -> {}",
-        "recrash".bold(),
+        bold("recrash"),
         env!("CARGO_PKG_VERSION"),
         suite.profile().name,
         suite.ego(),
@@ -108,14 +111,15 @@ fn models(models: &[ModelSummary]) {
     println!("{rows}");
     for model in models {
         for reason in &model.reasons {
-            println!("  {} {} of {}: {}", "by the rules:".yellow(), model.role, reason.id, one_line(&reason.why));
+            println!(
+                "  {} {} of {}: {}",
+                yellow("by the rules:"),
+                model.role,
+                reason.id,
+                one_line(&reason.why.chars().take(300).collect::<String>())
+            );
         }
     }
-}
-
-/// A stranger's text, safe to print.
-fn one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(300).collect()
 }
 
 /// Prints a whole run in tables.
@@ -124,15 +128,15 @@ fn show(summary: &Summary, dir: &Path) {
     tables(&summary.tables);
     coverage(&summary.coverage, &summary.templates);
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
-    let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"]);
+    let mut rows = table(&["scenario", "from", "designed", "tuned", "verdict", "failure", "findings"])
+        .without_first(&["findings", "from", "designed", "failure"]);
     for case in &summary.cases {
-        let verdict = match &case.tuned {
-            Some(run) => match run.faithful {
-                Answer::Yes => "faithful",
-                Answer::Unchecked => "not all checked",
-                Answer::No => "NOT FAITHFUL",
-            },
-            None => "NOT RUN",
+        let verdict = match (case.faithful(), &case.tuned) {
+            (Some(Answer::Yes), _) => "faithful",
+            (Some(Answer::Unchecked), _) => "not all checked",
+            (Some(Answer::No), _) => "NOT FAITHFUL",
+            (None, Some(_)) => "no record",
+            (None, None) => "NOT RUN",
         };
         rows.add_row(vec![
             Cell::new(&case.id),
@@ -147,17 +151,17 @@ fn show(summary: &Summary, dir: &Path) {
     println!("{rows}");
     for case in &summary.cases {
         if let Some(failure) = &case.failure {
-            println!("  {} {}: {failure}", "not run:".yellow(), case.id);
+            println!("  {} {}: {failure}", yellow("not run:"), case.id);
         } else if let Some(run) = case.tuned.as_ref() {
             match run.faithful {
                 Answer::Yes => {}
                 Answer::No => {
-                    println!("  {} {}: {}", "not faithful:".yellow(), case.id, run.unfaithful.join("; "));
+                    println!("  {} {}: {}", yellow("not faithful:"), case.id, run.unfaithful.join("; "));
                 }
                 Answer::Unchecked => {
                     let why =
                         if run.unchecked.is_empty() { "nothing is told".into() } else { run.unchecked.join(", ") };
-                    println!("  {} {}: {why}", "not all checked:".yellow(), case.id);
+                    println!("  {} {}: {why}", yellow("not all checked:"), case.id);
                 }
             }
         }
@@ -172,13 +176,21 @@ fn show(summary: &Summary, dir: &Path) {
     let (first, tuned) = summary.failed();
     println!(
         "\n{} {run}{of_total} scenarios run; {} fails {first} as designed and {tuned} after tuning",
-        "result:".bold(),
+        bold("result:"),
         summary.ego,
     );
     let [own, other, invented] = summary.origins();
     println!("  told: {own} of their own record, {other} of another real record, {invented} invented");
-    let [yes, no, unchecked] = [Answer::Yes, Answer::No, Answer::Unchecked].map(|answer| summary.faithful(answer));
-    println!("  faithful to what they tell: {yes} yes, {no} no, {unchecked} not all checked");
+    for (place, name, count) in [(0, "their own record", own), (1, "another record", other)] {
+        let [yes, no, unchecked] = [Answer::Yes, Answer::No, Answer::Unchecked].map(|a| summary.faithful(a)[place]);
+        println!(
+            "  of the {count} of {name}: {yes} show every fact told, {no} do not, {unchecked} could not all be checked"
+        );
+    }
+    let edited = summary.cases.iter().filter(|case| !case.edited.is_empty()).count();
+    if edited > 0 {
+        println!("  {edited} edited by hand, and kept");
+    }
     for (class, count) in summary.failure_classes() {
         println!("  {count:>4} {}: {}", class.label(), class.meaning());
     }

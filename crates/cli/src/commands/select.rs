@@ -1,12 +1,12 @@
 //! `recrash select`: a few records that stand for all.
 
 use crate::options::SuiteArgs;
-use crate::output::{self, Output, number, table, title};
-use anstream::println;
+use crate::output::{self, Output, title};
+use crate::screen::println;
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use recrash_model::selection::{Coverage, Selection, StageTables, TemplateCount};
-use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suite};
+use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suite, run_stage};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -38,15 +38,15 @@ pub struct SelectArgs {
 /// The stage's.
 pub fn run(args: &SelectArgs, output: Output) -> Result<(), PipelineError> {
     let is_new = Suite::saved_options(&args.suite.out)?.is_none();
-    let suite = args.suite.open_saved()?;
+    let suite = args.suite.open_or_begin()?;
     let progress = output.progress();
     if is_new || args.suite.source.is_given() || args.suite.profile.is_some() {
-        let report = suite.run_stage(Stage::Records, &*progress)?;
+        let report = run_stage(&suite, Stage::Records, &*progress)?;
         if output.tables() {
             output::remarks(&report);
         }
     }
-    let report = suite.run_stage(Stage::Select, &*progress)?;
+    let report = run_stage(&suite, Stage::Select, &*progress)?;
     let selection: Selection = suite.store().read_json("2-selection.json")?;
     let study = args.study.then(|| suite.study_selection(usize::from(args.study_seeds))).transpose()?;
     if output.json {

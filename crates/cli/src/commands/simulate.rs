@@ -2,11 +2,10 @@
 
 use super::stage;
 use crate::options::SuiteArgs;
-use crate::output::{self, Output, number, table};
-use anstream::println;
+use crate::output::{self, Output};
+use crate::screen::{bold, println, red, yellow};
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
-use owo_colors::OwoColorize;
 use recrash_pipeline::{FileRequest, FileRun, Options, PipelineError, Stage, simulate_file};
 use std::path::PathBuf;
 
@@ -14,14 +13,17 @@ const EXAMPLES: &str = "\
 Examples:
   recrash simulate                                       the scenarios of suite/, as designed
   recrash simulate suite/6-tuned/01-intersection-straight-straight.json --ego idm
-  recrash simulate scenario.json --rollout rollout.json --json";
+  recrash simulate paper-suite --ego reference           the scenarios of another suite
+  recrash simulate scenario.json --rollout rollout.json --json
+
+Exit code 5: a scenario of the suite is not true to its record; the results are written all the same.";
 
 /// Options of `simulate`.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SimulateArgs {
-    /// One scenario file (JSON); without it, the scenarios of the suite are run.
-    #[arg(value_name = "SCENARIO")]
+    /// One scenario file (JSON), or the folder of a suite, as with --out; without it, the scenarios of the suite are run.
+    #[arg(value_name = "SCENARIO|SUITE")]
     pub scenario: Option<PathBuf>,
     /// Where to write the rollout of the one scenario (JSON).
     #[arg(long, value_name = "FILE", requires = "scenario")]
@@ -37,8 +39,16 @@ pub struct SimulateArgs {
 /// The scenario cannot be run, or a file cannot be read or written.
 pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
     let Some(scenario) = &args.scenario else {
-        return stage::run(&args.suite, Stage::Simulate, output);
+        return stage::run(&args.suite, &[Stage::Simulate], output);
     };
+    if scenario.is_dir() {
+        if args.rollout.is_some() {
+            let what = format!("--rollout is for one scenario file, and {} is a folder", scenario.display());
+            return Err(PipelineError::Usage(what));
+        }
+        let suite = SuiteArgs { out: scenario.clone(), ..args.suite.clone() };
+        return stage::run(&suite, &[Stage::Simulate], output);
+    }
     let defaults = Options::default();
     let profile = args.suite.profile.as_deref().unwrap_or(&defaults.profile);
     let result = simulate_file(&FileRequest {
@@ -64,7 +74,7 @@ pub(super) fn show(result: &FileRun) {
     result.diagnostics.iter().for_each(output::remark);
     println!(
         "{} under {}: {:?} after {:.1} s",
-        run.rollout.scenario_id.bold(),
+        bold(&run.rollout.scenario_id),
         run.rollout.ego,
         run.metrics.termination,
         run.metrics.duration_s
@@ -96,7 +106,7 @@ pub(super) fn show(result: &FileRun) {
         );
     }
     for finding in &run.findings {
-        let mark = if finding.kind.is_failure() { "FAIL".red().to_string() } else { "odd ".yellow().to_string() };
+        let mark = if finding.kind.is_failure() { red("FAIL") } else { yellow("odd ") };
         println!("  {mark} {}", finding.sentence);
     }
     println!("state hash {}", run.rollout.state_hash);

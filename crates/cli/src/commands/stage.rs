@@ -1,23 +1,38 @@
-//! The commands that run one stage of a suite and nothing more.
+//! The commands that run one stage of a suite, or two that belong together, and nothing more.
 
 use crate::options::SuiteArgs;
 use crate::output::{self, Output};
-use anstream::println;
-use recrash_pipeline::{PipelineError, Stage};
+use crate::screen::println;
+use recrash_pipeline::{PipelineError, Stage, check_choices, run_stage, unfaithful};
 
-/// Runs one stage of a suite.
+/// Runs a stage of a suite, and the stages that belong to it, as one.
 ///
 /// # Errors
-/// The stage's.
-pub fn run(args: &SuiteArgs, stage: Stage, output: Output) -> Result<(), PipelineError> {
+/// A stage's, or a run is not true to its record.
+pub fn run(args: &SuiteArgs, stages: &[Stage], output: Output) -> Result<(), PipelineError> {
     let suite = args.open_saved()?;
-    let report = suite.run_stage(stage, &*output.progress())?;
-    if output.json {
-        output::json(&serde_json::json!({ "stage": stage.name(), "done": report.done, "skipped": report.skipped }));
-    } else if !output.quiet {
-        output::remarks(&report);
-        let dir = suite.store().dir().display();
-        println!("{}: {} done, {} there already, in {dir}", stage.name(), report.done, report.skipped);
+    output::batch_remarks(&suite, output);
+    check_choices(&suite)?;
+    let (mut done, mut skipped, mut lost) = (0, 0, Vec::new());
+    for &stage in stages {
+        let report = run_stage(&suite, stage, &*output.progress())?;
+        (done, skipped) = (done + report.done, skipped + report.skipped);
+        lost.extend(unfaithful(&suite, stage)?);
+        if !output.json && !output.quiet {
+            output::remarks(&report);
+        }
     }
-    Ok(())
+    let name = stages.first().map_or("", |stage| stage.name());
+    if output.json {
+        output::json(&serde_json::json!({ "stage": name, "done": done, "skipped": skipped, "unfaithful": lost }));
+    } else if !output.quiet {
+        output::remark_list(&lost, "told by --json");
+        println!("{name}: {done} units done, {skipped} there already, in {}", suite.store().dir().display());
+    }
+    match lost.len() {
+        0 => Ok(()),
+        lost => Err(PipelineError::Missed {
+            what: format!("{lost} scenarios are not true to the records they tell; the results are written"),
+        }),
+    }
 }

@@ -1,12 +1,11 @@
 //! `recrash sweep`: very many rollouts around a scenario or a suite, as a table.
 
-use crate::output::{self, Output, number, table};
-use anstream::{eprintln, println};
+use crate::output::{self, Output};
+use crate::screen::{bold, eprintln, println, yellow};
+use crate::table::{Cell, number, table};
 use clap::Args;
-use comfy_table::Cell;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use owo_colors::OwoColorize;
-use recrash_pipeline::{Patience, PipelineError, Sweep, SweepRequest, SweepSummary, Vary, write_scenario};
+use recrash_pipeline::{Patience, PipelineError, Sweep, SweepRequest, SweepSummary, Vary};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -43,6 +42,9 @@ pub struct SweepArgs {
     /// Ego: metadrive-idm, idm, reference, or a program as 'cmd:PROGRAM ARGS'. [default: the suite's, else the profile's]
     #[arg(long, value_name = "NAME|cmd:PROGRAM")]
     pub ego: Option<String>,
+    /// Start the program that the suite names as its ego.
+    #[arg(long)]
+    pub trust: bool,
     /// Seconds such a program may take for an answer; six times that to start.
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600), default_value_t = 10)]
     pub ego_timeout: u16,
@@ -69,13 +71,24 @@ pub fn run(args: &SweepArgs, output: Output) -> Result<(), PipelineError> {
         patience: Patience { start: 6 * answer, answer },
         seed: args.seed,
         threads: args.threads.map(usize::from),
+        trust: args.trust,
+        out: &args.out,
     })?;
     if let Some(number) = args.rollout {
-        return write_scenario(&sweep.draft(number)?, &args.out);
+        return sweep.write_draft(number);
+    }
+    if !output.quiet && !sweep.passed_over().is_empty() {
+        let ids = sweep.passed_over();
+        eprintln!(
+            "  {} {} scenarios without a tuned file are not swept: {}",
+            yellow("warning"),
+            ids.len(),
+            ids.join(", ")
+        );
     }
     let bar = bar(args.rollouts, output);
     let begun = Instant::now();
-    let summary = sweep.run(&args.out, &|done| bar.set_position(done))?;
+    let summary = sweep.run(&|done| bar.set_position(done))?;
     bar.finish_and_clear();
     let seconds = begun.elapsed().as_secs_f64();
     if output.json {
@@ -106,7 +119,7 @@ fn show(summary: &SweepSummary, ego: &str) {
     }
     println!("{rows}");
     let varied: usize = summary.scenarios.iter().map(|scenario| scenario.parameters.len()).sum();
-    println!("{} {} scenarios, {varied} parameters, ego {ego}", "swept:".bold(), summary.scenarios.len());
+    println!("{} {} scenarios, {varied} parameters, ego {ego}", bold("swept:"), summary.scenarios.len());
     if let Some((number, gap)) = summary.closest {
         println!("least gap: {gap:.3} m in rollout {number}");
     }

@@ -10,6 +10,8 @@ const USAGE: i32 = 2;
 const BAD_INPUT: i32 = 3;
 /// Files that cannot be read or written.
 const FILES: i32 = 1;
+/// A run that is not true to its record.
+const MISSED: i32 = 5;
 
 struct Case {
     folder: tempfile::TempDir,
@@ -297,7 +299,9 @@ fn a_report_is_of_one_system_and_one_set_of_records() {
     let out = out.to_str().unwrap();
     let with = |words: &[&str]| case.run(&[words, &["--quiet", "--out", out]].concat());
     assert_eq!(with(&["run", "--budget", "2", "--tune-budget", "4"]).0, 0);
-    assert_eq!(with(&["simulate", "--ego", "idm"]).0, 0);
+    // Whether another ego is true to the record is not asked here.
+    let is_done = |code: i32| code == 0 || code == MISSED;
+    assert!(is_done(with(&["simulate", "--ego", "idm"]).0));
     let told = std::fs::read(case.out().join("results.csv")).unwrap();
     let (code, shown) = with(&["report"]);
     assert_eq!(code, USAGE, "the tuned runs are of another ego: {shown}");
@@ -305,7 +309,7 @@ fn a_report_is_of_one_system_and_one_set_of_records() {
     assert_eq!(std::fs::read(case.out().join("results.csv")).unwrap(), told);
     for stage in ["design", "simulate", "tune", "report"] {
         let (code, shown) = with(&[stage]);
-        assert_eq!(code, 0, "{stage}: {shown}");
+        assert!(is_done(code), "{stage}: {shown}");
     }
     let (code, shown) = with(&["report", "--records", case.file("other.csv", SAMPLE_CSV).to_str().unwrap()]);
     assert_eq!(code, USAGE, "the records are of another file: {shown}");

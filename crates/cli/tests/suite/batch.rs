@@ -156,3 +156,202 @@ fn the_rules_take_over_from_a_model_that_never_gives_a_usable_answer() {
         assert!(!folder.path().join(place).exists(), "{place}");
     }
 }
+
+/// Without tuning, and with one batch for each question.
+const TINY: [&str; 8] = ["--budget", "2", "--tune", "rules", "--tune-budget", "1", "--repairs", "0"];
+
+fn run_tiny(out: &Path, mode: &str, extra: &[&str]) -> (i32, String) {
+    let mut command = recrash(&["run", "--agent", "scripted", "--llm", mode, "--out", out.to_str().unwrap()]);
+    command.args(TINY).args(extra).timeout(std::time::Duration::from_secs(120));
+    let output = command.output().unwrap();
+    (output.status.code().expect("it ends by itself"), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+/// The good answers to what waits, a line each.
+fn good_lines(model: &ScriptedModel, suite: &Path) -> Vec<Value> {
+    answer_all(model, suite, str::to_owned);
+    let answers = std::fs::read_to_string(suite.join("responses.jsonl")).unwrap();
+    answers.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn joined(lines: &[Value]) -> String {
+    lines.iter().map(|line| line.to_string() + "\n").collect()
+}
+
+/// The good lines with one place of the first changed.
+fn with(lines: &[Value], place: &str, value: Value) -> Vec<u8> {
+    let mut lines = lines.to_vec();
+    *lines[0].pointer_mut(place).unwrap() = value;
+    joined(&lines).into_bytes()
+}
+
+const CONTENT: &str = "/response/body/choices/0/message/content";
+
+type Tamper = fn(&[Value]) -> Vec<u8>;
+
+/// Ways to spoil a file of answers, and the lines that are told of it: all, or these.
+const TAMPERED: [(&str, Tamper, &[u64]); 33] = [
+    ("empty", |_| Vec::new(), &[]),
+    ("blank lines", |_| b"\n\r\n  \n".to_vec(), &[]),
+    ("a mark of UTF-8 before the first", |good| format!("\u{feff}{}", joined(good)).into_bytes(), &[]),
+    ("line ends of Windows", |good| joined(good).replace('\n', "\r\n").into_bytes(), &[]),
+    ("the last line without end", |good| joined(good).trim_end().as_bytes().to_vec(), &[]),
+    ("UTF-16", |good| joined(good).encode_utf16().flat_map(u16::to_le_bytes).collect(), &[1]),
+    ("no text", |_| vec![0xff; 300], &[1]),
+    ("zeros", |_| vec![0; 300], &[1]),
+    ("a web page", |_| b"<html>\n<body>Sign in</body>\n</html>\n".to_vec(), &[1, 2, 3]),
+    ("prose", |_| b"I am sorry.\n".to_vec(), &[1]),
+    ("one list instead of lines", |good| serde_json::to_vec(good).unwrap(), &[1]),
+    ("JSON over several lines", |good| serde_json::to_vec_pretty(&good[0]).unwrap(), &[1, 2, 3]),
+    ("cut in the first line", |good| joined(good).into_bytes()[..100].to_vec(), &[1]),
+    ("cut in the last line", |good| joined(good).into_bytes()[..joined(good).len() - 50].to_vec(), &[2]),
+    ("without the first", |good| joined(&good[1..]).into_bytes(), &[]),
+    ("twice", |good| joined(good).repeat(2).into_bytes(), &[3, 4]),
+    ("a foreign id", |good| with(good, "/custom_id", json!("request-1")), &[1]),
+    ("no id", |good| with(good, "/custom_id", Value::Null), &[1]),
+    ("a number as id", |good| with(good, "/custom_id", json!(1)), &[1]),
+    ("the id of the other", |good| with(good, "/custom_id", good[1]["custom_id"].clone()), &[2]),
+    ("an error", |good| with(good, "/error", json!({"code": "x", "message": "it broke"})), &[1]),
+    ("an error as text", |good| with(good, "/error", json!("it broke")), &[1]),
+    ("no response", |good| with(good, "/response", Value::Null), &[1]),
+    ("status 429", |good| with(good, "/response/status_code", json!(429)), &[1]),
+    ("status 500 as text", |good| with(good, "/response/status_code", json!("500")), &[1]),
+    ("an error in the body", |good| with(good, "/response/body", json!({"error": {"message": "no"}})), &[1]),
+    ("no choice", |good| with(good, "/response/body/choices", json!([])), &[1]),
+    ("a choice of another shape", |good| with(good, "/response/body/choices/0", json!("yes")), &[1]),
+    ("no content", |good| with(good, CONTENT, Value::Null), &[1]),
+    ("blank content", |good| with(good, CONTENT, json!(" \n")), &[1]),
+    ("content of another shape", |good| with(good, CONTENT, json!({"text": "x"})), &[1]),
+    ("a refusal", |good| with(good, "/response/body/choices/0/message", json!({"refusal": "I cannot"})), &[1]),
+    ("a line without end", |good| [joined(good).into_bytes(), vec![b'x'; 5 << 20]].concat(), &[3]),
+];
+
+#[test]
+fn every_tampered_file_of_answers_ends_and_each_bad_line_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    for (number, (name, tamper, told)) in TAMPERED.into_iter().enumerate() {
+        let out = folder.path().join(format!("suite-{number}"));
+        let mut stops = 0;
+        loop {
+            let (code, shown) = run_tiny(&out, "batch", &[]);
+            if stops > 0 {
+                for line in told {
+                    assert!(shown.contains(&format!("responses.jsonl, line {line}: ")), "{name}: {line} of {shown}");
+                }
+            }
+            if code == 0 {
+                break;
+            }
+            assert_eq!(code, WAITS, "{name}: {shown}");
+            stops += 1;
+            // A batch for the narratives and one for the designs, and no question is put twice.
+            assert!(stops <= 2, "{name}: asked for ever");
+            let good = good_lines(&model, &out);
+            std::fs::write(out.join("responses.jsonl"), tamper(&good)).unwrap();
+        }
+        let summary = summary(&out);
+        assert_eq!(summary["cases"].as_array().unwrap().len(), 2, "{name}");
+        assert!(!out.join("responses.jsonl").exists() && !out.join("requests.jsonl").exists(), "{name}");
+    }
+}
+
+#[test]
+fn a_question_without_a_usable_answer_is_asked_as_often_as_answers_are_repaired() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    let out = folder.path().join("suite");
+    let extra = ["--repairs", "1", "--design", "rules"];
+    for spoilt in 0..2 {
+        let (code, shown) = run_tiny_over(&out, &extra);
+        assert_eq!(code, WAITS, "{spoilt}: {shown}");
+        let good = good_lines(&model, &out);
+        // The first never gets an answer; the second does at the second time.
+        std::fs::write(out.join("responses.jsonl"), joined(&good[1..][..spoilt.min(good.len() - 1)])).unwrap();
+    }
+    let (code, shown) = run_tiny_over(&out, &extra);
+    assert_eq!(code, 0, "{shown}");
+    let summary = summary(&out);
+    let mut outcomes: Vec<&str> =
+        summary["cases"].as_array().unwrap().iter().map(|case| case["narrated"].as_str().unwrap()).collect();
+    outcomes.sort_unstable();
+    assert_eq!(outcomes, ["fallback", "first answer"]);
+    assert!(summary.to_string().contains("no usable answer in 2 batches"), "{}", summary["models"]);
+}
+
+/// As [`run_tiny`], with other options in place of the last.
+fn run_tiny_over(out: &Path, extra: &[&str]) -> (i32, String) {
+    let mut command = recrash(&["run", "--agent", "scripted", "--llm", "batch", "--out", out.to_str().unwrap()]);
+    command.args(&TINY[..6]).args(extra);
+    let output = command.output().unwrap();
+    (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn damaged_pending_questions_are_written_again_and_the_answers_taken_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    let out = folder.path().join("suite");
+    let mut stops = 0;
+    while run_tiny(&out, "batch", &[]).0 == WAITS {
+        stops += 1;
+        assert!(stops <= 2);
+        good_lines(&model, &out);
+        for damage in ["{", "", "[{\"model\": 7}]"] {
+            std::fs::write(out.join("ledger/pending.json"), damage).unwrap();
+            let (code, shown) = run_tiny(&out, "batch", &[]);
+            assert_eq!(code, WAITS, "{shown}");
+            assert!(shown.contains("pending.json") && shown.contains("the next run takes it in"), "{shown}");
+        }
+    }
+    let summary = summary(&out);
+    for case in summary["cases"].as_array().unwrap() {
+        assert_eq!((&case["narrated"], &case["designed"]), (&json!("first answer"), &json!("first answer")));
+    }
+}
+
+#[test]
+fn what_was_changed_in_the_ledger_does_not_replay() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    let out = folder.path().join("suite");
+    while run_tiny(&out, "batch", &[]).0 == WAITS {
+        good_lines(&model, &out);
+    }
+    let is_exchange = |path: &std::path::PathBuf| path.file_stem().is_some_and(|stem| stem.len() == 64);
+    let kept: Vec<_> = std::fs::read_dir(out.join("ledger")).unwrap().map(|e| e.unwrap().path()).collect();
+    let retold =
+        |path: &&std::path::PathBuf| std::fs::read_to_string(path).unwrap().contains("\"role\": \"paraphrase\"");
+    let file = kept.iter().filter(|path| is_exchange(path)).find(retold).expect("an exchange");
+    let whole = std::fs::read_to_string(file).unwrap();
+    let exchange: Value = serde_json::from_str(&whole).unwrap();
+    let with = |place: &str, value: Value| {
+        let mut changed = exchange.clone();
+        *changed.pointer_mut(place).unwrap() = value;
+        changed.to_string()
+    };
+    let answer = exchange["answer"].as_str().unwrap().to_owned() + " ";
+    let replay = || {
+        std::fs::remove_dir_all(out.join("3-narratives")).unwrap();
+        run_tiny(&out, "replay", &[])
+    };
+    for changed in [with("/answer", json!(answer)), with("/question/system", json!("x")), whole[..200].to_owned()] {
+        std::fs::write(file, changed).unwrap();
+        let (code, shown) = replay();
+        assert_eq!(code, 1, "{shown}");
+        assert!(shown.contains(file.file_name().unwrap().to_str().unwrap()) && shown.contains("remove it"), "{shown}");
+        std::fs::create_dir_all(out.join("3-narratives")).unwrap();
+    }
+    #[cfg(unix)]
+    {
+        std::fs::remove_file(file).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(file).status().unwrap().success());
+        let (code, shown) = replay();
+        assert_eq!(code, 1, "{shown}");
+        assert!(shown.contains("no regular file"), "{shown}");
+        std::fs::create_dir_all(out.join("3-narratives")).unwrap();
+        std::fs::remove_file(file).unwrap();
+    }
+    std::fs::write(file, whole).unwrap();
+    assert_eq!(replay().0, 0);
+}

@@ -102,3 +102,36 @@ fn failures_are_triaged_by_the_other_egos() {
     let csv = std::fs::read_to_string(out.join("results.csv")).expect("results");
     assert!(csv.lines().next().expect("a header").contains("failure_class,other_egos"));
 }
+
+#[test]
+#[cfg(unix)]
+fn a_program_behind_a_wrapper_that_hangs_is_left_by_nobody() {
+    // A time that nobody else sleeps for.
+    let ego = "cmd:sh -c 'sleep 64.193; true'";
+    let (code, _, errors) = run(&["simulate", &crossing(), "--ego", ego, "--ego-timeout", "1"]);
+    assert_eq!(code, 3, "{errors}");
+    assert!(errors.contains("gave no answer to hello"), "{errors}");
+    let told = std::process::Command::new("ps").args(["-A", "-o", "args"]).output().expect("ps");
+    let left: Vec<String> = String::from_utf8_lossy(&told.stdout)
+        .lines()
+        .filter(|l| l.contains("sleep 64.193"))
+        .map(str::to_owned)
+        .collect();
+    assert_eq!(left, [""; 0]);
+}
+
+#[test]
+fn a_program_sees_what_the_user_names_and_no_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (program, seen) = (folder.path().join("ego.py"), folder.path().join("seen"));
+    let script = "import os, sys\nopen(sys.argv[1], 'w').write('\\n'.join(os.environ))\n";
+    std::fs::write(&program, script).expect("a script");
+    let ego = format!("cmd:python3 {} {}", program.display(), seen.display());
+    let mut command = recrash(&["simulate", &crossing(), "--ego", &ego]);
+    command.env("RECRASH_PASS_ENV", "STACK_*, NAMED_TOKEN").envs([("STACK_MODE", "x"), ("STACK_API_KEY", "x")]);
+    command.envs([("NAMED_TOKEN", "x"), ("OPENAI_API_KEY", "x"), ("UNNAMED", "x")]).output().expect("it runs");
+    let seen = std::fs::read_to_string(seen).expect("the program ran");
+    let sees = |name: &str| seen.lines().any(|line| line == name);
+    assert!(sees("PATH") && sees("STACK_MODE") && sees("NAMED_TOKEN"), "{seen}");
+    assert!(!sees("STACK_API_KEY") && !sees("OPENAI_API_KEY") && !sees("UNNAMED"), "{seen}");
+}

@@ -132,6 +132,29 @@ fn a_target_with_files_in_it_is_left_alone() {
 }
 
 #[test]
+fn an_interrupted_export_goes_on() {
+    let case = Case::with_suite();
+    let export = ["export", "suite", "--to", "openscenario,scenic,metadrive"];
+    assert_eq!(case.run(&export).0, 0);
+    let files = |format: &str| names_in(&case.path(&format!("suite/exports/{format}")));
+    let whole: Vec<_> = ["openscenario", "scenic", "metadrive"].map(files).into();
+    // As it would be after an interruption: some files of one folder, none of another.
+    std::fs::remove_dir_all(case.path("suite/exports/metadrive")).unwrap();
+    for name in files("scenic").iter().take(2) {
+        std::fs::remove_file(case.path("suite/exports/scenic").join(name)).unwrap();
+    }
+    let (code, shown) = case.run(&export);
+    assert_eq!(code, 0, "{shown}");
+    assert_eq!(["openscenario", "scenic", "metadrive"].map(files).to_vec(), whole);
+    let edited = case.path("suite/exports/scenic").join(files("scenic").first().unwrap());
+    std::fs::write(&edited, "mine").unwrap();
+    let (code, shown) = case.run(&export);
+    assert_eq!(code, BAD_INPUT, "{shown}");
+    assert!(shown.contains("scenic holds other files") && shown.contains("--force"), "{shown}");
+    assert_eq!(std::fs::read_to_string(&edited).unwrap(), "mine");
+}
+
+#[test]
 fn the_papers_dialect_is_imported_and_run() {
     let case = Case { folder: tempfile::tempdir().unwrap() };
     std::fs::write(case.path("theirs.json"), DIALECT).unwrap();

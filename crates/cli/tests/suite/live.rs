@@ -3,7 +3,7 @@
 
 use crate::common::recrash;
 use crate::common::scripted::ScriptedModel;
-use crate::common::server::{Reply, Request, Server};
+use crate::common::server::{Reply, Request, Server, completion};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -447,6 +447,238 @@ fn an_interrupt_keeps_every_answer_and_says_how_to_go_on() {
         .filter(|r| answered.iter().any(|a| a.body["messages"] == r.body["messages"]))
         .count();
     assert_eq!(again, 0, "what was answered is not asked again");
+}
+
+/// Three gigabytes of zeros in gzip, put together by hand: a zero, and how often it is repeated.
+fn packed_zeros() -> Vec<u8> {
+    let mut packed = vec![0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255];
+    let (mut bits, mut count) = (0_u64, 0);
+    let mut put = |packed: &mut Vec<u8>, code: u64, length: u32| {
+        bits |= code << count;
+        count += length;
+        while count >= 8 {
+            packed.push((bits & 0xff) as u8);
+            (bits, count) = (bits >> 8, count - 8);
+        }
+    };
+    // One block with the fixed codes: the letter 0, then "258 times what stood one byte before".
+    put(&mut packed, 0b011, 3);
+    put(&mut packed, 0b0000_1100, 8);
+    for _ in 0..3_000_000_000_u64 / 258 {
+        put(&mut packed, 0b1010_0011, 8);
+        put(&mut packed, 0, 5);
+    }
+    packed
+}
+
+/// Runs with three scenarios, and gives the output and the most memory that the run held. [bytes]
+#[cfg(target_os = "linux")]
+fn run_and_measure(server: &Server, out: &Path) -> (Output, u64) {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("recrash"));
+    command.args(["run", "--agent", "scripted", "--base-url", &server.base_url, "--out"]).arg(out);
+    command.args(["--budget", "3", "--tune", "rules", "--tune-budget", "1", "--retries", "1", "--repairs", "1"]);
+    let piped = std::process::Stdio::piped;
+    let mut child = command.stdout(piped()).stderr(piped()).spawn().unwrap();
+    let mut most = 0;
+    while child.try_wait().unwrap().is_none() {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let held = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let held = held.and_then(|text| text.trim().trim_end_matches(" kB").parse::<u64>().ok());
+        most = most.max(held.unwrap_or(0) << 10);
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    (child.wait_with_output().unwrap(), most)
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_answer_of_three_gigabytes_costs_under_200_mb() {
+    let packed = Arc::new(packed_zeros());
+    let piece = Arc::new([b"100000\r\n".to_vec(), vec![b' '; 1 << 20], b"\r\n".to_vec()].concat());
+    let plain = Arc::new(vec![b'x'; 1 << 20]);
+    for (name, headers, piece, times) in [
+        ("packed", format!("Content-Encoding: gzip\r\nContent-Length: {}\r\n", packed.len()), packed, 1),
+        ("endless", "Transfer-Encoding: chunked\r\n".to_owned(), piece, 3_000),
+        ("long", format!("Content-Length: {}\r\n", 3_000_u64 << 20), plain, 3_000),
+    ] {
+        let folder = Folder::new();
+        let server = Server::start(move |_| Reply::Pieces(headers.clone(), Arc::clone(&piece), times));
+        let (output, held) = run_and_measure(&server, &folder.suite());
+        println!("{name}: {} MB held", held >> 20);
+        assert!(held < 200_000_000, "{name}: {held} bytes held");
+        assert!(output.status.success(), "{name}: {}", shown(&output));
+        assert!(!server.requests().iter().any(|r| r.head.to_ascii_lowercase().contains("accept-encoding: gzip")));
+        let kept: u64 = files_below(&folder.suite()).iter().map(|file| file.metadata().unwrap().len()).sum();
+        assert!(kept < 3_000_000, "{name}: {kept} bytes kept");
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn the_ledger_does_not_grow_with_the_answers() {
+    let folder = Folder::new();
+    let server = Server::start(|_| Reply::Text("I think. ".repeat(400_000)));
+    let (output, held) = run_and_measure(&server, &folder.suite());
+    assert!(output.status.success(), "{}", shown(&output));
+    assert!(held < 200_000_000, "{held} bytes held");
+    let kept: Vec<u64> =
+        files_below(&folder.suite().join("ledger")).iter().map(|file| file.metadata().unwrap().len()).collect();
+    assert!(kept.len() >= 12 && kept.iter().all(|&bytes| bytes < 100_000), "{kept:?}");
+}
+
+#[test]
+fn a_cap_on_tokens_holds_where_the_server_does_not_count() {
+    let (folder, model) = (Folder::new(), model());
+    let server = Server::start(move |request| {
+        let mut body: Value = serde_json::from_str(&completion(&model.answer(request.messages()))).unwrap();
+        body.as_object_mut().unwrap().remove("usage");
+        Reply::Status(200, String::new(), body.to_string())
+    });
+    let output = recrash(&["run", "--quiet", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
+        .arg(folder.suite())
+        .args(OPTIONS)
+        .args(["--max-tokens", "40000", "--concurrency", "1"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(4), "{}", shown(&output));
+    assert!(shown(&output).contains("cap of 40000 tokens is reached"), "{}", shown(&output));
+    let kept = ledger(&folder.suite());
+    let tokens: u64 =
+        kept.iter().map(|e| e["input_tokens"].as_u64().unwrap() + e["output_tokens"].as_u64().unwrap()).sum();
+    let sent: usize = server.requests().iter().map(|request| request.body.to_string().len()).sum();
+    assert!(kept.iter().all(|exchange| exchange["tokens_estimated"] == true));
+    assert!((40_000..60_000).contains(&tokens) && tokens as usize > sent / 3, "{tokens} tokens of {sent} bytes");
+}
+
+#[test]
+fn nobody_at_the_address_is_told_within_seconds() {
+    let folder = Folder::new();
+    let nobody = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let base_url = format!("http://{nobody}/v1");
+    let begun = Instant::now();
+    let arguments = ["run", "--quiet", "--agent", "m", "--base-url", &base_url, "--budget", "3", "--out"];
+    let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
+    assert!(begun.elapsed() < Duration::from_secs(6), "{:?}", begun.elapsed());
+}
+
+#[test]
+fn a_missing_key_of_a_later_role_is_told_before_the_first_question() {
+    let folder = Folder::new();
+    let arguments = ["run", "--quiet", "--paraphrase", "no-such-model", "--design", "claude-haiku-4-5", "--out"];
+    let mut command = recrash(&arguments);
+    command.arg(folder.suite()).args(OPTIONS).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(shown(&output).contains("ANTHROPIC_API_KEY"), "{}", shown(&output));
+}
+
+#[test]
+fn a_typing_error_is_told_before_any_question_is_asked() {
+    let server = server(|_| None);
+    for (typed, told) in [
+        (["--ego", "humann"], "metadrive-idm"),
+        (["--ego", "cmd:no-such-program --fast"], "no such program"),
+        (["--ego", "cmd:./no/such/program"], "no such program"),
+        (["--searcher", "cmaa"], "cma"),
+    ] {
+        for command in ["run", "narrate"] {
+            let folder = Folder::new();
+            let output = recrash(&[command, "--quiet", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
+                .arg(folder.suite())
+                .args(OPTIONS)
+                .args(typed)
+                .output()
+                .unwrap();
+            assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
+            assert!(shown(&output).contains(told), "{}", shown(&output));
+        }
+    }
+    assert_eq!(server.requests().len(), 0);
+}
+
+/// An ego that tells everything it knows, in every way it has, and drives in no scenario.
+const TELLTALE: &str = r#"
+import json, os, sys
+known = " ".join(f"{name}={value}" for name, value in os.environ.items()) + " " + open(sys.argv[1]).read()
+for line in sys.stdin:
+    message = json.loads(line)
+    number = message.get("scenario", "00")[:2]
+    if message["type"] == "hello":
+        print(json.dumps({"type": "ready", "protocol": "recrash.ego/1"}), flush=True)
+    elif number == "01":
+        sys.exit(known)
+    elif number == "02":
+        print(known, flush=True)
+    elif message["type"] != "end":
+        print(json.dumps({"type": "error", "message": known}), flush=True)
+"#;
+
+/// Ways to write a text that whoever reads it takes back.
+fn written(text: &str) -> Vec<String> {
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
+    let each = |write: fn(char) -> String| text.chars().map(write).collect::<String>();
+    vec![
+        text.to_owned(),
+        each(|c| format!("\\u{:04x}", u32::from(c))),
+        each(|c| format!("%{:02X}", u32::from(c))),
+        text.replace('/', "\\/"),
+        text.replace('/', "%2F"),
+        STANDARD.encode(text),
+        STANDARD.encode(format!("Bearer {text}")),
+        STANDARD.encode(format!("x:{text}")),
+    ]
+}
+
+#[test]
+fn a_planted_key_is_in_no_file_however_it_is_written_and_whoever_tells_it() {
+    const PLANTED: [(&str, &str); 3] =
+        [("RECRASH_API_KEY", "sk-plant/ed+key-0123456789"), ("SOME_API_KEY", "k9/zQ"), ("OTHER_TOKEN", "tk_55512345")];
+    const FOUR: [&str; 6] = ["--budget", "4", "--tune-budget", "1", "--seed", "5"];
+    let (folder, elsewhere) = (Folder::new(), Folder::new());
+    let model = ScriptedModel::new(elsewhere.0.path(), &FOUR);
+    let told: Vec<String> = PLANTED.iter().flat_map(|(_, key)| written(key)).collect();
+    let say = told.join(" ");
+    let server = Server::start(move |request| {
+        if request.is("Retell") {
+            let mut answer: Value = serde_json::from_str(&model.answer(request.messages())).unwrap();
+            answer["text"] = json!(format!("{} {say}", answer["text"].as_str().unwrap()));
+            return Reply::Text(answer.to_string());
+        }
+        match request.asked_before {
+            0 => Reply::Status(500, "Retry-After: 0\r\n".into(), json!({"error": {"message": say}}).to_string()),
+            _ if request.opens() => Reply::Text(format!("No, but: {say}")),
+            _ => Reply::Text(model.answer(request.messages())),
+        }
+    });
+    let (program, known) = (folder.0.path().join("ego.py"), folder.0.path().join("known"));
+    std::fs::write(&program, TELLTALE).unwrap();
+    std::fs::write(&known, told.join(" ")).unwrap();
+    let ego = format!("cmd:python3 {} {}", program.display(), known.display());
+    let output = recrash(&["run", "--agent", "scripted", "--base-url", &server.base_url, "--ego", &ego, "--out"])
+        .arg(folder.suite())
+        .args(FOUR)
+        .args(["--rounds", "1"])
+        .envs(PLANTED)
+        .output()
+        .unwrap();
+    let files = files_below(&folder.suite());
+    assert!(
+        files.iter().any(|file| file.to_string_lossy().ends_with(".failed.json")),
+        "the ego fails: {}",
+        shown(&output)
+    );
+    let contents = files.iter().map(|file| (file.display().to_string(), std::fs::read_to_string(file).unwrap()));
+    let everything: Vec<(String, String)> = contents.chain([("the terminal".to_owned(), shown(&output))]).collect();
+    // What stands in base64 is found without its last letters, which depend on what follows.
+    let forms = told.iter().map(|form| form.trim_end_matches('=')).map(|form| &form[..form.len() - 1]);
+    for (form, (place, content)) in forms.flat_map(|form| everything.iter().map(move |kept| (form, kept))) {
+        for content in [content.clone(), content.replace("\\\\", "\\")] {
+            assert!(!content.contains(form), "{form} in {place}");
+        }
+    }
+    assert!(everything.iter().any(|(_, content)| content.contains("[key]")), "they were told");
 }
 
 /// Every file below a folder.

@@ -2,6 +2,7 @@
 
 use crate::common::Place;
 use recrash_records::SAMPLE_CSV;
+use std::collections::BTreeSet;
 use std::io::{Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
@@ -74,6 +75,24 @@ fn a_parquet_table_is_one() {
     place.records(&["--parquet", "usable.parquet"]);
     let bytes = std::fs::read(place.path("usable.parquet")).unwrap();
     assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+}
+
+#[test]
+fn two_files_of_one_name_are_told_apart() {
+    let place = Place::new();
+    for (folder, id) in [("2024", "9010"), ("2025", "9110")] {
+        std::fs::create_dir(place.path(folder)).unwrap();
+        std::fs::write(place.path(folder).join("ads.csv"), SAMPLE_CSV.replace("\n9010", &format!("\n{id}"))).unwrap();
+    }
+    let told = place.records(&["2024/ads.csv", "2025/ads.csv", "--csv", "all.csv", "--all"]);
+    let names: Vec<&str> = told["files"].as_array().unwrap().iter().filter_map(|file| file["name"].as_str()).collect();
+    assert_eq!(names, ["2024/ads.csv", "2025/ads.csv"]);
+    let mut table = csv::Reader::from_path(place.path("all.csv")).unwrap();
+    let at = table.headers().unwrap().iter().position(|name| name == "file").unwrap();
+    let files: BTreeSet<String> = table.records().map(|row| row.unwrap()[at].to_owned()).collect();
+    assert_eq!(files, BTreeSet::from(["2024/ads.csv".to_owned(), "2025/ads.csv".to_owned()]));
+    let alone = place.records(&["2024/ads.csv"]);
+    assert_eq!(alone["files"][0]["name"], "ads.csv");
 }
 
 #[test]

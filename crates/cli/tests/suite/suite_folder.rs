@@ -1,6 +1,6 @@
 //! What a suite's folder may count on: one run at a time, nothing left behind, nothing touched that is not its own.
 
-use crate::common::Place;
+use crate::common::{Place, driving_ego};
 use std::path::Path;
 
 /// A place with a small suite in `suite/`, and the words that make it again.
@@ -79,8 +79,119 @@ fn the_command_that_runs_a_scenario_again_names_its_profile() {
         place.run(&["run", "--quiet", "--budget", "2", "--tune-budget", "4", "--profile", "mine.toml"]);
     assert_eq!(code, 0, "{error}");
     let results = std::fs::read_to_string(place.path("suite/results.csv")).unwrap();
-    let command = ".json --profile mine.toml --ego metadrive-idm";
+    let command = ".json --profile ../mine.toml --ego metadrive-idm";
     assert_eq!(results.lines().skip(1).filter(|line| !line.ends_with(command)).count(), 0, "{results}");
+    assert_eq!(hashes_of_reruns(&place, &results), hashes(&results));
+}
+
+/// The state hashes of a table of results.
+fn hashes(results: &str) -> Vec<String> {
+    column(results, "state_hash")
+}
+
+fn column(results: &str, name: &str) -> Vec<String> {
+    let mut table = csv::Reader::from_reader(results.as_bytes());
+    let at = table.headers().unwrap().iter().position(|header| header == name).unwrap();
+    table.records().map(|row| row.unwrap()[at].to_owned()).collect()
+}
+
+/// Runs every command of a table of results again, in the suite's folder as a shell would; gives the state hashes.
+fn hashes_of_reruns(place: &Place, results: &str) -> Vec<String> {
+    let program = assert_cmd::cargo::cargo_bin("recrash");
+    let run = |command: String| {
+        let command = command.replacen("recrash", &format!("'{}'", program.display()), 1) + " --json";
+        let output = std::process::Command::new("sh").args(["-c", &command]).current_dir(place.path("suite")).output();
+        let output = output.unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        let run: serde_json::Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{command}: {e} {error}"));
+        run["rollout"]["state_hash"].as_str().unwrap().to_owned()
+    };
+    column(results, "command").into_iter().map(run).collect()
+}
+
+#[test]
+#[cfg(unix)]
+fn the_command_that_runs_a_scenario_again_finds_an_ego_by_its_relative_path() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("my egos")).unwrap();
+    std::fs::write(place.path("my egos/steady.py"), driving_ego(6.0)).unwrap();
+    let program = "cmd:python3 'my egos/steady.py'";
+    let (code, _, error) = place.run(&["run", "--quiet", "--budget", "2", "--tune-budget", "2", "--ego", program]);
+    assert_eq!(code, 0, "{error}");
+    let results = std::fs::read_to_string(place.path("suite/results.csv")).unwrap();
+    assert_eq!(hashes_of_reruns(&place, &results), hashes(&results));
+}
+
+/// Work that misses what is asked for.
+const MISSED: i32 = 5;
+
+#[test]
+fn a_run_that_is_not_true_to_its_record_is_told_by_the_exit_code() {
+    let (place, _) = small_suite(&[]);
+    let (code, shown, error) = place.run(&["simulate", "suite"]);
+    assert_eq!(code, 0, "a folder is a suite: {error}");
+    assert!(shown.contains("simulate: 0 done, 2 there already, in suite"), "{shown}");
+    std::fs::write(place.path("stand.py"), driving_ego(0.0)).unwrap();
+    let standing = ["--ego", "cmd:python3 stand.py"];
+    let (code, _, error) = place.run(&[&["simulate", "suite"], &standing[..]].concat());
+    assert_eq!(code, MISSED, "{error}");
+    for words in ["2 of 2 scenarios are not true to their records", "scenario.unfaithful", "01-"] {
+        assert!(error.contains(words), "{words}: {error}");
+    }
+    let (code, told, _) = place.run(&[&["simulate", "--json"], &standing[..]].concat());
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    assert_eq!((code, told["unfaithful"].as_array().map(Vec::len)), (MISSED, Some(2)), "{told}");
+    let (code, _, error) = place.run(&[&["tune", "--tune-budget", "1"], &standing[..]].concat());
+    assert_eq!(code, MISSED, "{error}");
+    let (code, _, error) = place.run(&["simulate", "suite", "--rollout", "x.json"]);
+    assert_eq!(code, 2, "{error}");
+    assert!(error.contains("suite is a folder"), "{error}");
+}
+
+#[test]
+fn a_stage_makes_no_suite_where_there_is_none() {
+    let place = Place::new();
+    for stage in ["narrate", "design", "simulate", "tune", "report", "ledger", "export --to scenic"] {
+        let mut words: Vec<&str> = stage.split(' ').collect();
+        match words[0] {
+            "ledger" | "export" => words.insert(1, "siute"),
+            _ => words.extend(["--out", "siute"]),
+        }
+        let (code, _, error) = place.run(&words);
+        assert!(matches!(code, 1..=3), "{stage}: {error}");
+        assert!(error.contains("siute"), "{stage}: {error}");
+        assert!(!place.path("siute").exists(), "{stage} has made the folder");
+        if words.contains(&"--out") {
+            assert!(
+                error.contains("there is no suite in siute") && error.contains("recrash records"),
+                "{stage}: {error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_missing_input_has_the_exit_code_that_the_help_tells() {
+    let place = Place::new();
+    let (_, help, _) = place.run(&["--help"]);
+    let told = help.split("Exit codes:").nth(1).unwrap();
+    let told = told.split("\n\n").next().unwrap().replace("\n", " ");
+    assert!(told.contains("3 the input is not there or cannot be used"), "{told}");
+    std::fs::write(place.path("map.toml"), include_str!("../../../../docs/mappings/crss.toml")).unwrap();
+    let missing: [&[&str]; 7] = [
+        &["records", "nowhere.csv"],
+        &["records", "--mapping", "nowhere.toml"],
+        &["records", "--profile", "nowhere.toml"],
+        &["simulate", "nowhere.json"],
+        &["import", "nowhere.json"],
+        &["export", "nowhere.json", "--to", "scenic"],
+        &["eval", "--labels", "nowhere.csv"],
+    ];
+    for words in missing {
+        let (code, _, error) = place.run(words);
+        assert_eq!(code, 3, "{words:?}: {error}");
+    }
 }
 
 #[test]
@@ -98,8 +209,9 @@ fn a_careful_ego_is_told_what_the_order_says_about_it() {
     let (code, shown, error) = place.run(&["run", "--ego", "reference", "--tune-budget", "2"]);
     assert_eq!(code, 0, "{error}");
     assert_eq!(shown.matches("Who comes first is up to the ego as well").count(), 1, "{shown}");
-    let page = std::fs::read_to_string(place.path("suite/report.html")).unwrap();
-    assert!(page.contains("Who comes first is up to the ego as well"));
+    let cases = std::fs::read_dir(place.path("suite/report")).unwrap();
+    let mut texts = cases.map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap());
+    assert!(texts.any(|text| text.contains("Who comes first is up to the ego as well")));
 }
 
 /// The files of a folder, hidden ones too.
@@ -123,7 +235,7 @@ fn an_interrupted_sweep_leaves_nothing_behind() {
         .unwrap();
     let begun = (0..600).any(|_| {
         std::thread::sleep(std::time::Duration::from_millis(50));
-        files(place.folder()) == [".rows.parquet.part"]
+        files(place.folder()) == [".recrash-rows.parquet.part"]
     });
     assert!(begun, "it does not begin");
     let told = std::process::Command::new("kill").args(["-INT", &sweep.id().to_string()]).status().unwrap();

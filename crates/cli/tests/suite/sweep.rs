@@ -115,6 +115,23 @@ fn a_killed_or_failed_sweep_leaves_the_old_file() {
 }
 
 #[test]
+fn a_deleted_scenario_of_a_suite_is_told() {
+    let case = Case::new();
+    let (suite, out) = (case.out("s").display().to_string(), case.out("a.parquet").display().to_string());
+    recrash(&["run", "--quiet", "--budget", "2", "--tune-budget", "2", "--out", &suite]).assert().success();
+    let sweep = |more: &[&str]| {
+        recrash(&[&["sweep", &suite, "-n", "4", "--out", &out], more].concat()).output().expect("it runs")
+    };
+    assert!(!String::from_utf8_lossy(&sweep(&[]).stderr).contains("not swept"));
+    let deleted = "01-intersection-straight-straight";
+    std::fs::remove_file(case.out(&format!("s/6-tuned/{deleted}.json"))).expect("it was there");
+    let told = String::from_utf8_lossy(&sweep(&[]).stderr).into_owned();
+    assert!(told.contains("1 scenarios without a tuned file are not swept") && told.contains(deleted), "{told}");
+    let summary: serde_json::Value = serde_json::from_slice(&sweep(&["--json"]).stdout).expect("JSON");
+    assert_eq!(summary["passed_over"], serde_json::json!([deleted]));
+}
+
+#[test]
 fn what_cannot_vary_is_refused_with_its_pointer() {
     let case = Case::new();
     let out = case.out("a.parquet").display().to_string();

@@ -5,6 +5,7 @@ use recrash_metrics::{findings_of, series};
 use recrash_model::math::FRAC_PI_2;
 use recrash_model::metrics::{CollisionKind, FindingKind, Metrics};
 use recrash_model::record::ContactZone;
+use recrash_model::rollout::ActorState;
 use recrash_model::rollout::{Event, EventKind, Role, Rollout, TerminationKind};
 use recrash_model::scenario::{Approach, Turn};
 
@@ -342,4 +343,46 @@ fn broken_rollouts_do_not_panic() {
     none.actors.clear();
     assert!(measure(&network, &way, 10.0, &none).contact.is_none());
     assert!(series(&none).time_s.is_empty());
+}
+
+#[test]
+fn the_gap_to_a_turned_leader_ends_at_its_corner_and_not_at_its_shadow() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    let ego = drive(&way, 5.0, 1, |_| 10.0);
+    // It cuts out to the left by 30 degrees, 12 m ahead; its rear right corner alone is still in the ego's way, by a hair.
+    let (sin, cos) = (0.5, 0.75_f64.sqrt());
+    let y = ego[0].y + 0.5 * WIDTH_M + 0.5 * LENGTH_M * sin + 0.5 * WIDTH_M * cos - 1e-6;
+    let leader = glide(ego[0].x + 12.0, y, FRAC_PI_2 / 3.0, 5.0, 1);
+    let metrics = measure(&network, &way, 10.0, &rollout(ego, vec![leader]));
+    let gap = 12.0 - 0.5 * LENGTH_M - (0.5 * LENGTH_M * cos - 0.5 * WIDTH_M * sin);
+    let drac = (10.0 - 5.0 * cos) * (10.0 - 5.0 * cos) / (2.0 * gap);
+    close(metrics.partners[0].max_drac.unwrap().value, drac, 1e-5);
+    close(metrics.partners[0].min_headway.unwrap().value, gap / 10.0, 1e-5);
+}
+
+#[test]
+fn who_slides_sideways_comes_nearer_though_he_points_along() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    let ego = drive(&way, 5.0, 10, |_| 8.0);
+    let slide = |state: &ActorState| ActorState { vy: -0.5, ..*state };
+    let beside: Vec<ActorState> = glide(ego[0].x, ego[0].y + WIDTH_M + 1.5, 0.0, 8.0, 1).iter().map(slide).collect();
+    let metrics = measure(&network, &way, 8.0, &rollout(ego, vec![beside]));
+    // 1.5 m between the sides at 0.5 m/s.
+    close(metrics.partners[0].min_ttc.unwrap().value, 3.0, 1e-9);
+}
+
+#[test]
+fn braking_that_a_rollout_begins_with_is_no_phantom() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    // 2 g for two steps, from the beginning or after a second.
+    let braking = |from_s: f64| move |time: f64| 15.0 - 19.6 * (time - from_s).clamp(0.0, 0.2);
+    let phantom = |from_s: f64| {
+        let ego = drive(&way, 5.0, 40, braking(from_s));
+        measure(&network, &way, 15.0, &rollout(ego, vec![])).ego.phantom_braking
+    };
+    assert_eq!(phantom(0.0), None);
+    close(phantom(1.0).unwrap().value, 19.6, 1e-6);
 }

@@ -1,6 +1,6 @@
 //! A disk that fills up: the run stops with a clear error, what was finished stays, and the next run goes on.
 
-use recrash_pipeline::{NoProgress, Options, PipelineError, Resources, Stage, Suite};
+use recrash_pipeline::{NoProgress, Options, PipelineError, Resources, Stage, Suite, run_stage};
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -16,7 +16,7 @@ fn write_with_room(path: &Path, content: &[u8]) -> std::io::Result<()> {
 }
 
 fn run_all(suite: &Suite) -> Result<(), PipelineError> {
-    Stage::ALL.into_iter().try_for_each(|stage| suite.run_stage(stage, &NoProgress).map(drop))
+    Stage::ALL.into_iter().try_for_each(|stage| run_stage(&suite, stage, &NoProgress).map(drop))
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use recrash_pipeline::{
     NoProgress, OpenLoopRequest, Options, Parity, ParityRequest, ParitySource, PipelineError, Resources, Stage, Suite,
-    open_loop, parity,
+    open_loop, parity, run_stage,
 };
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ fn metadrive() -> Option<PathBuf> {
 fn suite(dir: &Path, options: Options) {
     let suite = Suite::open(dir, options, Resources::default()).expect("a suite");
     for stage in Stage::ALL {
-        suite.run_stage(stage, &NoProgress).expect("the sample runs");
+        run_stage(&suite, stage, &NoProgress).expect("the sample runs");
     }
 }
 

@@ -8,7 +8,7 @@ use crate::file::{FileContent, RawTable, raw_table};
 use crate::notes::{Notes, Remark};
 use crate::row::{Draft, redaction_of};
 use crate::text::{decode, excerpt, header_key};
-use crate::{MAX_FILE_BYTES, SourceText, file};
+use crate::{MAX_FILE_BYTES, SourceBytes};
 use csv::ByteRecord;
 use recrash_model::record::{
     Coded, CrashRecord, Edition, MPS_PER_MPH, Provenance, RecordRef, Reject, RejectReason, SourceFile, YearMonth,
@@ -16,12 +16,34 @@ use recrash_model::record::{
 use recrash_model::{Diagnostic, Location, Severity};
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
+use std::io::{Read, Seek};
 
 /// Above this a speed is a code or a slip of the pen. [m/s; 150 mi/h as for SGO files, assumed]
 const GREATEST_SPEED_MPS: f64 = 150.0 * MPS_PER_MPH;
 
 /// Most malformed rows that get a diagnostic of their own.
 const MOST_MALFORMED_TOLD: usize = 100;
+
+/// A file, read whole: joined tables are looked into in any order.
+struct MappedFile<'a> {
+    name: &'a str,
+    bytes: Vec<u8>,
+    sha256: &'a str,
+}
+
+impl<'a> MappedFile<'a> {
+    fn read(mut source: SourceBytes<'a>, sha256: &'a str) -> Result<Self, IngestError> {
+        let (name, mut bytes) = (source.name, Vec::new());
+        let limit = MAX_FILE_BYTES as u64 + 1;
+        let read = source.bytes.rewind().and_then(|()| source.bytes.take(limit).read_to_end(&mut bytes));
+        read.map_err(|error| IngestError::unreadable(name, &error))?;
+        if bytes.len() > MAX_FILE_BYTES {
+            let (bytes, limit) = (bytes.len() as u64, MAX_FILE_BYTES);
+            return Err(IngestError::TooLarge { file: name.to_owned(), bytes, limit });
+        }
+        Ok(Self { name, bytes, sha256 })
+    }
+}
 
 /// A table of a file: where each column stands, and the rows.
 struct Table {
@@ -39,8 +61,21 @@ struct Joined<'a> {
 }
 
 /// Reads the files of another database. One content per main file, in the order given.
-pub fn read_mapped(files: &[SourceText<'_>], mapping: &Mapping) -> Result<Vec<FileContent>, IngestError> {
-    let is_named = |file: &SourceText<'_>, name: &str| file.name.eq_ignore_ascii_case(name);
+pub fn read_mapped(
+    sources: Vec<SourceBytes<'_>>,
+    hashes: &[String],
+    mapping: &Mapping,
+) -> Result<Vec<FileContent>, IngestError> {
+    let files: Vec<MappedFile<'_>> = sources
+        .into_iter()
+        .zip(hashes)
+        .map(|(source, hash)| MappedFile::read(source, hash))
+        .collect::<Result<_, _>>()?;
+    let files = files.as_slice();
+    // A name has folders in it where they are needed to tell files apart.
+    let is_named = |file: &MappedFile<'_>, name: &str| {
+        file.name.rsplit(['/', '\\']).next().is_some_and(|last| last.eq_ignore_ascii_case(name))
+    };
     let mut joined_tables = Vec::new();
     for join in &mapping.joins {
         let key = format!("join.{}.file", join.prefix);
@@ -89,11 +124,11 @@ pub fn read_mapped(files: &[SourceText<'_>], mapping: &Mapping) -> Result<Vec<Fi
 }
 
 /// The joined files stand among the sources, with no rows of their own: a row of theirs is a part of a report.
-fn tell_joined(content: &mut FileContent, mapping: &Mapping, joined: &[Joined<'_>], files: &[SourceText<'_>]) {
+fn tell_joined(content: &mut FileContent, mapping: &Mapping, joined: &[Joined<'_>], files: &[MappedFile<'_>]) {
     for (join, joined) in mapping.joins.iter().zip(joined) {
         let name = &joined.table.name;
-        let bytes = files.iter().find(|file| file.name == *name).map(|file| file.bytes).unwrap_or_default();
-        let sha256 = file::sha256(bytes);
+        let sha256 =
+            files.iter().find(|file| file.name == *name).map(|file| file.sha256.to_owned()).unwrap_or_default();
         if !content.sources.iter().any(|part| part.name == *name) {
             content.sources.push(SourceFile { name: name.clone(), edition: Edition::Mapped, rows: 0, sha256 });
         }
@@ -114,7 +149,7 @@ fn tell_joined(content: &mut FileContent, mapping: &Mapping, joined: &[Joined<'_
     }
 }
 
-fn no_file(mapping: &Mapping, line: usize, key: String, name: &str, files: &[SourceText<'_>]) -> IngestError {
+fn no_file(mapping: &Mapping, line: usize, key: String, name: &str, files: &[MappedFile<'_>]) -> IngestError {
     let given: Vec<&str> = files.iter().map(|file| file.name).collect();
     let message = format!("\"{name}\" is not among the files given ({}); give it with --records", given.join(", "));
     IngestError::Mapping(mapping.error(line, key, message))
@@ -126,12 +161,8 @@ fn no_column(mapping: &Mapping, line: usize, key: String, column: &str, table: &
     IngestError::Mapping(mapping.error(line, key, message))
 }
 
-fn read_table(source: &SourceText<'_>) -> Result<Table, IngestError> {
-    if source.bytes.len() > MAX_FILE_BYTES {
-        let (bytes, limit) = (source.bytes.len(), MAX_FILE_BYTES);
-        return Err(IngestError::TooLarge { file: source.name.to_owned(), bytes, limit });
-    }
-    let raw = raw_table(source)?;
+fn read_table(source: &MappedFile<'_>) -> Result<Table, IngestError> {
+    let raw = raw_table(source.name, &source.bytes)?;
     let names: Vec<String> = raw.header.iter().map(|name| decode(name).0.trim().to_owned()).collect();
     let keys = names.iter().map(|name| header_key(name)).collect();
     Ok(Table { name: source.name.to_owned(), keys, names, raw })
@@ -148,7 +179,7 @@ fn text(row: &ByteRecord, position: usize) -> String {
     decode(row.get(position).unwrap_or_default()).0.trim().to_owned()
 }
 
-fn read_main(source: &SourceText<'_>, mapping: &Mapping, joined: &[Joined<'_>]) -> Result<FileContent, IngestError> {
+fn read_main(source: &MappedFile<'_>, mapping: &Mapping, joined: &[Joined<'_>]) -> Result<FileContent, IngestError> {
     let table = read_table(source)?;
     let mut keys = Vec::new();
     for join in &mapping.joins {
@@ -190,7 +221,7 @@ fn read_main(source: &SourceText<'_>, mapping: &Mapping, joined: &[Joined<'_>]) 
     if rows == 0 {
         return Err(IngestError::HeaderOnly { file: source.name.to_owned(), edition: "mapped" });
     }
-    let sha256 = file::sha256(source.bytes);
+    let sha256 = source.sha256.to_owned();
     content.sources.push(SourceFile { name: source.name.to_owned(), edition: Edition::Mapped, rows, sha256 });
     content.diagnostics.extend(notes.diagnostics(source.name));
     Ok(content)

@@ -55,6 +55,33 @@ fn whole_files_are_refused_with_name_expectation_and_remedy() {
 }
 
 #[test]
+fn utf_16_is_read_with_a_mark_and_without_one() {
+    let text = second(&[row(Edition::Second, "1-1", &[("Narrative", "Caf\u{e9} on \u{416} Street.")]), plain("1-2")]);
+    let expected = ingest_bytes(text.as_bytes()).value;
+    assert_eq!(expected.records.len(), 2);
+    for mark in ["", "\u{feff}"] {
+        let units: Vec<u16> = format!("{mark}{text}").encode_utf16().collect();
+        let little: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+        let big: Vec<u8> = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+        for bytes in [little, big] {
+            let set = ingest_bytes(&bytes).value;
+            assert_eq!(set.rejects, expected.rejects);
+            assert_eq!(set.records, expected.records);
+        }
+    }
+}
+
+#[test]
+fn a_version_may_be_written_as_a_data_frame_writes_whole_numbers() {
+    let version = |text: &str| row(Edition::Second, "1-1", &[("Report Version", text)]);
+    let set = ingest_bytes(
+        second(&[version("1.0"), version("2.00"), version("3.5"), version("4."), version(".0")]).as_bytes(),
+    );
+    assert_eq!(ids(&set.value), ["1-1/1", "1-1/2"]);
+    assert_eq!(malformed(&set.value), [3, 4, 5]);
+}
+
+#[test]
 fn missing_columns_are_all_named_with_the_edition() {
     let text =
         header(Edition::Third).replace("Roadway Type", "Kind").replace("Roadway-Work Zone", "Cones") + "\n1-1,1\n";

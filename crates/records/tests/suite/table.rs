@@ -2,8 +2,15 @@
 
 use crate::common::builder::{row, second};
 use crate::common::{ingest_bytes, paper};
-use recrash_model::record::Edition;
-use recrash_records::{SAMPLE_CSV, SourceText, TableRows, distributions, ingest, record_table};
+use recrash_model::record::{Edition, RecordSet};
+use recrash_model::spreadsheet::original;
+use recrash_records::{SAMPLE_CSV, SourceText, TableRows, distributions, ingest, write_csv};
+
+fn csv_of(set: &RecordSet, rows: TableRows) -> Vec<u8> {
+    let mut csv = Vec::new();
+    write_csv(set, rows, &mut csv).unwrap();
+    csv
+}
 
 fn cells(csv: &[u8]) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(csv);
@@ -23,8 +30,8 @@ fn a_csv_table_has_a_row_a_record_and_nothing_where_nothing_is_known() {
     let text =
         second(&[row(Edition::Second, "1-1", &changes), row(Edition::Second, "1-2", &[("Roadway Type", "Bridge")])]);
     let set = ingest_bytes(text.as_bytes()).value;
-    let usable = cells(&record_table(&set, TableRows::Usable).to_csv());
-    let all = cells(&record_table(&set, TableRows::All).to_csv());
+    let usable = cells(&csv_of(&set, TableRows::Usable));
+    let all = cells(&csv_of(&set, TableRows::All));
     assert_eq!((usable.len(), all.len()), (2, 3));
     assert_eq!(usable[..2], all[..2]);
     let cell = |row: usize, name: &str| {
@@ -47,6 +54,25 @@ fn a_csv_table_has_a_row_a_record_and_nothing_where_nothing_is_known() {
 }
 
 #[test]
+fn a_spreadsheet_runs_no_cell_of_a_csv_table_and_every_text_comes_back() {
+    let texts = ["=cmd|' /C calc'!A0", "+1+1", "-1-1", "@SUM(A1)", "'=1", "It's 3 - 2 = 1."];
+    let rows: Vec<String> = (1..)
+        .zip(texts)
+        .map(|(n, text)| row(Edition::Second, &format!("1-{n}"), &[("Reporting Entity", text)]))
+        .collect();
+    let set = ingest_bytes(second(&rows).as_bytes()).value;
+    let table = cells(&csv_of(&set, TableRows::All));
+    let at = table[0].iter().position(|name| name == "entity").unwrap();
+    for (row, text) in table[1..].iter().zip(texts) {
+        assert!(
+            !row.iter().any(|cell| cell.starts_with(['=', '+', '@', '\t', '\r']) || cell.starts_with("-1-")),
+            "{row:?}"
+        );
+        assert_eq!(original(&row[at]), text);
+    }
+}
+
+#[test]
 fn the_sample_spreads_as_its_generator_says() {
     let set = ingest(&[SourceText { name: "sample.csv", bytes: SAMPLE_CSV.as_bytes() }], &paper()).unwrap().value;
     let all = distributions(&set);
@@ -66,6 +92,7 @@ mod parquet_files {
     use super::*;
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
+    use recrash_records::record_table;
 
     #[test]
     fn a_parquet_table_reads_back_as_the_csv_table() {
@@ -73,7 +100,7 @@ mod parquet_files {
         let table = record_table(&set, TableRows::All);
         let bytes = table.to_parquet();
         assert_eq!(bytes, table.to_parquet());
-        let csv = cells(&table.to_csv());
+        let csv = cells(&csv_of(&set, TableRows::All));
         let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).unwrap();
         assert_eq!(reader.metadata().file_metadata().num_rows() as usize, set.records.len());
         let mut rows = 0;

@@ -14,7 +14,8 @@ use recrash_model::template::*;
 use recrash_model::triage::{EgoOutcome, Triage};
 use recrash_model::tuning::*;
 use recrash_model::{Diagnostic, Location, Seed};
-use recrash_report::{CaseView, RunTrace, RunView, SuiteView};
+use recrash_report::{CaseRow, CaseView, RunRow, RunTrace, RunView, SuiteView, Thumbnail};
+use std::path::Path;
 
 /// The paper's templates, as (road, SV, CP, work zone, records, picks).
 const TEMPLATES: [(RoadType, Movement, Movement, bool, usize, usize); 14] = {
@@ -223,7 +224,7 @@ fn profile() -> SystemProfile {
     }
 }
 
-fn narrative(cluster: &Cluster, record: &CrashRecord, plan: &Plan) -> Narrative {
+fn narrative(cluster: &Cluster, record: &CrashRecord, records: &[CrashRecord], plan: &Plan) -> Narrative {
     let words = |words: &str| FactSource::Words { record: record.id.clone(), words: words.into() };
     let column = |column: &str, text: &str| FactSource::Column {
         record: record.id.clone(),
@@ -275,6 +276,9 @@ fn narrative(cluster: &Cluster, record: &CrashRecord, plan: &Plan) -> Narrative 
         facts,
         origin: if cluster.number.is_multiple_of(6) {
             Origin::Invented { reason: "the record describes a rear-end collision, which the profile excludes".into() }
+        } else if cluster.number == 7 {
+            let record = records[cluster.members[1]].id.clone();
+            Origin::Other { record, reason: "the record does not say where the other came from".into() }
         } else {
             Origin::Own
         },
@@ -371,12 +375,78 @@ fn triage(number: usize, careful: &RunView) -> Triage {
     Triage::new(&[FindingKind::Contact], vec![outcome("idm", number % 4 >= 2), outcome("reference", number % 2 == 1)])
 }
 
-/// The suite.
-pub fn demo() -> SuiteView {
+/// Scenarios that are driven; a larger suite repeats them over records of its own. [count]
+pub const DESIGNED: usize = 20;
+
+/// A made-up suite: its light part, and behind it the heavy part of the scenarios that were driven.
+pub struct Demo {
+    /// What the tables say.
+    pub suite: SuiteView,
+    /// The scenarios that were driven; the others repeat them.
+    pub driven: Vec<CaseView>,
+}
+
+impl Demo {
+    /// Everything behind the scenario at this position.
+    pub fn case(&self, position: usize) -> CaseView {
+        let row = &self.suite.cases[position];
+        let mut case = self.driven[position % self.driven.len()].clone();
+        case.scenario_id = row.scenario_id.clone();
+        case
+    }
+
+    /// The file of the scenario at this position.
+    pub fn case_file(&self, position: usize) -> String {
+        let row = &self.suite.cases[position];
+        recrash_report::case_file(&self.suite.context(row), &self.case(position), row)
+    }
+
+    /// Writes page and files of cases.
+    pub fn write(&self, folder: &Path) -> std::io::Result<()> {
+        std::fs::create_dir_all(folder.join("report"))?;
+        for (position, row) in self.suite.cases.iter().enumerate() {
+            std::fs::write(folder.join(recrash_report::case_file_name(&row.scenario_id)), self.case_file(position))?;
+        }
+        std::fs::write(folder.join("report.html"), recrash_report::html(&self.suite))
+    }
+}
+
+/// The suite of twenty.
+pub fn demo() -> Demo {
+    demo_of(DESIGNED)
+}
+
+fn row(case: &CaseView, cluster: &Cluster, position: usize) -> CaseRow {
+    let row = |run: &Option<RunView>| {
+        run.as_ref()
+            .map(|run| RunRow { judgement: run.run.judgement.clone(), rerun_command: run.rerun_command.clone() })
+    };
+    let mut records = cluster.members.clone();
+    records.truncate(4);
+    let narrative = case.narrative.as_ref();
+    CaseRow {
+        scenario_id: case.scenario_id.clone(),
+        template: cluster.template,
+        cluster: Some(position),
+        records,
+        origin: narrative.map(|narrative| narrative.origin.clone()),
+        told: narrative.and_then(|narrative| narrative.told_record().cloned()),
+        narrative: narrative.map_or_else(String::new, |narrative| narrative.text.clone()),
+        before: row(&case.before),
+        after: row(&case.after),
+        triage: case.triage.clone(),
+        refused: case.refused.clone(),
+        edited: if position == 4 { vec![format!("4-scenarios/{}.json", case.scenario_id)] } else { Vec::new() },
+        thumbnail: case.last_run().and_then(|run| Thumbnail::of(&run.run)),
+    }
+}
+
+/// A suite of so many scenarios, each with a record of its own.
+pub fn demo_of(count: usize) -> Demo {
     let seed = Seed(7);
-    let selection = selection(seed);
+    let mut selection = selection(seed);
     let templates = TEMPLATES.iter().flat_map(|&line| std::iter::repeat_n(template(line), line.4));
-    let records: Vec<CrashRecord> =
+    let mut records: Vec<CrashRecord> =
         templates.enumerate().map(|(index, template)| record(index, template, seed)).collect();
     let rejects = (0..5).map(|row| Reject {
         file: "made-up.csv".into(),
@@ -384,35 +454,35 @@ pub fn demo() -> SuiteView {
         record: None,
         reason: RejectReason::RedactedNarrative,
     });
+    let driven: Vec<CaseView> = selection.clusters.iter().map(|cluster| driven_case(cluster, &records)).collect();
+    let mut cases: Vec<CaseRow> =
+        driven.iter().zip(&selection.clusters).enumerate().map(|(i, (case, cluster))| row(case, cluster, i)).collect();
+    cases.truncate(count);
+    for position in DESIGNED..count {
+        let like = position % DESIGNED;
+        let mut cluster = selection.clusters[like].clone();
+        cluster.number = position + 1;
+        cluster.scenario_id = format!("{:04}-{}", position + 1, cluster.template.slug());
+        cluster.pick_index = records.len();
+        cluster.members = vec![records.len()];
+        let told = record(records.len(), cluster.template, seed);
+        cluster.pick = told.id.clone();
+        let place = selection.map[like * 7];
+        let spread = |by: usize| (position * by % 997) as f64 / 997.0 - 0.5;
+        let (x, y) = (place.x + spread(131), place.y + spread(389));
+        selection.map.push(MapPoint { record: records.len(), cluster: position, x, y });
+        let mut case = cases[like].clone();
+        case.scenario_id = cluster.scenario_id.clone();
+        case.cluster = Some(position);
+        case.records = cluster.members.clone();
+        case.told = case.told.map(|_| told.id.clone());
+        case.edited.clear();
+        cases.push(case);
+        records.push(told);
+        selection.clusters.push(cluster);
+    }
     let usable = records.len();
-    let cases = selection.clusters.iter().enumerate().map(|(position, cluster)| {
-        let plan = Plan::of(cluster);
-        let record = &records[cluster.pick_index];
-        let designed = plan.designed_gap_s;
-        let (log, tuned) = tune_log(cluster, &plan, designed);
-        let refused = cluster.number == 19;
-        let mut members = cluster.members.clone();
-        members.truncate(4);
-        let before = (!refused).then(|| run(cluster, &plan, designed, "4-scenarios"));
-        let after = (!refused && log.best != 0).then(|| run(cluster, &plan, tuned, "6-tuned"));
-        let failed = after.as_ref().or(before.as_ref()).is_some_and(|run| run.failed());
-        let careful = failed.then(|| run(cluster, &plan, designed + 3.0, "6-tuned"));
-        CaseView {
-            scenario_id: cluster.scenario_id.clone(),
-            template: cluster.template,
-            cluster: Some(position),
-            records: members,
-            narrative: Some(narrative(cluster, record, &plan)),
-            drawing: plan.drawing(),
-            before,
-            after,
-            triage: careful.as_ref().map(|run| triage(cluster.number, run)),
-            reference: careful.map(|run| RunTrace { run: run.run, series: run.series }),
-            tune_log: (!refused).then_some(log),
-            refused: refused.then(|| "partners[0].turn: no left turn on this map; allowed: straight".to_owned()),
-        }
-    });
-    SuiteView {
+    let suite = SuiteView {
         title: "demo suite".into(),
         generated_by: "recrash 0.1.0".into(),
         generated_at: None,
@@ -423,7 +493,7 @@ pub fn demo() -> SuiteView {
         agents: "rules".into(),
         seed: 7,
         sample: true,
-        cases: cases.collect(),
+        cases,
         records: RecordSet {
             files: vec![SourceFile {
                 name: "made-up.csv".into(),
@@ -451,5 +521,29 @@ pub fn demo() -> SuiteView {
             Location::at_row("made-up.csv", 17),
             "\"Tricycle\" is in no code table of the column \"Crash With\"",
         )],
+    };
+    Demo { suite, driven }
+}
+
+/// One scenario, driven.
+fn driven_case(cluster: &Cluster, records: &[CrashRecord]) -> CaseView {
+    let plan = Plan::of(cluster);
+    let designed = plan.designed_gap_s;
+    let (log, tuned) = tune_log(cluster, &plan, designed);
+    let refused = cluster.number == 19;
+    let before = (!refused).then(|| run(cluster, &plan, designed, "4-scenarios"));
+    let after = (!refused && log.best != 0).then(|| run(cluster, &plan, tuned, "6-tuned"));
+    let failed = after.as_ref().or(before.as_ref()).is_some_and(|run| run.failed());
+    let careful = failed.then(|| run(cluster, &plan, designed + 3.0, "6-tuned"));
+    CaseView {
+        scenario_id: cluster.scenario_id.clone(),
+        narrative: Some(narrative(cluster, &records[cluster.pick_index], records, &plan)),
+        drawing: plan.drawing(),
+        before,
+        after,
+        triage: careful.as_ref().map(|run| triage(cluster.number, run)),
+        reference: careful.map(|run| RunTrace { run: run.run, series: run.series }),
+        tune_log: (!refused).then_some(log),
+        refused: refused.then(|| "partners[0].turn: no left turn on this map; allowed: straight".to_owned()),
     }
 }

@@ -132,8 +132,17 @@ fn glossary() -> Markup {
         ),
         (
             "Faithful",
-            "What was driven agrees with template and record. Computed from the paths, never from the scenario's labels.",
+            "Every told fact was checked and is shown by what was driven. Computed from the paths, never from the scenario's labels.",
         ),
+        (
+            "Unchecked",
+            "Nothing speaks against the run, and not every told fact could be checked. It is not called faithful.",
+        ),
+        (
+            "Own, another, invented",
+            "Whose crash is told: the picked record's, another real record's in its place, or nobody's. Nobody's crash has no record to be true to.",
+        ),
+        ("Impact speed", "Relative speed of the ego and what it touches, at the contact."),
         ("Box gap", "Shortest distance between the outlines of two road users; 0 on contact."),
         ("TTC", "Time to collision: when the outlines would touch if both kept speed and direction."),
         ("PET", "Post-encroachment time: between the first leaving the place both crossed and the second reaching it."),

@@ -1,76 +1,89 @@
-//! One scenario: what it stands for, the replay with its plots, and tabs with everything behind it.
+//! One scenario: what it stands for, the replay with its plots, and tabs with everything behind it. It stands in a file of its
+//! own.
 
-use super::{Context, compare, icon, parts, scenario, story, triage};
+use super::{compare, icon, parts, scenario, story, triage};
 use crate::summary::Result;
-use crate::view::{CaseView, RunView};
-use crate::{data, words};
-use maud::{Markup, PreEscaped, html};
-use recrash_model::narrative::Origin;
+use crate::view::{CaseContext, CaseRow, CaseView, RunView};
+use crate::{anchor, data, words};
+use maud::{Markup, html};
+use serde_json::json;
 
-/// The section of one case.
-pub fn section(context: &Context, position: usize, case: &CaseView) -> Markup {
-    let anchor = context.anchors.case(position);
+/// What every part of a case's section needs.
+#[derive(Clone, Copy)]
+pub struct Case<'a> {
+    /// What belongs to the suite.
+    pub context: CaseContext<'a>,
+    /// What the tables say of it.
+    pub row: &'a CaseRow,
+    /// Everything else.
+    pub view: &'a CaseView,
+}
+
+/// The file of one case: one call of the one function that the page offers, with one JSON value. The markup in it is text
+/// like any other, and nothing in it runs.
+pub fn file(context: &CaseContext, view: &CaseView, row: &CaseRow) -> String {
+    let case = Case { context: *context, row, view };
+    let given = json!({
+        "stem": anchor::stem(&row.scenario_id),
+        "data": data::case(view),
+        "markup": inside(case).into_string(),
+    });
+    format!("recrashCase({});\n", data::embed(&given))
+}
+
+/// What stands inside the section of a case.
+fn inside(case: Case) -> Markup {
+    let (view, row) = (case.view, case.row);
+    let anchor = anchor::anchor(&row.scenario_id);
     let tabs: [(&str, &str, Markup); 6] = [
-        ("story", "Record and narrative", story::story(context, case)),
+        ("story", "Record and narrative", story::story(case)),
         ("checks", "Faithfulness", compare::checks(case)),
-        ("metrics", "Metrics", compare::metrics(context, case)),
-        ("triage", "Other egos", triage::of_case(context, case)),
-        ("tuning", "Tuning", scenario::tuning(position, case)),
-        ("scenario", "Scenario file", scenario::files(case)),
+        ("metrics", "Metrics", compare::metrics(case)),
+        ("triage", "Other egos", triage::of_case(case)),
+        ("tuning", "Tuning", scenario::tuning(view)),
+        ("scenario", "Scenario file", scenario::files(view)),
     ];
     html! {
-        section.page.case id=(anchor) data-case=(position) aria-labelledby={ (anchor) "-title" } {
-            (head(context, position, case, anchor))
-            @if let Some(why) = &case.refused {
-                p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
-            }
-            @if case.last_run().is_some() {
-                (stage(["As designed", "Tuned"], [case.before.is_some(), case.after.is_some()], case.reference.is_some()))
-                (numbers(case))
-             }
-            .tabs {
-                div role="tablist" aria-label="About this scenario" {
-                    @for (i, (name, label, _)) in tabs.iter().enumerate() {
-                        button type="button" role="tab" id={ (anchor) "--" (name) "-tab" } aria-controls={ (anchor) "--" (name) } aria-selected=(i == 0) tabindex=(if i == 0 { "0" } else { "-1" }) { (label) }
-                    }
-                }
-                @for (name, label, content) in &tabs {
-                    div.tab-panel role="tabpanel" id={ (anchor) "--" (name) } aria-labelledby={ (anchor) "--" (name) "-tab" } tabindex="0" {
-                        h2.only-plain { (label) }
-                        (content)
-                    }
+        (head(case, &anchor))
+        @if let Some(why) = &view.refused {
+            p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
+        }
+        @if view.last_run().is_some() {
+            (stage(["As designed", "Tuned"], [view.before.is_some(), view.after.is_some()], view.reference.is_some()))
+            (numbers(view))
+        }
+        .tabs {
+            div role="tablist" aria-label="About this scenario" {
+                @for (i, (name, label, _)) in tabs.iter().enumerate() {
+                    button type="button" role="tab" id={ (anchor) "--" (name) "-tab" } aria-controls={ (anchor) "--" (name) } aria-selected=(i == 0) tabindex=(if i == 0 { "0" } else { "-1" }) { (label) }
                 }
             }
-            script type="application/json" id={ "case-data-" (position) } { (PreEscaped(data::embed(&data::case(case)))) }
+            @for (name, _, content) in &tabs {
+                div.tab-panel role="tabpanel" id={ (anchor) "--" (name) } aria-labelledby={ (anchor) "--" (name) "-tab" } tabindex="0" { (content) }
+            }
         }
     }
 }
 
-fn head(context: &Context, position: usize, case: &CaseView, anchor: &str) -> Markup {
-    let last = case.last_run();
-    let cluster = context.suite.cluster(case);
+fn head(case: Case, anchor: &str) -> Markup {
+    let (view, row) = (case.view, case.row);
+    let last = view.last_run();
     html! {
         .case-head {
-            .case-title {
-                h1 id={ (anchor) "-title" } { (words::clean(&case.scenario_id, 120)) }
-                span.muted { (position + 1) " of " (context.suite.cases.len()) }
-            }
+            h1 id={ (anchor) "-title" } { (words::clean(&row.scenario_id, 120)) }
             .chips {
-                (parts::result_chip(Result::of(last)))
-                @if let Some(triage) = &case.triage { (parts::class_chip(triage.class)) }
-                (parts::faithful_chip(last))
+                (parts::result_chip(Result::of(last.map(|run| &run.run.judgement))))
+                @if let Some(triage) = &view.triage { (parts::class_chip(triage.class)) }
+                (parts::faithful_chip(last.map(|run| &run.run.judgement), row.origin.as_ref()))
                 @for kind in last.map(|run| run.finding_kinds()).unwrap_or_default() { (parts::finding_chip(kind)) }
-                @match case.narrative.as_ref().map(|narrative| &narrative.origin) {
-                    Some(Origin::Own) => span.chip.none { "retells its own record" },
-                    Some(Origin::Other { .. }) => span.chip.odd { (icon::bang()) "retells another record" },
-                    Some(Origin::Invented { .. }) => span.chip.odd { (icon::bang()) "invented: nobody's crash" },
-                    None => "",
-                }
+                (parts::origin_chip(row.origin.as_ref(), row.told.as_ref()))
+                (parts::edited_chip(&row.edited))
             }
             p.case-what {
-                b { (words::template(&case.template)) }
-                @if let Some(cluster) = cluster { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
-                @if let Some(narrative) = &case.narrative { ". " span.told { (words::clean(&narrative.text, 600)) } }
+                b { (words::template(&row.template)) }
+                @if let Some(cluster) = case.context.cluster { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
+                ". Tells " (words::clean(&words::provenance(row.origin.as_ref(), row.told.as_ref()), 400)) "."
+                @if let Some(narrative) = &view.narrative { " " span.told { (words::clean(&narrative.text, 600)) } }
             }
         }
     }
@@ -118,7 +131,12 @@ pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]
                     button.small type="button" data-act="back" title="One step back ( \u{2190} )" aria-label="One step back" { (icon::step_back()) }
                     button.play type="button" data-act="play" title="Play or pause ( Space )" aria-label="Play" { (icon::play_pause()) }
                     button.small type="button" data-act="on" title="One step on ( \u{2192} )" aria-label="One step on" { (icon::step_on()) }
-                    input.scrub type="range" min="0" max="1" step="0.1" value="0" aria-label="Time in the run";
+                    button.small type="button" data-act="event-back" title="To the event before ( , )" aria-label="To the event before" { (icon::event_back()) }
+                    button.small type="button" data-act="event-on" title="To the next event ( . )" aria-label="To the next event" { (icon::event_on()) }
+                    .track {
+                        input.scrub type="range" min="0" max="1" step="0.1" value="0" aria-label="Time in the run";
+                        .marks role="group" aria-label="Events" {}
+                    }
                     output.clock { "0.0 s" }
                     button.small type="button" data-act="closest" title="To the least gap ( M )" aria-label="To the moment of the least gap" { (icon::closest()) }
                     button.small type="button" data-act="loop" title="Repeat ( L )" aria-label="Repeat" aria-pressed="false" { (icon::repeat()) }
@@ -165,7 +183,7 @@ fn numbers(case: &CaseView) -> Markup {
                 dt { (name) }
                 dd.value {
                     @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, unit, why)) }
-                    @if let Some(after) = &case.after { @if case.before.is_some() { span.arrow { "\u{2192}" } } (parts::quantity(of(after), decimals, unit, why)) }
+                    @if let Some(after) = &case.after { @if case.before.is_some() { " " span.arrow { "\u{2192}" } " " } (parts::quantity(of(after), decimals, unit, why)) }
                 }
             }
         }

@@ -1,7 +1,8 @@
 //! The cluster map: one mark per usable record, its shape and colour by template, the picks large and numbered.
 
 use super::Context;
-use crate::words::{self, fixed};
+use crate::view::SuiteView;
+use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
 use recrash_model::selection::MapPoint;
 use recrash_model::template::Template;
@@ -21,20 +22,53 @@ const SHAPES: [&str; 6] = [
 /// Number of colours in the style sheet; prime to the number of shapes, so that 42 templates differ.
 const COLOURS: usize = 7;
 
+/// Marks at most; more could not be told apart. [count]
+const MOST_MARKS: usize = 1200;
+/// Picks that get a number and make room for each other; more are only drawn large. [count]
+const MOST_LABELS: usize = 120;
+
+fn is_pick(suite: &SuiteView, point: &MapPoint) -> bool {
+    suite.selection.clusters[point.cluster].pick_index == point.record
+}
+
+/// The points that have a mark, in the order of the records: those that lead somewhere; of too many the picks first, and then
+/// others, evenly taken.
+pub fn shown(suite: &SuiteView) -> Vec<&MapPoint> {
+    let selection = &suite.selection;
+    let leads =
+        |point: &&MapPoint| point.record < suite.records.records.len() && point.cluster < selection.clusters.len();
+    let points: Vec<&MapPoint> = selection.map.iter().filter(leads).collect();
+    if points.len() <= MOST_MARKS {
+        return points;
+    }
+    let (picks, others): (Vec<&MapPoint>, Vec<&MapPoint>) = points.into_iter().partition(|point| is_pick(suite, point));
+    let picks = evenly(picks, MOST_MARKS);
+    let others = evenly(others, MOST_MARKS - picks.len());
+    let mut shown: Vec<&MapPoint> = picks.into_iter().chain(others).collect();
+    shown.sort_by_key(|point| point.record);
+    shown
+}
+
+/// So many of a list at most, evenly taken.
+fn evenly<T>(list: Vec<T>, most: usize) -> Vec<T> {
+    if list.len() <= most {
+        return list;
+    }
+    let all = list.len();
+    // The i-th is taken where the number of those taken goes up.
+    let taken = |upto: usize| upto * most / all;
+    list.into_iter().enumerate().filter(|(i, _)| taken(i + 1) > taken(*i)).map(|(_, item)| item).collect()
+}
+
 /// The map with its legend and the place where details are told.
 pub fn map(context: &Context) -> Markup {
     let selection = &context.suite.selection;
-    let points: Vec<&MapPoint> = selection
-        .map
-        .iter()
-        .filter(|point| {
-            context.suite.records.records.get(point.record).is_some() && point.cluster < selection.clusters.len()
-        })
-        .collect();
+    let points = shown(context.suite);
+    let picks = points.iter().filter(|point| is_pick(context.suite, point)).count();
     if points.iter().filter(|point| point.x.is_finite() && point.y.is_finite()).count() == 0 {
         return html! { p.empty { "No record has a place on the map." } };
     }
-    let layout = Layout::of(&points, |point| selection.clusters[point.cluster].pick_index == point.record);
+    let layout = Layout::of(&points, |point| picks <= MOST_LABELS && is_pick(context.suite, point));
     let order = |template: Option<Template>| {
         selection
             .templates
@@ -48,7 +82,9 @@ pub fn map(context: &Context) -> Markup {
         p.muted {
             "Each mark is a record, at the first two principal components of what the clusters were made from: its template and its narrative ("
             (words::clean(&embedding.name, 80)) ", " (embedding.dimensions) " dimensions kept, "
-            (fixed(embedding.explained_variance * 100.0, 0).unwrap_or_default()) "\u{a0}% of the variance). Dense spots are stretched. Large and numbered: the picks. "
+            (fixed(embedding.explained_variance * 100.0, 0).unwrap_or_default()) "\u{a0}% of the variance). Dense spots are stretched. "
+            @if picks <= MOST_LABELS { "Large and numbered: the picks. " } @else { "Large: the picks. " }
+            @if points.len() < selection.map.len() { (thousands(points.len())) " of " (thousands(selection.map.len())) " records are drawn. " }
             "Point at a mark, or put the focus on the map and use the arrow keys."
         }
         .map-grid {
@@ -65,8 +101,10 @@ pub fn map(context: &Context) -> Markup {
                         @let ((mx, my), (x, y)) = (layout.marks[index], layout.labels[index]);
                         @if (mx - x).abs() + (my - y).abs() > 4.0 { line.leader x1=(text(mx)) y1=(text(my)) x2=(text(x)) y2=(text(y)) {} }
                         g.pick data-point=(index) data-template=(template_of(point)) transform={ "translate(" (text(x)) " " (text(y)) ")" } {
-                            circle.{ "c" (template_of(point) % COLOURS) } r="10" {}
-                            text y="3.6" text-anchor="middle" { (cluster.number) }
+                            @if picks <= MOST_LABELS {
+                                circle.{ "c" (template_of(point) % COLOURS) } r="10" {}
+                                text y="3.6" text-anchor="middle" { (cluster.number) }
+                            } @else { circle.{ "c" (template_of(point) % COLOURS) } r="5" {} }
                         }
                     }
                 }
@@ -174,6 +212,13 @@ mod tests {
         assert!(places[0] < places[1] && places[1] == places[2] && places[2] < places[3]);
         assert!((places[3] - 1.0).abs() < 1e-12);
         assert_eq!(stretched(&points.iter().collect::<Vec<_>>(), |point| point.y)[3], 0.5);
+    }
+
+    #[test]
+    fn too_many_are_thinned_evenly() {
+        assert_eq!(evenly((0..10).collect(), 5), [1, 3, 5, 7, 9]);
+        assert_eq!(evenly((0..3).collect(), 5), [0, 1, 2]);
+        assert_eq!(evenly((0..7).collect::<Vec<_>>(), 0), [0; 0]);
     }
 
     #[test]

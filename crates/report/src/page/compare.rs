@@ -1,21 +1,22 @@
 //! Faithfulness and metrics of a case, the run as designed beside the tuned one.
 
-use super::{Context, findings, parts, zones};
-use crate::view::{CaseView, RunView};
+use super::case::Case;
+use super::{parts, zones};
+use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};
 use recrash_model::metrics::{Check, PartnerMetrics};
 
 /// The checks of faithfulness of every run.
-pub fn checks(case: &CaseView) -> Markup {
-    let runs = findings::runs(case);
+pub fn checks(case: Case) -> Markup {
+    let runs = case.view.runs();
     html! {
         p.muted { "What record and template say, against what was driven. It is computed from the paths, never from the scenario's labels." }
         @if runs.is_empty() { p.empty { "It was not run." } }
         .columns {
             @for (name, run) in &runs {
                 div {
-                    h2 { (words::capital(name)) " " (parts::faithful_chip(Some(run))) }
+                    h2 { (words::capital(name)) " " (parts::faithful_chip(Some(&run.run.judgement), case.row.origin.as_ref())) }
                     .table-wrap { table.plain {
                         thead { tr { th scope="col" { "Check" } th scope="col" { "Expected" } th scope="col" { "Observed" } th scope="col" { "Result" } } }
                         tbody { @for check in &run.verdict.checks { (check_row(check)) } }
@@ -40,8 +41,8 @@ fn check_row(check: &Check) -> Markup {
 }
 
 /// The metrics of every run, the contact zones, and the findings.
-pub fn metrics(context: &Context, case: &CaseView) -> Markup {
-    let runs = findings::runs(case);
+pub fn metrics(case: Case) -> Markup {
+    let runs = case.view.runs();
     if runs.is_empty() {
         return html! { p.empty { "It was not run." } };
     }
@@ -89,7 +90,7 @@ pub fn metrics(context: &Context, case: &CaseView) -> Markup {
             }
             div {
                 h2 { "Contact zones" }
-                (zones::zones(context, case))
+                (zones::zones(case))
                 h2 { "Findings" }
                 @for (name, run) in &runs {
                     h3 { (words::capital(name)) }

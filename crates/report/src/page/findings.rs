@@ -1,10 +1,14 @@
 //! What the suite found out about the ego.
 
 use super::{Context, parts, triage};
-use crate::view::{CaseView, RunView};
-use crate::words::{self, fixed};
+use crate::anchor;
+use crate::view::RunRow;
+use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
 use recrash_model::metrics::FindingKind;
+
+/// Findings listed; the rest stand with their scenarios. [count]
+const LONGEST_LIST: usize = 200;
 
 const KINDS: [FindingKind; 9] = [
     FindingKind::Contact,
@@ -36,7 +40,7 @@ pub fn section(context: &Context) -> Markup {
     }
 }
 
-fn has(run: Option<&RunView>, kind: FindingKind) -> bool {
+fn has(run: Option<&RunRow>, kind: FindingKind) -> bool {
     run.is_some_and(|run| run.findings.iter().any(|finding| finding.kind == kind))
 }
 
@@ -89,19 +93,22 @@ fn meaning(kind: FindingKind, context: &Context) -> String {
 }
 
 fn every(context: &Context) -> Markup {
-    let rows = context.suite.cases.iter().enumerate().flat_map(|(position, case)| {
-        runs(case).into_iter().flat_map(move |(name, run)| run.findings.iter().map(move |f| (position, case, name, f)))
-    });
-    let rows: Vec<_> = rows.collect();
+    let runs =
+        context.suite.cases.iter().flat_map(|case| case.runs().into_iter().map(move |(name, run)| (case, name, run)));
+    let rows: Vec<_> =
+        runs.flat_map(|(case, name, run)| run.judgement.findings.iter().map(move |f| (case, name, f))).collect();
     html! {
         @if rows.is_empty() { p.empty { "There are none." } } @else {
+            @if rows.len() > LONGEST_LIST {
+                p.muted { "The first " (LONGEST_LIST) " of " (thousands(rows.len())) ". Each scenario lists its own, and results.csv names the kinds of all." }
+            }
             .table-wrap {
                 table.plain {
-                    caption.hidden-text { "Every finding of every run" }
+                    caption.hidden-text { "Findings of every run" }
                     thead { tr { th scope="col" { "Scenario" } th scope="col" { "Run" } th.right scope="col" { "Time" } th scope="col" { "Finding" } th scope="col" { "In words" } } }
-                    tbody { @for (position, case, name, finding) in rows {
+                    tbody { @for (case, name, finding) in rows.into_iter().take(LONGEST_LIST) {
                         tr {
-                            th scope="row" { a href={ "#" (context.anchors.case(position)) } { (words::clean(&case.scenario_id, 80)) } }
+                            th scope="row" { a href={ "#" (anchor::anchor(&case.scenario_id)) } { (words::clean(&case.scenario_id, 80)) } }
                             td { (name) }
                             td.right { (parts::quantity(Some(finding.time_s), 1, "s", "")) }
                             td { (parts::finding_chip(finding.kind)) }
@@ -112,10 +119,4 @@ fn every(context: &Context) -> Markup {
             }
         }
     }
-}
-
-/// The runs of a case with their names.
-pub fn runs(case: &CaseView) -> Vec<(&'static str, &RunView)> {
-    let named = [("as designed", &case.before), ("tuned", &case.after)];
-    named.into_iter().filter_map(|(name, run)| Some((name, run.as_ref()?))).collect()
 }

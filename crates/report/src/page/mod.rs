@@ -1,8 +1,9 @@
-//! The HTML page: head, navigation, and one section for each view. Without scripts all sections stand below each other.
+//! The HTML page: head, navigation, and one section for each view of the suite. A scenario's section comes from its own file
+//! when it is looked at. Without scripts all sections of the suite stand below each other.
 
 mod about;
 mod case;
-mod cluster_map;
+pub mod cluster_map;
 mod compare;
 mod coverage;
 mod findings;
@@ -16,10 +17,12 @@ mod story;
 mod triage;
 mod zones;
 
-use crate::anchor::Anchors;
+use crate::search::ToldRecords;
 use crate::summary::Summary;
 use crate::view::SuiteView;
 use crate::{data, words};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -33,17 +36,23 @@ const STYLE: &str = concat!(
 const SCRIPT: &str = concat!(
     "'use strict';\n(() => {\n",
     include_str!("../../assets/data.js"),
+    include_str!("../../assets/cases.js"),
     include_str!("../../assets/tabs.js"),
     include_str!("../../assets/table.js"),
     include_str!("../../assets/map.js"),
     include_str!("../../assets/scene.js"),
     include_str!("../../assets/plots.js"),
     include_str!("../../assets/replay.js"),
+    include_str!("../../assets/facts.js"),
     include_str!("../../assets/tuning.js"),
     include_str!("../../assets/main.js"),
     "})();\n",
 );
 
+/// Runs before anything is drawn, so that rows that nobody sees yet are never laid out.
+const FIRST_SCRIPT: &str = "document.documentElement.classList.add('js');";
+
+pub use case::file as case_file;
 pub use pairs::render as render_pairs;
 
 /// What every section needs.
@@ -52,45 +61,55 @@ pub struct Context<'a> {
     pub suite: &'a SuiteView,
     /// Its headline numbers.
     pub summary: Summary,
-    /// Where each case stands on the page.
-    pub anchors: Anchors,
+    /// The record that each case tells.
+    pub told: ToldRecords<'a>,
 }
 
 /// The page.
 pub fn render(suite: &SuiteView) -> String {
-    let context = Context { suite, summary: Summary::of(suite), anchors: Anchors::of(suite) };
+    let context = Context { suite, summary: Summary::of(suite), told: ToldRecords::of(suite) };
     let title = format!("{} \u{b7} recrash report", words::clean(&suite.title, 200));
     let body = html! {
         a.skip href="#main" { "Skip to the content" }
-        (top(&context))
+        (top())
         main #main tabindex="-1" {
             (overview::section(&context))
             (records::section(&context))
             (findings::section(&context))
-            @for (position, case) in suite.cases.iter().enumerate() { (case::section(&context, position, case)) }
             (about::section(&context))
         }
         (keyboard_help())
     };
-    document(&title, &suite.generated_by, &body, &data::suite(suite, &context.anchors), SCRIPT)
+    document(&title, &suite.generated_by, &body, &data::suite(&context), SCRIPT, Cases::Beside)
+}
+
+/// Whether a page reads files of cases from beside it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Cases {
+    /// It does.
+    Beside,
+    /// Everything stands in the page.
+    Inside,
 }
 
 /// A page with its head, its data and its script.
-fn document(title: &str, generated_by: &str, body: &Markup, data: &Value, script: &str) -> String {
+fn document(title: &str, generated_by: &str, body: &Markup, data: &Value, script: &str, cases: Cases) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(content_security_policy(script));
+                @for policy in policies(script, cases) { meta http-equiv="Content-Security-Policy" content=(policy); }
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 meta name="generator" content=(words::clean(generated_by, 80));
                 title { (title) }
                 link rel="icon" href="data:,";
                 style { (PreEscaped(STYLE)) }
+                script { (PreEscaped(FIRST_SCRIPT)) }
             }
             body {
+                (icon::sprite())
                 (body)
                 #live.hidden-text role="status" aria-live="polite" {}
                 script type="application/json" id="suite-data" { (PreEscaped(data::embed(data))) }
@@ -101,51 +120,46 @@ fn document(title: &str, generated_by: &str, body: &Markup, data: &Value, script
     page.into_string()
 }
 
-/// Nothing may load, and only the style and the script of this very page may run.
-fn content_security_policy(script: &str) -> String {
-    format!(
-        "default-src 'none'; style-src 'sha256-{}'; script-src 'sha256-{}'; img-src data:; base-uri 'none'; form-action 'none'",
-        base64(&Sha256::digest(STYLE.as_bytes())),
-        base64(&Sha256::digest(script.as_bytes())),
-    )
-}
-
-/// Base 64 of RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let at = |position: usize| u32::from(group.get(position).copied().unwrap_or(0));
-        let bits = at(0) << 16 | at(1) << 8 | at(2);
-        for position in 0..4 {
-            let letter = LETTERS[(bits >> (18 - 6 * position) & 63) as usize] as char;
-            text.push(if position > group.len() { '=' } else { letter });
-        }
+/// What may load and run; a browser holds a page to every policy.
+///
+/// The first: nothing loads, and only the style and the scripts of this very page run, by their hashes. Where cases stand in
+/// files, `strict-dynamic` adds the scripts that those scripts themselves ask for: the page's script asks for files of
+/// `report/` only, by names that the page holds; a script that text of a record or a model had smuggled into markup is
+/// asked for by no script and does not run. No name of a place is trusted for its own sake, so the page works alike from a
+/// disk, where a file has no host that a policy could name, and from a server.
+///
+/// The second keeps what is asked for at home: files beside the page, on the same disk or server. Nothing comes from a
+/// network that the page itself did not come from.
+fn policies(script: &str, cases: Cases) -> Vec<String> {
+    let hash = |text: &str| format!("'sha256-{}'", BASE64.encode(Sha256::digest(text.as_bytes())));
+    let scripts = format!("{} {}", hash(FIRST_SCRIPT), hash(script));
+    let dynamic = if cases == Cases::Beside { " 'strict-dynamic'" } else { "" };
+    let mut policies = vec![format!(
+        "default-src 'none'; style-src {}; script-src {scripts}{dynamic}; img-src data:; base-uri 'none'; form-action 'none'",
+        hash(STYLE),
+    )];
+    if cases == Cases::Beside {
+        policies.push(format!("script-src 'self' file: {scripts}"));
     }
-    text
+    policies
 }
 
-fn top(context: &Context) -> Markup {
+fn top() -> Markup {
     html! {
         header.top {
             .top-inner {
                 a.brand href="#overview" aria-label="recrash: to the overview" { (icon::brand()) span { "recrash" } }
                 nav aria-label="Report" {
-                    a href="#overview" { "Overview" }
+                    a href="#overview" aria-current="page" { "Overview" }
                     a href="#records" { "Records & coverage" }
                     a href="#findings" { "Findings" }
                     a href="#about" { "About this run" }
                 }
                 .jump {
-                    button.small #case-previous type="button" title="Previous scenario ( [ )" aria-label="Previous scenario" { (icon::left()) }
-                    label.hidden-text for="case-jump" { "Go to a scenario" }
-                    select #case-jump {
-                        option value="" { "Scenarios\u{2026}" }
-                        @for (position, case) in context.suite.cases.iter().enumerate() {
-                            option value=(context.anchors.case(position)) { (words::clean(&case.scenario_id, 60)) }
-                        }
-                    }
-                    button.small #case-next type="button" title="Next scenario ( ] )" aria-label="Next scenario" { (icon::right()) }
+                    button.small #case-find type="button" title="Find a scenario ( / )" aria-label="Find a scenario" { (icon::search()) }
+                    button.small #case-previous type="button" title="Previous scenario of the table ( [ )" aria-label="Previous scenario of the table" { (icon::left()) }
+                    span #case-place.muted.number { }
+                    button.small #case-next type="button" title="Next scenario of the table ( ] )" aria-label="Next scenario of the table" { (icon::right()) }
                     button.small #help-open type="button" title="Keyboard shortcuts ( ? )" aria-label="Keyboard shortcuts" { "?" }
                 }
             }
@@ -159,11 +173,12 @@ fn keyboard_help() -> Markup {
         ("\u{2190} \u{2192}", "one step of 0.1 s back or on; with Shift one second"),
         ("Home, End", "to the start, to the end"),
         ("M", "to the moment of the least gap"),
+        (", .", "to the event before, to the next one: contact, least gap, hard braking, end"),
         ("B", "as designed, tuned, side by side"),
         ("F", "follow the ego, or stand still"),
         ("+ \u{2212} 0", "zoom in, zoom out, fit"),
         ("L", "repeat"),
-        ("[ ]", "previous and next scenario"),
+        ("[ ]", "previous and next scenario of the table, as it is sorted and filtered"),
         ("/", "search the table of scenarios"),
         ("?", "this list"),
     ];
@@ -181,15 +196,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn base64_of_the_rfc() {
-        let pairs = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")];
-        for (plain, coded) in pairs {
-            assert_eq!(base64(plain.as_bytes()), coded);
-        }
+    fn assets_cannot_close_their_elements() {
+        assert!(!STYLE.contains("</") && !SCRIPT.contains("</script") && !SCRIPT.contains("<!--"));
     }
 
     #[test]
-    fn assets_cannot_close_their_elements() {
-        assert!(!STYLE.contains("</") && !SCRIPT.contains("</script") && !SCRIPT.contains("<!--"));
+    fn only_a_page_with_cases_beside_it_may_load_and_only_from_there() {
+        let (beside, inside) = (policies(SCRIPT, Cases::Beside), policies(SCRIPT, Cases::Inside));
+        assert!(beside[0].starts_with("default-src 'none'") && beside[0].contains("'strict-dynamic'"));
+        assert!(beside[1].starts_with("script-src 'self' file: 'sha256-"));
+        assert_eq!(inside.len(), 1);
+        assert!(!inside[0].contains("dynamic") && !inside[0].contains("self"));
+        assert!(!beside.concat().contains("unsafe") && !beside.concat().contains("http"));
     }
 }

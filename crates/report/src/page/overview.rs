@@ -3,21 +3,18 @@
 use super::parts::{self, missing};
 use super::{Context, icon};
 use crate::summary::Result;
-use crate::view::{CaseView, RunView};
+use crate::view::{CaseRow, RunRow};
 use crate::words::{self, fixed, thousands};
+use crate::{anchor, search, thumbnail};
 use maud::{Markup, html};
-use recrash_model::metrics::Answer;
-use recrash_model::metrics::FindingKind;
 use recrash_model::narrative::Origin;
-
-/// Greatest gap on the scale of the table's gap chart. [m]
-const CHART_M: f64 = 10.0;
+use std::fmt::Write;
 
 /// The overview.
 pub fn section(context: &Context) -> Markup {
     let suite = context.suite;
     html! {
-        section.page #overview aria-labelledby="overview-title" {
+        section.page.current #overview aria-labelledby="overview-title" {
             .page-head {
                 h1 #overview-title { (words::clean(&suite.title, 200)) }
                 p.lead { (sentence(context)) }
@@ -30,6 +27,7 @@ pub fn section(context: &Context) -> Markup {
             }
             (tiles(context))
             h2 { "Scenarios" }
+            noscript { p.banner { "A scenario opens with scripts only. This table, results.csv and the scenario files of the suite need none." } }
             @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls()) (table(context)) }
             .two {
                 div { h3 { "Make this suite again" } (parts::command(&suite.command)) }
@@ -46,15 +44,16 @@ pub fn section(context: &Context) -> Markup {
     }
 }
 
-/// What was found, in one or two sentences.
+/// What was found, in a few sentences: first what the numbers are about.
 fn sentence(context: &Context) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
     html! {
-        (words::count(s.cases, "scenario")) " from " (words::count(s.usable, "usable crash record")) ", run with "
-        b { (words::clean(&suite.ego, 60)) } ". It fails " b { (s.failed_before) } " of " (s.ran) " as designed and "
-        b { (s.failed_after) } " of " (s.ran) " after tuning"
+        b { (thousands(s.origins[0])) " of " (words::count(s.cases, "scenario")) } " tell their own record; "
+        b { (thousands(s.own_faithful)) " of those " (thousands(s.origins[0])) } " show every told fact. "
+        b { (words::clean(&suite.ego, 60)) } " fails " b { (thousands(s.failed_before)) " of the " (thousands(s.ran)) } " that ran as designed and "
+        b { (thousands(s.failed_after)) } " after tuning"
         @if s.passed_before() > 0 {
-            "; of the " (s.passed_before()) " it passed at first, tuning brought the partner closer in " (s.closer)
+            "; of the " (thousands(s.passed_before())) " it passed at first, tuning brought the partner closer in " (thousands(s.closer))
         }
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
@@ -75,7 +74,7 @@ fn tiles(context: &Context) -> Markup {
             }
         }
     };
-    let arrow = || html! { span.arrow { "\u{2192}" } };
+    let arrow = || html! { " " span.arrow { "\u{2192}" } " " };
     html! {
         dl.tiles {
             (tile(
@@ -91,32 +90,37 @@ fn tiles(context: &Context) -> Markup {
                 Some((share(coverage.templates_covered, coverage.templates_observed), "good")),
             ))
             (tile(
-                "Scenarios",
-                html! { (s.cases) },
+                "Tell their own record",
+                html! { (thousands(s.origins[0])) span.of { " of " (thousands(s.cases)) } },
                 html! {
-                    (s.origins[0]) " tell their own record, " (s.origins[1]) " another one, " (s.origins[2]) " are invented"
-                    @if s.refused > 0 { ", " b { (s.refused) " refused" } }
+                    (thousands(s.origins[1])) " tell another one, " (thousands(s.origins[2])) " are invented"
+                    @if s.refused > 0 { ", " b { (thousands(s.refused)) " refused" } }
+                    @if s.edited > 0 { ", " (thousands(s.edited)) " edited by hand" }
                 },
-                None,
+                Some((share(s.origins[0], s.cases), "plain")),
             ))
             (tile(
-                "Faithful",
-                html! { (s.faithful) span.of { " of " (s.cases) } },
-                html! { "checked from the paths driven" },
-                Some((share(s.faithful, s.cases), "good")),
+                "Show every told fact",
+                html! { (thousands(s.own_faithful)) span.of { " of those " (thousands(s.origins[0])) } },
+                html! {
+                    (thousands(s.own_unfaithful)) " show something else, " (thousands(s.origins[0] - s.own_faithful - s.own_unfaithful)) " are unchecked or did not run"
+                    @if s.origins[1] > 0 { "; " (thousands(s.other_faithful)) " of the " (thousands(s.origins[1])) " with another record do" }
+                },
+                Some((share(s.own_faithful, s.origins[0]), "good")),
             ))
             (tile(
                 "Ego fails",
-                html! { (s.failed_before) (arrow()) (s.failed_after) span.of { " of " (s.ran) } },
+                html! { (thousands(s.failed_before)) (arrow()) (thousands(s.failed_after)) span.of { " of " (thousands(s.ran)) } },
                 html! {
                     "as designed, after tuning"
-                    @for (class, count) in &s.classes { br; (count) " " (class.label()) }
+                    @if !s.classes.is_empty() { ": " }
+                    @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
                 },
                 Some((share(s.failed_after, s.ran), "bad")),
             ))
             (tile(
                 "Median least gap",
-                html! { (gap(s.median_before_m)) (arrow()) (gap(s.median_after_m)) span.of { " m" } },
+                html! { (gap(s.median_before_m)) (arrow()) (gap(s.median_after_m)) span.of { "\u{a0}m" } },
                 html! { "as designed, after tuning" },
                 None,
             ))
@@ -124,159 +128,174 @@ fn tiles(context: &Context) -> Markup {
     }
 }
 
+/// Keys to sort by, as the scripts know them.
+const SORTS: [(&str, &str); 10] = [
+    ("order", "Order of the suite"),
+    ("operator", "Operator"),
+    ("city", "City"),
+    ("kind", "Partner"),
+    ("before", "Least gap as designed"),
+    ("after", "Least gap after tuning"),
+    ("impact", "Impact speed"),
+    ("harm", "Injury in the record"),
+    ("findings", "Findings"),
+    ("faithful", "True to its record"),
+];
+
 fn controls() -> Markup {
+    let filters = [
+        ("all", "All"),
+        ("failed", "Fails"),
+        ("passed", "Passes"),
+        ("faithful", "Faithful"),
+        ("unfaithful", "Not faithful"),
+        ("unchecked", "Unchecked"),
+        ("other", "Another record"),
+        ("invented", "Invented"),
+        ("refused", "Refused"),
+        ("edited", "Edited"),
+    ];
     html! {
         .controls {
-            label { span.hidden-text { "Search scenarios" } input #case-search type="search" placeholder="Search id, template, record, finding  ( / )"; }
-            fieldset.segments {
-                legend.hidden-text { "Show" }
-                @for (value, name) in [("all", "All"), ("failed", "Fails"), ("passed", "Passes"), ("unfaithful", "Not faithful"), ("other", "Another record"), ("invented", "Invented"), ("refused", "Refused")] {
-                    label { input type="radio" name="case-filter" value=(value) checked[value == "all"]; span { (name) } }
-                }
+            label { span.hidden-text { "Search scenarios" } input #case-search type="search" placeholder="Search id, record, operator, city, kind, words  ( / )"; }
+            label.field { span { "Show" } select #case-filter { @for (value, name) in filters { option value=(value) { (name) } } } }
+            @for (key, name) in [("operator", "Operator"), ("city", "City"), ("kind", "Partner"), ("injury", "Injury")] {
+                label.field { span { (name) } select data-only=(key) { option value="" { "any" } } }
             }
+            label.field { span { "Sort by" } select #case-sort { @for (key, name) in SORTS { option value=(key) { (name) } } } }
+            button.small #case-direction type="button" aria-pressed="false" title="Turn the order round" { "\u{2191}" span.hidden-text { " turn the order round" } }
             span #case-count.muted role="status" {}
+            button type="button" #case-reset hidden { "Show all" }
         }
     }
 }
 
 fn table(context: &Context) -> Markup {
     let heads = [
-        ("Scene", false, "at the least gap of the last run"),
-        ("Scenario", true, "its number and template"),
-        ("Records", true, "the record it came from, and how many the cluster holds"),
-        ("Least gap", true, "box to box: hollow as designed, filled after tuning"),
-        ("As designed", true, "first shot: least gap and verdict"),
-        ("Tuned", true, "after tuning: least gap and verdict"),
-        ("Collision", true, "kind by geometry, in the last run"),
-        ("Findings", true, "in the last run"),
-        ("Faithful", true, "computed from the paths driven in the last run"),
+        ("scene", "Scene", None, "paths of ego and partner about the encounter"),
+        ("what", "Scenario", Some("order"), "its id and template"),
+        ("crash", "Crash told", Some("operator"), "the record that is told: id, operator, city, kind of partner"),
+        ("gap", "Least gap", Some("after"), "box to box, as designed and after tuning"),
+        (
+            "impact",
+            "Impact",
+            Some("impact"),
+            "relative speed at the ego's contact in the last run, and the speed of each",
+        ),
+        ("injury", "Injury", Some("harm"), "highest injury that the record alleges"),
+        ("ego", "Ego", Some("findings"), "what it did in the last run"),
+        ("true", "True to record", Some("faithful"), "computed from the paths driven in the last run"),
     ];
     html! {
-        .table-wrap {
-            table #cases.cases {
-                caption.hidden-text { "Scenarios, one a row. The buttons in the head sort." }
-                thead { tr {
-                    @for (name, sorts, what) in heads {
-                        th scope="col" title=(what) { @if sorts { button.sort type="button" { (name) } } @else { (name) } }
-                    }
-                } }
-                tbody { @for (position, case) in context.suite.cases.iter().enumerate() { (row(context, position, case)) } }
-            }
+        table #cases.cases {
+            caption.hidden-text { "Scenarios, one a row. The buttons in the head sort." }
+            thead { tr {
+                @for (class, name, key, what) in heads {
+                    th.(class) scope="col" title=(what) { @match key { Some(key) => button.sort type="button" data-sort=(key) { (name) }, None => (name) } }
+                }
+            } }
+            tbody { @for (position, case) in context.suite.cases.iter().enumerate() { (row(context, position, case)) } }
         }
-        p #case-none.empty hidden { "No scenario matches. " button type="button" #case-reset { "Show all" } }
+        p #case-more.muted hidden {}
+        p #case-none.empty hidden { "No scenario matches." }
     }
 }
 
-fn row(context: &Context, position: usize, case: &CaseView) -> Markup {
-    let suite = context.suite;
+fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
     let last = case.last_run();
-    let result = Result::of(last);
-    let faithful = last.map(|run| run.faithful());
-    let origin = case.narrative.as_ref().map(|narrative| &narrative.origin);
-    let mut tags = vec![match result {
-        Result::Failed => "failed",
-        Result::Passed => "passed",
-        Result::Missing => "missing",
-    }];
-    for (tag, holds) in [
-        ("unfaithful", faithful == Some(Answer::No)),
-        ("other", matches!(origin, Some(Origin::Other { .. }))),
-        ("invented", matches!(origin, Some(Origin::Invented { .. }))),
-        ("refused", case.refused.is_some()),
-    ] {
-        if holds {
-            tags.push(tag);
-        }
-    }
-    let members = suite.cluster(case).map_or(0, |cluster| cluster.members.len());
-    let sort_gap =
-        |run: Option<&RunView>| run.and_then(|run| run.min_gap_m()).and_then(|gap| fixed(gap, 4)).unwrap_or_default();
+    let anchor = anchor::anchor(&case.scenario_id);
+    let not_run = if case.refused.is_some() { "refused" } else { "not run" };
     let contact = last.and_then(|run| run.metrics.contact.as_ref());
-    let kinds = last.map(|run| run.finding_kinds()).unwrap_or_default();
-    let anchor = context.anchors.case(position);
-    let not_run = case.refused.as_deref().unwrap_or("it was not run");
     html! {
-        tr data-tags=(tags.join(" ")) {
-            td { a.thumb-link href={ "#" (anchor) } tabindex="-1" aria-hidden="true" { canvas.thumb width="192" height="120" data-case=(position) {} } }
-            th scope="row" data-sort=(position) {
+        tr data-row=(position) {
+            td.scene { (scene(case)) }
+            th.what scope="row" {
                 a.case-link href={ "#" (anchor) } { (words::clean(&case.scenario_id, 80)) }
                 .muted { (words::template(&case.template)) }
                 @if let Some(why) = &case.refused { .refused-why { (icon::cross()) "refused: " (words::clean(why, 200)) } }
+                (parts::edited_chip(&case.edited))
             }
-            td data-sort=(members) {
-                @match suite.case_records(case).next() {
-                    Some(pick) => span.mono { (words::clean(&pick.id.to_string(), 40)) },
-                    None => (missing("the suite names no record")),
-                }
-                .muted {
-                    @if members > 0 { "cluster of " (members) }
-                    @if let Some(origin) = origin.filter(|origin| **origin != Origin::Own) {
-                        br;
-                        span.chip.odd { (icon::bang()) (origin.label()) }
-                    }
+            td.crash { (crash(context, position, case)) }
+            td.gap {
+                @if last.is_none() { (missing(not_run)) } @else {
+                    (metres(case.before.as_ref()))
+                    @if let Some(after) = &case.after { " \u{2192} " b { (metres(Some(after))) } }
                 }
             }
-            td data-sort=(sort_gap(last)) { (gap_chart(case, suite.profile.failure.min_gap_m)) }
-            (gap_cell(case.before.as_ref(), not_run, &sort_gap(case.before.as_ref())))
-            (gap_cell(case.after.as_ref(), if last.is_some() { "tuning kept the scenario as designed" } else { not_run }, &sort_gap(case.after.as_ref())))
-            td data-sort=(contact.map_or("", |contact| contact.kind.label())) {
-                @match contact { Some(contact) => (contact.kind.label()), None => (missing("no contact")) }
+            td.impact {
+                @match contact {
+                    Some(contact) => {
+                        b { (fixed(contact.relative_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
+                        .muted { "ego " (fixed(contact.ego_speed_mps, 1).unwrap_or_default()) ", other " (fixed(contact.other_speed_mps, 1).unwrap_or_default()) }
+                    },
+                    None => (missing(if last.is_some() { "no contact" } else { not_run })),
+                }
             }
-            td.findings data-sort=(finding_weight(&kinds)) {
-                @if let Some(triage) = &case.triage { (parts::class_chip(triage.class)) " " }
-                @for kind in &kinds { (parts::finding_chip(*kind)) " " }
-                @if kinds.is_empty() { (missing(if last.is_some() { "no finding" } else { not_run })) }
-            }
-            td data-sort=(match faithful { Some(Answer::Yes) => "3", Some(Answer::Unchecked) => "2", Some(Answer::No) => "1", None => "" }) { (parts::faithful_chip(last)) }
+            td.injury { @match context.told.at(position) { Some(record) => (search::injury(record)), None => (missing("no record is told")) } }
+            td.ego { (ego(case, not_run)) }
+            td.true { (parts::faithful_chip(last.map(|run| &run.judgement), case.origin.as_ref())) }
         }
     }
 }
 
-/// Failures count more than odd behaviour.
-fn finding_weight(kinds: &[FindingKind]) -> usize {
-    kinds.iter().map(|kind| if kind.is_failure() { 100 } else { 1 }).sum()
+fn metres(run: Option<&RunRow>) -> Markup {
+    match run.and_then(|run| run.min_gap_m()).and_then(|gap| fixed(gap, 2)) {
+        Some(gap) => html! { (gap) "\u{a0}m" },
+        None => missing("no gap"),
+    }
 }
 
-fn gap_cell(run: Option<&RunView>, why: &str, sort: &str) -> Markup {
+/// The record that is told, and by whom, where and with whom; or that nobody's crash is.
+fn crash(context: &Context, position: usize, case: &CaseRow) -> Markup {
+    let pick = context.suite.case_records(case).next();
     html! {
-        td data-sort=(sort) {
-            @match run {
-                Some(run) => {
-                    (parts::quantity(run.min_gap_m(), 2, "m", "no scripted partner took part"))
-                    " " (parts::result_chip(Result::of(Some(run))))
-                },
-                None => (missing(why)),
-            }
+        @match &case.told {
+            Some(told) => span.mono { (words::clean(&told.to_string(), 40)) },
+            None => @if let Some(pick) = pick { span.muted { "for " span.mono { (words::clean(&pick.id.to_string(), 40)) } } } @else { (missing("no record")) },
+        }
+        @if !matches!(case.origin, None | Some(Origin::Own)) { " " (parts::origin_chip(case.origin.as_ref(), case.told.as_ref())) }
+        @if let Some(record) = context.told.at(position) {
+            div { (words::clean(&record.entity, 60)) }
+            .muted { (words::clean(&record.place, 60)) ", " (search::partner(record)) }
         }
     }
 }
 
-/// Least gap as designed and tuned on one scale, with the profile's threshold.
-fn gap_chart(case: &CaseView, threshold_m: f64) -> Markup {
-    let at = |gap: f64| 8.0 + 124.0 * (gap / CHART_M).clamp(0.0, 1.0);
-    let place = |gap: f64| fixed(at(gap), 1).unwrap_or_default();
-    let before = case.before.as_ref().and_then(|run| run.min_gap_m());
-    let after = case.after.as_ref().and_then(|run| run.min_gap_m());
-    if before.or(after).is_none() {
-        return missing("no gap was measured");
-    }
-    let told = |gap: Option<f64>| gap.and_then(|gap| fixed(gap, 2)).map_or("none".to_owned(), |gap| format!("{gap} m"));
-    let label = format!("Least gap as designed {}, tuned {}; failure below {threshold_m} m", told(before), told(after));
+/// How the ego fared: as designed and at last, what the failure is worth, and what was found.
+fn ego(case: &CaseRow, not_run: &str) -> Markup {
+    let Some(last) = case.last_run() else { return missing(not_run) };
+    let result = |run: &RunRow| Result::of(Some(&run.judgement));
+    let first = case.before.as_ref().filter(|first| case.after.is_some() && result(first) != result(last));
     html! {
-        svg.gap-chart viewBox="0 0 140 26" role="img" aria-label=(label) {
-            title { (label) }
-            rect.fail-zone x="8" y="3" width=(fixed(at(threshold_m) - 8.0, 1).unwrap_or_default()) height="20" {}
-            line.axis x1="8" x2="132" y1="13" y2="13" {}
-            line.threshold x1=(place(threshold_m)) x2=(place(threshold_m)) y1="3" y2="23" {}
-            @if let (Some(before), Some(after)) = (before, after) {
-                line.change x1=(place(before)) x2=(place(after)) y1="13" y2="13" {}
-            }
-            @if let Some(before) = before {
-                @if before > CHART_M { path.before.beyond d="M128 8.5l8 4.5-8 4.5z" {} } @else { circle.before cx=(place(before)) cy="13" r="4.4" {} }
-            }
-            @if let Some(after) = after {
-                @if after > CHART_M { path.after.beyond d="M128 8.5l8 4.5-8 4.5z" {} } @else { circle.after cx=(place(after)) cy="13" r="4.6" {} }
-            }
+        @if let Some(first) = first { span.muted { (result(first).label()) " \u{2192}" } " " }
+        (parts::result_chip(result(last)))
+        @if let Some(triage) = &case.triage { " " (parts::class_chip(triage.class)) }
+        @let kinds = last.finding_kinds();
+        @if !kinds.is_empty() { .why { (kinds.iter().map(|kind| kind.label()).collect::<Vec<_>>().join(", ")) } }
+    }
+}
+
+/// The paths of the last run.
+fn scene(case: &CaseRow) -> Markup {
+    let Some(picture) = &case.thumbnail else { return html! {} };
+    let path = |points: &[[i16; 2]]| {
+        let mut path = String::new();
+        let mut last = [0, 0];
+        for (i, &[x, y]) in points.iter().enumerate() {
+            let _ = match i {
+                0 => write!(path, "M{x} {y}"),
+                _ => write!(path, "l{} {}", x - last[0], y - last[1]),
+            };
+            last = [x, y];
+        }
+        path
+    };
+    let [width, height] = thumbnail::SIZE;
+    html! {
+        svg.thumb viewBox={ "0 0 " (width) " " (height) } aria-hidden="true" {
+            @if !picture.partner.is_empty() { path.p d=(path(&picture.partner)) {} }
+            path.e d=(path(&picture.ego)) {}
+            circle cx=(picture.at[0]) cy=(picture.at[1]) r="3" {}
         }
     }
 }

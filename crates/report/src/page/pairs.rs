@@ -1,6 +1,6 @@
 //! The page of runs side by side: tables, then one replay after the other.
 
-use super::{case, document, parts};
+use super::{Cases, case, document, parts};
 use crate::pairs::{PairView, PairsView, TableView};
 use crate::{data, words};
 use maud::{Markup, PreEscaped, html};
@@ -30,7 +30,7 @@ pub fn render(view: &PairsView) -> String {
             @for (position, pair) in view.pairs.iter().enumerate() { (section(view, position, pair)) }
         }
     };
-    document(&title, &view.generated_by, &body, &limits, SCRIPT)
+    document(&title, &view.generated_by, &body, &limits, SCRIPT, Cases::Inside)
 }
 
 fn table_of(table: &TableView) -> Markup {
@@ -77,8 +77,8 @@ mod tests {
         let page = render(&view);
         assert!(!page.contains("<img") && page.contains("&lt;img"), "{page}");
         assert!(page.contains("default-src 'none'"));
-        // One block of data, one script.
-        assert_eq!(page.matches("<script").count(), 2);
+        // One block of data, and two scripts: the first words and the rest.
+        assert_eq!(page.matches("<script").count(), 3);
     }
 
     fn criteria() -> recrash_model::profile::FailureCriteria {

@@ -2,10 +2,12 @@
 
 use super::icon;
 use crate::summary::Result;
-use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};
-use recrash_model::metrics::{Answer, CheckResult, FindingKind, Timed};
+use recrash_model::metrics::{Answer, Check, CheckResult, FindingKind, Timed};
+use recrash_model::narrative::Origin;
+use recrash_model::record::RecordRef;
+use recrash_model::run::Judgement;
 use recrash_model::triage::FailureClass;
 
 /// A dash that says why there is no value.
@@ -39,52 +41,77 @@ pub fn text_or(value: Option<&str>, why: &str) -> Markup {
     }
 }
 
-/// Whether the ego failed: a sign, a word and a colour.
+/// Whether the ego failed: a word, a colour, and the sign that the style gives to every chip of its class.
 pub fn result_chip(result: Result) -> Markup {
-    let (class, sign) = match result {
-        Result::Failed => ("bad", icon::cross()),
-        Result::Passed => ("good", icon::tick()),
-        Result::Missing => ("none", icon::dash()),
+    let class = match result {
+        Result::Failed => "bad",
+        Result::Passed => "good",
+        Result::Missing => "none",
     };
-    html! { span.chip.(class) { (sign) (result.label()) } }
+    html! { span.chip.(class) { (result.label()) } }
 }
 
-/// Whether a run is faithful, with the checks that failed.
-pub fn faithful_chip(run: Option<&RunView>) -> Markup {
+/// Whether a run is true to its record, with the checks that say otherwise. Nobody's crash has no record to be true to.
+pub fn faithful_chip(run: Option<&Judgement>, origin: Option<&Origin>) -> Markup {
     let Some(run) = run else { return missing("it was not run") };
-    match run.faithful() {
-        Answer::Unchecked => return html! { span.chip.odd { (icon::bang()) "not all checked" } },
-        Answer::Yes => return html! { span.chip.good { (icon::tick()) "faithful" } },
-        Answer::No => {}
+    if matches!(origin, Some(Origin::Invented { .. })) {
+        return html! { span.chip.none { "no record" } };
     }
-    let why: Vec<&str> = run.verdict.failures().map(|check| check.kind.label()).collect();
-    html! { span.chip.bad { (icon::cross()) "not faithful" } span.why { (why.join(", ")) } }
+    let listed = |checks: Vec<&Check>| {
+        html! { @if !checks.is_empty() { span.why { (checks.iter().map(|check| check.kind.label()).collect::<Vec<_>>().join(", ")) } } }
+    };
+    match run.faithful() {
+        Answer::Yes => html! { span.chip.good { "faithful" } },
+        Answer::Unchecked => html! { span.chip.odd { "unchecked" } (listed(run.verdict.unchecked().collect())) },
+        Answer::No => html! { span.chip.bad { "not faithful" } (listed(run.verdict.failures().collect())) },
+    }
+}
+
+/// Whose crash is told, where it is not the picked record's own.
+pub fn origin_chip(origin: Option<&Origin>, told: Option<&RecordRef>) -> Markup {
+    let why = words::provenance(origin, told);
+    html! {
+        @match origin {
+            None | Some(Origin::Own) => "",
+            Some(Origin::Other { .. }) => span.chip.odd title=(words::clean(&why, 200)) { "another record" },
+            Some(Origin::Invented { .. }) => span.chip.odd title=(words::clean(&why, 200)) { "invented" },
+        }
+    }
+}
+
+/// That a person edited files of a scenario, and which.
+pub fn edited_chip(files: &[String]) -> Markup {
+    html! {
+        @if !files.is_empty() {
+            span.chip.odd { "edited by hand" } span.why { (words::clean(&files.join(", "), 300)) }
+        }
+    }
 }
 
 /// The result of a check.
 pub fn check_chip(result: CheckResult) -> Markup {
     match result {
-        CheckResult::Shown => html! { span.chip.good { (icon::tick()) "shown" } },
-        CheckResult::NotShown => html! { span.chip.bad { (icon::cross()) "not shown" } },
-        CheckResult::CannotBeShown => html! { span.chip.odd { (icon::bang()) "cannot be shown" } },
-        CheckResult::NotTold => html! { span.chip.none { (icon::dash()) "not told" } },
+        CheckResult::Shown => html! { span.chip.good { "shown" } },
+        CheckResult::NotShown => html! { span.chip.bad { "not shown" } },
+        CheckResult::CannotBeShown => html! { span.chip.odd { "cannot be shown" } },
+        CheckResult::NotTold => html! { span.chip.none { "not told" } },
     }
 }
 
 /// A kind of finding.
 pub fn finding_chip(kind: FindingKind) -> Markup {
-    let (class, sign) = if kind.is_failure() { ("bad", icon::cross()) } else { ("odd", icon::bang()) };
-    html! { span.chip.(class) { (sign) (kind.label()) } }
+    let class = if kind.is_failure() { "bad" } else { "odd" };
+    html! { span.chip.(class) { (kind.label()) } }
 }
 
 /// What a failure is worth.
 pub fn class_chip(class: FailureClass) -> Markup {
-    let (kind, sign) = match class {
-        FailureClass::Avoidable | FailureClass::Quirk => ("bad", icon::bang()),
-        FailureClass::BeyondReference => ("odd", icon::bang()),
-        FailureClass::Unavoidable => ("none", icon::dash()),
+    let kind = match class {
+        FailureClass::Avoidable | FailureClass::Quirk => "bad",
+        FailureClass::BeyondReference => "odd",
+        FailureClass::Unavoidable => "none",
     };
-    html! { span.chip.(kind) title=(class.meaning()) { (sign) (class.label()) } }
+    html! { span.chip.(kind) { (class.label()) } }
 }
 
 /// A command with a button that copies it.

@@ -1,9 +1,14 @@
 //! The records: funnel, the paper's tables for this run, the cluster map, and what the picks cover.
 
 use super::{Context, cluster_map, coverage, parts};
+use crate::anchor;
+use crate::view::CaseRow;
 use crate::words::{self, thousands};
 use maud::{Markup, html};
 use recrash_model::record::RejectReason;
+
+/// Scenarios of a template that are linked. [count]
+const LONGEST_LIST: usize = 24;
 
 /// The section.
 pub fn section(context: &Context) -> Markup {
@@ -129,9 +134,14 @@ fn templates(context: &Context) -> Markup {
                         td.right.number { (thousands(count.records)) }
                         td.bar-cell { (parts::bar(share(count.records, most), "plain")) }
                         td.right.number { (count.picks) }
-                        td { @for (position, case) in context.suite.cases.iter().enumerate().filter(|(_, case)| case.template == t) {
-                            a.tag href={ "#" (context.anchors.case(position)) } title=(words::clean(&case.scenario_id, 80)) { (position + 1) } " "
-                        } @if count.picks == 0 { span.chip.bad { (super::icon::cross()) "no pick" } } }
+                        td {
+                            @let cases: Vec<(usize, &CaseRow)> = context.suite.cases.iter().enumerate().filter(|(_, case)| case.template == t).collect();
+                            @for (position, case) in cases.iter().take(LONGEST_LIST) {
+                                a.tag href={ "#" (anchor::anchor(&case.scenario_id)) } title=(words::clean(&case.scenario_id, 80)) { (position + 1) } " "
+                            }
+                            @if cases.len() > LONGEST_LIST { "and " (cases.len() - LONGEST_LIST) " more" }
+                            @if count.picks == 0 { span.chip.bad { "no pick" } }
+                        }
                     }
                 } }
             }

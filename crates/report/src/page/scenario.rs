@@ -1,13 +1,13 @@
 //! The search over a case's numbers, and its scenario files.
 
-use super::{findings, icon, parts};
+use super::{icon, parts};
 use crate::view::CaseView;
 use crate::words::{self, fixed};
 use maud::{Markup, html};
 use recrash_model::tuning::{Parameter, TuneLog};
 
 /// The tune log: how the search went, and what may move.
-pub fn tuning(position: usize, case: &CaseView) -> Markup {
+pub fn tuning(case: &CaseView) -> Markup {
     let Some(log) = &case.tune_log else {
         return html! { p.empty { "It was not tuned." } };
     };
@@ -22,7 +22,7 @@ pub fn tuning(position: usize, case: &CaseView) -> Markup {
             figure.tune-figure {
                 figcaption { b { "Objective by point" } " " span.muted { "least box gap plus penalties, m; smaller is worse for the ego" } }
                 p.plot-key { span.key.point { "passes" } span.key.failed { "fails" } span.key.refused { "refused" } span.key.best { "best so far" } span.key.kept { "kept" } }
-                svg.tune-plot data-case=(position) role="application" tabindex="0" aria-label="Objective of each point; arrow keys go from point to point" {}
+                svg.tune-plot role="application" tabindex="0" aria-label="Objective of each point; arrow keys go from point to point" {}
                 p.tune-detail.muted role="status" aria-live="polite" { "Point at a mark, or put the focus on the plot and use the arrow keys." }
             }
             .table-wrap { table.plain.tuning {
@@ -81,7 +81,7 @@ fn refusals(log: &TuneLog) -> Markup {
 
 /// The scenario files, and the commands that run them.
 pub fn files(case: &CaseView) -> Markup {
-    let runs = findings::runs(case);
+    let runs = case.runs();
     html! {
         @if runs.is_empty() { p.empty { "No scenario was run, so there is no file to show." } }
         .columns {

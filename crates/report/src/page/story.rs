@@ -1,7 +1,7 @@
 //! The records a case came from, and the narrative made of them: every fact with the words it came from.
 
-use super::{Context, icon, parts};
-use crate::view::CaseView;
+use super::case::Case;
+use super::{icon, parts};
 use crate::words::{self, LONGEST_TEXT};
 use maud::{Markup, html};
 use recrash_model::narrative::{Fact, FactSource, Narrative};
@@ -12,20 +12,21 @@ use std::ops::Range;
 const LONGEST_MEMBER_LIST: usize = 60;
 
 /// Narrative and records.
-pub fn story(context: &Context, case: &CaseView) -> Markup {
-    let facts = case.narrative.as_ref().map_or(&[][..], |narrative| &narrative.facts);
-    let shown: Vec<&CrashRecord> = context.suite.case_records(case).collect();
-    let members = context.suite.cluster(case).map_or(&[][..], |cluster| &cluster.members);
+pub fn story(case: Case) -> Markup {
+    let (context, row) = (case.context, case.row);
+    let facts = case.view.narrative.as_ref().map_or(&[][..], |narrative| &narrative.facts);
+    let shown: Vec<&CrashRecord> = context.case_records(row).collect();
+    let members = context.cluster.map_or(&[][..], |cluster| &cluster.members);
     let others: Vec<&CrashRecord> = members
         .iter()
-        .filter(|member| !case.records.contains(member))
-        .filter_map(|&member| context.suite.records.records.get(member))
+        .filter(|member| !row.records.contains(member))
+        .filter_map(|&member| context.records.get(member))
         .collect();
     html! {
         .columns.story {
             div {
                 h2 { "Narrative of the scenario" }
-                @match &case.narrative { Some(narrative) => (told(narrative, shown.first().map(|pick| &pick.id))), None => p.empty { "No narrative was written." } }
+                @match &case.view.narrative { Some(narrative) => (told(narrative, shown.first().map(|pick| &pick.id))), None => p.empty { "No narrative was written." } }
             }
             div {
                 h2 { "Records" }
@@ -45,7 +46,7 @@ pub fn story(context: &Context, case: &CaseView) -> Markup {
 fn told(narrative: &Narrative, pick: Option<&RecordRef>) -> Markup {
     html! {
         @if let Some(reason) = narrative.origin.reason() {
-            p.banner role="note" { (icon::bang()) span { strong { "Alternative. " } "It takes the record's place: " (words::clean(reason, 400)) } }
+            p.banner role="note" { (icon::bang()) span { strong { (words::capital(narrative.origin.label())) ". " } "It takes the record's place: " (words::clean(reason, 400)) } }
         }
         blockquote.narrative dir="auto" { (words::clean(&narrative.text, LONGEST_TEXT)) }
         p.muted { "Written by " (words::name(&narrative.author)) ". Point at a fact to see the words it came from." }

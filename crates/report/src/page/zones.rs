@@ -1,16 +1,16 @@
 //! Contact zones on a small outline of each vehicle: what the record ticks, and where the runs touched.
 
-use super::{Context, findings};
-use crate::view::{CaseView, RunView};
+use super::case::Case;
+use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};
 use recrash_model::metrics::Contact;
 use recrash_model::record::ContactZone;
 
 /// Both vehicles.
-pub fn zones(context: &Context, case: &CaseView) -> Markup {
-    let pick = context.suite.case_records(case).next();
-    let last = findings::runs(case).last().map(|(name, run)| (*name, *run));
+pub fn zones(case: Case) -> Markup {
+    let pick = case.context.case_records(case.row).next();
+    let last = case.view.runs().last().map(|(name, run)| (*name, *run));
     let seen =
         |of: fn(&Contact) -> ContactZone| last.and_then(|(_, run): (_, &RunView)| run.metrics.contact.as_ref()).map(of);
     let run_name = last.map_or("run", |(name, _)| name);

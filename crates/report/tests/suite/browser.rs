@@ -1,5 +1,6 @@
-//! The page in a real browser: headless Chromium runs `tests/browser/check.mjs` on a made-up suite, a hostile one
-//! and an empty one. Needs node, Chromium and `npm ci` in `tests/browser`; says so where one is missing.
+//! The page in a real browser: headless Chromium runs `tests/browser/check.mjs` on a made-up suite, a hostile one,
+//! an empty one, and one of two thousand scenarios. Needs node, Chromium and `npm ci` in `tests/browser`; says so where one
+//! is missing.
 
 use crate::suite;
 use std::path::{Path, PathBuf};
@@ -26,27 +27,31 @@ fn the_page_works_in_a_browser() {
         return recrash_testing::skip(why);
     }
     let mut odd = suite::demo();
-    odd.title = "</script><img src=x onerror=alert(1)>".to_owned();
-    for record in &mut odd.records.records {
+    odd.suite.title = "</script><img src=x onerror=alert(1)>".to_owned();
+    for record in &mut odd.suite.records.records {
         record.narrative = "from the left </script><img src=x onerror=alert(1)> against a red light".to_owned();
     }
-    for case in &mut odd.cases {
-        case.scenario_id = "</script><img src=x onerror=alert(1)>".to_owned();
+    for (number, case) in odd.suite.cases.iter_mut().enumerate() {
+        case.scenario_id = format!("</script><img src=x onerror=alert(1)> {number}");
     }
-    odd.cases[1].after = None;
-    odd.cases[1].before.as_mut().unwrap().run.rollout.actors.clear();
-    odd.cases[2].before = None;
-    odd.cases[3].after.as_mut().unwrap().series.partners.clear();
-    odd.cases[4].tune_log.as_mut().unwrap().points.clear();
+    odd.suite.cases[1].after = None;
+    odd.driven[1].after = None;
+    odd.driven[1].before.as_mut().unwrap().run.rollout.actors.clear();
+    odd.suite.cases[2].before = None;
+    odd.driven[2].before = None;
+    odd.driven[3].after.as_mut().unwrap().series.partners.clear();
+    odd.driven[4].tune_log.as_mut().unwrap().points.clear();
     let mut empty = suite::demo();
-    empty.cases.clear();
-    empty.selection.map.clear();
+    empty.suite.cases.clear();
+    empty.suite.selection.map.clear();
     let here = tempfile::tempdir().unwrap();
-    for (name, view) in [("demo", suite::demo()), ("odd", odd), ("empty", empty)] {
-        let page = here.path().join(format!("{name}.html"));
-        std::fs::write(&page, recrash_report::html(&view)).unwrap();
+    for (name, demo) in [("demo", suite::demo()), ("odd", odd), ("empty", empty), ("large", suite::demo_of(2000))] {
+        let folder_of_page = here.path().join(name);
+        demo.write(&folder_of_page).unwrap();
+        let page = folder_of_page.join("report.html");
         let mut check = Command::new("node");
         let output = check.arg(folder.join("check.mjs")).arg(&page).arg("--chromium").arg(&chromium).output().unwrap();
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        print!("{}", String::from_utf8_lossy(&output.stdout));
     }
 }

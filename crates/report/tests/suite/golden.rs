@@ -1,22 +1,24 @@
-//! JUnit and CSV of four made-up cases: fails as designed, tuned to fail, not faithful, refused.
+//! JUnit and CSV of made-up cases: fails as designed, another record's, nobody's crash and edited, tuned to fail, not faithful,
+//! refused.
 
 use crate::suite;
 use recrash_report::SuiteView;
 
-fn four_cases() -> SuiteView {
-    let mut suite = suite::demo();
+fn some_cases() -> SuiteView {
+    let mut suite = suite::demo().suite;
     let all = std::mem::take(&mut suite.cases);
     suite.cases =
-        all.into_iter().enumerate().filter(|(i, _)| [0, 8, 16, 18].contains(i)).map(|(_, case)| case).collect();
+        all.into_iter().enumerate().filter(|(i, _)| [0, 5, 6, 8, 16, 18].contains(i)).map(|(_, case)| case).collect();
+    suite.cases[1].edited = vec!["4-scenarios/06-intersection-straight-left.json".to_owned()];
     suite
 }
 
 #[test]
 fn junit() {
-    insta::assert_snapshot!(recrash_report::junit(&four_cases()));
+    insta::assert_snapshot!(recrash_report::junit(&some_cases()));
 }
 
 #[test]
 fn results() {
-    insta::assert_snapshot!(recrash_report::results_csv(&four_cases()).replace("\r\n", "\n"));
+    insta::assert_snapshot!(recrash_report::results_csv(&some_cases()).replace("\r\n", "\n"));
 }

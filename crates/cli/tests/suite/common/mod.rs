@@ -13,6 +13,24 @@ pub fn recrash(arguments: &[&str]) -> Command {
     command
 }
 
+/// Text of a Python program as the ego that drives on at a speed. [m/s]
+pub fn driving_ego(speed_mps: f64) -> String {
+    format!(
+        r#"
+import json, sys
+for line in sys.stdin:
+    message = json.loads(line)
+    if message["type"] == "step":
+        slow = message["ego"]["speed"] < {speed_mps:?}
+        answer = {{"type": "control", "throttle": 0.3 if slow else -0.2, "steer": 0.0}}
+    else:
+        answer = {{"type": "ready", "protocol": "recrash.ego/1"}}
+    if message["type"] != "end":
+        print(json.dumps(answer), flush=True)
+"#
+    )
+}
+
 /// A folder to run commands in.
 pub struct Place {
     folder: tempfile::TempDir,
@@ -33,19 +51,25 @@ impl Place {
 
     /// Runs a command in the folder; gives exit code, standard output and standard error.
     pub fn run(&self, arguments: &[&str]) -> (i32, String, String) {
+        self.run_within(arguments, 3600)
+    }
+
+    /// The same for at most this long; exit code 124 where that was not enough. [s]
+    pub fn run_within(&self, arguments: &[&str], seconds: u64) -> (i32, String, String) {
         let mut command = recrash(arguments);
+        command.timeout(std::time::Duration::from_secs(seconds));
         // Nothing that the user has counts: no proxy, and no weights of an embedding model.
         command.current_dir(self.folder.path()).env("RECRASH_CACHE", self.path("cache")).env("HOME", self.path("home"));
         for name in ["http_proxy", "HTTP_PROXY", "all_proxy", "ALL_PROXY", "XDG_CACHE_HOME", "HF_HOME", "HF_HUB_CACHE"]
         {
             command.env_remove(name);
         }
-        for name in ["VIRTUAL_ENV", "CONDA_PREFIX", "RECRASH_EMBEDDING", "RECRASH_PYTHON"] {
+        for name in ["VIRTUAL_ENV", "CONDA_PREFIX", "RECRASH_EMBEDDING", "RECRASH_PYTHON", "COLUMNS"] {
             command.env_remove(name);
         }
         let output = command.output().unwrap();
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+        (output.status.code().unwrap_or(124), text(&output.stdout), text(&output.stderr))
     }
 
     pub fn records(&self, extra: &[&str]) -> serde_json::Value {

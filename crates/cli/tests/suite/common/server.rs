@@ -48,6 +48,8 @@ pub enum Reply {
     Hang(Duration),
     /// Half of an answer.
     CutOff,
+    /// A status 200 with these header lines, and this piece of a body so many times.
+    Pieces(String, Arc<Vec<u8>>, usize),
 }
 
 impl Reply {
@@ -126,6 +128,10 @@ fn serve(mut stream: TcpStream, seen: &Mutex<Seen>, script: &Script) {
             std::thread::sleep(time);
             Ok(())
         }
+        Reply::Pieces(headers, piece, times) => {
+            let head = format!("HTTP/1.1 200 OK\r\nContent-Type: application/json\r\n{headers}\r\n");
+            stream.write_all(head.as_bytes()).and_then(|()| (0..times).try_for_each(|_| stream.write_all(&piece)))
+        }
         Reply::CutOff => {
             let body = completion("{\"text\": \"this never ends\"}");
             let head =
@@ -161,7 +167,8 @@ fn send(stream: &mut TcpStream, status: u16, headers: &str, body: &str) -> std::
     )
 }
 
-fn completion(text: &str) -> String {
+/// The body of a good answer with this text.
+pub fn completion(text: &str) -> String {
     json!({
         "id": "scripted", "object": "chat.completion", "created": 0, "model": "scripted",
         "choices": [{"index": 0, "finish_reason": "stop", "message": {"role": "assistant", "content": text}}],

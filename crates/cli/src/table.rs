@@ -1,0 +1,166 @@
+//! Tables that keep to the width of the terminal.
+
+use crate::screen::{bold, dim, one_line, width};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width, presets};
+use std::fmt;
+
+/// A column may be made as narrow as this before a less important one is left out. [characters]
+const LEAST_COLUMN: usize = 14;
+/// Blanks around the text of a column. [characters]
+const PADDING: usize = 2;
+
+/// A cell: text of anybody's, on one line.
+#[derive(Debug, Clone)]
+pub struct Cell {
+    text: String,
+    right: bool,
+}
+
+impl Cell {
+    /// A cell with text.
+    pub fn new(value: impl ToString) -> Self {
+        Self { text: one_line(&value.to_string()), right: false }
+    }
+}
+
+/// A cell with a number, to the right.
+pub fn number(value: impl ToString) -> Cell {
+    Cell { right: true, ..Cell::new(value) }
+}
+
+/// A table with a header. The first column names the row: it is never left out, and wrapped at the very last.
+#[derive(Debug, Clone)]
+pub struct Table {
+    header: Vec<String>,
+    rows: Vec<Vec<Cell>>,
+    /// Columns that may be left out, the least important first.
+    spare: Vec<usize>,
+}
+
+/// A table with a header.
+pub fn table(header: &[&str]) -> Table {
+    Table { header: header.iter().map(|name| one_line(name)).collect(), rows: Vec::new(), spare: Vec::new() }
+}
+
+impl Table {
+    /// The same with columns that may be left out where the terminal is narrow, the least important first.
+    #[must_use]
+    pub fn without_first(mut self, names: &[&str]) -> Self {
+        let position = |name: &&str| self.header.iter().position(|other| other == name);
+        self.spare = names.iter().filter_map(position).collect();
+        self
+    }
+
+    /// Adds a row.
+    pub fn add_row(&mut self, row: impl IntoIterator<Item = Cell>) {
+        self.rows.push(row.into_iter().collect());
+    }
+
+    /// Columns that fit, and those left out.
+    fn fitting(&self, width: usize) -> (Vec<usize>, Vec<usize>) {
+        let natural = |at: usize| {
+            let cells = self.rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.text.chars().count());
+            cells.chain([self.header[at].chars().count()]).max().unwrap_or(0)
+        };
+        let least = |at: usize| PADDING + if at == 0 { natural(at) } else { natural(at).min(LEAST_COLUMN) };
+        let mut shown: Vec<usize> = (0..self.header.len()).collect();
+        let mut left_out = Vec::new();
+        for &spare in &self.spare {
+            if shown.iter().map(|&at| least(at)).sum::<usize>() <= width {
+                break;
+            }
+            shown.retain(|&at| at != spare);
+            left_out.push(spare);
+        }
+        (shown, left_out)
+    }
+
+    /// The table in so many columns of characters.
+    fn render(&self, width: usize) -> String {
+        let (shown, left_out) = self.fitting(width);
+        let mut table = comfy_table::Table::new();
+        // A line under the header and none between rows: a table of 20 scenarios fits on a screen.
+        table.load_style(presets::NOTHING.header_separator(LineStyle::new(' ', '\u{2500}', '\u{2500}', ' ')));
+        table.set_content_arrangement(ContentArrangement::Dynamic).set_width(u16::try_from(width).unwrap_or(u16::MAX));
+        table.set_header(shown.iter().map(|&at| self.header[at].clone()));
+        for row in &self.rows {
+            let cells = shown.iter().filter_map(|&at| row.get(at)).map(|cell| {
+                let alignment = if cell.right { CellAlignment::Right } else { CellAlignment::Left };
+                comfy_table::Cell::new(&cell.text).set_alignment(alignment)
+            });
+            table.add_row(cells);
+        }
+        self.keep_first_whole(&mut table, width);
+        let mut text = with_bold_header(&table.trim_fmt());
+        if !left_out.is_empty() {
+            let names: Vec<&str> = left_out.iter().map(|&at| self.header[at].as_str()).collect();
+            text += &format!("\n{}", dim(format!("  not shown in {width} columns: {}", names.join(", "))));
+        }
+        text
+    }
+
+    /// The first column names the row: the others are wrapped before it is, while it leaves them half of the width.
+    fn keep_first_whole(&self, table: &mut comfy_table::Table, width: usize) {
+        let names = self.rows.iter().filter_map(|row| row.first()).map(|cell| cell.text.chars().count());
+        let wanted = names.max().unwrap_or(0) + PADDING;
+        if wanted <= width * 2 / 3
+            && let (Some(first), Ok(wanted)) = (table.column_mut(0), u16::try_from(wanted))
+        {
+            first.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(wanted)));
+        }
+    }
+}
+
+/// What stands above the line under the header, in bold.
+fn with_bold_header(text: &str) -> String {
+    let mut above = true;
+    let lines = text.lines().map(|line| {
+        above &= !line.contains('\u{2500}');
+        if above { bold(line).to_string() } else { line.to_owned() }
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(width()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Table {
+        let mut table = table(&["scenario", "from", "tuned", "findings"]).without_first(&["findings", "from"]);
+        let findings = "near miss, hard braking, phantom braking, oscillation";
+        table.add_row([
+            Cell::new("01-intersection-straight-straight"),
+            Cell::new("record"),
+            number("0.51 m"),
+            Cell::new(findings),
+        ]);
+        table
+    }
+
+    #[test]
+    fn a_table_keeps_to_its_width_and_tells_what_is_left_out() {
+        for width in [40, 60, 80, 100, 120, 200] {
+            let text = sample().render(width);
+            let plain = crate::screen::plain(&text);
+            for line in plain.lines().filter(|line| !line.contains("not shown")) {
+                assert!(line.chars().count() <= width, "{width}: {line}");
+            }
+            assert_eq!(plain.contains("not shown in"), width < 80, "{width}:\n{plain}");
+            assert_eq!(plain.contains("01-intersection-straight-straight"), width >= 60, "{width}:\n{plain}");
+        }
+    }
+
+    #[test]
+    fn a_cell_is_one_line() {
+        let mut table = table(&["a"]);
+        table.add_row([Cell::new("x\n\u{1b}[2Jy")]);
+        assert_eq!(table.render(80).lines().count(), 3);
+        assert!(!table.render(80).contains('\u{1b}'));
+    }
+}

@@ -1,0 +1,196 @@
+//! What a person did in a suite is kept, and what nobody asked for is not replaced.
+
+use crate::common::{Place, driving_ego};
+use serde_json::Value;
+use std::path::PathBuf;
+
+const SMALL: [&str; 6] = ["run", "--quiet", "--budget", "3", "--tune-budget", "4"];
+
+fn suite() -> Place {
+    let place = Place::new();
+    run(&place, &SMALL);
+    place
+}
+
+fn run(place: &Place, words: &[&str]) -> String {
+    let (code, out, error) = place.run(words);
+    assert_eq!(code, 0, "{words:?}: {error}");
+    out
+}
+
+/// Files of a folder of the suite that are scenarios, narratives or runs, in order.
+fn files(place: &Place, folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(place.path("suite").join(folder)).unwrap().map(|entry| entry.unwrap().path());
+    let plain = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().matches('.').count() == 1;
+    let mut files: Vec<PathBuf> = entries.filter(plain).collect();
+    files.sort();
+    files
+}
+
+fn read(path: &PathBuf) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+fn edit(path: &PathBuf, pointer: &str, value: Value) -> Vec<u8> {
+    let mut document = read(path);
+    *document.pointer_mut(pointer).unwrap() = value;
+    let bytes = serde_json::to_vec_pretty(&document).unwrap();
+    std::fs::write(path, &bytes).unwrap();
+    bytes
+}
+
+fn hash_of(run: &PathBuf) -> Value {
+    read(run)["rollout"]["state_hash"].clone()
+}
+
+#[test]
+fn an_edited_narrative_scenario_and_tuned_file_survive_a_run_which_goes_on_from_them() {
+    let place = suite();
+    let (narrative, scenario, tuned) = (
+        files(&place, "3-narratives")[0].clone(),
+        files(&place, "4-scenarios")[1].clone(),
+        files(&place, "6-tuned")[2].clone(),
+    );
+    let runs = (files(&place, "5-runs")[1].clone(), files(&place, "7-tuned-runs")[2].clone());
+    let before = (hash_of(&runs.0), hash_of(&runs.1));
+    let edited = [
+        edit(&narrative, "/text", "A person wrote this.".into()),
+        edit(&scenario, "/ego/target_speed_mps", 4.321.into()),
+        edit(&tuned, "/ego/target_speed_mps", 5.432.into()),
+    ];
+    let page = place.path("suite/report.html");
+    for _ in 0..2 {
+        run(&place, &SMALL);
+        for (file, bytes) in [&narrative, &scenario, &tuned].into_iter().zip(&edited) {
+            assert_eq!(&std::fs::read(file).unwrap(), bytes, "{}", file.display());
+        }
+        // The stages after them went on from the edits.
+        assert_ne!(hash_of(&runs.0), before.0);
+        assert_ne!(hash_of(&runs.1), before.1);
+        let told = std::fs::read_to_string(place.path("suite/summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&told).unwrap();
+        let marked =
+            summary["cases"].as_array().unwrap().iter().filter(|case| !case["edited"].as_array().unwrap().is_empty());
+        assert_eq!(marked.count(), 3, "{told}");
+        assert!(std::fs::read_to_string(&page).unwrap().contains("edited by hand"));
+    }
+    run(&place, &[&SMALL[..], &["--discard-edits"]].concat());
+    for (file, bytes) in [&narrative, &scenario, &tuned].into_iter().zip(&edited) {
+        assert_ne!(&std::fs::read(file).unwrap(), bytes, "{}", file.display());
+    }
+    assert_eq!((hash_of(&runs.0), hash_of(&runs.1)), before);
+}
+
+#[test]
+fn an_edit_that_is_no_scenario_stops_its_case_alone_and_is_kept() {
+    let place = suite();
+    let scenario = files(&place, "4-scenarios")[0].clone();
+    std::fs::write(&scenario, "{\"format\": 3").unwrap();
+    let (code, _, error) = place.run(&SMALL);
+    assert_eq!(code, 0, "the others go on: {error}");
+    assert_eq!(std::fs::read(&scenario).unwrap(), b"{\"format\": 3");
+    let summary = read(&place.path("suite/summary.json"));
+    let failures: Vec<&Value> = summary["cases"].as_array().unwrap().iter().map(|case| &case["failure"]).collect();
+    assert_eq!(failures.iter().filter(|failure| !failure.is_null()).count(), 1, "{failures:?}");
+}
+
+#[test]
+fn an_edited_case_that_leaves_the_suite_leaves_its_edit_there() {
+    let place = suite();
+    let all = files(&place, "4-scenarios");
+    let edited: Vec<Vec<u8>> = all.iter().map(|file| edit(file, "/ego/target_speed_mps", 4.321.into())).collect();
+    let (code, _, error) = place.run(&["run", "--budget", "1", "--tune-budget", "4"]);
+    assert_eq!(code, 0, "{error}");
+    for (file, bytes) in all.iter().zip(&edited) {
+        assert_eq!(&std::fs::read(file).unwrap(), bytes, "{}", file.display());
+    }
+    assert!(error.contains("edited by hand, and is kept"), "{error}");
+}
+
+#[test]
+fn a_run_edited_by_hand_is_made_again_by_a_run_and_refused_by_a_report() {
+    let place = suite();
+    let file = files(&place, "7-tuned-runs")[0].clone();
+    let made = std::fs::read(&file).unwrap();
+    edit(&file, "/judgement/findings", serde_json::json!([]));
+    let (code, _, error) = place.run(&["report", "--quiet"]);
+    assert_eq!(code, 2, "{error}");
+    assert!(error.contains("changed by hand") && error.contains("recrash triage"), "{error}");
+    run(&place, &SMALL);
+    assert_eq!(std::fs::read(&file).unwrap(), made);
+}
+
+#[test]
+fn a_suite_of_other_records_or_of_another_profile_is_replaced_only_when_told() {
+    let place = suite();
+    std::fs::write(place.path("mine.csv"), recrash_records::SAMPLE_CSV).unwrap();
+    let profile = include_str!("../../../../profiles/paper.toml").replace("name = \"paper\"", "name = \"other\"");
+    std::fs::write(place.path("other.toml"), profile).unwrap();
+    let saved = std::fs::read(place.path("suite/suite.json")).unwrap();
+    for more in [["--records", "mine.csv"], ["--profile", "other.toml"]] {
+        let words = [&SMALL[..], &more].concat();
+        let (code, _, error) = place.run(&words);
+        assert_eq!(code, 2, "{error}");
+        assert!(error.contains("--replace"), "{error}");
+        assert_eq!(std::fs::read(place.path("suite/suite.json")).unwrap(), saved);
+    }
+    run(&place, &[&SMALL[..], &["--records", "mine.csv", "--replace"]].concat());
+    // And back: real records are not replaced by the sample either.
+    let (code, _, error) = place.run(&SMALL);
+    assert_eq!(code, 2, "{error}");
+    // A second file beside the first is welcome.
+    std::fs::write(place.path("more.csv"), recrash_records::SAMPLE_CSV).unwrap();
+    run(&place, &[&SMALL[..], &["--records", "mine.csv", "--records", "more.csv"]].concat());
+}
+
+#[test]
+fn one_row_more_keeps_the_ids_and_all_but_a_few_units() {
+    let place = Place::new();
+    let text = std::str::from_utf8(recrash_records::SAMPLE_CSV.as_bytes()).unwrap();
+    std::fs::write(place.path("a.csv"), text).unwrap();
+    let words = ["run", "--quiet", "--records", "a.csv", "--tune-budget", "4"];
+    run(&place, &words);
+    let units = || std::fs::read_to_string(place.path("suite/units.jsonl")).unwrap().lines().count();
+    let (ids, before) = (files(&place, "4-scenarios"), units());
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.unwrap()).collect();
+    let at = |name: &str| rows[0].iter().position(|column| column == name).unwrap();
+    let picked = ids[0].file_stem().unwrap().to_string_lossy().into_owned();
+    let (report, incident) = (at("Report ID"), at("Same Incident ID"));
+    let twin = rows[1..].iter().find(|row| picked.contains(&row[report])).unwrap();
+    let new: csv::StringRecord = twin
+        .iter()
+        .enumerate()
+        .map(|(column, cell)| match column {
+            _ if column == report => "99999-1",
+            _ if column == incident => "another incident",
+            _ => cell,
+        })
+        .collect();
+    let mut writer = csv::WriterBuilder::new().flexible(true).from_path(place.path("a.csv")).unwrap();
+    for row in std::iter::once(&rows[0]).chain([&new]).chain(&rows[1..]) {
+        writer.write_record(row).unwrap();
+    }
+    writer.flush().unwrap();
+    run(&place, &words);
+    assert_eq!(files(&place, "4-scenarios"), ids);
+    let again = units() - before;
+    assert!(again * 20 <= before, "{again} of {before} units were made again");
+}
+
+#[test]
+fn a_changed_ego_script_gives_new_results() {
+    let place = Place::new();
+    let script = |speed_mps: f64| std::fs::write(place.path("ego.py"), driving_ego(speed_mps)).unwrap();
+    let words = ["run", "--quiet", "--budget", "1", "--tune-budget", "1", "--ego", "cmd:python3 ego.py"];
+    script(5.0);
+    let (code, _, error) = place.run(&words);
+    assert!(code == 0, "{error}");
+    let first = files(&place, "5-runs");
+    let before: Vec<Value> = first.iter().map(hash_of).collect();
+    run(&place, &words);
+    assert_eq!(first.iter().map(hash_of).collect::<Vec<_>>(), before);
+    script(8.0);
+    run(&place, &words);
+    assert_ne!(first.iter().map(hash_of).collect::<Vec<_>>(), before);
+}

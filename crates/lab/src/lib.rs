@@ -1,0 +1,15 @@
+//! What is computed over runs: a run is [judged](run_scenario), a point of a search [scored](Scoring), a failure
+//! [triaged](triage), two simulators [compared](parity), a reader [scored](evaluation).
+//!
+//! What this crate does **not** do: it opens no file, reads no clock and starts no thread or program. Whoever wires it hands
+//! it scenarios and simulators.
+
+pub mod evaluation;
+mod judging;
+pub mod parity;
+mod scoring;
+mod triage;
+
+pub use judging::{judge, run_scenario};
+pub use scoring::{Scoring, is_sound_contact};
+pub use triage::triage;

@@ -1,0 +1,230 @@
+//! The models' side of a suite: its ledger, and where answers come from.
+
+pub(crate) mod cast;
+pub(crate) mod ledger;
+pub(crate) mod responses;
+
+use crate::error::PipelineError;
+use crate::files::store::{Store, read_text};
+use crate::models::cast::Cast;
+use crate::secrets;
+#[cfg(feature = "live")]
+use recrash_agents::llm::Live;
+use recrash_agents::llm::{
+    Answers, Batch, Caps, Exchange, LanguageModel, Ledger, LiveOptions, PriceTable, Replay, Spending, Spent,
+    request_line,
+};
+use recrash_model::Diagnostic;
+use responses::{PENDING, REQUESTS, TakenIn, exchange_file};
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Largest file of prices. [bytes]
+const MAX_PRICES: u64 = 1 << 20;
+/// Variable with the key for a server whose address was given.
+const KEY_VARIABLE: &str = "RECRASH_API_KEY";
+/// Largest exchange: its question holds the answers before it, each bounded. [bytes]
+const MAX_EXCHANGE: u64 = 64 << 20;
+
+/// Where a model's answers come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AnswerMode {
+    /// From the model, over the network.
+    #[default]
+    Live,
+    /// Questions are written to a batch file; the run stops, and goes on when the answers are there.
+    Batch,
+    /// From the ledger alone; a missing answer is an error.
+    Replay,
+}
+
+/// How models are asked. No byte of a question depends on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelAccess {
+    /// Where answers come from.
+    pub mode: AnswerMode,
+    /// Address of an OpenAI-compatible server; the models' own providers where not given.
+    pub base_url: Option<String>,
+    /// Longest time for one answer. [s]
+    pub timeout_s: f64,
+    /// How often a question is asked again after a passing fault.
+    pub retries: u32,
+    /// Questions under way at once.
+    pub concurrency: usize,
+    /// Caps on what the run spends.
+    pub caps: Caps,
+    /// File of prices that goes before the built-in table.
+    pub prices: Option<PathBuf>,
+}
+
+impl Default for ModelAccess {
+    fn default() -> Self {
+        let live = LiveOptions::new(PriceTable::default());
+        Self {
+            mode: AnswerMode::default(),
+            base_url: None,
+            timeout_s: live.timeout_s,
+            retries: live.retries,
+            concurrency: 4,
+            caps: live.caps,
+            prices: None,
+        }
+    }
+}
+
+/// The models' side of a suite.
+pub struct Models {
+    store: Store,
+    answers: Arc<dyn Answers>,
+    batch: Option<Arc<Batch>>,
+    spending: Arc<Spending>,
+}
+
+impl Models {
+    /// Sets up the ledger; takes in the answers of a batch, where there are any.
+    ///
+    /// # Errors
+    /// The ledger cannot be read or written, or the models cannot be asked like this.
+    pub fn open(store: &Store, cast: &Cast, access: &ModelAccess) -> Result<(Self, Vec<Diagnostic>), PipelineError> {
+        let ledger: Arc<dyn Ledger> = Arc::new(FileLedger(store.clone()));
+        let spending = Arc::new(Spending::default());
+        let mut diagnostics = Vec::new();
+        let (answers, batch): (Arc<dyn Answers>, _) = match access.mode {
+            AnswerMode::Replay => (Arc::new(Replay { ledger }), None),
+            AnswerMode::Live => (live(ledger, cast, access, &spending)?, None),
+            AnswerMode::Batch => {
+                let taken_in = responses::take_in(store, &price_table(access)?, &secrets::scrubber())?;
+                let TakenIn { tried, diagnostics: told } = taken_in;
+                diagnostics = told;
+                let batch = Arc::new(Batch::new(ledger, tried, cast.repairs + 1));
+                (Arc::clone(&batch) as Arc<dyn Answers>, Some(batch))
+            }
+        };
+        Ok((Self { store: store.clone(), answers, batch, spending }, diagnostics))
+    }
+
+    /// A model in its roles. `repairs` counts the answers that went back.
+    pub fn model<'a>(&'a self, name: &'a str, cast: &Cast, repairs: &'a Cell<usize>) -> LanguageModel<'a> {
+        LanguageModel { model: name, answers: &*self.answers, max_repairs: cast.repairs, repairs }
+    }
+
+    /// What this run has spent.
+    pub fn spent(&self) -> Spent {
+        self.spending.spent()
+    }
+
+    /// Writes the questions that wait, as a batch file; gives its path and their number.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write_requests(&self) -> Result<(PathBuf, usize), PipelineError> {
+        let questions = self.batch.as_ref().map_or_else(Vec::new, |batch| batch.pending());
+        let lines: String = questions.iter().map(|question| request_line(question) + "\n").collect();
+        self.store.write_json(PENDING, &questions)?;
+        self.store.write(REQUESTS, lines.as_bytes())?;
+        Ok((self.store.path(REQUESTS), questions.len()))
+    }
+}
+
+#[cfg(feature = "live")]
+fn live(
+    ledger: Arc<dyn Ledger>,
+    cast: &Cast,
+    access: &ModelAccess,
+    spending: &Arc<Spending>,
+) -> Result<Arc<dyn Answers>, PipelineError> {
+    let options = live_options(access)?;
+    options.check(&cast.models()).map_err(PipelineError::Usage)?;
+    Ok(Arc::new(Live::new(ledger, options, Arc::clone(spending), &cast.models())))
+}
+
+#[cfg(not(feature = "live"))]
+fn live(
+    _ledger: Arc<dyn Ledger>,
+    _cast: &Cast,
+    _access: &ModelAccess,
+    _spending: &Arc<Spending>,
+) -> Result<Arc<dyn Answers>, PipelineError> {
+    Ok(Arc::new(Absent))
+}
+
+/// Stands in for live models where they were left out of the build.
+#[cfg(not(feature = "live"))]
+struct Absent;
+
+#[cfg(not(feature = "live"))]
+impl Answers for Absent {
+    fn answer(&self, _question: &Question) -> Result<Exchange, recrash_agents::llm::AskError> {
+        let why = "this recrash was built without live models; build it with the feature `live`, or give --llm batch";
+        Err(recrash_agents::llm::AskError::Refused(why.into()))
+    }
+}
+
+/// Reads what the environment says about keys. Nothing of it is kept.
+#[cfg_attr(not(feature = "live"), expect(dead_code, reason = "for live models only"))]
+fn live_options(access: &ModelAccess) -> Result<LiveOptions, PipelineError> {
+    Ok(LiveOptions {
+        base_url: access.base_url.clone(),
+        key: secrets::key(KEY_VARIABLE),
+        provider_key: secrets::key,
+        scrubber: secrets::scrubber(),
+        timeout_s: access.timeout_s,
+        retries: access.retries,
+        caps: access.caps,
+        prices: price_table(access)?,
+    })
+}
+
+/// The user's prices, then the built-in ones. What a server of the user's asks for is not in the built-in table, whatever
+/// its models are called.
+fn price_table(access: &ModelAccess) -> Result<PriceTable, PipelineError> {
+    let base = if access.base_url.is_some() { PriceTable::default() } else { PriceTable::built_in() };
+    Ok(match &access.prices {
+        Some(path) => base.after(read_prices(path)?),
+        None => base,
+    })
+}
+
+/// Reads a file of prices.
+///
+/// # Errors
+/// It cannot be read, or is no such file.
+pub fn read_prices(path: &Path) -> Result<PriceTable, PipelineError> {
+    let text = read_text(path, MAX_PRICES)?;
+    PriceTable::parse(&text).map_err(|e| PipelineError::bad_input(format!("{}: {e}", path.display())))
+}
+
+/// Exchanges as files of a suite, named by hash.
+struct FileLedger(Store);
+
+impl Ledger for FileLedger {
+    fn find(&self, hash: &str) -> Result<Option<Exchange>, String> {
+        let name = exchange_file(hash);
+        let path = self.0.path(&name);
+        let spoilt = |why: &str| {
+            Err(format!(
+                "{}: {why}; put the file back as it was, or remove it to have its question asked again",
+                path.display()
+            ))
+        };
+        match std::fs::symlink_metadata(&path) {
+            Err(_) => return Ok(None),
+            Ok(metadata) if !metadata.is_file() => return spoilt("it is no regular file"),
+            Ok(metadata) if metadata.len() > MAX_EXCHANGE => return spoilt("it is longer than any exchange"),
+            Ok(_) => {}
+        }
+        match self.0.read_json::<Exchange>(&name) {
+            Err(_) => spoilt("it is damaged"),
+            Ok(exchange) => match exchange.check(hash) {
+                Err(why) => spoilt(why),
+                Ok(()) => Ok(Some(exchange)),
+            },
+        }
+    }
+
+    fn keep(&self, exchange: &Exchange) -> Result<(), String> {
+        let kept = self.0.write_json(&exchange_file(&exchange.hash), exchange);
+        kept.map(drop).map_err(|e| format!("the ledger cannot keep an answer: {e}"))
+    }
+}

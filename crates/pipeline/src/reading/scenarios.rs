@@ -1,0 +1,92 @@
+//! Scenario files: read and checked; and one file run on its own.
+
+use crate::error::PipelineError;
+use crate::files::output::Outputs;
+use crate::files::store::{read_text, to_compact_json};
+use crate::profiles::load_profile;
+use crate::reading::named;
+use crate::simulators::external::Patience;
+use crate::simulators::{SimulatorKind, start_simulator};
+use recrash_lab::run_scenario;
+use recrash_model::run::JudgedRun;
+use recrash_model::{Diagnostic, Outcome};
+use recrash_roads::Scenario;
+use std::path::Path;
+
+/// Scenario files larger than this are refused. [bytes]
+const MAX_SCENARIO_FILE: u64 = 1 << 20;
+
+/// One scenario file, run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileRun {
+    /// The run.
+    pub run: JudgedRun,
+    /// Remarks on the file.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// How one scenario file is run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileRequest<'a> {
+    /// The file.
+    pub scenario: &'a Path,
+    /// Profile with the failure criteria, and the ego where none is named.
+    pub profile: &'a str,
+    /// Ego.
+    pub ego: Option<&'a str>,
+    /// Simulator.
+    pub simulator: SimulatorKind,
+    /// Python interpreter for MetaDrive.
+    pub python: &'a Path,
+    /// How long answers of an external ego are waited for.
+    pub patience: Patience,
+    /// Where to write the rollout.
+    pub rollout: Option<&'a Path>,
+}
+
+/// Reads, checks and runs one scenario file.
+///
+/// # Errors
+/// The file cannot be read, is no scenario, or cannot be run: every problem with its place.
+pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
+    let read = named::of_profile_and_ego(Some(request.profile), request.ego).into_iter();
+    let mut outputs = Outputs::of_inputs(read.chain([request.scenario.to_owned()]));
+    let rollout = request.rollout.map(|target| outputs.claim(target)).transpose()?;
+    let profile = load_profile(request.profile)?;
+    let (scenario, diagnostics) = read_scenario(request.scenario)?;
+    let ego = request.ego.unwrap_or(&profile.ego);
+    let simulator = start_simulator(request.simulator, ego, request.python, 1, request.patience)?;
+    let run = run_scenario(&scenario, &simulator, &profile, None)?;
+    if let Some(rollout) = rollout {
+        rollout.write(&to_compact_json(&run.rollout))?;
+    }
+    Ok(FileRun { run, diagnostics })
+}
+
+/// Reads and checks a scenario file.
+///
+/// # Errors
+/// As [`simulate_file`].
+pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
+    let text = read_text(path, MAX_SCENARIO_FILE)?;
+    match scenario_from(&text) {
+        Ok(read) => Ok((read.value, read.diagnostics)),
+        Err(diagnostics) => Err(not_runnable(path, diagnostics)),
+    }
+}
+
+/// Reads and checks a scenario's JSON: recrash's own, or the paper's dialect.
+pub(crate) fn scenario_from(json: &str) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
+    let draft = recrash_roads::read_draft(json)?;
+    let with_lines = |mut list: Vec<Diagnostic>| {
+        recrash_roads::add_lines(json, &mut list);
+        list
+    };
+    let mut checked = recrash_roads::check(draft.value).map_err(with_lines)?;
+    checked.diagnostics = draft.diagnostics.into_iter().chain(with_lines(checked.diagnostics)).collect();
+    Ok(checked)
+}
+
+pub(crate) fn not_runnable(path: &Path, diagnostics: Vec<Diagnostic>) -> PipelineError {
+    PipelineError::BadInput { what: format!("{} is not a scenario that can be run", path.display()), diagnostics }
+}

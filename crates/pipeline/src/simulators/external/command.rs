@@ -1,0 +1,113 @@
+//! The command of an external ego, as it is typed: `cmd:PROGRAM [ARGS]`.
+
+use std::fmt;
+use std::path::Path;
+
+/// What an ego's name begins with where it is a program.
+pub const EGO_COMMAND_PREFIX: &str = "cmd:";
+
+/// A program with its arguments.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EgoCommand {
+    /// As typed, prefix and all.
+    text: String,
+    /// The program to look for, or its path.
+    pub(crate) program: String,
+    pub(crate) arguments: Vec<String>,
+}
+
+impl EgoCommand {
+    /// Reads `cmd:PROGRAM [ARGS]`; `None` where the name does not begin with `cmd:`.
+    ///
+    /// Words are separated by white space; quotes of both kinds and backslashes work as in a shell. No shell is run.
+    ///
+    /// # Errors
+    /// There is no program, or a quote is not closed.
+    pub fn parse(ego: &str) -> Result<Option<Self>, String> {
+        let Some(line) = ego.strip_prefix(EGO_COMMAND_PREFIX) else { return Ok(None) };
+        let mut words = split(line).ok_or_else(|| format!("a quote is not closed in --ego '{ego}'"))?.into_iter();
+        match words.next() {
+            Some(program) if !program.is_empty() => {
+                Ok(Some(Self { text: ego.to_owned(), program, arguments: words.collect() }))
+            }
+            _ => Err("--ego cmd: needs a program, such as --ego 'cmd:python3 my_ego.py'".to_owned()),
+        }
+    }
+
+    /// Whether the program can be found, as far as that is seen without starting it: on Windows names go without endings.
+    pub(crate) fn is_there(&self) -> bool {
+        let program = Path::new(&self.program);
+        if cfg!(windows) || program.components().count() > 1 || program.is_absolute() {
+            return cfg!(windows) || program.is_file();
+        }
+        let folders = std::env::var_os("PATH").unwrap_or_default();
+        std::env::split_paths(&folders).any(|folder| folder.join(program).is_file())
+    }
+
+    /// As it was typed.
+    pub fn as_str(&self) -> &str {
+        &self.text
+    }
+}
+
+impl fmt::Display for EgoCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`", self.text)
+    }
+}
+
+/// Words of a command line; `None` where a quote is not closed.
+fn split(line: &str) -> Option<Vec<String>> {
+    let mut words = Vec::new();
+    let mut word: Option<String> = None;
+    let mut letters = line.chars();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '\'' => loop {
+                match letters.next()? {
+                    '\'' => break word.get_or_insert_default().push_str(""),
+                    inside => word.get_or_insert_default().push(inside),
+                }
+            },
+            '"' => loop {
+                match letters.next()? {
+                    '"' => break word.get_or_insert_default().push_str(""),
+                    '\\' => word.get_or_insert_default().push(letters.next()?),
+                    inside => word.get_or_insert_default().push(inside),
+                }
+            },
+            '\\' => word.get_or_insert_default().push(letters.next()?),
+            space if space.is_whitespace() => words.extend(word.take()),
+            other => word.get_or_insert_default().push(other),
+        }
+    }
+    words.extend(word);
+    Some(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_split_as_in_a_shell() {
+        let words = |line: &str| split(line).map(|words| words.join("|"));
+        assert_eq!(words(" python3  ego.py "), Some("python3|ego.py".into()));
+        assert_eq!(
+            words(r#"'my stack/ego' --name "a \"b\"" c\ d ''"#),
+            Some(r#"my stack/ego|--name|a "b"|c d|"#.into())
+        );
+        assert_eq!(words("ego 'open"), None);
+        assert_eq!(words(""), Some(String::new()));
+    }
+
+    #[test]
+    fn a_name_without_the_prefix_is_no_command_and_an_empty_one_is_refused() {
+        assert_eq!(EgoCommand::parse("idm"), Ok(None));
+        assert!(EgoCommand::parse("cmd: ").unwrap_err().contains("needs a program"));
+        assert!(EgoCommand::parse("cmd:'a").unwrap_err().contains("quote"));
+        let command = EgoCommand::parse("cmd:python3 ego.py").unwrap().unwrap();
+        assert_eq!((command.program.as_str(), command.arguments.len()), ("python3", 1));
+        assert_eq!(command.to_string(), "`cmd:python3 ego.py`");
+    }
+}

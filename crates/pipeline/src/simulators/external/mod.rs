@@ -1,0 +1,77 @@
+//! Egos that are programs of the user's: child processes that speak JSON lines, as `docs/ego-protocol.md` says.
+//!
+//! One process serves one thread at a time and lives from scenario to scenario. Whatever a program does wrong (it hangs,
+//! ends, prints rubbish) fails the scenario it was driving, with a reason; the process is ended, and the next scenario
+//! gets a new one.
+
+mod command;
+mod fingerprint;
+mod process;
+mod protocol;
+
+pub use command::{EGO_COMMAND_PREFIX, EgoCommand};
+pub use process::{EgoFault, Patience};
+
+use crate::error::PipelineError;
+use process::EgoProcess;
+use recrash_model::rollout::Rollout;
+use recrash_roads::{RunError, Scenario, Simulator};
+use recrash_sim::{Native, RolloutRecorder, Runner};
+use std::sync::{Mutex, PoisonError};
+
+/// What an ego is, for telling whether a result is of it as it is now: its name, and a program's files.
+///
+/// # Errors
+/// The command cannot be read.
+pub(crate) fn identity(ego: &str) -> Result<String, PipelineError> {
+    let command = EgoCommand::parse(ego).map_err(PipelineError::bad_input)?;
+    Ok(command.map_or_else(|| ego.to_owned(), |command| fingerprint::fingerprint(&command)))
+}
+
+/// The native simulator with a program as the ego, ready to drive. It may be shared between threads.
+pub struct ExternalEgo {
+    command: EgoCommand,
+    patience: Patience,
+    idle: Mutex<Vec<EgoProcess>>,
+}
+
+impl ExternalEgo {
+    /// Starts the first process; others follow when several threads need them.
+    ///
+    /// # Errors
+    /// The program cannot be started, or does not speak the protocol.
+    pub fn start(command: EgoCommand, patience: Patience) -> Result<Self, PipelineError> {
+        let first = EgoProcess::start(&command, patience)
+            .map_err(|fault| PipelineError::bad_input(format!("the ego {command}: {fault}")))?;
+        Ok(Self { command, patience, idle: Mutex::new(vec![first]) })
+    }
+}
+
+impl Simulator for ExternalEgo {
+    fn name(&self) -> &str {
+        Native::NAME
+    }
+
+    fn version(&self) -> &str {
+        Native::VERSION
+    }
+
+    fn ego(&self) -> &str {
+        self.command.as_str()
+    }
+
+    /// It fails where the program does: what that did, and at which step.
+    fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError> {
+        let failed = |fault: EgoFault| RunError::new(scenario, format!("the ego {fault}"));
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut process = match idle {
+            Some(process) => process,
+            None => EgoProcess::start(&self.command, self.patience).map_err(failed)?,
+        };
+        let mut recorder = RolloutRecorder::new();
+        // A process with a fault is dropped, which ends it: what it has in its memory is not known.
+        Runner::new().run_with(scenario, &mut process, &mut recorder).map_err(failed)?;
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(process);
+        Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
+    }
+}

@@ -1,0 +1,128 @@
+//! The cases of a suite: what the stages after selection share.
+
+use super::failures;
+use crate::error::PipelineError;
+use crate::reading::scenarios::read_scenario;
+use crate::suite::names;
+use crate::suite::{Stage, Suite};
+use recrash_agents::{Brief, expectation};
+use recrash_model::Seed;
+use recrash_model::metrics::Expectation;
+use recrash_model::narrative::Narrative;
+use recrash_model::record::{CrashRecord, Provenance, RecordRef, RecordSet};
+use recrash_model::selection::{Cluster, Selection};
+use recrash_model::template::Template;
+use recrash_roads::Scenario;
+use serde::Serialize;
+
+/// Members of a cluster that the agents see beside the pick.
+const MEMBERS_SHOWN: usize = 4;
+
+/// Records and picks.
+pub(crate) struct Cases {
+    /// All records.
+    pub records: RecordSet,
+    /// Which were picked.
+    pub selection: Selection,
+}
+
+impl Cases {
+    pub fn read(suite: &Suite) -> Result<Self, PipelineError> {
+        suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS)?;
+        suite.output_hash(Stage::Select, Stage::Select.name(), names::SELECTION)?;
+        let records: RecordSet = suite.store().read_json(names::RECORDS)?;
+        let selection: Selection = suite.store().read_json(names::SELECTION)?;
+        let bound = records.records.len();
+        let named = |c: &Cluster| c.pick_index < bound && records.records[c.pick_index].id == c.pick;
+        if selection.clusters.iter().any(|c| !named(c) || c.members.iter().any(|&m| m >= bound)) {
+            return Err(suite.stale(Stage::Select));
+        }
+        Ok(Self { records, selection })
+    }
+
+    /// Where the records stand that a case shows: the pick first, then a few members of its cluster.
+    pub fn shown(&self, cluster: &Cluster) -> Vec<usize> {
+        let others = cluster.members.iter().filter(|&&m| m != cluster.pick_index).take(MEMBERS_SHOWN);
+        std::iter::once(&cluster.pick_index).chain(others).copied().collect()
+    }
+
+    /// Those records.
+    pub fn records_of(&self, cluster: &Cluster) -> Vec<&CrashRecord> {
+        self.shown(cluster).into_iter().map(|index| &self.records.records[index]).collect()
+    }
+
+    /// The clusters that no stage before this one failed on.
+    pub fn up_to(&self, suite: &Suite, stage: Stage) -> Vec<&Cluster> {
+        let whole = |cluster: &&Cluster| failures::before(suite, &cluster.scenario_id, stage).is_none();
+        self.selection.clusters.iter().filter(whole).collect()
+    }
+
+    /// What decides about a case: its template and its own records, without where in the files they stand.
+    pub fn inputs(&self, cluster: &Cluster) -> Vec<String> {
+        #[derive(Serialize)]
+        struct Own<'a> {
+            scenario_id: &'a str,
+            template: Template,
+        }
+        let own = Own { scenario_id: &cluster.scenario_id, template: cluster.template };
+        let mut inputs = vec![text_of(&own)];
+        for record in self.records_of(cluster) {
+            let nowhere = Provenance { file: String::new(), row: 0, ..record.provenance.clone() };
+            inputs.push(text_of(&CrashRecord { provenance: nowhere, ..record.clone() }));
+        }
+        inputs
+    }
+
+    /// The record whose crash a narrative tells; of an invented one the pick.
+    fn told<'a>(&'a self, cluster: &Cluster, narrative: &Narrative) -> &'a CrashRecord {
+        let named = |id: &RecordRef| self.records_of(cluster).into_iter().find(|record| record.id == *id);
+        narrative.told_record().and_then(named).unwrap_or(&self.records.records[cluster.pick_index])
+    }
+
+    /// A case's narrative, and what a rollout must show to be true to it.
+    pub fn expectation(&self, suite: &Suite, cluster: &Cluster) -> Result<(Narrative, Expectation), PipelineError> {
+        let id = &cluster.scenario_id;
+        let narrative: Narrative = suite.store().read_json(&names::narrative(id)).map_err(|e| of_case(id, e))?;
+        let expectation = expectation(&narrative, self.told(cluster, &narrative), suite.profile());
+        Ok((narrative, expectation))
+    }
+}
+
+/// JSON of what decides about a unit.
+pub(crate) fn text_of<T: Serialize>(value: &T) -> String {
+    serde_json::to_string(value).expect("nouns serialise")
+}
+
+/// What an agent is told about a case.
+pub(crate) fn brief<'a>(suite: &'a Suite, cluster: &'a Cluster, records: &'a [&'a CrashRecord]) -> Brief<'a> {
+    Brief {
+        scenario_id: &cluster.scenario_id,
+        template: cluster.template,
+        records,
+        profile: suite.profile(),
+        seed: case_seed(suite, cluster),
+    }
+}
+
+/// Seed of a case's random choices.
+pub(crate) fn case_seed(suite: &Suite, cluster: &Cluster) -> Seed {
+    suite.seed().child("case").child(&cluster.scenario_id)
+}
+
+/// Reads and checks a scenario file of the suite; one that a person spoiled stops its case alone.
+pub(crate) fn scenario(suite: &Suite, id: &str, file: &str) -> Result<Scenario, PipelineError> {
+    suite.store().must_be_a_file(file)?;
+    read_scenario(&suite.store().path(file)).map(|(scenario, _)| scenario).map_err(|error| of_case(id, error))
+}
+
+/// What one case's file is no good for stops that case and no other.
+fn of_case(id: &str, error: PipelineError) -> PipelineError {
+    match error {
+        PipelineError::BadInput { what, diagnostics } => {
+            let told: Vec<String> = std::iter::once(what).chain(diagnostics.iter().map(ToString::to_string)).collect();
+            PipelineError::scenario(id, told.join("; "))
+        }
+        PipelineError::Damaged { .. } => PipelineError::scenario(id, error),
+        other => other,
+    }
+}

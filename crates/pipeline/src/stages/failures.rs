@@ -1,0 +1,93 @@
+//! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
+
+use super::CASE_STAGES;
+use super::summary::RunSummary;
+use crate::error::PipelineError;
+use crate::files::store::to_json;
+use crate::suite::names;
+use crate::suite::{Files, Stage, Suite};
+use rayon::prelude::*;
+use recrash_model::Diagnostic;
+use recrash_model::diagnostic::{Location, Severity};
+use recrash_model::metrics::Answer;
+use recrash_model::run::JudgedRun;
+use recrash_model::selection::Selection;
+use serde::{Deserialize, Serialize};
+
+/// Why a scenario went no further.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Failure {
+    /// The stage it failed in.
+    pub stage: String,
+    /// Why.
+    pub why: String,
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.stage, self.why)
+    }
+}
+
+/// Turns the failure of one scenario into a file of its unit; every other error stays one.
+pub(crate) fn keep(stage: Stage, id: &str, result: Result<Files, PipelineError>) -> Result<Files, PipelineError> {
+    match result {
+        Err(PipelineError::Scenario { why, .. }) => {
+            let why = why.strip_prefix(&format!("{id}: ")).unwrap_or(&why).to_owned();
+            let failure = Failure { stage: stage.name().to_owned(), why };
+            Ok(vec![(names::failure(stage, id), to_json(&failure))])
+        }
+        other => other,
+    }
+}
+
+/// Where a scenario failed, in the stages before `end`.
+pub(crate) fn before(suite: &Suite, id: &str, end: Stage) -> Option<Failure> {
+    CASE_STAGES
+        .iter()
+        .map(|declared| declared.stage)
+        .filter(|stage| *stage < end)
+        .find_map(|stage| at(suite, id, stage))
+}
+
+/// How a scenario failed in one stage.
+pub(crate) fn at(suite: &Suite, id: &str, stage: Stage) -> Option<Failure> {
+    let file = names::failure(stage, id);
+    suite.store().stamp(&file).is_some().then(|| {
+        suite.store().read_json(&file).unwrap_or_else(|e| Failure { stage: stage.name().into(), why: e.to_string() })
+    })
+}
+
+/// The scenarios of a suite whose run is not true to its record, after simulating, as designed or as tuned: a remark each.
+///
+/// # Errors
+/// A file of the suite cannot be read.
+pub fn unfaithful(suite: &Suite, stage: Stage) -> Result<Vec<Diagnostic>, PipelineError> {
+    let file: fn(&str) -> String = match stage {
+        Stage::Simulate => names::first_run,
+        Stage::Triage => names::tuned_run,
+        _ => return Ok(Vec::new()),
+    };
+    let selection: Selection = suite.store().read_json(names::SELECTION)?;
+    let ids: Vec<&String> = selection.clusters.iter().map(|cluster| &cluster.scenario_id).collect();
+    let judged = |id: &&String| -> Result<Option<Diagnostic>, PipelineError> {
+        if !suite.store().path(&file(id)).exists() {
+            return Ok(None);
+        }
+        let run: JudgedRun = suite.store().read_json(&file(id))?;
+        let remark = || {
+            let why = RunSummary::new(&run).unfaithful.join("; ");
+            let location = Location { file: Some((*id).clone()), ..Location::default() };
+            Diagnostic::new(Severity::Warning, "scenario.unfaithful", location, format!("not faithful: {why}"))
+        };
+        Ok((run.faithful() == Answer::No).then(remark))
+    };
+    let all: Vec<Option<Diagnostic>> = suite.in_pool(|| ids.par_iter().map(judged).collect::<Result<_, _>>())?;
+    Ok(all.into_iter().flatten().collect())
+}
+
+/// For people.
+pub(crate) fn remark(id: &str, failure: &Failure) -> Diagnostic {
+    let location = Location { file: Some(id.to_owned()), ..Location::default() };
+    Diagnostic::new(Severity::Warning, "scenario.failed", location, failure.to_string())
+}

@@ -1,0 +1,240 @@
+//! The stages: what each reads, does and writes.
+//!
+//! A stage that works case by case is [declared](CaseStage): the files of earlier stages it reads, the files people may
+//! edit, the options that decide, and the work. Everything else (what is skipped, kept, made again or removed, failures,
+//! progress) is the same for all and stands here.
+
+mod cases;
+mod design;
+mod failures;
+mod narrate;
+mod records;
+mod report;
+mod select;
+mod simulate;
+mod summary;
+mod triage;
+mod tune;
+mod view;
+
+pub(crate) use cases::{Cases, brief};
+pub use design::{DesignAttempt, DesignLog};
+pub use failures::{Failure, unfaithful};
+pub use select::{SelectionStudy, StrategyStudy};
+pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+
+use crate::error::PipelineError;
+use crate::models::cast::RULES;
+use crate::progress::{Progress, ProgressEvent};
+use crate::simulators::Simulator;
+use crate::simulators::external;
+use crate::suite::{Course, Files, Stage, Suite, Work};
+use rayon::prelude::*;
+use recrash_agents::llm::prompts_version;
+use recrash_model::selection::Cluster;
+use recrash_model::{Diagnostic, Location, Severity};
+
+/// The stages that work case by case, in order.
+pub(crate) const CASE_STAGES: [CaseStage; 5] =
+    [narrate::DECLARED, design::DECLARED, simulate::DECLARED, tune::DECLARED, triage::DECLARED];
+
+/// A stage that works case by case.
+#[derive(Clone, Copy)]
+pub(crate) struct CaseStage {
+    /// Which one.
+    pub stage: Stage,
+    /// Files of earlier stages that it reads, by the case's id.
+    pub reads: fn(&str) -> Vec<(Stage, String)>,
+    /// Files of its own that a person may edit.
+    pub editable: fn(&str) -> Vec<String>,
+    /// Options that decide what it makes, beside the profile.
+    pub decides: fn(&Suite) -> Result<Vec<String>, PipelineError>,
+    /// Whether the ego is run.
+    pub runs_ego: bool,
+    /// What it makes of a case.
+    pub work: fn(&Bench, &Cluster) -> Result<Files, PipelineError>,
+}
+
+/// What the work on a case needs.
+pub(crate) struct Bench<'a> {
+    /// The suite.
+    pub suite: &'a Suite,
+    /// Its cases.
+    pub cases: &'a Cases,
+    simulator: Option<Box<dyn Simulator>>,
+}
+
+impl Bench<'_> {
+    /// The simulator with the ego in it, of a stage that runs it.
+    pub fn simulator(&self) -> &dyn Simulator {
+        self.simulator.as_deref().unwrap_or_else(|| unreachable!("the stage is declared to run the ego"))
+    }
+}
+
+/// What a stage did.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StageReport {
+    /// Units that were done.
+    pub done: usize,
+    /// Units that were there already.
+    pub skipped: usize,
+    /// Remarks worth showing.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Runs one stage of a suite; the stages before must be finished.
+///
+/// # Errors
+/// A stage before is missing, the input is bad, or a file cannot be read or written. Finished units stay.
+pub fn run_stage(suite: &Suite, stage: Stage, progress: &dyn Progress) -> Result<StageReport, PipelineError> {
+    suite.on_threads(stage, || run(&StageWork { suite, stage, progress }))
+}
+
+fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
+    match work.stage {
+        Stage::Records => records::run(work),
+        Stage::Select => select::run(work),
+        Stage::Report => report::run(work),
+        _ => {
+            let declared = CASE_STAGES.iter().find(|declared| declared.stage == work.stage);
+            per_case(work, declared.unwrap_or_else(|| unreachable!("every other stage works case by case")))
+        }
+    }
+}
+
+/// A stage at work.
+pub(crate) struct StageWork<'a> {
+    /// Where.
+    pub suite: &'a Suite,
+    stage: Stage,
+    progress: &'a dyn Progress,
+}
+
+impl StageWork<'_> {
+    /// A stage of one unit.
+    pub fn whole(
+        &self,
+        inputs: &[String],
+        make: impl FnOnce() -> Result<Files, PipelineError>,
+    ) -> Result<StageReport, PipelineError> {
+        let stage = self.stage.name();
+        self.progress.event(ProgressEvent::Started { stage, units: 1 });
+        let course = self.suite.unit(&Work { name: stage, inputs, editable: &[] }, make)?;
+        let skipped = course != Course::Done;
+        self.progress.event(ProgressEvent::Advanced { stage, unit: stage, skipped });
+        self.progress.event(ProgressEvent::Finished { stage });
+        Ok(StageReport { done: usize::from(!skipped), skipped: usize::from(skipped), diagnostics: Vec::new() })
+    }
+
+    /// Units of this stage, in parallel; a unit's failure that is its own is kept as a file.
+    pub fn units<T: Sync>(
+        &self,
+        units: &[T],
+        id: impl Fn(&T) -> &str + Sync,
+        editable: fn(&str) -> Vec<String>,
+        inputs: impl Fn(&T) -> Result<Vec<String>, PipelineError> + Sync,
+        make: impl Fn(&T) -> Result<Files, PipelineError> + Sync,
+    ) -> Result<StageReport, PipelineError> {
+        let (suite, stage) = (self.suite, self.stage.name());
+        let names: Vec<String> = units.iter().map(|unit| unit_name(self.stage, id(unit))).collect();
+        let mut diagnostics = suite.keep_only(self.stage, &names, editable)?;
+        self.progress.event(ProgressEvent::Started { stage, units: names.len() });
+        let one = |(unit, name): (&T, &String)| {
+            let id = id(unit);
+            let work = Work { name, inputs: &inputs(unit)?, editable: &editable(id) };
+            let course = suite.unit(&work, || failures::keep(self.stage, id, make(unit)))?;
+            self.progress.event(ProgressEvent::Advanced { stage, unit: id, skipped: course != Course::Done });
+            Ok((id.to_owned(), course))
+        };
+        let results: Vec<Result<(String, Course), PipelineError>> = units.par_iter().zip(&names).map(one).collect();
+        let waits = |result: &Result<_, PipelineError>| matches!(result, Err(PipelineError::AnswerPending));
+        let waiting = results.iter().any(waits);
+        let courses = results.into_iter().filter(|r| !waits(r)).collect::<Result<Vec<_>, _>>()?;
+        if let (true, Some(models)) = (waiting, suite.models()) {
+            let (requests, count) = models.write_requests()?;
+            return Err(PipelineError::WaitingForBatch { requests, count });
+        }
+        self.progress.event(ProgressEvent::Finished { stage });
+        diagnostics.extend(courses.iter().filter_map(|(id, course)| edit_remark(stage, id, *course)));
+        let done = courses.iter().filter(|(_, course)| *course == Course::Done).count();
+        Ok(StageReport { done, skipped: courses.len() - done, diagnostics })
+    }
+}
+
+/// What there is to say about a case that a person edited.
+fn edit_remark(stage: &str, id: &str, course: Course) -> Option<Diagnostic> {
+    let (severity, message) = match course {
+        Course::Done | Course::Skipped => return None,
+        Course::Edited => (Severity::Note, "edited by hand, and kept"),
+        Course::EditedAndOld => {
+            (Severity::Warning, "edited by hand, and kept, though what it was made of has changed since")
+        }
+    };
+    let location = Location { file: Some(id.to_owned()), ..Location::default() };
+    let remark = Diagnostic::new(severity, "suite.edited", location, format!("{stage}: {message}"));
+    Some(if severity == Severity::Warning { remark.with_hint("--discard-edits makes it anew") } else { remark })
+}
+
+/// Runs a stage that works case by case, without the cases that failed before.
+fn per_case(work: &StageWork, declared: &CaseStage) -> Result<StageReport, PipelineError> {
+    let suite = work.suite;
+    let cases = Cases::read(suite)?;
+    let simulator = declared.runs_ego.then(|| suite.simulator()).transpose()?;
+    let bench = Bench { suite, cases: &cases, simulator };
+    let clusters = cases.up_to(suite, declared.stage);
+    let mut report = work.units(
+        &clusters,
+        |cluster| &cluster.scenario_id,
+        declared.editable,
+        |cluster| case_inputs(suite, declared, &cases, cluster),
+        |cluster| (declared.work)(&bench, cluster),
+    )?;
+    let failed = |cluster: &&Cluster| {
+        let id = &cluster.scenario_id;
+        failures::at(suite, id, declared.stage).map(|failure| failures::remark(id, &failure))
+    };
+    report.diagnostics.extend(clusters.iter().filter_map(failed));
+    Ok(report)
+}
+
+/// Name of a unit of a stage that works case by case.
+pub(crate) fn unit_name(stage: Stage, id: &str) -> String {
+    format!("{}/{id}", stage.name())
+}
+
+/// Everything that decides what a stage makes of a case, as hashes and words.
+pub(crate) fn case_inputs(
+    suite: &Suite,
+    declared: &CaseStage,
+    cases: &Cases,
+    cluster: &Cluster,
+) -> Result<Vec<String>, PipelineError> {
+    let id = &cluster.scenario_id;
+    let mut inputs = cases.inputs(cluster);
+    for (stage, file) in (declared.reads)(id) {
+        inputs.push(suite.output_hash(stage, &unit_name(stage, id), &file)?);
+    }
+    inputs.push(cases::text_of(suite.profile()));
+    if declared.runs_ego {
+        inputs.push(suite.options().simulator.name().to_owned());
+        inputs.push(external::identity(suite.ego())?);
+    }
+    inputs.extend((declared.decides)(suite)?);
+    Ok(inputs)
+}
+
+/// Who plays a role, and with which prompts.
+fn player(suite: &Suite, name: &str) -> String {
+    match name {
+        RULES => RULES.to_owned(),
+        model => format!("{model} {} {}", suite.options().cast.repairs, prompts_version()),
+    }
+}
+
+/// Files of a case that a person edited, of all stages.
+pub(crate) fn edited_files(suite: &Suite, id: &str) -> Vec<String> {
+    CASE_STAGES
+        .iter()
+        .flat_map(|declared| suite.edited(&unit_name(declared.stage, id), &(declared.editable)(id)))
+        .collect()
+}

@@ -1,0 +1,32 @@
+//! Picks to narratives.
+
+use super::cases::{brief, text_of};
+use super::{Bench, CaseStage, player};
+use crate::error::PipelineError;
+use crate::files::store::to_json;
+use crate::models::cast;
+use crate::suite::names;
+use crate::suite::{Files, Stage};
+use recrash_model::selection::Cluster;
+
+/// The stage.
+pub(super) const DECLARED: CaseStage = CaseStage {
+    stage: Stage::Narrate,
+    reads: |_| Vec::new(),
+    editable: |id| vec![names::narrative(id)],
+    decides: |suite| {
+        let chosen = suite.options();
+        Ok(vec![text_of(&chosen.seed), player(suite, &chosen.cast.paraphrase)])
+    },
+    runs_ego: false,
+    work: narrate,
+};
+
+fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let suite = bench.suite;
+    let records = bench.cases.records_of(cluster);
+    let brief = brief(suite, cluster, &records);
+    let (narrative, log) = cast::paraphrase(suite.models(), &suite.options().cast, &brief)?;
+    let id = &cluster.scenario_id;
+    Ok(vec![(names::narrative(id), to_json(&narrative)), (names::narrative_log(id), to_json(&log))])
+}

@@ -1,0 +1,204 @@
+//! All of it to a page: one file a case, and the overview of all.
+
+use super::summary::{CaseSummary, summarise};
+use super::{
+    CASE_STAGES, Cases, DesignLog, Failure, StageReport, StageWork, case_inputs, cases, edited_files, failures,
+    records, unit_name, view,
+};
+use crate::error::PipelineError;
+use crate::files::store::{to_compact_json, to_json};
+use crate::models::cast::AgentLog;
+use crate::reading::records::RecordInput;
+use crate::suite::names;
+use crate::suite::{Files, Stage, Suite, Work};
+use recrash_model::Diagnostic;
+use recrash_model::narrative::Narrative;
+use recrash_model::record::RecordRef;
+use recrash_model::run::JudgedRun;
+use recrash_model::selection::Cluster;
+use recrash_model::triage::Triage;
+use recrash_model::tuning::TuneLog;
+use recrash_report::CaseRow;
+use recrash_roads::Scenario;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// One case with everything that was made of it, as far as it went.
+pub(super) struct Case<'a> {
+    /// Cluster and pick.
+    pub cluster: &'a Cluster,
+    /// Narrative, and who wrote it.
+    pub narrative: Option<(Narrative, AgentLog)>,
+    /// How the scenario was designed.
+    pub design: Option<DesignLog>,
+    /// As designed.
+    pub first: Option<Ran>,
+    /// As tuned.
+    pub tuned: Option<Tuned>,
+    /// How the other egos fare where the system under test fails at last.
+    pub triage: Option<Triage>,
+    /// The reference driver's run there.
+    pub reference: Option<JudgedRun>,
+    /// Why it went no further, where it did not.
+    pub failure: Option<Failure>,
+    /// Files that a person edited.
+    pub edited: Vec<String>,
+}
+
+/// A scenario and its run.
+pub(super) struct Ran {
+    /// What was run.
+    pub scenario: Scenario,
+    /// What came of it.
+    pub run: JudgedRun,
+}
+
+/// A tuned scenario.
+pub(super) struct Tuned {
+    /// It, and its run.
+    pub ran: Ran,
+    /// Log of the search.
+    pub log: TuneLog,
+    /// Who tuned it.
+    pub agent: AgentLog,
+}
+
+/// What the overview needs of a case: so that it is made without reading the case again.
+#[derive(Serialize, Deserialize)]
+pub(super) struct CaseReport {
+    /// For the page, JUnit and CSV.
+    pub row: CaseRow,
+    /// For `summary.json`.
+    pub summary: CaseSummary,
+}
+
+/// Where it is kept.
+fn row_file(id: &str) -> String {
+    format!("report/{id}.json")
+}
+
+/// Runs the stage.
+pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
+    let suite = work.suite;
+    let cases = Cases::read(suite)?;
+    refuse_stale(suite, &cases)?;
+    let clusters: Vec<(usize, &Cluster)> = cases.selection.clusters.iter().enumerate().collect();
+    let parts = work.units(
+        &clusters,
+        |(_, cluster)| &cluster.scenario_id,
+        |_| Vec::new(),
+        |(_, cluster)| inputs(suite, &cases, cluster),
+        |(position, cluster)| case_files(suite, &cases, *position, cluster),
+    )?;
+    let read = |cluster: &Cluster| suite.store().read_json(&row_file(&cluster.scenario_id));
+    let mut rows: Vec<CaseReport> = cases.selection.clusters.iter().map(read).collect::<Result<_, _>>()?;
+    for (position, row) in rows.iter_mut().enumerate() {
+        // Where records and clusters stand may change without the case.
+        view::place(&cases, position, &mut row.row);
+    }
+    let mut inputs = vec![suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS)?];
+    inputs.push(suite.output_hash(Stage::Select, Stage::Select.name(), names::SELECTION)?);
+    inputs.extend([cases::text_of(suite.profile()), suite.options().command()]);
+    for cluster in &cases.selection.clusters {
+        let id = &cluster.scenario_id;
+        inputs.push(suite.output_hash(Stage::Report, &unit_name(Stage::Report, id), &row_file(id))?);
+    }
+    let whole = work.whole(&inputs, || {
+        let (rows, summaries): (Vec<CaseRow>, Vec<CaseSummary>) =
+            rows.into_iter().map(|CaseReport { row, summary }| (row, summary)).unzip();
+        let summary = summarise(suite, &cases, summaries, view::simulator_name(&rows));
+        let remarks: Vec<Diagnostic> = suite.store().read_json(names::RECORD_REMARKS)?;
+        let view = view::suite(suite, cases, rows, &summary, remarks);
+        Ok(vec![
+            (names::SUMMARY.into(), to_json(&summary)),
+            (names::REPORT.into(), recrash_report::html(&view).into_bytes()),
+            (names::JUNIT.into(), recrash_report::junit(&view).into_bytes()),
+            (names::RESULTS.into(), recrash_report::results_csv(&view).into_bytes()),
+        ])
+    })?;
+    let (done, skipped) = (parts.done + whole.done, parts.skipped + whole.skipped);
+    Ok(StageReport { done, skipped, diagnostics: parts.diagnostics })
+}
+
+/// A report tells of one system and one set of records: what every stage made must be of the options and the files as
+/// they are now. Crash files that have gone since are taken as they were.
+fn refuse_stale(suite: &Suite, cases: &Cases) -> Result<(), PipelineError> {
+    if let Ok(input) = RecordInput::read(suite.options()) {
+        let inputs = records::inputs(suite, &input);
+        let work = Work { name: Stage::Records.name(), inputs: &inputs, editable: &[] };
+        suite.must_be_current(Stage::Records, &work)?;
+    }
+    for declared in &CASE_STAGES {
+        for cluster in cases.up_to(suite, declared.stage) {
+            let id = &cluster.scenario_id;
+            let inputs = case_inputs(suite, declared, cases, cluster)?;
+            let (name, editable) = (unit_name(declared.stage, id), (declared.editable)(id));
+            suite.must_be_current(declared.stage, &Work { name: &name, inputs: &inputs, editable: &editable })?;
+        }
+    }
+    Ok(())
+}
+
+/// What decides about a case's files: its records and everything that was made of them.
+fn inputs(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>, PipelineError> {
+    let id = &cluster.scenario_id;
+    let mut inputs = cases.inputs(cluster);
+    let members: Vec<&RecordRef> = cluster.members.iter().map(|&at| &cases.records.records[at].id).collect();
+    inputs.push(cases::text_of(&(members, cluster.number)));
+    inputs.push(cases::text_of(suite.profile()));
+    inputs.push(view::rerun_command(suite, ""));
+    inputs.push(cases::text_of(&edited_files(suite, id)));
+    for declared in &CASE_STAGES {
+        if let Some(failure) = failures::at(suite, id, declared.stage) {
+            inputs.push(failure.to_string());
+            break;
+        }
+        inputs.push(suite.outputs_hash(&unit_name(declared.stage, id)));
+    }
+    Ok(inputs)
+}
+
+fn case_files(suite: &Suite, cases: &Cases, position: usize, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let case = read_case(suite, cluster)?;
+    let report = CaseReport { row: view::row(suite, cases, position, &case), summary: CaseSummary::of(&case) };
+    let context =
+        recrash_report::CaseContext { ego: suite.ego(), records: &cases.records.records, cluster: Some(cluster) };
+    let page = recrash_report::case_file(&context, &view::case(suite, &case), &report.row);
+    let id = &cluster.scenario_id;
+    Ok(vec![(recrash_report::case_file_name(id), page.into_bytes()), (row_file(id), to_compact_json(&report))])
+}
+
+fn read_case<'a>(suite: &Suite, cluster: &'a Cluster) -> Result<Case<'a>, PipelineError> {
+    let id = &cluster.scenario_id;
+    let store = suite.store();
+    let failure = failures::before(suite, id, Stage::Report);
+    let made = |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
+    let narrative = made(Stage::Narrate)
+        .then(|| -> Result<_, PipelineError> {
+            Ok((store.read_json(&names::narrative(id))?, store.read_json(&names::narrative_log(id))?))
+        })
+        .transpose()?;
+    let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
+    let first =
+        made(Stage::Simulate).then(|| ran(suite, id, &names::scenario(id), &names::first_run(id))).transpose()?;
+    let tuned = made(Stage::Triage)
+        .then(|| -> Result<_, PipelineError> {
+            let (log, agent) = (store.read_json(&names::tune_log(id))?, store.read_json(&names::tune_agent(id))?);
+            Ok(Tuned { ran: ran(suite, id, &names::tuned(id), &names::tuned_run(id))?, log, agent })
+        })
+        .transpose()?;
+    let triage = optional(suite, &names::triage(id), tuned.is_some())?;
+    let reference = optional(suite, &names::reference_run(id), triage.is_some())?;
+    let edited = edited_files(suite, id);
+    Ok(Case { cluster, narrative, design, first, tuned, triage, reference, failure, edited })
+}
+
+/// Reads a file that not every unit writes; a stage removes what an earlier run left.
+fn optional<T: DeserializeOwned>(suite: &Suite, file: &str, wanted: bool) -> Result<Option<T>, PipelineError> {
+    let there = wanted && suite.store().stamp(file).is_some();
+    there.then(|| suite.store().read_json(file)).transpose()
+}
+
+fn ran(suite: &Suite, id: &str, file: &str, run: &str) -> Result<Ran, PipelineError> {
+    Ok(Ran { scenario: cases::scenario(suite, id, file)?, run: suite.store().read_json(run)? })
+}

@@ -1,0 +1,313 @@
+//! What a person is told at the end of a run.
+
+use super::failures::Failure;
+use super::report::Case;
+use super::{Cases, DesignLog};
+use crate::models::cast::{AgentLog, Cast, RULES};
+use crate::options::RecordSource;
+use crate::suite::Suite;
+use recrash_model::metrics::{Answer, Check};
+use recrash_model::narrative::Origin;
+use recrash_model::record::{FunnelStep, RecordRef};
+use recrash_model::run::JudgedRun;
+use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
+use recrash_model::template::Template;
+use recrash_model::triage::{FailureClass, Triage};
+use serde::{Deserialize, Serialize};
+
+/// A whole run in numbers (`summary.json`, and `recrash run --json`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Always `recrash.summary/1`.
+    pub format: String,
+    /// The command that makes the suite.
+    pub command: String,
+    /// Whether the records are the built-in sample.
+    pub sample: bool,
+    /// Profile.
+    pub profile: String,
+    /// Ego that was run.
+    pub ego: String,
+    /// Simulator.
+    pub simulator: String,
+    /// Rows read.
+    pub rows: usize,
+    /// From rows to usable records.
+    pub funnel: Vec<FunnelStep>,
+    /// Usable records.
+    pub usable: usize,
+    /// How the picks were chosen.
+    pub strategy: Strategy,
+    /// Embedding of the narratives.
+    pub embedding: EmbeddingInfo,
+    /// Cross tables.
+    pub tables: StageTables,
+    /// Observed templates.
+    pub templates: Vec<TemplateCount>,
+    /// What the picks cover.
+    pub coverage: Coverage,
+    /// How the models did, one entry for each role that one plays; empty where the rules play all.
+    #[serde(default)]
+    pub models: Vec<ModelSummary>,
+    /// One entry per scenario.
+    pub cases: Vec<CaseSummary>,
+}
+
+/// How a model did in a role.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModelSummary {
+    /// `paraphrase`, `design` or `tune`.
+    pub role: String,
+    /// Model that was asked.
+    pub model: String,
+    /// Scenarios whose first answer was accepted.
+    pub first_answer: usize,
+    /// Scenarios with an answer that was accepted after repair.
+    pub after_repair: usize,
+    /// Scenarios where the rules took over.
+    pub fallback: usize,
+    /// Scenarios with nothing to ask: a contact as designed needs no tuning.
+    pub not_asked: usize,
+    /// Why the rules took over.
+    pub reasons: Vec<FallbackReason>,
+}
+
+/// Why the rules took over in one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FallbackReason {
+    /// Scenario.
+    pub id: String,
+    /// Why.
+    pub why: String,
+}
+
+impl ModelSummary {
+    /// Scenarios for which the model was asked.
+    pub fn asked(&self) -> usize {
+        self.first_answer + self.after_repair + self.fallback
+    }
+
+    /// For a line of text: `18 of 20 at the first answer, 1 after repair, 1 by the rules`.
+    pub fn describe(&self) -> String {
+        format!(
+            "{} of {} at the first answer, {} after repair, {} by the rules",
+            self.first_answer,
+            self.asked(),
+            self.after_repair,
+            self.fallback
+        )
+    }
+}
+
+/// The rules took over from a model.
+const FALLBACK: &str = "fallback";
+
+/// How a role was played in one scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RoleSummary {
+    /// `rules`, `first answer`, `after repair`, `fallback` or `not asked` (a contact as designed needs no tuning).
+    pub outcome: String,
+    /// Why the rules took over, where they did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
+/// One scenario in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseSummary {
+    /// Scenario.
+    pub id: String,
+    /// Template.
+    pub template: Template,
+    /// How the narrative came about.
+    pub narrated: Option<RoleSummary>,
+    /// How the design came about.
+    pub designed: Option<RoleSummary>,
+    /// How the tuned one came about.
+    pub tuned_by: Option<RoleSummary>,
+    /// Whose crash it tells, and why not the picked record's.
+    pub origin: Option<Origin>,
+    /// The record that is told; none where the crash is invented.
+    pub told: Option<RecordRef>,
+    /// Files that a person edited.
+    pub edited: Vec<String>,
+    /// As designed.
+    pub first: Option<RunSummary>,
+    /// As tuned.
+    pub tuned: Option<RunSummary>,
+    /// What the failure of the tuned run is worth, and how the other egos fare there; absent where it does not fail.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub triage: Option<Triage>,
+    /// Why it went no further, where it did not.
+    pub failure: Option<Failure>,
+    /// Points the search scored.
+    pub points: usize,
+}
+
+/// One run in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunSummary {
+    /// Least box gap to a scripted partner. [m]
+    pub min_gap_m: Option<f64>,
+    /// When. [s]
+    pub min_gap_time_s: Option<f64>,
+    /// Least distance of centres to a scripted partner. [m]
+    pub min_centre_distance_m: Option<f64>,
+    /// Contact with a road user: kind of collision.
+    pub contact: Option<String>,
+    /// Whether the ego failed, by the profile's criteria.
+    pub failed: bool,
+    /// Kinds of findings, each once, failures first.
+    pub findings: Vec<String>,
+    /// Whether it is true to its record.
+    pub faithful: Answer,
+    /// Facts that are not shown: what is told and what was observed.
+    pub unfaithful: Vec<String>,
+    /// Facts that cannot be shown.
+    #[serde(default)]
+    pub unchecked: Vec<String>,
+}
+
+impl RunSummary {
+    pub(crate) fn new(run: &JudgedRun) -> Self {
+        let told = |c: &Check| format!("{}: expected {}, observed {}", c.kind.label(), c.expected, c.observed);
+        Self {
+            min_gap_m: run.metrics.min_gap.map(|gap| gap.value),
+            min_gap_time_s: run.metrics.min_gap.map(|gap| gap.time_s),
+            min_centre_distance_m: run.metrics.min_centre_distance.map(|d| d.value),
+            contact: run.metrics.contact.as_ref().map(|contact| contact.kind.label().to_owned()),
+            failed: run.failed(),
+            findings: run.finding_kinds().iter().map(|kind| kind.label().to_owned()).collect(),
+            faithful: run.faithful(),
+            unfaithful: run.verdict.failures().map(told).collect(),
+            unchecked: run.verdict.unchecked().map(|check| check.kind.label().to_owned()).collect(),
+        }
+    }
+}
+
+impl Summary {
+    /// Scenarios of their own record, and of another one, whose tuned run gives this answer to whether it is true to it.
+    /// An invented one has no record to be true to.
+    pub fn faithful(&self, answer: Answer) -> [usize; 2] {
+        let answers = |case: &&CaseSummary| case.faithful() == Some(answer);
+        let told = |name| self.cases.iter().filter(answers).filter(|case| case.is_told(name)).count();
+        ["own", "other"].map(told)
+    }
+
+    /// Scenarios that tell their own record, another one, and nobody's crash.
+    pub fn origins(&self) -> [usize; 3] {
+        ["own", "other", "invented"].map(|name| self.cases.iter().filter(|case| case.is_told(name)).count())
+    }
+
+    /// Scenarios that went all the way.
+    pub fn run(&self) -> usize {
+        self.cases.iter().filter(|case| case.tuned.is_some()).count()
+    }
+
+    /// Failures of each class, after tuning; classes without any are left out.
+    pub fn failure_classes(&self) -> Vec<(FailureClass, usize)> {
+        let classes = self.cases.iter().filter_map(|case| case.triage.as_ref()).map(|triage| triage.class);
+        let classes: Vec<FailureClass> = classes.collect();
+        let count = |class| classes.iter().filter(|&&other| other == class).count();
+        FailureClass::ALL.into_iter().map(|class| (class, count(class))).filter(|(_, count)| *count > 0).collect()
+    }
+
+    /// Scenarios the ego fails, as designed and as tuned.
+    pub fn failed(&self) -> (usize, usize) {
+        let count = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
+            self.cases.iter().filter(|case| run(case).as_ref().is_some_and(|run| run.failed)).count()
+        };
+        (count(|case| &case.first), count(|case| &case.tuned))
+    }
+}
+
+impl CaseSummary {
+    /// Whether it tells the crash of an `own` record, an `other` one, or an `invented` one.
+    fn is_told(&self, name: &str) -> bool {
+        self.origin.as_ref().is_some_and(|origin| origin.name() == name)
+    }
+
+    /// Whether the tuned run is true to the record that is told; no answer where it was not run, or nobody's crash is told.
+    pub fn faithful(&self) -> Option<Answer> {
+        self.tuned.as_ref().filter(|_| !self.is_told("invented")).map(|run| run.faithful)
+    }
+
+    /// Of a case.
+    pub(super) fn of(case: &Case) -> Self {
+        let id = &case.cluster.scenario_id;
+        let agent = |log: &AgentLog| RoleSummary { outcome: log.outcome().to_owned(), why: log.fallback.clone() };
+        let design = |log: &DesignLog| {
+            let outcome = log.outcome();
+            let why = (outcome == FALLBACK).then(|| log.gave_up.join("; "));
+            RoleSummary { outcome: outcome.to_owned(), why }
+        };
+        Self {
+            id: id.clone(),
+            template: case.cluster.template,
+            narrated: case.narrative.as_ref().map(|(_, log)| agent(log)),
+            designed: case.design.as_ref().map(design),
+            tuned_by: case.tuned.as_ref().map(|tuned| agent(&tuned.agent)),
+            origin: case.narrative.as_ref().map(|(narrative, _)| narrative.origin.clone()),
+            told: case.narrative.as_ref().and_then(|(narrative, _)| narrative.told_record().cloned()),
+            edited: case.edited.clone(),
+            first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
+            tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
+            triage: case.triage.clone(),
+            failure: case.failure.clone(),
+            points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
+        }
+    }
+}
+
+/// Puts a run in numbers.
+pub(super) fn summarise(suite: &Suite, cases: &Cases, summaries: Vec<CaseSummary>, simulator: String) -> Summary {
+    let (records, selection) = (&cases.records, &cases.selection);
+    Summary {
+        format: "recrash.summary/2".into(),
+        command: suite.options().command(),
+        sample: suite.options().records == RecordSource::Sample,
+        profile: suite.profile().name.clone(),
+        ego: suite.ego().to_owned(),
+        simulator,
+        rows: records.files.iter().map(|file| file.rows).sum(),
+        funnel: records.funnel.clone(),
+        usable: records.usable.len(),
+        strategy: selection.strategy,
+        embedding: selection.embedding.clone(),
+        tables: selection.tables.clone(),
+        templates: selection.templates.clone(),
+        coverage: selection.coverage.clone(),
+        models: models(&suite.options().cast, &summaries),
+        cases: summaries,
+    }
+}
+
+/// How the models of a cast did.
+fn models(cast: &Cast, cases: &[CaseSummary]) -> Vec<ModelSummary> {
+    type Role<'a> = (&'static str, &'a String, fn(&CaseSummary) -> Option<&RoleSummary>);
+    let roles: [Role; 3] = [
+        ("paraphrase", &cast.paraphrase, |case| case.narrated.as_ref()),
+        ("design", &cast.design, |case| case.designed.as_ref()),
+        ("tune", &cast.tune, |case| case.tuned_by.as_ref()),
+    ];
+    let by_model = roles.into_iter().filter(|(_, model, _)| *model != RULES);
+    by_model
+        .map(|(role, model, told)| {
+            let count =
+                |word: &str| cases.iter().filter(|case| told(case).is_some_and(|is| is.outcome == word)).count();
+            let reason = |case: &CaseSummary| {
+                let why = told(case).filter(|is| is.outcome == FALLBACK)?.why.clone().unwrap_or_default();
+                Some(FallbackReason { id: case.id.clone(), why })
+            };
+            ModelSummary {
+                role: role.to_owned(),
+                model: model.clone(),
+                first_answer: count("first answer"),
+                after_repair: count("after repair"),
+                fallback: count(FALLBACK),
+                not_asked: count("not asked"),
+                reasons: cases.iter().filter_map(reason).collect(),
+            }
+        })
+        .collect()
+}

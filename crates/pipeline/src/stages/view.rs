@@ -1,0 +1,137 @@
+//! The suite as the report sees it.
+
+use super::Cases;
+use super::report::{Case, Ran};
+use super::summary::Summary;
+use crate::files::paths::quoted;
+use crate::options::{Options, RecordSource};
+use crate::reading::named;
+use crate::suite::Suite;
+use crate::suite::names;
+use recrash_metrics::series;
+use recrash_model::diagnostic::{Diagnostic, Location, Severity};
+use recrash_report::{CaseRow, CaseView, RunRow, RunTrace, RunView, SuiteView, Thumbnail};
+
+/// The suite with all its rows.
+pub(super) fn suite(
+    suite: &Suite,
+    cases: Cases,
+    rows: Vec<CaseRow>,
+    summary: &Summary,
+    remarks: Vec<Diagnostic>,
+) -> SuiteView {
+    let options = suite.options();
+    SuiteView {
+        title: format!("{} crash scenarios for {}", rows.len(), suite.ego()),
+        generated_by: format!("recrash {}", env!("CARGO_PKG_VERSION")),
+        generated_at: None,
+        command: options.command(),
+        profile: suite.profile().clone(),
+        ego: suite.ego().to_owned(),
+        simulator: simulator_name(&rows),
+        agents: options.cast.describe(),
+        seed: options.seed,
+        sample: options.records == RecordSource::Sample,
+        records: cases.records,
+        selection: cases.selection,
+        cases: rows,
+        diagnostics: model_remarks(summary).into_iter().chain(remarks).collect(),
+    }
+}
+
+/// The simulator that ran the scenarios, with its version.
+pub(super) fn simulator_name(rows: &[CaseRow]) -> String {
+    rows.iter().find_map(|row| row.before.as_ref()).map_or_else(String::new, |run| run.judgement.simulator.clone())
+}
+
+/// How the models did: a note for each role, and a warning for each scenario in which the rules took over.
+fn model_remarks(summary: &Summary) -> Vec<Diagnostic> {
+    let mut remarks = Vec::new();
+    for model in &summary.models {
+        let code = format!("model.{}", model.role);
+        let mut tell = |severity, message| {
+            remarks.push(Diagnostic::new(severity, &code, Location::default(), message));
+        };
+        tell(Severity::Note, format!("{} by {}: {}", model.role, model.model, model.describe()));
+        for reason in &model.reasons {
+            tell(Severity::Warning, format!("{}: the rules took over from {}: {}", reason.id, model.model, reason.why));
+        }
+    }
+    remarks
+}
+
+/// The light part of a case.
+pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) -> CaseRow {
+    let id = &case.cluster.scenario_id;
+    let narrative = case.narrative.as_ref().map(|(narrative, _)| narrative);
+    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0 || !case.edited.is_empty());
+    let last = moved.map(|tuned| &tuned.ran).or(case.first.as_ref());
+    let mut row = CaseRow {
+        scenario_id: id.clone(),
+        template: case.cluster.template,
+        cluster: None,
+        records: Vec::new(),
+        origin: narrative.map(|narrative| narrative.origin.clone()),
+        told: narrative.and_then(|narrative| narrative.told_record().cloned()),
+        narrative: narrative.map_or_else(String::new, |narrative| narrative.text.clone()),
+        before: case.first.as_ref().map(|ran| run_row(suite, ran, &names::scenario(id))),
+        after: moved.map(|tuned| run_row(suite, &tuned.ran, &names::tuned(id))),
+        triage: case.triage.clone(),
+        refused: case.failure.as_ref().map(ToString::to_string),
+        edited: case.edited.clone(),
+        thumbnail: last.and_then(|ran| Thumbnail::of(&ran.run)),
+    };
+    place(cases, position, &mut row);
+    row
+}
+
+/// Where a case's cluster and records stand in the suite.
+pub(super) fn place(cases: &Cases, position: usize, row: &mut CaseRow) {
+    let cluster = &cases.selection.clusters[position];
+    row.cluster = Some(position);
+    row.records = cases.shown(cluster);
+}
+
+fn run_row(suite: &Suite, ran: &Ran, file: &str) -> RunRow {
+    RunRow { judgement: ran.run.judgement.clone(), rerun_command: rerun_command(suite, file) }
+}
+
+/// The heavy part of a case.
+pub(super) fn case(suite: &Suite, case: &Case) -> CaseView {
+    let id = &case.cluster.scenario_id;
+    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0 || !case.edited.is_empty());
+    CaseView {
+        scenario_id: id.clone(),
+        narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
+        drawing: case.first.as_ref().map(|ran| ran.scenario.network().drawing()).unwrap_or_default(),
+        before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
+        after: moved.map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
+        triage: case.triage.clone(),
+        reference: case.reference.as_ref().map(|run| RunTrace { run: run.clone(), series: series(&run.rollout) }),
+        tune_log: case.tuned.as_ref().map(|tuned| tuned.log.clone()),
+        refused: case.failure.as_ref().map(ToString::to_string),
+    }
+}
+
+fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
+    RunView {
+        scenario: scenario.draft().clone(),
+        run: run.clone(),
+        series: series(&run.rollout),
+        rerun_command: rerun_command(suite, file),
+    }
+}
+
+/// The command that gives the run again, from the suite's folder.
+pub(super) fn rerun_command(suite: &Suite, file: &str) -> String {
+    let (options, default) = (suite.options(), Options::default());
+    let mut command = format!("recrash simulate {file}");
+    if options.profile != default.profile {
+        let profile = named::profile_from_folder(suite.store().dir(), &options.profile);
+        command += &format!(" --profile {}", quoted(&profile));
+    }
+    if options.simulator != default.simulator {
+        command += &format!(" --sim {}", options.simulator.name());
+    }
+    command + &format!(" --ego {}", quoted(&named::ego_from_folder(suite.store().dir(), suite.ego())))
+}

@@ -1,0 +1,12 @@
+//! What is no stage of a suite: each file is one command's work.
+
+pub(crate) mod bench_sim;
+pub(crate) mod doctor;
+pub(crate) mod embed_bench;
+pub(crate) mod evaluation;
+pub(crate) mod exporting;
+pub(crate) mod importing;
+pub(crate) mod parity;
+pub(crate) mod prompting;
+#[cfg(feature = "parquet")]
+pub(crate) mod sweep;

@@ -1,0 +1,164 @@
+//! What a model would be asked, shown without asking it.
+
+use crate::error::PipelineError;
+use crate::models::cast::RULES;
+use crate::options::Options;
+use crate::progress::NoProgress;
+use crate::reading::scenarios::read_scenario;
+use crate::stages::{self, Cases, run_stage};
+use crate::suite::names;
+use crate::suite::{Resources, Stage, Suite};
+use recrash_agents::llm::{
+    Question, Role, TuneBrief, design_question, paraphrase_question, prompts_version, tune_question,
+};
+use recrash_agents::{AgentError, Brief, Design, Paraphrase, Rules, expectation, parameters};
+use recrash_lab::Scoring;
+use recrash_lab::run_scenario;
+use recrash_model::narrative::Narrative;
+use recrash_model::run::JudgedRun;
+use recrash_model::scenario::ScenarioDraft;
+use recrash_model::selection::Cluster;
+use recrash_model::tuning::TunePoint;
+use recrash_roads::Scenario;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Which question is shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PromptRequest {
+    /// Folder of the suite; where there is none, the records of `options` are read and selected from.
+    pub dir: PathBuf,
+    /// Options for where there is no suite.
+    pub options: Options,
+    /// Role.
+    pub role: Role,
+    /// Model; the suite's where not given.
+    pub model: Option<String>,
+    /// Scenario; the first where neither it nor a record is given.
+    pub scenario: Option<String>,
+    /// Record, such as `30270-7733/2`.
+    pub record: Option<String>,
+}
+
+/// A question, as it would be sent first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Prompt {
+    /// Always `recrash.prompt/1`.
+    pub format: String,
+    /// Hash of the prompt files.
+    pub prompts: String,
+    /// Hash of the question: its name in the ledger and in batch files.
+    pub hash: String,
+    /// The question.
+    pub question: Question,
+}
+
+/// Makes the first question of a role. What a stage of the suite has not made yet, the rules make for the purpose.
+///
+/// # Errors
+/// There is no such scenario or record, or the suite cannot be read.
+pub fn prompt(request: &PromptRequest) -> Result<Prompt, PipelineError> {
+    let scratch = tempfile::tempdir();
+    let suite = match Suite::saved_options(&request.dir)? {
+        Some(_) => Suite::look(&request.dir)?,
+        None => {
+            let failed = |source| PipelineError::Io { action: "create", path: std::env::temp_dir(), source };
+            let scratch = scratch.as_ref().map_err(|e| failed(std::io::Error::from(e.kind())))?;
+            let suite = Suite::open(scratch.path(), request.options.clone(), Resources::default())?;
+            run_stage(&suite, Stage::Records, &NoProgress)?;
+            run_stage(&suite, Stage::Select, &NoProgress)?;
+            suite
+        }
+    };
+    let cases = Cases::read(&suite)?;
+    let cluster = find(request, &cases)?;
+    let records = cases.records_of(&cluster);
+    let brief = stages::brief(&suite, &cluster, &records);
+    let cast = &suite.options().cast;
+    let played = match request.role {
+        Role::Paraphrase => &cast.paraphrase,
+        Role::Design => &cast.design,
+        Role::Tune => &cast.tune,
+    };
+    let model = match &request.model {
+        Some(model) => model,
+        None if played == RULES => "MODEL",
+        None => played,
+    };
+    let question = question(&suite, &brief, request.role, model)?;
+    Ok(Prompt { format: "recrash.prompt/1".into(), prompts: prompts_version(), hash: question.hash(), question })
+}
+
+fn find(request: &PromptRequest, cases: &Cases) -> Result<Cluster, PipelineError> {
+    let clusters = &cases.selection.clusters;
+    if let Some(id) = &request.record {
+        let known = |cluster: &&Cluster| cluster.pick.to_string() == *id;
+        if let Some(cluster) = clusters.iter().find(known) {
+            return Ok(cluster.clone());
+        }
+        let records = &cases.records.records;
+        let found = records.iter().enumerate().find(|(_, record)| record.id.to_string() == *id);
+        let Some((pick_index, record)) = found else {
+            return Err(PipelineError::bad_input(format!(
+                "there is no record {id}; recrash records --csv FILE lists them"
+            )));
+        };
+        let template = record.template().ok_or_else(|| {
+            PipelineError::bad_input(format!("record {id} has no template: its columns name no road or movement"))
+        })?;
+        let (pick, members) = (record.id.clone(), vec![pick_index]);
+        let scenario_id = format!("00-{}", record.id.report_id);
+        return Ok(Cluster { number: 0, scenario_id, template, pick, pick_index, members, radius: 0.0 });
+    }
+    let wanted = |cluster: &&Cluster| request.scenario.as_ref().is_none_or(|id| cluster.scenario_id == *id);
+    clusters.iter().find(wanted).cloned().ok_or_else(|| {
+        let ids: Vec<&str> = clusters.iter().map(|cluster| cluster.scenario_id.as_str()).collect();
+        PipelineError::bad_input(format!("there is no such scenario; there are: {}", ids.join(", ")))
+    })
+}
+
+fn question(suite: &Suite, brief: &Brief, role: Role, model: &str) -> Result<Question, PipelineError> {
+    let failed = |e: AgentError| PipelineError::bad_input(e.to_string());
+    if role == Role::Paraphrase {
+        return paraphrase_question(model, brief).map_err(failed);
+    }
+    let narrative = match stored::<Narrative>(suite, &names::narrative(brief.scenario_id)) {
+        Some(narrative) => narrative,
+        None => Rules.paraphrase(brief).map_err(failed)?.value,
+    };
+    if role == Role::Design {
+        return design_question(model, brief, &narrative).map_err(failed);
+    }
+    let scenario = designed(suite, brief, &narrative)?;
+    let expectation = expectation(&narrative, brief.records[0], brief.profile);
+    let simulator = suite.simulator()?;
+    let first = match stored::<JudgedRun>(suite, &names::first_run(brief.scenario_id)) {
+        Some(run) => run,
+        None => run_scenario(&scenario, &simulator, brief.profile, Some(&expectation))?,
+    };
+    let draft: &ScenarioDraft = scenario.draft();
+    let parameters = parameters(draft, &narrative, brief.profile);
+    let scoring = Scoring::new(draft, &parameters, &expectation, brief.profile, &simulator, &first);
+    let values: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
+    let score = scoring.score(&values);
+    let history = [TunePoint { number: 0, proposed_by: "start".into(), values, score }];
+    let (narrative, metrics, parameters) = (&narrative, &first.metrics, parameters.as_slice());
+    let told = TuneBrief { narrative, draft, metrics, parameters, history: &history };
+    tune_question(model, brief, &told).map_err(failed)
+}
+
+fn designed(suite: &Suite, brief: &Brief, narrative: &Narrative) -> Result<Scenario, PipelineError> {
+    let file = suite.store().path(&names::scenario(brief.scenario_id));
+    if file.exists() {
+        return Ok(read_scenario(&file)?.0);
+    }
+    let draft = Rules.design(brief, narrative, &[]).map_err(|e| PipelineError::bad_input(e.to_string()))?;
+    let checked = recrash_roads::check(draft);
+    let what = || format!("the rules' design of {} cannot be run", brief.scenario_id);
+    Ok(checked.map_err(|diagnostics| PipelineError::BadInput { what: what(), diagnostics })?.value)
+}
+
+/// What a stage wrote; nothing where it has not.
+fn stored<T: serde::de::DeserializeOwned>(suite: &Suite, file: &str) -> Option<T> {
+    suite.store().read_json(file).ok()
+}
