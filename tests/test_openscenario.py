@@ -24,7 +24,7 @@ def test_there_is_a_scenario_for_every_map(cases: list[Export]) -> None:
 
 def test_the_papers_suite_is_among_them(exports: list[Export]) -> None:
     if not any(export.suite == "paper" for export in exports):
-        pytest.skip("skipped: the paper's suite (needs ../shared)")
+        pytest.skip("needs ../shared")
     assert sum(export.suite == "paper" for export in exports) == 20
 
 
@@ -118,7 +118,7 @@ def test_esmini_plays_every_file_as_our_simulator_does(exports: list[Export], tm
     """With our ego in the slot. The page docs/formats/esmini.md is what one run of this test wrote."""
     esmini = find()
     if not esmini:
-        pytest.skip("skipped: esmini (set ESMINI_BIN to its binary; no registry has it)")
+        pytest.skip("set ESMINI_BIN to its binary; no registry has it")
     rows = []
     for export in exports:
         acting = play_with_our_ego(esmini, export, export.path("openscenario", ".xosc"), tmp_path)

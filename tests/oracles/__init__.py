@@ -60,7 +60,7 @@ def unavailable(name: str, why: str) -> None:
     """Skips a test by name; with CI set it fails."""
     if os.environ.get("CI"):
         pytest.fail(f"{name}: {why}")
-    pytest.skip(f"skipped: {name} ({why})")
+    pytest.skip(f"{name}: {why}")
 
 
 def answers(name: str, script: str, *arguments: str) -> list[dict]:

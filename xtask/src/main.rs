@@ -1,42 +1,51 @@
 //! The project's one script language. `cargo xtask ci` is what CI runs, and a developer's one command.
 
+mod edges;
+mod fuzz;
 mod steps;
+mod tally;
 mod tidy;
 
 use std::process::ExitCode;
+use tally::Tally;
 
 const USAGE: &str = "\
 usage: cargo xtask COMMAND
-  ci        everything below, in this order; stops at the first failure
-  format    cargo fmt --check
-  lint      clippy over all targets, warnings denied
-  tidy      what no compiler checks: the map in ARCHITECTURE.md, file lengths, stray paths and hosts
-  test      all Rust tests
-  docs      rustdoc, warnings denied
-  python    sets up .venv from requirements/dev.txt and runs the Python tests
-  metadrive the tests on a real MetaDrive, in an environment of their own (0.8 GB, once)
-  browser   makes a suite and clicks through its report in headless Chromium
-  fuzz      20 s of fuzzing for each reader of untrusted files
-With CI set in the environment a step that lacks something fails; without it, it is skipped by name.";
+  ci         everything below down to `fuzz`, in this order; stops at the first failure
+  format     cargo fmt --check
+  tidy       what no compiler checks: map and edges in ARCHITECTURE.md, file lengths, stray paths and hosts
+  lint       clippy over all targets, warnings denied
+  prepare    sets up .venv, a Python with MetaDrive (0.8 GB, once), and what drives the browser
+  test       all Rust tests; those on a real MetaDrive where it is set up
+  docs       rustdoc, warnings denied
+  python     the Python tests
+  browser    makes a suite and clicks through its report in headless Chromium
+  fuzz       20 s of fuzzing for each reader of untrusted files
+  fuzz-keep  keeps what fuzzing found, as few inputs as reach the same code
+What was skipped is named at the end. With CI set in the environment a step that lacks something fails.";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let result = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["ci"] => steps::ci(),
-        ["format"] => steps::format(),
-        ["lint"] => steps::lint(),
-        ["tidy"] => tidy::run(),
-        ["test"] => steps::test(),
-        ["docs"] => steps::docs(),
-        ["python"] => steps::python(),
-        ["metadrive"] => steps::metadrive(),
-        ["browser"] => steps::browser(),
-        ["fuzz"] => steps::fuzz(),
-        _ => {
-            eprintln!("{USAGE}");
-            return ExitCode::from(2);
-        }
+    let [command] = &arguments[..] else {
+        eprintln!("{USAGE}");
+        return ExitCode::from(2);
     };
+    let mut tally = Tally::default();
+    let result = match command.as_str() {
+        "ci" => steps::ci(&mut tally),
+        "fuzz-keep" => fuzz::keep(),
+        name => match steps::STEPS.iter().find(|(step, _)| *step == name) {
+            Some((_, step)) => step(&mut tally),
+            None => {
+                eprintln!("{USAGE}");
+                return ExitCode::from(2);
+            }
+        },
+    };
+    let counts = ["ci", "prepare", "test", "python", "browser"].contains(&command.as_str());
+    if counts {
+        println!("{}", tally.closing());
+    }
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {

@@ -1,45 +1,47 @@
 //! The steps of CI. Each is a few commands, run in the project's folder.
 
-use crate::tidy;
+use crate::tally::Tally;
+use crate::{fuzz, tidy};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
 /// What a step gives: why it failed, in one line.
 pub type Result<T = ()> = std::result::Result<T, String>;
 
 /// Name of a step, and what it does.
-type Step = (&'static str, fn() -> Result);
+type Step = (&'static str, fn(&mut Tally) -> Result);
 
-/// Everything, in order of cost.
-pub fn ci() -> Result {
-    let steps: [Step; 9] = [
-        ("format", format),
-        ("tidy", tidy::run),
-        ("lint", lint),
-        ("test", test),
-        ("docs", docs),
-        ("python", python),
-        ("metadrive", metadrive),
-        ("browser", browser),
-        ("fuzz", fuzz),
-    ];
-    for (name, step) in steps {
+/// The steps of [`ci`]: first what is cheap. What tests need is set up before them, so that each runs once.
+pub const STEPS: [Step; 9] = [
+    ("format", format),
+    ("tidy", tidy::run),
+    ("lint", lint),
+    ("prepare", prepare),
+    ("test", test),
+    ("docs", docs),
+    ("python", python),
+    ("browser", browser),
+    ("fuzz", fuzz::run),
+];
+
+/// Everything; stops at the first failure.
+pub fn ci(tally: &mut Tally) -> Result {
+    for (name, step) in STEPS {
         let begun = Instant::now();
         println!("== xtask {name}");
-        step().map_err(|why| format!("{name}: {why}"))?;
+        step(tally).map_err(|why| format!("{name}: {why}"))?;
         println!("== xtask {name}: done in {:.0} s", begun.elapsed().as_secs_f64());
     }
     Ok(())
 }
 
-/// Formatting.
-pub fn format() -> Result {
+fn format(_: &mut Tally) -> Result {
     cargo(&["fmt", "--all", "--check"], &[])
 }
 
-/// Lints.
-pub fn lint() -> Result {
+fn lint(_: &mut Tally) -> Result {
     cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
     // Without language models: a build that docs/language-models.md offers.
     let without_live = ["--no-default-features", "--features", "parquet"];
@@ -47,104 +49,79 @@ pub fn lint() -> Result {
     cargo(&[&alone[..], &without_live, &["--", "-D", "warnings"]].concat(), &[])
 }
 
-/// Rust tests.
-pub fn test() -> Result {
-    cargo(&["test", "--workspace"], &[])
-}
-
-/// Documentation.
-pub fn docs() -> Result {
-    cargo(&["doc", "--workspace", "--no-deps", "--document-private-items"], &[("RUSTDOCFLAGS", "-D warnings")])
-}
-
-/// Python tests, in an environment of their own.
-pub fn python() -> Result {
+/// What tests need and cargo does not bring: `.venv`, a Python with MetaDrive, and what drives the browser.
+fn prepare(tally: &mut Tally) -> Result {
     let Some(python) = find_python() else {
-        return missing("python", "Python 3.11 is not on the PATH");
+        return missing(tally, "prepare", "Python 3.11 is not on the PATH");
     };
-    let venv = root().join(".venv");
-    let inside = venv.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    if !inside.exists() {
-        run(Command::new(python).args(["-m", "venv"]).arg(&venv))?;
+    if !venv_python().exists() {
+        run(Command::new(python).args(["-m", "venv"]).arg(root().join(".venv")))?;
     }
-    let requirements = root().join("requirements/dev.txt");
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
-    run(Command::new(&inside).args(pip).arg(requirements))?;
-    cargo(&["build", "--release", "--package", "recrash-cli"], &[])?;
-    run(Command::new(&inside).args(["-m", "pytest", "--quiet", "tests"]).env("RECRASH", binary()))
-}
-
-/// The tests on a real MetaDrive, in the environment of `requirements/metadrive.txt`. The step before makes `.venv`.
-pub fn metadrive() -> Result {
-    let python = root().join(".venv").join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    if !python.exists() {
-        return missing("metadrive", "there is no .venv; `cargo xtask python` makes it");
-    }
+    run(Command::new(venv_python()).args(pip).arg(root().join("requirements/dev.txt")))?;
     let script = "from oracles import environment; print(environment('metadrive') / 'python')";
-    let output = Command::new(python)
+    let output = Command::new(venv_python())
         .args(["-c", script])
         .current_dir(root().join("tests"))
         .output()
         .map_err(|error| error.to_string())?;
-    let metadrive = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-    if !output.status.success() || metadrive.is_empty() {
+    if output.status.success() {
+        std::fs::create_dir_all(target()).map_err(|error| error.to_string())?;
+        std::fs::write(metadrive_note(), output.stdout).map_err(|error| error.to_string())?;
+    } else {
         let said = String::from_utf8_lossy(&output.stderr);
-        return missing("metadrive", said.lines().last().unwrap_or("its environment cannot be made"));
+        missing(tally, "prepare", said.lines().last().unwrap_or("MetaDrive's environment cannot be made"))?;
     }
-    let arguments = ["test", "-p", "recrash-metadrive", "-p", "recrash-pipeline"];
-    let tests = ["--test", "suite", "--", "real_metadrive::", "parity::"];
-    cargo(&[&arguments[..], &tests].concat(), &[("RECRASH_METADRIVE_PYTHON", &metadrive)])
+    if Command::new("npm").arg("--version").output().is_err() {
+        return missing(tally, "prepare", "npm of Node.js is not on the PATH");
+    }
+    run(Command::new("npm").args(["ci", "--no-audit", "--no-fund"]).current_dir(browser_folder()))
 }
 
-/// A short run of every fuzz target, from the inputs that longer runs found.
-pub fn fuzz() -> Result {
-    let tools = root().join("target/tools");
-    let program = tools.join("bin").join(if cfg!(windows) { "cargo-fuzz.exe" } else { "cargo-fuzz" });
-    if !program.exists() {
-        let install = ["install", "cargo-fuzz@0.13.2", "--locked", "--quiet", "--root"];
-        cargo(&[&install[..], &[&tools.to_string_lossy()]].concat(), &[])?;
+fn test(tally: &mut Tally) -> Result {
+    let mut command = cargo_command();
+    command.args(["test", "--workspace", "--no-fail-fast"]);
+    let known = std::fs::read_to_string(metadrive_note()).unwrap_or_default();
+    if std::env::var_os("RECRASH_METADRIVE_PYTHON").is_none() && Path::new(known.trim()).is_file() {
+        command.env("RECRASH_METADRIVE_PYTHON", known.trim());
     }
-    for target in ["crash_file", "mapping", "openscenario", "scenario"] {
-        let fresh = root().join("target/fuzz").join(target);
-        std::fs::create_dir_all(&fresh).map_err(|error| format!("{}: {error}", fresh.display()))?;
-        let known = ["corpus", "found"].map(|folder| root().join("fuzz").join(folder).join(target));
-        let dictionary = root().join("fuzz/dictionaries").join(target);
-        let mut command = Command::new(&program);
-        // Coverage instrumentation is unstable in the compiler; this lets the stable one have it.
-        command.env("RUSTC_BOOTSTRAP", "1").args(["fuzz", "run", "-s", "none", target]).arg(fresh);
-        command.args(known.iter().filter(|folder| folder.is_dir()));
-        command.args(["--", "-max_len=4096", "-max_total_time=20", "-verbosity=0"]);
-        if dictionary.exists() {
-            command.arg(format!("-dict={}", dictionary.display()));
-        }
-        run(&mut command)?;
+    counted(&mut command, tally)
+}
+
+fn docs(_: &mut Tally) -> Result {
+    cargo(&["doc", "--workspace", "--no-deps", "--document-private-items"], &[("RUSTDOCFLAGS", "-D warnings")])
+}
+
+/// The Python tests, of the program that the Rust tests had built.
+fn python(tally: &mut Tally) -> Result {
+    if !venv_python().exists() {
+        return missing(tally, "python", "there is no .venv; `cargo xtask prepare` makes it");
     }
-    Ok(())
+    let mut command = Command::new(venv_python());
+    command.args(["-m", "pytest", "--quiet", "tests"]).env("RECRASH", built()?);
+    counted(&mut command, tally)
 }
 
 /// The report of a fresh suite, in a browser.
-pub fn browser() -> Result {
-    let folder = root().join("crates/report/tests/browser");
-    if run(Command::new("node").arg("--version")).is_err() {
-        return missing("browser", "Node.js is not on the PATH");
+fn browser(tally: &mut Tally) -> Result {
+    if !browser_folder().join("node_modules").is_dir() {
+        return missing(tally, "browser", "what drives it is not there; `cargo xtask prepare` gets it");
     }
     let chromium = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
     if !chromium.iter().any(|path| Path::new(path).exists()) {
-        return missing("browser", "Chromium is not installed (Debian's package chromium)");
+        return missing(tally, "browser", "Chromium is not installed (Debian's package chromium)");
     }
-    cargo(&["build", "--release", "--package", "recrash-cli"], &[])?;
-    run(Command::new("npm").args(["ci", "--no-audit", "--no-fund"]).current_dir(&folder))?;
-    let suite = root().join("target/browser-suite");
-    run(Command::new(binary()).args(["run", "--quiet", "--out"]).arg(&suite))?;
-    run(Command::new("node").arg(folder.join("check.mjs")).arg(suite.join("report.html")))
+    let suite = target().join("browser-suite");
+    run(Command::new(built()?).args(["run", "--quiet", "--out"]).arg(&suite))?;
+    run(Command::new("node").arg(browser_folder().join("check.mjs")).arg(suite.join("report.html")))
 }
 
-/// A step that cannot run here: an error in CI, a named skip elsewhere.
-fn missing(step: &str, what: &str) -> Result {
+/// What cannot run here: an error in CI, a named skip elsewhere.
+fn missing(tally: &mut Tally, step: &str, what: &str) -> Result {
     if std::env::var_os("CI").is_some() {
         return Err(what.to_owned());
     }
-    println!("skipped: {step} ({what})");
+    tally.skip_step(step, what);
     Ok(())
 }
 
@@ -155,9 +132,23 @@ fn find_python() -> Option<&'static str> {
     })
 }
 
-fn binary() -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    target.join(if cfg!(windows) { "release/recrash.exe" } else { "release/recrash" })
+fn venv_python() -> PathBuf {
+    root().join(".venv").join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
+}
+
+/// Where `prepare` notes the interpreter that has MetaDrive.
+fn metadrive_note() -> PathBuf {
+    target().join("metadrive-python.txt")
+}
+
+fn browser_folder() -> PathBuf {
+    root().join("crates/report/tests/browser")
+}
+
+/// The program as the Rust tests run it: one build serves all. Nothing is built right after them.
+fn built() -> Result<PathBuf> {
+    cargo(&["test", "--workspace", "--no-run", "--quiet"], &[])?;
+    Ok(target().join(if cfg!(windows) { "debug/recrash.exe" } else { "debug/recrash" }))
 }
 
 /// The project's folder.
@@ -165,16 +156,70 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the project").to_owned()
 }
 
-fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    run(Command::new(cargo).args(arguments).envs(environment.iter().copied()))
+/// The folder of what is built.
+pub fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
-fn run(command: &mut Command) -> Result {
+fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result {
+    run(cargo_command().args(arguments).envs(environment.iter().copied()))
+}
+
+/// The cargo that runs this. What it told this program about the package xtask is taken away: build scripts that look at
+/// it would run again, and half of the libraries with them, whenever somebody calls cargo by hand in between.
+pub fn cargo_command() -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    for (name, _) in std::env::vars_os() {
+        let text = name.to_string_lossy();
+        if ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_BIN_", "CARGO_CRATE_"].iter().any(|of| text.starts_with(of)) {
+            command.env_remove(&name);
+        }
+    }
+    command
+}
+
+/// Runs a command to its end; in the project's folder where it names no other.
+pub fn run(command: &mut Command) -> Result {
+    in_project(command);
+    let status = command.status();
+    judged(command, status)
+}
+
+/// The same with a runner of tests, whose lines are shown and counted.
+fn counted(command: &mut Command, tally: &mut Tally) -> Result {
+    in_project(command);
+    let status = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().and_then(|mut child| {
+        let (said, warned) = (child.stdout.take(), child.stderr.take());
+        let (told, counts) = std::thread::scope(|scope| {
+            let aside = scope.spawn(|| lines(warned, |line| eprintln!("{line}")));
+            (lines(said, |line| println!("{line}")), aside.join().unwrap_or_default())
+        });
+        told.iter().chain(&counts).for_each(|line| tally.read(line));
+        child.wait()
+    });
+    judged(command, status)
+}
+
+/// The lines of a stream, each shown as it comes.
+fn lines(stream: Option<impl Read>, show: impl Fn(&str)) -> Vec<String> {
+    let mut kept = Vec::new();
+    for line in stream.into_iter().flat_map(|stream| BufReader::new(stream).split(b'\n')) {
+        let Ok(line) = line else { break };
+        let line = String::from_utf8_lossy(&line).into_owned();
+        show(&line);
+        kept.push(line);
+    }
+    kept
+}
+
+fn in_project(command: &mut Command) {
     if command.get_current_dir().is_none() {
         command.current_dir(root());
     }
-    match command.status() {
+}
+
+fn judged(command: &Command, status: std::io::Result<std::process::ExitStatus>) -> Result {
+    match status {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("{command:?} ended with {status}")),
         Err(error) => Err(format!("cannot start {:?}: {error}", command.get_program())),

@@ -1,6 +1,7 @@
 //! What no compiler checks. Every rule names the file and how to mend it.
 
 use crate::steps::{Result, root};
+use crate::tally::Tally;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,11 +14,12 @@ const FOREIGN: [&str; 7] = ["target", ".git", ".venv", ".oracles", ".pytest_cach
 const UNMAPPED: [&str; 3] = ["crates", ".cargo", ".ci"];
 
 /// Runs every rule and prints what was found.
-pub fn run() -> Result {
+pub fn run(_: &mut Tally) -> Result {
     let root = root();
     let mut files = Vec::new();
     collect(&root, &mut files);
     let mut problems = map_problems(&root);
+    problems.extend(crate::edges::problems(&root)?);
     for file in &files {
         let name = file.strip_prefix(&root).unwrap_or(file).to_string_lossy().replace('\\', "/");
         if let Ok(text) = fs::read_to_string(file) {
@@ -33,7 +35,8 @@ pub fn run() -> Result {
     }
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+/// Every file below a folder, in order; those of others left out.
+pub fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> =
         fs::read_dir(folder).into_iter().flatten().filter_map(|e| e.ok().map(|e| e.path())).collect();
     entries.sort();

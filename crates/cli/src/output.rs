@@ -3,7 +3,7 @@
 use crate::bars::Bars;
 use crate::screen::{self, bold, dim, eprintln, println, red, yellow};
 use recrash_model::diagnostic::{Diagnostic, Severity};
-use recrash_pipeline::{NoProgress, PipelineError, Progress, StageReport, Suite};
+use recrash_pipeline::{NoProgress, PipelineError, Progress, StageReport, Suite, quoted};
 use serde::Serialize;
 
 /// Remarks of one stage that are shown one by one.
@@ -77,16 +77,6 @@ pub fn interrupted(goes_on: bool) {
         go_on();
     } else {
         eprintln!("\ninterrupted");
-    }
-}
-
-/// A word as a shell takes it.
-pub fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 

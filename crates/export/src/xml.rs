@@ -2,6 +2,7 @@
 
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 use quick_xml::{Reader, Writer, XmlVersion};
+use recrash_model::hash::Fnv;
 
 /// An element.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -76,19 +77,24 @@ impl Element {
 
     /// A hash of names, attributes, text and children (FNV-1a, 64 bits), whatever the layout of the file they are in.
     pub fn fingerprint(&self) -> String {
-        fn add(hash: u64, text: &str) -> u64 {
-            let bytes = text.bytes().chain([0]);
-            bytes.fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+        fn add(hash: &mut Fnv, text: &str) {
+            hash.write(text.as_bytes());
+            hash.write(&[0]);
         }
-        fn walk(element: &Element, hash: u64) -> u64 {
-            let mut hash = add(add(hash, &element.name), &element.text);
+        fn walk(element: &Element, hash: &mut Fnv) {
+            add(hash, &element.name);
+            add(hash, &element.text);
             for (name, value) in &element.attributes {
-                hash = add(add(hash, name), &allowed(value));
+                add(hash, name);
+                add(hash, &allowed(value));
             }
-            hash = element.children.iter().fold(add(hash, "<"), |hash, child| walk(child, hash));
-            add(hash, ">")
+            add(hash, "<");
+            element.children.iter().for_each(|child| walk(child, hash));
+            add(hash, ">");
         }
-        format!("{:016x}", walk(self, 0xcbf2_9ce4_8422_2325))
+        let mut hash = Fnv::default();
+        walk(self, &mut hash);
+        hash.hexadecimal()
     }
 
     /// The document with this root, a comment above it.

@@ -21,9 +21,27 @@ pub fn wrap_angle(angle: f64) -> f64 {
     if wrapped <= -PI { wrapped + TAU } else { wrapped }
 }
 
+/// The digits of `number` in `base`, mirrored at the point: the coordinate of that point of a Halton sequence (halton1960).
+pub fn radical_inverse(base: u32, mut number: u32) -> f64 {
+    let mut value = 0.0;
+    let mut scale = 1.0 / f64::from(base);
+    while number > 0 {
+        value += scale * f64::from(number % base);
+        number /= base;
+        scale /= f64::from(base);
+    }
+    value
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn first_points_in_base_two_and_three() {
+        assert_eq!([1, 2, 3, 4].map(|number| radical_inverse(2, number)), [0.5, 0.25, 0.75, 0.125]);
+        assert!((radical_inverse(3, 2) - 2.0 / 3.0).abs() < 1e-15);
+    }
 
     #[test]
     fn wraps_into_half_open_interval() {

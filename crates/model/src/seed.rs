@@ -1,5 +1,6 @@
 //! Seeds that make seeds: every random stream is named, so that order of use never matters.
 
+use crate::hash::Fnv;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
@@ -13,11 +14,10 @@ impl Seed {
     /// The seed of the part called `name`: FNV-1a over this seed and the name, then the SplitMix64 finaliser.
     #[must_use]
     pub fn child(self, name: &str) -> Self {
-        let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
-        for byte in self.0.to_le_bytes().iter().chain(name.as_bytes()) {
-            hash ^= u64::from(*byte);
-            hash = hash.wrapping_mul(0x0000_0100_0000_01b3);
-        }
+        let mut fnv = Fnv::default();
+        fnv.write(&self.0.to_le_bytes());
+        fnv.write(name.as_bytes());
+        let mut hash = fnv.finish();
         hash = (hash ^ (hash >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         hash = (hash ^ (hash >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         Self(hash ^ (hash >> 31))

@@ -26,6 +26,7 @@ pub use embedding::weights::{
 };
 pub use error::PipelineError;
 pub use files::output::{Begun, Output, Outputs};
+pub use files::paths::quoted;
 pub use files::store::{Store, WriteFile, remove_unfinished};
 pub use models::cast::{AgentLog, Cast};
 pub use models::ledger::{LedgerReport, ModelSum, Sum as LedgerSum, ledger};

@@ -3,92 +3,126 @@
 use crate::results::other_egos;
 use crate::view::{CaseRow, RunRow, SuiteView};
 use crate::words::{self, fixed};
+use quick_xml::Writer;
+use quick_xml::events::attributes::Attribute;
+use quick_xml::events::{BytesDecl, BytesText, Event};
+use quick_xml::name::QName;
 use recrash_model::metrics::{Answer, Check};
 use recrash_model::triage::Triage;
-use std::fmt::Write;
 
 /// The document.
 pub fn render(suite: &SuiteView) -> String {
-    let designed: Vec<String> =
-        suite.cases.iter().map(|case| test_case(suite, case, case.before.as_ref(), "as designed")).collect();
     let tuned: Vec<&CaseRow> = suite.cases.iter().filter(|case| case.after.is_some()).collect();
-    let tuned_cases: Vec<String> =
-        tuned.iter().map(|case| test_case(suite, case, case.after.as_ref(), "tuned")).collect();
     let failed = |run: Option<&RunRow>| usize::from(run.is_some_and(|run| run.failed()));
     let failed_designed: usize = suite.cases.iter().map(|case| failed(case.before.as_ref())).sum();
     let failed_tuned: usize = tuned.iter().map(|case| failed(case.after.as_ref())).sum();
     let skipped = suite.cases.iter().filter(|case| case.before.is_none()).count();
-    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let _ = writeln!(
-        text,
-        "<testsuites name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{skipped}\">",
-        escape(&suite.title),
-        suite.cases.len() + tuned.len(),
-        failed_designed + failed_tuned
-    );
-    for (name, cases, failures, skipped) in
-        [("as designed", designed, failed_designed, skipped), ("tuned", tuned_cases, failed_tuned, 0)]
-    {
-        let _ = writeln!(
-            text,
-            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failures}\" errors=\"0\" skipped=\"{skipped}\">",
-            cases.len()
-        );
-        text.push_str("    <properties>\n");
+    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
+    let written = (|| {
+        writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+        let suites = writer.create_element("testsuites").with_attributes(attributes(&[
+            ("name", &suite.title),
+            ("tests", &(suite.cases.len() + tuned.len()).to_string()),
+            ("failures", &(failed_designed + failed_tuned).to_string()),
+            ("errors", "0"),
+            ("skipped", &skipped.to_string()),
+        ]));
+        suites.write_inner_content(|writer| {
+            let designed: Vec<&CaseRow> = suite.cases.iter().collect();
+            group(writer, suite, "as designed", &designed, [failed_designed, skipped], |case| case.before.as_ref())?;
+            group(writer, suite, "tuned", &tuned, [failed_tuned, 0], |case| case.after.as_ref())
+        })?;
+        std::io::Result::Ok(())
+    })();
+    written.expect("written into memory");
+    let mut text = String::from_utf8(writer.into_inner()).expect("made of texts");
+    text.push('\n');
+    text
+}
+
+/// The cases of one kind of run; how many of them failed, and how many were skipped.
+fn group(
+    writer: &mut Writer<Vec<u8>>,
+    suite: &SuiteView,
+    name: &str,
+    cases: &[&CaseRow],
+    [failures, skipped]: [usize; 2],
+    run: fn(&CaseRow) -> Option<&RunRow>,
+) -> std::io::Result<()> {
+    let element = writer.create_element("testsuite").with_attributes(attributes(&[
+        ("name", name),
+        ("tests", &cases.len().to_string()),
+        ("failures", &failures.to_string()),
+        ("errors", "0"),
+        ("skipped", &skipped.to_string()),
+    ]));
+    element.write_inner_content(|writer| {
         let settings = [
-            ("profile", suite.profile.name.clone()),
-            ("ego", suite.ego.clone()),
-            ("simulator", suite.simulator.clone()),
-            ("agents", suite.agents.clone()),
-            ("seed", suite.seed.to_string()),
-            ("command", suite.command.clone()),
-            ("generator", suite.generated_by.clone()),
+            ("profile", &suite.profile.name),
+            ("ego", &suite.ego),
+            ("simulator", &suite.simulator),
+            ("agents", &suite.agents),
+            ("seed", &suite.seed.to_string()),
+            ("command", &suite.command),
+            ("generator", &suite.generated_by),
         ];
-        for (name, value) in settings {
-            let _ = writeln!(text, "      <property name=\"{name}\" value=\"{}\"/>", escape(&value));
-        }
-        text.push_str("    </properties>\n");
-        text.extend(cases);
-        text.push_str("  </testsuite>\n");
-    }
-    text.push_str("</testsuites>\n");
-    text
-}
-
-fn test_case(suite: &SuiteView, case: &CaseRow, run: Option<&RunRow>, name: &str) -> String {
-    let time = run.and_then(|run| fixed(run.metrics.duration_s, 3)).unwrap_or_else(|| "0".to_owned());
-    let mut text = format!(
-        "    <testcase classname=\"recrash.{}.{}\" name=\"{}\" time=\"{time}\">\n",
-        escape(&suite.profile.name),
-        name.replace(' ', "-"),
-        escape(&case.scenario_id)
-    );
-    match run {
-        None => {
-            let why = case.refused.as_deref().unwrap_or("it was not run");
-            let _ = writeln!(text, "      <skipped message=\"{}\"/>", escape(why));
-        }
-        Some(run) => {
-            if run.failed() {
-                let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
-                let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
-                let sentences: Vec<_> = failures.iter().map(|finding| escape(&finding.sentence)).collect();
-                let class = triage_of(case, run).map_or_else(String::new, |t| format!(" ({})", t.class.label()));
-                let _ = writeln!(
-                    text,
-                    "      <failure type=\"{}\" message=\"{}{class}\">{}</failure>",
-                    kinds.first().copied().unwrap_or_default(),
-                    escape(&kinds.join(", ")),
-                    sentences.join("\n")
-                );
+        writer.create_element("properties").write_inner_content(|writer| {
+            for (name, value) in settings {
+                let property = attributes(&[("name", name), ("value", value)]);
+                writer.create_element("property").with_attributes(property).write_empty()?;
             }
-            let _ = writeln!(text, "      <system-out>{}</system-out>", escape(&told(case, run)));
-        }
-    }
-    text.push_str("    </testcase>\n");
-    text
+            Ok(())
+        })?;
+        cases.iter().try_for_each(|case| test_case(writer, suite, case, run(case), name))
+    })?;
+    Ok(())
 }
 
+fn test_case(
+    writer: &mut Writer<Vec<u8>>,
+    suite: &SuiteView,
+    case: &CaseRow,
+    run: Option<&RunRow>,
+    name: &str,
+) -> std::io::Result<()> {
+    let time = run.and_then(|run| fixed(run.metrics.duration_s, 3)).unwrap_or_else(|| "0".to_owned());
+    let class = format!("recrash.{}.{}", suite.profile.name, name.replace(' ', "-"));
+    let element = writer.create_element("testcase").with_attributes(attributes(&[
+        ("classname", &class),
+        ("name", &case.scenario_id),
+        ("time", &time),
+    ]));
+    element.write_inner_content(|writer| {
+        let Some(run) = run else {
+            let why = case.refused.as_deref().unwrap_or("it was not run");
+            writer.create_element("skipped").with_attributes(attributes(&[("message", why)])).write_empty()?;
+            return Ok(());
+        };
+        if run.failed() {
+            let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
+            let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
+            let sentences: Vec<_> = failures.iter().map(|finding| safe(&finding.sentence)).collect();
+            let class = triage_of(case, run).map_or_else(String::new, |t| format!(" ({})", t.class.label()));
+            let message = format!("{}{class}", kinds.join(", "));
+            let kind = kinds.first().copied().unwrap_or_default();
+            let failure = writer.create_element("failure");
+            let failure = failure.with_attributes(attributes(&[("type", kind), ("message", &message)]));
+            failure.write_text_content(BytesText::new(&sentences.join("\n")))?;
+        }
+        writer.create_element("system-out").write_text_content(BytesText::new(&safe(&told(case, run))))?;
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// Attributes whose values are cleaned; the library escapes them.
+fn attributes<'a>(pairs: &[(&'a str, &str)]) -> Vec<Attribute<'a>> {
+    let attribute = |(name, value): &(&'a str, &str)| {
+        let value = quick_xml::escape::escape(safe(value)).into_owned();
+        Attribute { key: QName(name), value: value.into() }
+    };
+    pairs.iter().map(attribute).collect()
+}
 /// The triage, which is about the last run.
 fn triage_of<'a>(case: &'a CaseRow, run: &RunRow) -> Option<&'a Triage> {
     case.triage.as_ref().filter(|_| case.last_run().is_some_and(|last| std::ptr::eq(run, last)))
@@ -127,19 +161,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
     )
 }
 
-/// Text for XML 1.0, which has no way to write most control characters.
-fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in words::clean(text, words::LONGEST_TEXT).chars() {
-        match letter {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&apos;"),
-            '\u{fffe}' | '\u{ffff}' => escaped.push('\u{fffd}'),
-            _ => escaped.push(letter),
-        }
-    }
-    escaped
+/// Text of characters that XML 1.0 can hold.
+fn safe(text: &str) -> String {
+    words::clean(text, words::LONGEST_TEXT).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

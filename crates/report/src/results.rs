@@ -3,6 +3,7 @@
 use crate::view::{CaseRow, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{Check, PartnerMetrics, Timed};
+use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
 const HEADER: [&str; 45] = [
@@ -55,17 +56,22 @@ const HEADER: [&str; 45] = [
 
 /// The table.
 pub fn render(suite: &SuiteView) -> String {
-    let mut text = String::new();
-    push_row(&mut text, HEADER.iter().map(|&name| name.to_owned()));
+    let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
+    // Into memory, and every row has the header's width.
+    let mut write = |cells: Vec<String>| {
+        let cells = cells.iter().map(|text| cell(text));
+        writer.write_record(cells).expect("a row of the header's width");
+    };
+    write(HEADER.map(str::to_owned).into());
     for case in &suite.cases {
         for (name, run) in case.runs() {
-            push_row(&mut text, row(suite, case, name, Some(run)));
+            write(row(suite, case, name, Some(run)));
         }
         if case.last_run().is_none() {
-            push_row(&mut text, row(suite, case, "not run", None));
+            write(row(suite, case, "not run", None));
         }
     }
-    text
+    String::from_utf8(writer.into_inner().unwrap_or_default()).expect("made of texts")
 }
 
 fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> Vec<String> {
@@ -152,46 +158,7 @@ fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
     ]
 }
 
-fn push_row(text: &mut String, cells: impl IntoIterator<Item = String>) {
-    for (position, cell) in cells.into_iter().enumerate() {
-        if position > 0 {
-            text.push(',');
-        }
-        push_cell(text, &cell);
-    }
-    text.push_str("\r\n");
-}
-
-/// A cell. Texts that a spreadsheet would take for a formula get an apostrophe; numbers stay as they are.
-fn push_cell(text: &mut String, cell: &str) {
-    let cell = words::clean(cell, words::LONGEST_TEXT);
-    let formula = cell.starts_with(['=', '+', '-', '@', '\t']) && cell.parse::<f64>().is_err();
-    let quoted = cell.contains(['"', ',', '\n', '\r']) || formula;
-    if quoted {
-        text.push('"');
-    }
-    if formula {
-        text.push('\'');
-    }
-    text.push_str(&cell.replace('"', "\"\""));
-    if quoted {
-        text.push('"');
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_are_quoted_and_formulas_are_defused() {
-        let written = |cell: &str| {
-            let mut text = String::new();
-            push_cell(&mut text, cell);
-            text
-        };
-        assert_eq!(written("a,\"b\""), "\"a,\"\"b\"\"\"");
-        assert_eq!(written("=HYPERLINK(1)"), "\"'=HYPERLINK(1)\"");
-        assert_eq!(written("-1.5"), "-1.5");
-    }
+/// A cell, which no spreadsheet takes for a formula.
+fn cell(text: &str) -> String {
+    inert(&words::clean(text, words::LONGEST_TEXT)).into_owned()
 }

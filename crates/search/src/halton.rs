@@ -2,6 +2,7 @@
 
 use crate::Optimiser;
 use recrash_model::Seed;
+use recrash_model::math::radical_inverse;
 
 /// Bases: the first primes. More dimensions than bases use random numbers for the rest.
 const BASES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
@@ -44,27 +45,9 @@ impl Optimiser for Halton {
     fn tell(&mut self, _point: &[f64], _objective: f64) {}
 }
 
-/// The digits of `number` in `base`, mirrored at the point.
-fn radical_inverse(base: u32, mut number: u32) -> f64 {
-    let mut value = 0.0;
-    let mut scale = 1.0 / f64::from(base);
-    while number > 0 {
-        value += scale * f64::from(number % base);
-        number /= base;
-        scale /= f64::from(base);
-    }
-    value
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn first_values_in_base_two_and_three() {
-        assert_eq!((1..5).map(|n| radical_inverse(2, n)).collect::<Vec<_>>(), [0.5, 0.25, 0.75, 0.125]);
-        assert!((radical_inverse(3, 2) - 2.0 / 3.0).abs() < 1e-15);
-    }
 
     #[test]
     fn every_eighth_of_an_axis_gets_its_share() {

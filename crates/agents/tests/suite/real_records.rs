@@ -11,18 +11,13 @@ use recrash_model::record::CrashRecord;
 use recrash_records::{SourceText, ingest};
 use recrash_sim::{Ego, simulate};
 use sha2::{Digest, Sha256};
-use std::path::PathBuf;
 
 const FILE: &str = "ads-2021-06-to-2025-06.csv";
 
 /// Usable records of the developed half; `None` where the file is not there.
-fn records(test: &str) -> Option<Vec<CrashRecord>> {
-    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    let shared = std::env::var_os("RECRASH_SHARED").map_or(beside, PathBuf::from);
-    let Ok(bytes) = std::fs::read(shared.join("data/nhtsa").join(FILE)) else {
-        println!("skipped: {test} (needs ../shared)");
-        return None;
-    };
+fn records() -> Option<Vec<CrashRecord>> {
+    let path = recrash_testing::shared(&format!("data/nhtsa/{FILE}"))?;
+    let bytes = std::fs::read(path).expect("a readable file");
     let set = ingest(&[SourceText { name: FILE, bytes: &bytes }], &support::paper()).expect("NHTSA's file").value;
     let developed = |record: &&CrashRecord| {
         let hash = Sha256::digest(record.id.report_id.as_bytes());
@@ -60,7 +55,7 @@ fn becomes_faithful(record: &CrashRecord, profile: &SystemProfile) -> bool {
 
 #[test]
 fn quoted_words_of_real_narratives_stand_in_them() {
-    let Some(records) = records("quoted_words_of_real_narratives_stand_in_them") else { return };
+    let Some(records) = records() else { return };
     let profile = support::paper();
     assert_eq!(records.len(), 120);
     for record in &records {
@@ -74,7 +69,7 @@ fn quoted_words_of_real_narratives_stand_in_them() {
 
 #[test]
 fn nineteen_of_twenty_real_records_become_faithful_scenarios() {
-    let Some(records) = records("nineteen_of_twenty_real_records_become_faithful_scenarios") else { return };
+    let Some(records) = records() else { return };
     let profile = support::paper();
     let some: Vec<&CrashRecord> = records.iter().step_by(2).collect();
     let faithful = some.iter().filter(|record| becomes_faithful(record, &profile)).count();

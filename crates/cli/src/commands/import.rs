@@ -66,7 +66,10 @@ pub fn run(args: &ImportArgs, output: Output) -> Result<(), PipelineError> {
         show(&args.source, &imported);
         match replayed {
             Some(replayed) => simulate::show(&replayed),
-            None => println!("run it with: recrash simulate {}", output::quoted(&imported.file.display().to_string())),
+            None => println!(
+                "run it with: recrash simulate {}",
+                recrash_pipeline::quoted(&imported.file.display().to_string())
+            ),
         }
     }
     Ok(())

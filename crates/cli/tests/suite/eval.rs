@@ -2,7 +2,7 @@
 
 use crate::common::recrash;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const HEADER: &str = "half,report,version,file,entity,road,sv_movement,cp_movement,approach,order,sv_zones,cp_zones,collision,excluded,note";
 /// Right in every field that is known; its half is the developed one.
@@ -109,12 +109,7 @@ fn a_model_is_asked_by_batch_and_its_answers_are_scored() {
 /// The bounds are the targets of the evaluation, as totals (`docs/models/evaluation.md`).
 #[test]
 fn the_rules_read_the_held_out_half_as_well_as_the_documentation_says() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    let shared = std::env::var_os("RECRASH_SHARED").map_or(beside, PathBuf::from).join("data/nhtsa");
-    if !shared.is_dir() {
-        println!("skipped: the_rules_read_the_held_out_half_as_well_as_the_documentation_says (needs ../shared)");
-        return;
-    }
+    let Some(shared) = recrash_testing::shared("data/nhtsa") else { return };
     let files = ["ads-2021-06-to-2025-06.csv", "ads-2025-06-to-2026-01.csv"].map(|name| shared.join(name));
     let names = files.each_ref().map(|path| path.to_str().unwrap());
     let evaluation =

@@ -3,7 +3,6 @@
 
 use recrash_embed::{EmbedError, Embedder, ModelFiles};
 use serde_json::Value;
-use std::path::Path;
 
 const CONFIG: &[u8] = include_bytes!("../tiny/config.json");
 const WEIGHTS: &[u8] = include_bytes!("../tiny/model.safetensors");
@@ -35,11 +34,8 @@ fn a_tiny_model_gives_the_oracles_rows() {
 
 #[test]
 fn the_published_model_gives_the_oracles_rows() {
-    let Some(folder) = std::env::var_os("MINILM_DIR") else {
-        println!("skipped: the_published_model_gives_the_oracles_rows (needs MINILM_DIR)");
-        return;
-    };
-    let read = |name: &str| std::fs::read(Path::new(&folder).join(name)).expect("MINILM_DIR holds the model's files");
+    let Some(folder) = recrash_testing::named_by("MINILM_DIR") else { return };
+    let read = |name: &str| std::fs::read(folder.join(name)).expect("MINILM_DIR holds the model's files");
     let (config, weights, vocabulary) = (read("config.json"), read("model.safetensors"), read("vocab.txt"));
     let files = ModelFiles { config: &config, weights: &weights, vocabulary: &vocabulary };
     let embedder = Embedder::new(files).unwrap();

@@ -2,12 +2,13 @@
 
 use super::Context;
 use crate::xml::{Element, number};
+use recrash_model::math::radical_inverse;
 use recrash_model::tuning::{Parameter, apply};
 
 /// Runs a stochastic runner is asked for, and points that are listed for a deterministic one.
 const POINTS: u32 = 64;
 
-/// Bases of the Halton sequence, one per parameter; further parameters use the last and are shifted.
+/// Bases of the Halton sequence (halton1960), one per parameter; further parameters use the last and are shifted.
 const PRIMES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
 /// The ranges, drawn from evenly.
@@ -81,20 +82,9 @@ fn current(context: &Context<'_>, parameter: &Parameter) -> f64 {
 fn value_at(parameter: &Parameter, point: u32, dimension: usize) -> f64 {
     let base = PRIMES[dimension.min(PRIMES.len() - 1)];
     let shift = dimension.saturating_sub(PRIMES.len() - 1) as f64 * 0.618_033_988_749_895;
-    let share = (halton(point, base) + shift).fract();
+    let share = (radical_inverse(base, point) + shift).fract();
     let value = parameter.min + (parameter.max - parameter.min) * share;
     if parameter.integer { value.round() } else { (value * 1e6).round() / 1e6 }
-}
-
-/// The radical inverse of `index` in `base` (halton1960).
-fn halton(mut index: u32, base: u32) -> f64 {
-    let (mut result, mut weight) = (0.0, 1.0);
-    while index > 0 {
-        weight /= f64::from(base);
-        result += weight * f64::from(index % base);
-        index /= base;
-    }
-    result
 }
 
 /// Whether everybody starts on the road the file names: an expression can move a start along a road, not onto another.

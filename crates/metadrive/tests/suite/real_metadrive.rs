@@ -7,25 +7,17 @@ use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{Scenario, background_traffic};
 use serde_json::json;
-use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-fn options(test: &str) -> Option<Options> {
-    match std::env::var_os("RECRASH_METADRIVE_PYTHON") {
-        Some(python) => Some(Options::new(PathBuf::from(python))),
-        None => {
-            println!("skipped: {test} (needs RECRASH_METADRIVE_PYTHON)");
-            None
-        }
-    }
+fn options() -> Option<Options> {
+    recrash_testing::named_by("RECRASH_METADRIVE_PYTHON").map(Options::new)
 }
 
 /// One pool for all tests: importing MetaDrive is what takes time.
-fn start(test: &str) -> Option<&'static Metadrive> {
+fn start() -> Option<&'static Metadrive> {
     static POOL: OnceLock<Metadrive> = OnceLock::new();
-    options(test)
-        .map(|options| POOL.get_or_init(|| Metadrive::start(options).unwrap_or_else(|error| panic!("{error}"))))
+    options().map(|options| POOL.get_or_init(|| Metadrive::start(options).unwrap_or_else(|error| panic!("{error}"))))
 }
 
 fn ego_contact(rollout: &Rollout) -> Option<f64> {
@@ -34,7 +26,7 @@ fn ego_contact(rollout: &Rollout) -> Option<f64> {
 
 #[test]
 fn a_crossing_at_the_same_time_is_a_contact_and_one_far_apart_is_not() {
-    let Some(metadrive) = start("a_crossing_at_the_same_time_is_a_contact") else { return };
+    let Some(metadrive) = start() else { return };
     let together = checked(&crossing());
     let mut apart = crossing();
     apart["partners"][0]["start"]["arrival_gap_s"] = json!(-3.0);
@@ -57,7 +49,7 @@ fn a_crossing_at_the_same_time_is_a_contact_and_one_far_apart_is_not() {
 
 #[test]
 fn the_same_scenario_gives_the_same_bits_in_any_order_and_on_any_worker() {
-    let Some(mut options) = options("the_same_scenario_gives_the_same_bits") else { return };
+    let Some(mut options) = options() else { return };
     options.workers = 2;
     let metadrive = Metadrive::start(options).unwrap_or_else(|error| panic!("{error}"));
     let mut curve = crossing();
@@ -80,7 +72,7 @@ fn the_same_scenario_gives_the_same_bits_in_any_order_and_on_any_worker() {
 
 #[test]
 fn every_policy_map_and_kind_runs() {
-    let Some(metadrive) = start("every_policy_map_and_kind_runs") else { return };
+    let Some(metadrive) = start() else { return };
     let policies = [
         json!({"type": "sudden_brake", "target_speed": 6.0, "brake_step": 20, "brake_steps": 10}),
         json!({"type": "accel_then_brake", "accel_mag": 0.4, "accel_steps": 20, "cruise_speed": 7.0, "brake_step": 50,
@@ -141,7 +133,7 @@ fn every_policy_map_and_kind_runs() {
 
 #[test]
 fn a_start_far_beside_the_lane_stays_there() {
-    let Some(metadrive) = start("a_start_far_beside_the_lane_stays_there") else { return };
+    let Some(metadrive) = start() else { return };
     let mut draft = crossing();
     draft["partners"][0]["approach"] = json!("same");
     draft["partners"][0]["lane_offset"] = json!(-1);
@@ -155,7 +147,7 @@ fn a_start_far_beside_the_lane_stays_there() {
 
 #[test]
 fn a_barrier_across_the_lane_is_touched_by_a_blind_ego() {
-    let Some(metadrive) = start("a_barrier_across_the_lane_is_touched") else { return };
+    let Some(metadrive) = start() else { return };
     let mut draft = crossing();
     draft["partners"] = json!([]);
     draft["obstacles"] = json!([{"kind": "barrier", "s_m": 30.0, "t_m": 1.0}]);
@@ -171,7 +163,7 @@ fn a_barrier_across_the_lane_is_touched_by_a_blind_ego() {
 
 #[test]
 fn background_traffic_starts_where_it_is_placed_and_drives_when_the_ego_comes() {
-    let Some(metadrive) = start("background_traffic_starts_where_it_is_placed") else { return };
+    let Some(metadrive) = start() else { return };
     let mut draft = crossing();
     draft["map"]["arm_m"] = json!(40.0);
     draft["partners"] = json!([]);
@@ -198,7 +190,7 @@ fn background_traffic_starts_where_it_is_placed_and_drives_when_the_ego_comes() 
 
 #[test]
 fn every_kind_of_road_user_drives_walks_or_stands() {
-    let Some(metadrive) = start("every_kind_of_road_user_drives_walks_or_stands") else { return };
+    let Some(metadrive) = start() else { return };
     for kind in PartnerKind::ALL {
         let mut draft = crossing();
         let fixed = kind == PartnerKind::FixedObject;
@@ -276,7 +268,7 @@ fn every_kind_holds_its_line_after_a_sideways_move_and_brakes_no_harder_than_pla
 #[test]
 fn a_worker_killed_during_a_run_is_replaced_and_the_result_is_the_same() {
     use std::os::unix::fs::PermissionsExt;
-    let Some(options) = options("a_worker_killed_during_a_run_is_replaced") else { return };
+    let Some(options) = options() else { return };
     let mut draft = crossing();
     draft["map"] = json!({"type": "S", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 600.0});
     draft["ego"]["speed_mps"] = json!(5.0);
@@ -312,7 +304,7 @@ fn a_worker_killed_during_a_run_is_replaced_and_the_result_is_the_same() {
 
 #[test]
 fn the_doctor_tells_both_versions() {
-    let Some(options) = options("the_doctor_tells_both_versions") else { return };
+    let Some(options) = options() else { return };
     let found = inspect(&options.python, Duration::from_secs(120));
     assert_eq!(found.metadrive.as_deref(), Some("0.4.3"));
     assert!(found.to_string().ends_with(", ready"), "{found}");

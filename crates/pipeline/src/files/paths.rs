@@ -1,6 +1,7 @@
 //! Paths: how they are told, and the way from one to another.
 
 use serde::Serializer;
+use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
 
 /// A path as JSON: text, with a mark for each byte that is none. For reports, which nobody reads back.
@@ -19,14 +20,9 @@ pub fn as_texts<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok
     serializer.collect_seq(paths.iter().map(|path| path.display().to_string()))
 }
 
-/// A word as a shell takes it.
-pub(crate) fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
+/// A word as a shell takes it. No shell can take a zero byte, and none is given one.
+pub fn quoted(word: &str) -> String {
+    shlex::try_quote(&word.replace('\0', "")).map_or_else(|_| word.to_owned(), Cow::into_owned)
 }
 
 /// The way from a folder to a file; the path as it is where there is none.

@@ -12,12 +12,8 @@ fn request(source: ParitySource, python: PathBuf, out: &Path) -> ParityRequest {
 }
 
 /// The interpreter with MetaDrive, where there is one.
-fn metadrive(test: &str) -> Option<PathBuf> {
-    let python = std::env::var_os("RECRASH_METADRIVE_PYTHON").map(PathBuf::from);
-    if python.is_none() {
-        println!("skipped: {test} (needs RECRASH_METADRIVE_PYTHON)");
-    }
-    python
+fn metadrive() -> Option<PathBuf> {
+    recrash_testing::named_by("RECRASH_METADRIVE_PYTHON")
 }
 
 fn suite(dir: &Path, options: Options) {
@@ -85,7 +81,7 @@ fn scenarios_that_metadrive_fails_on_count_as_disagreeing_and_the_results_are_wr
 
 #[test]
 fn random_scenarios_agree_and_any_number_of_workers_gives_the_same_bytes() {
-    let Some(python) = metadrive("random_scenarios_agree") else { return };
+    let Some(python) = metadrive() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let source = ParitySource::Random { count: 25, seed: 11 };
     let (two, one) = (folder.path().join("two"), folder.path().join("one"));
@@ -104,7 +100,7 @@ fn random_scenarios_agree_and_any_number_of_workers_gives_the_same_bytes() {
 
 #[test]
 fn the_vehicle_alone_agrees() {
-    let Some(python) = metadrive("the_vehicle_alone_agrees") else { return };
+    let Some(python) = metadrive() else { return };
     let result = open_loop(&OpenLoopRequest { count: 36, seed: 5, python, workers: 1 }, &NoProgress).expect("it runs");
     println!("{result:#?}");
     assert!(result.limits.iter().all(|limit| limit.apart_m.len() == 12));
@@ -113,7 +109,7 @@ fn the_vehicle_alone_agrees() {
 
 #[test]
 fn failures_of_a_suite_are_confirmed() {
-    let Some(python) = metadrive("failures_of_a_suite_are_confirmed") else { return };
+    let Some(python) = metadrive() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let dir = folder.path().join("suite");
     suite(&dir, Options { budget: 6, tune_budget: 60, ..Options::default() });

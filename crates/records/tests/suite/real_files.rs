@@ -30,7 +30,7 @@ fn count(set: &RecordSet, wanted: impl Fn(&Template) -> bool) -> usize {
 
 #[test]
 fn the_archive_gives_the_counts_of_the_paper() {
-    let Some(bytes) = real_file("the_archive_gives_the_counts_of_the_paper", ARCHIVE) else { return };
+    let Some(bytes) = real_file(ARCHIVE) else { return };
     let Outcome { value: set, diagnostics } = read(ARCHIVE, &bytes, &paper());
 
     assert_eq!(remaining(&set), [2295, 1911, 235]);
@@ -63,7 +63,7 @@ fn the_archive_gives_the_counts_of_the_paper() {
 
 #[test]
 fn the_current_file_adds_up() {
-    let Some(bytes) = real_file("the_current_file_adds_up", CURRENT) else { return };
+    let Some(bytes) = real_file(CURRENT) else { return };
     let Outcome { value: set, diagnostics } = read(CURRENT, &bytes, &paper());
     assert_eq!((set.files[0].edition, set.files[0].rows), (Edition::Third, 481));
     assert_eq!(set.usable.len() + set.rejects.len(), 481);
@@ -79,8 +79,7 @@ fn the_current_file_adds_up() {
 
 #[test]
 fn both_files_together_are_one_record_an_incident() {
-    let test = "both_files_together_are_one_record_an_incident";
-    let (Some(archive), Some(current)) = (real_file(test, ARCHIVE), real_file(test, CURRENT)) else { return };
+    let (Some(archive), Some(current)) = (real_file(ARCHIVE), real_file(CURRENT)) else { return };
     let files = [SourceText { name: ARCHIVE, bytes: &archive }, SourceText { name: CURRENT, bytes: &current }];
     let Outcome { value: set, diagnostics } = ingest(&files, &one_per_incident()).unwrap();
     assert_eq!(remaining(&set), [2776, 1991, 1932, 196]);
@@ -98,9 +97,8 @@ fn both_files_together_are_one_record_an_incident() {
 
 #[test]
 fn no_code_and_no_column_of_the_real_files_is_unknown() {
-    let test = "no_code_and_no_column_of_the_real_files_is_unknown";
     for name in [ARCHIVE, CURRENT] {
-        let Some(bytes) = real_file(test, name) else { return };
+        let Some(bytes) = real_file(name) else { return };
         let outcome = read(name, &bytes, &paper());
         for code in ["records.unlisted-code", "records.unknown-column", "records.missing-column"] {
             assert!(outcome.diagnostics.iter().all(|d| d.code != code), "{:#?}", outcome.diagnostics);

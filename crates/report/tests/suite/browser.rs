@@ -24,8 +24,7 @@ fn the_page_works_in_a_browser() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/browser");
     let chromium = std::env::var_os("CHROMIUM").map_or_else(|| PathBuf::from("/usr/bin/chromium"), PathBuf::from);
     if let Some(why) = missing(&folder, &chromium) {
-        println!("skipped: the_page_works_in_a_browser ({why})");
-        return;
+        return recrash_testing::skip(why);
     }
     let mut odd = suite::demo();
     odd.suite.title = "</script><img src=x onerror=alert(1)>".to_owned();

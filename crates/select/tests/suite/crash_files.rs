@@ -46,6 +46,6 @@ fn the_sample_is_covered_for_every_seed() {
 
 #[test]
 fn nhtsas_file_is_covered_for_every_seed() {
-    let Some(records) = real_file("nhtsas_file_is_covered_for_every_seed") else { return };
+    let Some(records) = real_file() else { return };
     check_paper_file(&records);
 }

@@ -6,7 +6,33 @@ use recrash_lab::parity::{Agreement, Pair, PairOutcome};
 use recrash_model::spreadsheet::inert;
 use recrash_report::TableView;
 use serde::Serialize;
-use std::fmt::Write as _;
+
+/// Columns of the table of pairs.
+const COLUMNS: [&str; 23] = [
+    "scenario",
+    "map",
+    "policy",
+    "kind",
+    "extras",
+    "native_end",
+    "native_end_s",
+    "native_contact_s",
+    "native_min_gap_m",
+    "native_min_gap_s",
+    "native_failed",
+    "metadrive_end",
+    "metadrive_end_s",
+    "metadrive_contact_s",
+    "metadrive_min_gap_m",
+    "metadrive_min_gap_s",
+    "metadrive_failed",
+    "same_verdict",
+    "same_gap",
+    "same_time",
+    "same_arrival",
+    "ego_apart_5s_m",
+    "error",
+];
 
 /// A table of texts.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -177,11 +203,10 @@ impl Parity {
 
     /// One row for each pair (RFC 4180). Times in seconds, lengths in metres.
     pub fn csv(&self) -> String {
-        let mut text = String::from(
-            "scenario,map,policy,kind,extras,native_end,native_end_s,native_contact_s,native_min_gap_m,native_min_gap_s,\
-             native_failed,metadrive_end,metadrive_end_s,metadrive_contact_s,metadrive_min_gap_m,metadrive_min_gap_s,\
-             metadrive_failed,same_verdict,same_gap,same_time,same_arrival,ego_apart_5s_m,error\r\n",
-        );
+        let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
+        // Into memory, and every row has the header's width.
+        let mut write = |cells: &[String]| writer.write_record(cells).expect("a row of the header's width");
+        write(&COLUMNS.map(str::to_owned));
         for pair in &self.pairs {
             let mut cells = vec![
                 pair.name.clone(),
@@ -198,10 +223,10 @@ impl Parity {
             );
             cells.push(pair.ego_apart_m.get(3).map(|metres| format!("{metres:.3}")).unwrap_or_default());
             cells.push(pair.error.clone().unwrap_or_default());
-            let cells: Vec<String> = cells.iter().map(|cell| quoted(cell)).collect();
-            let _ = write!(text, "{}\r\n", cells.join(","));
+            let cells: Vec<String> = cells.iter().map(|cell| inert(cell).into_owned()).collect();
+            write(&cells);
         }
-        text
+        String::from_utf8(writer.into_inner().unwrap_or_default()).expect("made of texts")
     }
 }
 
@@ -242,9 +267,4 @@ fn outcome_cells(outcome: Option<&PairOutcome>) -> Vec<String> {
         gap(|timed| timed.time_s).unwrap_or_default(),
         outcome.failed.to_string(),
     ]
-}
-
-fn quoted(cell: &str) -> String {
-    let cell = inert(cell);
-    if cell.contains(['"', ',', '\r', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.into_owned() }
 }

@@ -6,7 +6,6 @@ use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::RecordSet;
 use recrash_model::{Diagnostic, Outcome};
 use recrash_records::{SourceText, ingest};
-use std::path::PathBuf;
 
 pub const ARCHIVE: &str = "ads-2021-06-to-2025-06.csv";
 pub const CURRENT: &str = "ads-2025-06-to-2026-01.csv";
@@ -23,16 +22,10 @@ pub fn one_per_incident() -> SystemProfile {
     profile
 }
 
-/// A file of NHTSA's, from the folder `../shared` beside the checkout (`RECRASH_SHARED` names another). Users do not
-/// have it: the test says that it was skipped.
-pub fn real_file(test: &str, name: &str) -> Option<Vec<u8>> {
-    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    let shared = std::env::var_os("RECRASH_SHARED").map_or_else(beside, PathBuf::from);
-    let content = std::fs::read(shared.join("data/nhtsa").join(name)).ok();
-    if content.is_none() {
-        println!("skipped: {test} (needs ../shared)");
-    }
-    content
+/// A file of NHTSA's; where it is not there, the test is skipped.
+pub fn real_file(name: &str) -> Option<Vec<u8>> {
+    let path = recrash_testing::shared(&format!("data/nhtsa/{name}"))?;
+    Some(std::fs::read(path).expect("a readable file"))
 }
 
 /// Ingests one text under the paper's profile.

@@ -6,7 +6,6 @@ use recrash_model::record::{
 };
 use recrash_model::template::{Movement, RoadType, Template};
 use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText, ingest};
-use std::path::PathBuf;
 
 /// The paper's profile.
 pub fn paper() -> SystemProfile {
@@ -65,17 +64,11 @@ pub fn sample() -> RecordSet {
     read(SAMPLE_NAME, SAMPLE_CSV.as_bytes())
 }
 
-/// NHTSA's file up to June 2025, from the folder `../shared` beside the checkout (`RECRASH_SHARED` names another).
-/// Users do not have it: the test says that it was skipped.
-pub fn real_file(test: &str) -> Option<RecordSet> {
+/// NHTSA's file up to June 2025; where it is not there, the test is skipped.
+pub fn real_file() -> Option<RecordSet> {
     let name = "ads-2021-06-to-2025-06.csv";
-    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-    let shared = std::env::var_os("RECRASH_SHARED").map_or_else(beside, PathBuf::from);
-    let content = std::fs::read(shared.join("data/nhtsa").join(name)).ok();
-    if content.is_none() {
-        println!("skipped: {test} (needs ../shared)");
-    }
-    Some(read(name, &content?))
+    let path = recrash_testing::shared(&format!("data/nhtsa/{name}"))?;
+    Some(read(name, &std::fs::read(path).expect("a readable file")))
 }
 
 fn read(name: &str, bytes: &[u8]) -> RecordSet {
