@@ -3,9 +3,9 @@
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue};
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::ContactZone;
 use recrash_model::scenario::Approach;
 use recrash_model::template::{Movement, Template};
+use recrash_model::zones::ContactZone;
 
 /// One sentence for each contradiction: of single facts with template and profile, and of facts with each other.
 pub fn narrative_contradictions(facts: &[Fact], template: Template, profile: &SystemProfile) -> Vec<String> {

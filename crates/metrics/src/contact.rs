@@ -6,7 +6,7 @@ use crate::polygon::ConvexPolygon;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::record::ContactZone;
+use recrash_model::zones::ContactZone;
 
 /// Boxes that do not overlap are moved together along the nearest line until they overlap by this. [m]
 const TOUCH_DEPTH_M: f64 = 0.02;

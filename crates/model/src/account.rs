@@ -3,9 +3,9 @@
 
 use crate::metrics::CollisionKind;
 use crate::narrative::FirstMover;
-use crate::record::ContactZone;
 use crate::scenario::Approach;
 use crate::template::{Movement, RoadType};
+use crate::zones::ContactZone;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,10 @@
 //! Metrics, findings and faithfulness: what a rollout says about the ego, and whether it is true to its record.
 
 use crate::narrative::{FirstMover, Side};
-use crate::record::ContactZone;
 use crate::rollout::TerminationKind;
 use crate::scenario::Approach;
 use crate::template::Template;
+use crate::zones::ContactZone;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

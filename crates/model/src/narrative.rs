@@ -1,9 +1,11 @@
 //! Narratives: a short text about one conflict, and the facts it states, each with the words it came from.
 
+use crate::kinds::PartnerKind;
 use crate::metrics::CollisionKind;
-use crate::record::{ContactZone, PartnerKind, RecordRef};
+use crate::record::RecordRef;
 use crate::scenario::{Approach, Author, MissingArm, ObstacleKind};
 use crate::template::{Movement, Template};
+use crate::zones::ContactZone;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

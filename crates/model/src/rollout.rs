@@ -1,7 +1,7 @@
 //! Rollouts: what happened in one simulation of one scenario.
 
 use crate::geometry::{OrientedBox, Pose, Vec2};
-use crate::record::PartnerKind;
+use crate::kinds::PartnerKind;
 use crate::scenario::ObstacleKind;
 use serde::{Deserialize, Serialize};
 

@@ -5,8 +5,10 @@
 //!
 //! Lateral offsets `t` are positive to the **right** of travel and lane 0 is the leftmost, as in MetaDrive.
 
+use crate::kinds::PartnerKind;
 use crate::narrative::Origin;
-use crate::record::{Lighting, PartnerKind, RecordRef, Surface, Weather};
+use crate::record::RecordRef;
+use crate::surroundings::{Lighting, Surface, Weather};
 use crate::template::Template;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! Sizes and limits of road users, by kind.
 
-use crate::record::PartnerKind;
+use crate::kinds::PartnerKind;
 
 /// Tyre friction of MetaDrive's vehicles (`wheel_friction`) on its only surface, taken for a dry road.
 pub const DRY_TYRE_FRICTION: f64 = 0.9;

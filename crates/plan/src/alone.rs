@@ -92,8 +92,9 @@ fn at(values: &[f64], time_s: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::way::{Bend, Blocked};
-    use recrash_model::record::{PartnerKind, Surface};
+    use recrash_model::kinds::PartnerKind;
     use recrash_model::scenario::Policy;
+    use recrash_model::surroundings::Surface;
 
     fn car(policy: &Policy, way: &Way, start_mps: f64, duration_s: f64) -> Alone {
         Alone::new(&Plan::new(PartnerKind::PassengerCar, policy, 0.0, Surface::Dry), way, 0.0, start_mps, duration_s)

@@ -5,7 +5,7 @@ use crate::constants::{Constants, EGO_OVERTAKE_TIMER_STEPS};
 use crate::give_way::Crossing;
 use crate::speed::{Plan, SpeedPlan};
 use crate::way::Way;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{EGO_ID, Role};
 use recrash_model::scenario::{MapSpec, ObstacleKind};
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};

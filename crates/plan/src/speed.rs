@@ -5,8 +5,9 @@ use crate::constants::{
     HOLD_BELOW_MPS, HOLD_BRAKE, LEAST_THROTTLE, SHARE_OF_BRAKES, STANDING_MPS, STOP_SHORT_M, STOPPING_MPS2,
 };
 use crate::way::Way;
-use recrash_model::record::{PartnerKind, Surface};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
 use serde::Serialize;
 

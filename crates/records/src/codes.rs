@@ -2,7 +2,9 @@
 //! 3.4) and, where an edition spells a value otherwise, from that edition. Left: the value as published.
 
 use crate::text::same_code;
-use recrash_model::record::{Coded, Engagement, Lighting, PartnerKind, Severity, Surface};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::record::{Coded, Engagement, Severity};
+use recrash_model::surroundings::{Lighting, Surface};
 use recrash_model::template::{Movement, RoadType};
 
 /// A code table: published value, meaning.

@@ -1,7 +1,9 @@
 //! The columns of the three editions of the SGO file, and how a header is recognised.
 
 use crate::text::header_key;
-use recrash_model::record::{ContactZone, Edition, Weather};
+use recrash_model::record::Edition;
+use recrash_model::surroundings::Weather;
+use recrash_model::zones::ContactZone;
 use std::collections::BTreeSet;
 
 /// The 122 columns of the first edition (June 2021 to mid 2023).

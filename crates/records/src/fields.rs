@@ -123,9 +123,13 @@ impl Field {
 
     /// The names a coded field's values can have; `None` for the other kinds of field.
     pub fn codes(self) -> Option<Vec<String>> {
-        use recrash_model::record::{ContactZone, Edition, Engagement, Lighting, PartnerKind, Redaction};
-        use recrash_model::record::{Severity, Surface, Weather};
+        use recrash_model::kinds::PartnerKind;
+        use recrash_model::record::Severity;
+        use recrash_model::record::{Edition, Engagement, Redaction};
+        use recrash_model::surroundings::Lighting;
+        use recrash_model::surroundings::{Surface, Weather};
         use recrash_model::template::{Movement, RoadType};
+        use recrash_model::zones::ContactZone;
         let mut names = match self {
             Self::Road => code_names::<RoadType>(),
             Self::SvMovement | Self::CpMovement => code_names::<Movement>(),

@@ -6,7 +6,8 @@ use crate::columns::{Columns, WorkZoneColumn};
 use crate::notes::{Notes, Remark};
 use crate::text::{decode, mend_twice_encoded, same_code};
 use csv::ByteRecord;
-use recrash_model::record::{Coded, CrashRecord, Engagement, Provenance, RecordRef, Redaction, Surface};
+use recrash_model::record::{Coded, CrashRecord, Engagement, Provenance, RecordRef, Redaction};
+use recrash_model::surroundings::Surface;
 use std::borrow::Cow;
 
 /// NHTSA's mark for a narrative, or a part of one, withheld as confidential business information.

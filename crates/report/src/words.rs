@@ -1,8 +1,9 @@
 //! From nouns to words and numbers to text, the same everywhere on the page.
 
 use recrash_model::narrative::{FactSource, FactValue, Origin};
-use recrash_model::record::{Coded, ContactZone, MPS_PER_MPH, RecordRef};
+use recrash_model::record::{Coded, MPS_PER_MPH, RecordRef};
 use recrash_model::template::Template;
+use recrash_model::zones::ContactZone;
 use serde::Serialize;
 use serde_json::Value;
 use std::borrow::Cow;

@@ -5,7 +5,7 @@
 
 use crate::read::{Parts, brief, policy};
 use recrash_model::Diagnostic;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{
     Approach, CrossMap, CurveMap, EgoSpec, Environment, MapSpec, MissingArm, Obstacle, ObstacleKind, Partner,
     RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,

@@ -3,8 +3,8 @@
 use crate::lane::{Centreline, Lane, LaneId};
 use crate::network::{RoadId, RoadNetwork};
 use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::record::PartnerKind;
 use recrash_model::vehicle::VehicleSpec;
 
 /// One lane of a path.

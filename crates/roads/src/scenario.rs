@@ -4,7 +4,7 @@ use crate::lane::LaneId;
 use crate::network::RoadNetwork;
 use crate::path::{Conflict, LanePath};
 use recrash_model::geometry::Pose;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;
 use recrash_model::scenario::{ObstacleKind, ScenarioDraft};
 use std::sync::Arc;

@@ -9,7 +9,7 @@ use crate::path::LanePath;
 use crate::scenario::Scenario;
 use recrash_model::Seed;
 use recrash_model::geometry::{OrientedBox, Pose};
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Approach, Turn};
 use recrash_model::vehicle::VehicleSpec;
 

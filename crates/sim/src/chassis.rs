@@ -9,7 +9,7 @@
 
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
-use recrash_model::record::Surface;
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
 
 /// Physics step. [s]

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::steering::LaneKeeper;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::record::Surface;
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_plan::{Crossing, Manners};
 

@@ -2,7 +2,7 @@
 
 use crate::native::Native;
 use recrash_model::geometry::OrientedBox;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{
     ActorState, ActorTrack, EGO_ID, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, STEP_S, Termination,
     TerminationKind,

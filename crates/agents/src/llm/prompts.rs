@@ -8,10 +8,11 @@ use minijinja::{Environment, context};
 use recrash_model::metrics::Metrics;
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::{Coded, ContactZone, CrashRecord};
+use recrash_model::record::{Coded, CrashRecord};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::template::Template;
 use recrash_model::tuning::{Parameter, TunePoint};
+use recrash_model::zones::ContactZone;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 

@@ -1,7 +1,8 @@
 //! Who a sentence speaks of: where it mentions the ego, the crash partner and others, and which of them a cue is about.
 
 use super::pattern::Pattern;
-use recrash_model::record::{CrashRecord, PartnerKind};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::record::CrashRecord;
 use regex::Regex;
 use std::ops::Range;
 use std::sync::LazyLock;

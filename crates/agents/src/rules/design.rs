@@ -7,14 +7,16 @@ use super::staging::{ConflictKind, Ground, KNOWN, LanePlan, Staging, fits_three_
 use super::timing::{Course, Task, Timing, Wanted, best_timings};
 use super::writing::Facts;
 use crate::{AgentError, Brief, Feedback};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::{FactValue, FirstMover, LongitudinalAction, Narrative, Side};
-use recrash_model::record::{ContactZone, CrashRecord, PartnerKind};
+use recrash_model::record::CrashRecord;
 use recrash_model::scenario::{
     Author, CrossMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind, Partner, Policy,
     RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
 };
 use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_model::zones::ContactZone;
 
 /// Lane width in towns, MetaDrive's. [m]
 const LANE_WIDTH_M: f64 = 3.5;

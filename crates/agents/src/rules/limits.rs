@@ -1,7 +1,7 @@
 //! Greatest speeds.
 
 use super::staging::Ground;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{MapSpec, Turn};
 
 /// A recorded speed below this is that of a vehicle that had braked or stopped, not its speed on the approach; assumed.

@@ -2,10 +2,12 @@
 //! design can choose lanes and timing that make the told meeting happen. The simulator has the last word.
 
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::record::{ContactZone, PartnerKind, Surface};
 use recrash_model::scenario::{LateralMove, Policy};
+use recrash_model::surroundings::Surface;
+use recrash_model::zones::ContactZone;
 use recrash_plan::{Alone, Plan, Way, drift};
 use recrash_roads::LanePath;
 

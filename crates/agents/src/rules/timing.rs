@@ -4,12 +4,14 @@
 use super::rehearsal::{Meeting, Motion, holds_speed, rehearse};
 use super::retry::{Aim, Plan as Attempt, Tried};
 use super::staging::{ConflictKind, Ground};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::CollisionKind;
-use recrash_model::record::{ContactZone, PartnerKind, Surface};
 use recrash_model::scenario::{Approach, LateralMove, MapSpec, Policy, Turn};
+use recrash_model::surroundings::Surface;
 use recrash_model::template::{Movement, Template};
 use recrash_model::vehicle::VehicleSpec;
+use recrash_model::zones::ContactZone;
 use recrash_plan::Plan;
 use recrash_roads::{LanePath, RoadNetwork, RoadPart};
 

@@ -2,13 +2,15 @@
 
 use super::limits::LEAST_TOLD_SPEED_MPS;
 use super::paraphrase::offset_side;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{
     Fact, FactSource, FactValue, FirstMover, LanePosition, LateralKind, LongitudinalAction, Narrative, Side, Signal,
 };
-use recrash_model::record::{ContactZone, MPS_PER_MPH, PartnerKind};
+use recrash_model::record::MPS_PER_MPH;
 use recrash_model::scenario::{Approach, MissingArm};
 use recrash_model::template::{Movement, RoadType};
+use recrash_model::zones::ContactZone;
 
 /// Writes the text of a narrative from its template and facts: two to five sentences.
 pub fn text(narrative: &Narrative) -> String {

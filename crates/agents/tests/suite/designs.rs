@@ -5,13 +5,14 @@ use crate::support;
 use recrash_agents::{AgentError, Design, Feedback, Paraphrase, Problem, Rules, parameters};
 use recrash_metrics::{faithfulness, measure};
 use recrash_model::Diagnostic;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::Check;
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::ContactZone::{self, Front, FrontLeft, FrontRight, Left, Rear, Right};
-use recrash_model::record::{Coded, CrashRecord, PartnerKind};
+use recrash_model::record::{Coded, CrashRecord};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::template::{Movement, RoadType, Template};
+use recrash_model::zones::ContactZone::{self, Front, FrontLeft, FrontRight, Left, Rear, Right};
 use recrash_sim::{Ego, simulate};
 
 /// A way a partner may come, in words, and the contact areas that go with it.

@@ -3,8 +3,8 @@
 use crate::support;
 
 use recrash_model::narrative::{FactSource, Narrative, Origin};
-use recrash_model::record::ContactZone;
 use recrash_model::template::{Movement, RoadType};
+use recrash_model::zones::ContactZone;
 use serde::Deserialize;
 use serde_json::Value;
 

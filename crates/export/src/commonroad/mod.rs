@@ -5,9 +5,10 @@ mod lanelets;
 use crate::xml::{Element, number};
 use crate::{ExportError, ExportFile, ExportOptions};
 use recrash_model::geometry::Pose;
-use recrash_model::record::{Lighting, PartnerKind, Surface, Weather};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, ActorTrack, PlacedObstacle, Rollout, STEP_S};
 use recrash_model::scenario::{Environment, MapSpec, ObstacleKind, Turn};
+use recrash_model::surroundings::{Lighting, Surface, Weather};
 use recrash_roads::Scenario;
 
 /// First ids of each kind of element; lanelets count from 1, and a map has a few hundred.

@@ -3,7 +3,7 @@
 use super::{Context, obstacle_name};
 use crate::openscenario::places::reference_to_centre;
 use crate::xml::Element;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::EGO_ID;
 use recrash_model::scenario::ObstacleKind;
 use recrash_model::vehicle::VehicleSpec;

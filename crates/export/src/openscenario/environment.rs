@@ -2,8 +2,8 @@
 
 use crate::openscenario::entities::property;
 use crate::xml::{Element, number};
-use recrash_model::record::{Lighting, Surface, Weather};
 use recrash_model::scenario::Environment;
+use recrash_model::surroundings::{Lighting, Surface, Weather};
 
 /// The environment action.
 pub(super) fn environment_action(environment: &Environment) -> Element {

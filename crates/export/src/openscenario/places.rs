@@ -6,7 +6,7 @@ use super::Context;
 use crate::opendrive::LanePlace;
 use crate::xml::{Element, number, rounded};
 use recrash_model::geometry::{Pose, Vec2};
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Approach, Start};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{LanePath, Placement};

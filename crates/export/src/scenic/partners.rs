@@ -2,7 +2,7 @@
 
 use super::{Context, constant, road_user};
 use crate::xml::{number, rounded};
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Approach, DEFAULT_SPEED_KP, Policy, Start};
 use std::fmt::Write;
 

@@ -2,7 +2,7 @@
 
 use crate::common::{CASES, draft, two_parameters};
 use recrash_export::{ExportOptions, Format, export};
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use std::collections::BTreeSet;
 use std::path::Path;
 

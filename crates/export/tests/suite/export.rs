@@ -103,7 +103,7 @@ fn every_point_of_the_sweep_is_in_range_and_the_first_is_the_scenario() {
 
 #[test]
 fn friction_of_the_surface_is_written() {
-    use recrash_model::record::Surface;
+    use recrash_model::surroundings::Surface;
     for surface in [Surface::Dry, Surface::Wet, Surface::SnowIce] {
         let mut draft = common::draft(CASES[2].1);
         draft.environment.surface = surface;

@@ -4,7 +4,7 @@ use crate::common::{CASES, draft, scenario, straight_on, two_parameters};
 use proptest::prelude::*;
 use recrash_export::{ExportOptions, Format, PartnersAs, export, import};
 use recrash_model::Diagnostic;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{LateralMove, Policy, ScenarioDraft};
 use recrash_sim::{Ego, simulate};
 

@@ -1,8 +1,8 @@
 //! Right or wrong, field by field, and how sure a share of so many can be. Definitions: `docs/models/evaluation.md`.
 
 use recrash_model::account::Account;
-use recrash_model::record::ContactZone;
 use recrash_model::scenario::Approach;
+use recrash_model::zones::ContactZone;
 use serde::{Deserialize, Serialize};
 
 /// 97.5th percentile of the normal distribution: two-sided 95 %.

@@ -1,7 +1,7 @@
 //! One scenario on both simulators, compared; and what many of them say together.
 
+use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{FindingKind, Timed};
-use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{Role, Rollout, STEP_S, TerminationKind};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::{Policy, ScenarioDraft};
@@ -256,7 +256,7 @@ pub fn policy_name(policy: &Policy) -> &'static str {
 }
 
 fn extras(draft: &ScenarioDraft) -> Vec<&'static str> {
-    use recrash_model::record::Surface;
+    use recrash_model::surroundings::Surface;
     let mut all = Vec::new();
     all.extend((!draft.obstacles.is_empty()).then_some("obstacles"));
     all.extend((draft.traffic.density > 0.0).then_some("traffic"));

@@ -1,13 +1,14 @@
 //! Random checked scenarios over everything that scenario files can say.
 
 use recrash_model::Seed;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Side;
-use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::scenario::{
     Approach, CrossMap, CurveMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind,
     Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap, Traffic, Turn,
 };
 use recrash_model::seed::Rng;
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{Scenario, check};
 

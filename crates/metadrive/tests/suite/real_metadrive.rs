@@ -2,7 +2,7 @@
 
 use crate::common::{checked, crossing};
 use recrash_metadrive::{Drive, Metadrive, Options, inspect};
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{Scenario, background_traffic};

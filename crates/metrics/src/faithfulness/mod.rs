@@ -18,10 +18,10 @@ use recrash_model::metrics::{
     Check, CheckKind, CheckResult, CollisionKind, Expectation, Metrics, PartnerMetrics, Verdict,
 };
 use recrash_model::narrative::{FirstMover, Side};
-use recrash_model::record::ContactZone;
 use recrash_model::rollout::{Role, Rollout};
 use recrash_model::scenario::Approach;
 use recrash_model::template::{Movement, RoadType};
+use recrash_model::zones::ContactZone;
 use recrash_roads::{RoadNetwork, RoadPart, Scenario};
 
 /// A crash this near a junction is an intersection's. [m] (assumed; crash data call 15 to 75 m intersection-related)

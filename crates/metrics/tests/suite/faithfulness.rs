@@ -5,10 +5,10 @@ use recrash_metrics::faithfulness_on;
 use recrash_model::math::{FRAC_PI_2, PI};
 use recrash_model::metrics::{Answer, CheckKind, CheckResult, CollisionKind, Expectation, Verdict};
 use recrash_model::narrative::{FirstMover, Side};
-use recrash_model::record::ContactZone;
 use recrash_model::rollout::{ActorState, Role, Rollout};
 use recrash_model::scenario::{Approach, MissingArm, Turn};
 use recrash_model::template::{Movement, RoadType, Template};
+use recrash_model::zones::ContactZone;
 use recrash_roads::RoadNetwork;
 
 fn expecting(road: RoadType, sv: Movement, cp: Movement) -> Expectation {

@@ -4,10 +4,10 @@ use crate::world::*;
 use recrash_metrics::{findings_of, series};
 use recrash_model::math::FRAC_PI_2;
 use recrash_model::metrics::{CollisionKind, FindingKind, Metrics};
-use recrash_model::record::ContactZone;
 use recrash_model::rollout::ActorState;
 use recrash_model::rollout::{Event, EventKind, Role, Rollout, TerminationKind};
 use recrash_model::scenario::{Approach, Turn};
+use recrash_model::zones::ContactZone;
 
 fn kinds(rollout: &Rollout, metrics: &Metrics) -> Vec<FindingKind> {
     findings_of(rollout, metrics, &CRITERIA).iter().map(|finding| finding.kind).collect()

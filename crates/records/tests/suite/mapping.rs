@@ -1,10 +1,11 @@
 //! Mapping files: another database as records, and what is said of a mapping that does not fit.
 
 use crate::common::paper;
-use recrash_model::record::{
-    Coded, ContactZone, Edition, Lighting, PartnerKind, RejectReason, Severity, Surface, Weather,
-};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::record::{Coded, Edition, RejectReason, Severity};
+use recrash_model::surroundings::{Lighting, Surface, Weather};
 use recrash_model::template::{Movement, RoadType};
+use recrash_model::zones::ContactZone;
 use recrash_records::{IngestError, IngestOptions, Mapping, SourceText, ingest_with};
 
 const CRSS: &str = include_str!("../../../../docs/mappings/crss.toml");

@@ -2,15 +2,16 @@
 
 use super::roads::{self, Arm, Path, Way};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::*;
-use recrash_model::record::{ContactZone, PartnerKind};
 use recrash_model::rollout::*;
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::*;
 use recrash_model::selection::Cluster;
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::vehicle::VehicleSpec;
+use recrash_model::zones::ContactZone;
 use recrash_report::{RoadDrawing, RunView};
 
 /// Time after which every run ends. [s]

@@ -3,6 +3,7 @@
 //! The page's tests use it too.
 
 use super::drive::{self, Plan};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::*;
 use recrash_model::narrative::*;
 use recrash_model::profile::*;
@@ -10,9 +11,11 @@ use recrash_model::record::*;
 use recrash_model::rollout::TerminationKind;
 use recrash_model::scenario::*;
 use recrash_model::selection::*;
+use recrash_model::surroundings::{Lighting, Surface, Weather};
 use recrash_model::template::*;
 use recrash_model::triage::{EgoOutcome, Triage};
 use recrash_model::tuning::*;
+use recrash_model::zones::ContactZone;
 use recrash_model::{Diagnostic, Location, Seed};
 use recrash_report::{CaseRow, CaseView, RunRow, RunTrace, RunView, SuiteView, Thumbnail};
 use std::path::Path;

@@ -125,7 +125,7 @@ fn columns(record: &CrashRecord) -> Markup {
     let text = |value: String| html! { (value) };
     let coded_text = |value: Result<String, &'static str>| value.map(text);
     let speed = |value: Option<f64>| value.and_then(words::speed).map(text).ok_or(blank);
-    let zones = |zones: &[recrash_model::record::ContactZone]| {
+    let zones = |zones: &[recrash_model::zones::ContactZone]| {
         if zones.is_empty() { Err("no zone is ticked") } else { Ok(text(words::zones(zones))) }
     };
     let weather: Vec<String> = record.weather.iter().map(words::name).collect();

@@ -5,7 +5,7 @@ use crate::view::RunView;
 use crate::words;
 use maud::{Markup, html};
 use recrash_model::metrics::Contact;
-use recrash_model::record::ContactZone;
+use recrash_model::zones::ContactZone;
 
 /// Both vehicles.
 pub fn zones(case: Case) -> Markup {

@@ -6,7 +6,7 @@ use crate::lane::Centreline;
 use crate::network::{RoadNetwork, RoadPart};
 use crate::path::LanePath;
 use crate::scenario::Placement;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{MapSpec, Partner, Policy, ScenarioDraft, Start};
 use recrash_model::vehicle::VehicleSpec;
 

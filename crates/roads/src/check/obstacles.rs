@@ -5,7 +5,7 @@ use crate::lane::LaneId;
 use crate::network::RoadNetwork;
 use crate::scenario::{ObstaclePlacement, Placement, obstacle_size};
 use recrash_model::geometry::Vec2;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;
 use recrash_model::scenario::{Obstacle, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;

@@ -5,7 +5,7 @@ use crate::network::{RoadNetwork, RoadPart};
 use crate::path::{Conflict, LanePath};
 use crate::scenario::{ObstaclePlacement, Placement};
 use recrash_model::geometry::OrientedBox;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Approach, MapSpec, Partner, ScenarioDraft, Start, Turn};
 use recrash_model::vehicle::VehicleSpec;
 

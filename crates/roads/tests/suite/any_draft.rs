@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use recrash_model::geometry::OrientedBox;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Side;
-use recrash_model::record::PartnerKind;
 use recrash_model::scenario::*;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{check, read_draft, write_draft};

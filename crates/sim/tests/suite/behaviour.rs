@@ -1,11 +1,12 @@
 //! What drivers do, against what was measured in MetaDrive and what the models promise.
 
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Side;
-use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{EventKind, Rollout, TerminationKind};
 use recrash_model::scenario::{
     Approach, LateralMove, MapSpec, Obstacle, ObstacleKind, Policy, ScenarioDraft, Start, Turn,
 };
+use recrash_model::surroundings::Surface;
 use recrash_sim::{Ego, simulate};
 
 use crate::common::{alone, checked, cross, curve, lead, roundabout, steady, straight, wide_cross};

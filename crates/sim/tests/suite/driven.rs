@@ -1,7 +1,7 @@
 //! Promises about a run that somebody else drives: the same bytes whoever owns the loop, from any snapshot, in any memory.
 
 use proptest::prelude::*;
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, Event, Termination, TerminationKind};
 use recrash_model::scenario::{Approach, Start, Turn};
 use recrash_roads::Scenario;

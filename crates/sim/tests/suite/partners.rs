@@ -1,11 +1,12 @@
 //! What every kind of partner does on its way: it holds its line, and brakes no harder than its plan says.
 
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Side;
-use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::{
     Approach, CurveMap, LateralMove, MapSpec, Obstacle, ObstacleKind, Policy, ScenarioDraft, Start, Turn,
 };
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_plan::Plan;
 use recrash_sim::{Ego, simulate};

@@ -1,11 +1,12 @@
 //! The competent and careful driver: that it drives well, and that it reacts no sooner and no less than UN R157 says.
 
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Side;
-use recrash_model::record::{PartnerKind, Surface};
 use recrash_model::rollout::{Rollout, TerminationKind};
 use recrash_model::scenario::{
     Approach, LateralMove, MapSpec, MissingArm, Obstacle, ObstacleKind, Policy, ScenarioDraft, Start, Turn,
 };
+use recrash_model::surroundings::Surface;
 use recrash_sim::{Ego, EmergencyResponse, simulate};
 
 use crate::common::{alone, checked, cross, curve, lead, random_draft, roundabout, steady, straight, tee, wide_cross};

@@ -1,9 +1,10 @@
 //! Promises about every run: it ends, it is finite, it repeats to the bit, and its steps allocate nothing.
 
 use proptest::prelude::*;
-use recrash_model::record::{PartnerKind, Surface};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, Rollout, Termination, TerminationKind};
 use recrash_model::scenario::{Approach, ScenarioDraft, Start, Turn};
+use recrash_model::surroundings::Surface;
 use recrash_roads::Scenario;
 use recrash_sim::{
     CastMember, Controls, Ego, EgoDriver, Observation, RolloutRecorder, Runner, SummaryRecorder, simulate,

@@ -1,7 +1,8 @@
 //! The vehicle model: closed-form physics first, then MetaDrive's own trajectories.
 
 use recrash_model::geometry::{Pose, Vec2};
-use recrash_model::record::{PartnerKind, Surface};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_sim::{Chassis, Controls, VehicleState};
 

@@ -5,12 +5,14 @@ use super::order::{Met, first};
 use super::zones::zones;
 use super::{Relation, movement, only, read_sentences, reading_of, road, side_from_zones};
 use recrash_model::account::{Account, RoadGroup};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::Side;
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::{ContactZone, CrashRecord, PartnerKind};
+use recrash_model::record::CrashRecord;
 use recrash_model::scenario::Approach;
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 
 /// Reads a record.
 pub fn account(record: &CrashRecord, profile: &SystemProfile) -> Account {

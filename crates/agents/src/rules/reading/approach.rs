@@ -4,8 +4,9 @@ use super::super::actors::Actor;
 use super::super::pattern::Pattern;
 use super::{MEETING, Sentence, details, only, words};
 use recrash_model::narrative::{FactSource, LanePosition, Side};
-use recrash_model::record::{ContactZone, CrashRecord};
+use recrash_model::record::CrashRecord;
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 use regex::Regex;
 
 /// How the partner stood to the ego before the conflict.

@@ -17,8 +17,9 @@ use super::pattern::Pattern;
 use super::text::telling_sentences;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue};
-use recrash_model::record::{ContactZone, CrashRecord};
+use recrash_model::record::CrashRecord;
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 
 /// A sentence and whom it mentions.
 #[derive(Debug, Clone)]

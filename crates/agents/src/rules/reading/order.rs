@@ -3,8 +3,8 @@
 use super::{Relation, only};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::FirstMover;
-use recrash_model::record::ContactZone;
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 
 /// What tells who was first.
 pub(super) struct Met<'a> {

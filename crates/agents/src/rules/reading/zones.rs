@@ -2,7 +2,7 @@
 
 use super::super::actors::Actor;
 use super::{MEETING, Sentence};
-use recrash_model::record::ContactZone;
+use recrash_model::zones::ContactZone;
 use regex::{Captures, Regex};
 use std::sync::LazyLock;
 

@@ -1,12 +1,12 @@
 //! Records for tests.
 
 use recrash_agents::{Brief, Paraphrase, Rules};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
-use recrash_model::record::{
-    Coded, ContactZone, CrashRecord, Edition, Engagement, PartnerKind, Provenance, RecordRef, Redaction, Severity,
-};
+use recrash_model::record::{Coded, CrashRecord, Edition, Engagement, Provenance, RecordRef, Redaction, Severity};
 use recrash_model::template::{Movement, RoadType, Template};
+use recrash_model::zones::ContactZone;
 use recrash_model::{Outcome, Seed};
 use serde::Deserialize;
 

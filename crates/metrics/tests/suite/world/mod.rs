@@ -3,11 +3,11 @@
 
 use recrash_metrics::EgoWay;
 use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::Metrics;
 use recrash_model::narrative::Side;
 use recrash_model::profile::FailureCriteria;
-use recrash_model::record::PartnerKind;
 use recrash_model::rollout::{
     ActorState, ActorTrack, EGO_ID, Event, EventKind, PlacedObstacle, ROLLOUT_FORMAT, Role, Rollout, STEP_S,
     Termination, TerminationKind,

@@ -5,7 +5,7 @@ use super::protocol::{Answer, PROTOCOL, Reset, Said, Step};
 use crate::secrets;
 use recrash_agents::llm::Scrubber;
 use recrash_child::{Program, Silence, printable};
-use recrash_model::record::PartnerKind;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::Termination;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Scenario;

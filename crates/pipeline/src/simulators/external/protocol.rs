@@ -1,9 +1,10 @@
 //! What is said to an external ego and what it answers: one JSON object a line, see `docs/ego-protocol.md`.
 
 use recrash_model::geometry::Vec2;
-use recrash_model::record::{PartnerKind, Surface};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, STEP_S, Termination};
 use recrash_model::scenario::ObstacleKind;
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Scenario;
 use recrash_sim::{CastMember, Controls, Observation};

@@ -6,12 +6,13 @@ use crate::progress::{Progress, ProgressEvent};
 use recrash_lab::parity::compare::quantile;
 use recrash_metadrive::Drive;
 use recrash_model::Seed;
-use recrash_model::record::{PartnerKind, Surface};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::SUBSTEPS;
 use recrash_model::scenario::{
     EgoSpec, Environment, MapSpec, SCENARIO_FORMAT, ScenarioDraft, Source, StraightMap, Traffic, Turn,
 };
 use recrash_model::seed::Rng;
+use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{Scenario, check};
 use recrash_sim::{Chassis, Controls, VehicleState};

@@ -5,9 +5,10 @@ mod story;
 mod telling;
 
 use recrash_model::Seed;
-use recrash_model::record::{ContactZone, Edition};
+use recrash_model::record::Edition;
 use recrash_model::seed::Rng;
 use recrash_model::template::{Movement, RoadType};
+use recrash_model::zones::ContactZone;
 use recrash_records::published_header;
 use story::{STORIES, Story};
 use telling::{ENTITIES, Entity, Facts, MANUFACTURER, Partner, Place, between, chance, pick};

@@ -1,11 +1,11 @@
 //! Rows that the paper's profile cannot use: other movements and roads.
 
 use super::story::{From, Partners, Story};
-use recrash_model::record::ContactZone::{Front, FrontRight, Left, Rear, RearLeft, Right};
 use recrash_model::template::Movement::{
     Backing, ChangingLanes, LaneDeparture, NmCrossing, Parked, Stopped, Straight, UTurn,
 };
 use recrash_model::template::RoadType::{Highway, Intersection, ParkingLot, RuralRoad, Street};
+use recrash_model::zones::ContactZone::{Front, FrontRight, Left, Rear, RearLeft, Right};
 
 const BASE: Story = Story {
     road: Street,

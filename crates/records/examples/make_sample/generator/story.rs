@@ -5,9 +5,9 @@
 //! `{at}` and `{cp_at}` a speed or nothing, `{llane}` a lane that has a neighbour on its right, `{rlane}` one that has a
 //! neighbour on its left, `{lane}` any. A first letter in upper case asks for one in the text.
 
-use recrash_model::record::ContactZone::{self, Front, FrontLeft, FrontRight, Left, Rear, RearLeft, RearRight, Right};
 use recrash_model::template::Movement::{self, LeftTurn, RightTurn, Straight};
 use recrash_model::template::RoadType::{self, Highway, Intersection, TrafficCircle};
+use recrash_model::zones::ContactZone::{self, Front, FrontLeft, FrontRight, Left, Rear, RearLeft, RearRight, Right};
 
 /// Where the partner comes from, seen from the subject vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! From a story to the words of a report: who reports, what the partner is called, where it happened, how it ended.
 
 use super::story::{From, Partners, Story};
-use recrash_model::record::ContactZone;
 use recrash_model::seed::Rng;
 use recrash_model::template::RoadType;
+use recrash_model::zones::ContactZone;
 
 /// One of `items`.
 pub fn pick<T: Copy>(rng: &mut Rng, items: &[T]) -> T {

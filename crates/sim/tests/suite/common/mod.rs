@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each user takes some of these")]
 
 use recrash_model::Seed;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Side;
-use recrash_model::record::PartnerKind;
 use recrash_model::scenario::{
     Approach, Author, CrossMap, CurveMap, EgoSpec, Environment, LateralMove, MapSpec, MissingArm, Obstacle,
     ObstacleKind, Partner, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source, Start, StraightMap, TeeMap,

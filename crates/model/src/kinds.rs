@@ -1,0 +1,56 @@
+//! Kinds of road users, of records and of scenarios.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Kind of crash partner (column `Crash With`), and of any road user in a scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PartnerKind {
+    /// `Passenger Car`.
+    #[default]
+    PassengerCar,
+    /// `SUV`.
+    Suv,
+    /// `Van`.
+    Van,
+    /// `Pickup Truck`.
+    PickupTruck,
+    /// `Heavy Truck`.
+    HeavyTruck,
+    /// `Bus`.
+    Bus,
+    /// `Motorcycle`.
+    Motorcycle,
+    /// `Non-Motorist: Cyclist`.
+    Cyclist,
+    /// `Non-Motorist: Pedestrian`.
+    Pedestrian,
+    /// `Non-Motorist: Other` (scooters, skateboards).
+    OtherNonMotorist,
+    /// `First Responder Vehicle`.
+    FirstResponder,
+    /// `Animal`.
+    Animal,
+    /// `Other Fixed Object`, `Pole / Tree`.
+    FixedObject,
+}
+
+impl PartnerKind {
+    /// Every kind.
+    pub const ALL: [Self; 13] = [
+        Self::PassengerCar,
+        Self::Suv,
+        Self::Van,
+        Self::PickupTruck,
+        Self::HeavyTruck,
+        Self::Bus,
+        Self::Motorcycle,
+        Self::Cyclist,
+        Self::Pedestrian,
+        Self::OtherNonMotorist,
+        Self::FirstResponder,
+        Self::Animal,
+        Self::FixedObject,
+    ];
+}
