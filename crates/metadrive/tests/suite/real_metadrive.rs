@@ -220,7 +220,7 @@ fn every_kind_of_road_user_drives_walks_or_stands() {
 
 #[test]
 fn every_kind_holds_its_line_after_a_sideways_move_and_brakes_no_harder_than_planned() {
-    let Some(metadrive) = start("every_kind_holds_its_line_after_a_sideways_move") else { return };
+    let Some(metadrive) = start() else { return };
     let moving = PartnerKind::ALL.into_iter().filter(|kind| *kind != PartnerKind::FixedObject);
     let cases: Vec<(PartnerKind, f64)> = moving
         .flat_map(|kind| {
