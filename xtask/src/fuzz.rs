@@ -21,7 +21,7 @@ pub fn run(_: &mut Tally) -> Result {
         let (fresh, known) = (folder(name, "fresh")?, known(name)?);
         let mut command = Command::new(programs.join(name));
         command.arg(fresh).arg(known).arg(root().join("fuzz/corpus").join(name));
-        command.args(["-max_len=4096", "-max_total_time=20", "-verbosity=0"]);
+        command.args(["-max_len=8192", "-max_total_time=20", "-verbosity=0"]);
         command.arg(format!("-artifact_prefix={}/", folder(name, "findings")?.display()));
         let dictionary = root().join("fuzz/dictionaries").join(name);
         if dictionary.exists() {
@@ -40,7 +40,7 @@ pub fn keep() -> Result {
         let (fresh, known, fewest) = (folder(name, "fresh")?, known(name)?, emptied(name, "fewest")?);
         let written = inputs::written(name);
         fill(&fewest, &written)?;
-        let merge = ["-set_cover_merge=1", "-use_counters=0", "-max_len=4096", "-verbosity=1"];
+        let merge = ["-set_cover_merge=1", "-use_counters=0", "-max_len=8192", "-verbosity=1"];
         run_command(Command::new(programs.join(name)).args(merge).arg(&fewest).arg(known).arg(fresh))?;
         let entries = fs::read_dir(&fewest).map_err(|error| error.to_string())?.filter_map(|entry| entry.ok());
         let mut found: Vec<Vec<u8>> = entries.filter_map(|entry| fs::read(entry.path()).ok()).collect();
