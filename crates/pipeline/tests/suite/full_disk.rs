@@ -16,7 +16,7 @@ fn write_with_room(path: &Path, content: &[u8]) -> std::io::Result<()> {
 }
 
 fn run_all(suite: &Suite) -> Result<(), PipelineError> {
-    Stage::ALL.into_iter().try_for_each(|stage| run_stage(&suite, stage, &NoProgress).map(drop))
+    Stage::ALL.into_iter().try_for_each(|stage| run_stage(suite, stage, &NoProgress).map(drop))
 }
 
 #[test]

@@ -1,146 +1,169 @@
-"""Runs an exported scenario in plain MetaDrive 0.4.3, without recrash.
+"""Runs a recrash scenario in plain MetaDrive 0.4.3, without recrash.
 
     pip install metadrive-simulator==0.4.3        (Python 3.8 to 3.11)
     python run_metadrive.py SCENARIO.metadrive.json            a window from above where there is a display
     python run_metadrive.py SCENARIO.metadrive.json --headless --trace states.json
 
-The last line printed is JSON: how it ended, when, and the least distance between the boxes of ego and partners.
+The last line printed is JSON: how it ended, when, and the least gap between the boxes of the ego and the partners.
 To test another system, replace `drive_ego`.
+
+recrash itself runs this same file as a worker, with `--worker`: it reads one JSON request a line from stdin and answers
+with one JSON line each. The first line that it writes then is
+
+    {"hello": {"python": "3.11.7", "metadrive": "0.4.3", "problem": null}}
+
+and for every {"id": 1, "run": {...}} either {"id": 1, "done": {...}} or {"id": 1, "error": "..."}. What a run holds is
+written down in crates/plan/src/metadrive.rs. It brings every number with it: places, sizes, what each partner plans, and
+the constants that give plans their meaning; docs/models/policies.md says what they mean, metadrive-backend.md how the
+world is set up.
 """
 
 import argparse
 import json
 import math
 import os
+import sys
 
-from metadrive.component.map.pg_map import PGMap
-from metadrive.component.pg_space import ConstantSpace, ParameterSpace
-from metadrive.component.pgblock.curve import Curve
-from metadrive.component.pgblock.first_block import FirstPGBlock
-from metadrive.component.pgblock.roundabout import Roundabout
-from metadrive.component.pgblock.std_intersection import StdInterSection
-from metadrive.component.pgblock.std_t_intersection import StdTInterSection
-from metadrive.component.pgblock.straight import Straight
-from metadrive.component.static_object.traffic_object import TrafficBarrier, TrafficCone, TrafficWarning
-from metadrive.component.vehicle.vehicle_type import StaticDefaultVehicle, vehicle_class_to_type, vehicle_type
-from metadrive.engine.base_engine import BaseEngine
-from metadrive.envs.metadrive_env import MetaDriveEnv
-from metadrive.manager.pg_map_manager import PGMapManager
-from metadrive.obs.observation_base import DummyObservation
-from metadrive.policy.idm_policy import IDMPolicy
-from shapely.geometry import Polygon
+WANTED = "0.4.3"
+SUBSTEPS = 5
+WORKER = "--worker" in sys.argv[1:]
 
-BLOCKS = {"S": Straight, "C": Curve, "X": StdInterSection, "T": StdTInterSection, "O": Roundabout}
-OBSTACLES = {"cone": TrafficCone, "barrier": TrafficBarrier, "warning": TrafficWarning}
-STEP_S = 0.1
-
-# The engine would download pictures that nobody needs from above.
-BaseEngine.try_pull_asset = staticmethod(lambda *arguments, **options: None)
+if WORKER:
+    # Libraries may print what they like: the real stdout is ours alone, theirs goes to stderr.
+    ANSWERS = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
+    os.dup2(2, 1)
 
 
-def drive_ego(env, vehicle, policy):
-    """[steering, throttle] of the ego, each -1 to 1, steering positive to the left. Here: MetaDrive's IDM policy."""
+def drive_ego(world, policy):
+    """[steering, throttle] of the ego, each -1 to 1, steering positive to the left. Here: MetaDrive's IDM policy.
+
+    `world.actors` holds everybody, the ego first; `world.env` is the MetaDrive environment.
+    """
     return policy.act()
 
 
-class EgoPolicy(IDMPolicy):
-    """MetaDrive's IDM policy at the speed the scenario wants."""
-
-    target_speed_mps = 0.0
-
-    def __init__(self, vehicle, random_seed):
-        super().__init__(vehicle, random_seed)
-        self.NORMAL_SPEED = self.target_speed = 3.6 * type(self).target_speed_mps
+def send(message):
+    ANSWERS.write(json.dumps(message, allow_nan=False, separators=(",", ":")) + "\n")
+    ANSWERS.flush()
 
 
-class PartnerPolicy(IDMPolicy):
-    """Steers along the partner's way with the IDM policy's gains; its speed follows the script."""
+def hello(metadrive=None, kind=None, detail=""):
+    problem = None if kind is None else {"kind": kind, "detail": detail[:500]}
+    python = ".".join(str(part) for part in sys.version_info[:3])
+    send({"hello": {"python": python, "metadrive": metadrive, "problem": problem}})
 
-    def __init__(self, vehicle, spec, network):
-        super().__init__(vehicle, 0)
-        self.spec, self.script, self.enable_lane_change = spec, spec["policy"], False
-        self.lanes = [network.get_lane(tuple(index)) for index in spec["way"]]
-        self.segment = 0
-        self.NORMAL_SPEED = self.target_speed = 3.6 * self.script.get("target_speed_mps", 0.0)
 
-    def locate(self):
-        """(s, t) on the lane of its way it is on."""
-        s, t = self.lanes[self.segment].local_coordinates(self.control_object.position)
-        while s > self.lanes[self.segment].length and self.segment + 1 < len(self.lanes):
-            self.segment += 1
-            s, t = self.lanes[self.segment].local_coordinates(self.control_object.position)
-        return s, t
+def installed_version():
+    try:
+        from importlib import metadata
+    except ImportError:  # Python 3.7 and older
+        return None
+    for name in ("metadrive-simulator", "metadrive_simulator", "metadrive"):
+        try:
+            return metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return None
 
-    def lateral_target(self, now):
-        """Where it wants to be to the right of its lane, and how fast that moves."""
-        offset = self.spec["t_m"]
-        for move in self.spec["lateral"]:
-            if now < move["start_s"]:
-                break
-            rate = (move["to_t_m"] - offset) / move["duration_s"]
-            if now < move["start_s"] + move["duration_s"]:
-                return offset + rate * (now - move["start_s"]), rate
-            offset = move["to_t_m"]
-        return offset, 0.0
 
-    def decide(self, step, ego_gap_s):
-        vehicle = self.control_object
-        s, t = self.locate()
-        wanted, rate = self.lateral_target(step * STEP_S)
-        drift = max(-0.5, min(0.5, -rate / max(vehicle.speed, 1.0)))
-        error = self.lanes[self.segment].heading_theta_at(s + 1) + drift - vehicle.heading_theta
-        error = math.atan2(math.sin(error), math.cos(error))
-        steering = self.heading_pid.get_result(-error) + self.lateral_pid.get_result(-(t - wanted))
-        return [steering, self.throttle(step, ego_gap_s)]
+def give_up(kind, detail="", version=None):
+    """Tells in one line why it cannot run."""
+    if not WORKER:
+        sys.exit("%s: %s; pip install metadrive-simulator==%s" % (kind, detail or version, WANTED))
+    hello(version, kind, detail)
+    sys.exit(0)
 
-    def throttle(self, step, ego_gap_s):
-        script, kind, speed = self.script, self.script["type"], self.control_object.speed
-        hold = lambda wanted: script.get("speed_kp", 0.3) * (wanted - speed)
-        if kind in ("sudden_brake", "accel_then_brake"):
-            if script["brake_step"] <= step < script["brake_step"] + script["brake_steps"]:
-                return -1.0
-            if step < script.get("accel_steps", 0):
-                return script["accel_mag"]
-            return hold(script["target_speed"] if kind == "sudden_brake" else script["cruise_speed"])
-        if kind == "stopped":
-            waits = script.get("depart_step") is None or step < script["depart_step"]
-            return -1.0 if waits else hold(script["target_speed_mps"])
-        if kind == "yielding":
-            conflict = self.spec.get("conflict")
-            if conflict and 0 < ego_gap_s < script["gap_s"]:
-                driven = sum(lane.length for lane in self.lanes[: self.segment]) + self.locate()[0]
-                left = conflict["partner_s_m"] - 6.0 - driven
-                if left > 0:
-                    return hold(min(script["target_speed_mps"], math.sqrt(6.0 * max(left - 0.5, 0.0))))
-            return hold(script["target_speed_mps"])
-        self.target_speed = self.NORMAL_SPEED
-        return self.act()[1]
+
+VERSION = installed_version()
+if VERSION is None:
+    give_up("metadrive_missing")
+if VERSION != WANTED:
+    give_up("metadrive_version", VERSION, VERSION)
+try:
+    from metadrive.component.map.pg_map import PGMap
+    from metadrive.component.pg_space import ConstantSpace, ParameterSpace
+    from metadrive.component.pgblock.curve import Curve
+    from metadrive.component.pgblock.first_block import FirstPGBlock
+    from metadrive.component.pgblock.roundabout import Roundabout
+    from metadrive.component.pgblock.std_intersection import StdInterSection
+    from metadrive.component.pgblock.std_t_intersection import StdTInterSection
+    from metadrive.component.pgblock.straight import Straight
+    from metadrive.component.road_network.node_road_network import NodeRoadNetwork
+    from metadrive.component.static_object.traffic_object import TrafficBarrier, TrafficCone, TrafficWarning
+    from metadrive.component.vehicle.vehicle_type import StaticDefaultVehicle, vehicle_class_to_type, vehicle_type
+    from metadrive.engine.base_engine import BaseEngine
+    from metadrive.envs.metadrive_env import MetaDriveEnv
+    from metadrive.manager.pg_map_manager import PGMapManager
+    from metadrive.obs.observation_base import DummyObservation
+    from metadrive.policy.idm_policy import FrontBackObjects, IDMPolicy
+    from panda3d.core import LVector3, Vec3
+except Exception as error:  # whatever it is, it is told in one line
+    give_up("import_failed", "%s: %s" % (type(error).__name__, error), VERSION)
+
+# Pictures only; without it the engine would download its assets.
+BaseEngine.try_pull_asset = staticmethod(lambda *arguments, **options: None)
+
+
+class Route:
+    """The nodes of whoever is placed next: MetaDrive would take the shortest way, which may not be the scenario's."""
+
+    nodes = []
+
+
+NodeRoadNetwork.shortest_path = lambda self, start, goal: list(Route.nodes)
+
+BLOCKS = {"S": Straight, "C": Curve, "X": StdInterSection, "T": StdTInterSection, "O": Roundabout}
+# The node at which the entrance of the ego's road begins.
+ENTRANCE = FirstPGBlock.NODE_1
+MISSING_ARM = {"right": 0, "ahead": 1, "left": 2}
+OBSTACLES = {"cone": TrafficCone, "barrier": TrafficBarrier, "warning": TrafficWarning}
+
+
+def block_parameters(spec):
+    kind = spec["type"]
+    if kind == "S":
+        return {"length": spec["length_m"]}
+    if kind == "C":
+        turn = 0 if spec["direction"] == "left" else 1
+        return {"length": spec["length_m"], "radius": spec["radius_m"], "angle": spec["angle_deg"], "dir": turn}
+    if kind == "T":
+        return {"t_type": MISSING_ARM[spec["missing"]], "change_lane_num": 0, "decrease_increase": 0}
+    if kind == "O":
+        return {"exit_radius": spec["exit_radius_m"], "inner_radius": spec["inner_radius_m"], "angle": 60}
+    return {"change_lane_num": 0, "decrease_increase": 0}
 
 
 class ScenarioMap(PGMap):
-    """The scenario's block behind its approach, every number fixed."""
+    """One block behind the approach, every number fixed."""
 
     def _generate(self):
         spec = self._config["scenario"]
         parent, physics = self.engine.worldNP, self.engine.physics_world
-        first = FirstPGBlock(
-            self.road_network, spec["lane_width_m"], spec["lanes"], parent, physics,
-            length=spec["approach_m"], ignore_intersection_checking=True,
-        )
-        kind = BLOCKS[spec["block"]]
-        if spec["arm_m"] is not None:
+        size = (self.road_network, spec["lane_width_m"], spec["lanes"], parent, physics)
+        first = FirstPGBlock(*size, length=spec["approach_m"], ignore_intersection_checking=True)
+        kind = BLOCKS[spec["type"]]
+        if "arm_m" in spec:
+            # The length of the arms is an attribute of the class.
             kind.EXIT_PART_LENGTH = spec["arm_m"]
         block = kind(1, first.get_socket(0), self.road_network, random_seed=1, ignore_intersection_checking=True)
-        block.construct_block(parent, physics, extra_config=spec["parameters"])
+        block.construct_block(parent, physics, extra_config=block_parameters(spec))
         self.blocks = [first, block]
         self.road_network.after_init()
 
 
 class ScenarioMapManager(PGMapManager):
+    """Keeps the maps it has built."""
+
     spec = None
+    built = {}
 
     def reset(self):
-        self.load_map(self.spawn_object(ScenarioMap, map_config={"scenario": self.spec}, random_seed=None))
+        key = json.dumps(self.spec, sort_keys=True)
+        if key not in self.built:
+            self.built[key] = self.spawn_object(ScenarioMap, map_config={"scenario": self.spec}, random_seed=None)
+            self.current_map = self.built[key]
+        else:
+            self.load_map(self.built[key])
 
 
 class ScenarioEnv(MetaDriveEnv):
@@ -149,132 +172,608 @@ class ScenarioEnv(MetaDriveEnv):
         self.engine.update_manager("map_manager", ScenarioMapManager())
 
 
-def vehicle_class(spec):
-    """MetaDrive's car with another outline, tyres, engine and brakes (forces are per wheel, brakes per physics step)."""
-    mass = StaticDefaultVehicle.MASS
-    space = {
-        "wheel_friction": spec["tyre_friction"],
-        "max_engine_force": spec["max_acceleration_mps2"] * mass / 4.0,
-        "max_brake_force": spec["brake_demand_mps2"] * mass * 0.02 / 4.0,
-        "max_steering": spec["max_wheel_angle_deg"],
-        "max_speed_km_h": 3.6 * spec["max_speed_mps"],
-    }
-    body = {
-        "PARAMETER_SPACE": ParameterSpace({name: ConstantSpace(value) for name, value in space.items()}),
-        "DEFAULT_LENGTH": spec["length_m"], "DEFAULT_WIDTH": spec["width_m"],
-        "FRONT_WHEELBASE": spec["front_axle_m"], "REAR_WHEELBASE": spec["rear_axle_m"],
-    }
-    kind = type("Vehicle", (StaticDefaultVehicle,), body)
-    vehicle_class_to_type[kind] = "static_default"
-    return kind
+class MiddleOfTheRange:
+    """In place of random numbers, so that a run depends on nothing but its scenario."""
+
+    @staticmethod
+    def randint(low, high):
+        return (low + high) // 2
+
+
+class Law:
+    """The constants of recrash's crates/plan, each by its name there; set by every run."""
+
+    step_s = 0.1
+
+
+def hold_still(speed):
+    """Throttle that brakes to a stand and holds it."""
+    return -1.0 if speed > Law.hold_below_mps else Law.hold_brake
+
+
+def wrap(angle):
+    return math.atan2(math.sin(angle), math.cos(angle))
+
+
+class FreePolicy(IDMPolicy):
+    """MetaDrive's IDM policy at the speed somebody wants: the ego's and that of background traffic."""
+
+    target_mps, timer_steps = 30.0 / 3.6, 25
+
+    def __init__(self, vehicle, random_seed):
+        super().__init__(vehicle, random_seed)
+        self.NORMAL_SPEED = self.target_speed = 3.6 * type(self).target_mps
+        self.overtake_timer = type(self).timer_steps
+        self.np_random = MiddleOfTheRange()
+
+    def decide(self, world, me):
+        steering, throttle = drive_ego(world, self) if me == 0 else self.act()
+        actor = world.actors[me]
+        return [steering, hold_still(actor.vehicle.speed) if actor.halted else throttle]
+
+    def has_plans(self, step):
+        return False
+
+
+class TrafficPolicy(FreePolicy):
+    """Stands until the ego has left the entrance of its road."""
+
+    def decide(self, world, me):
+        return super().decide(world, me) if world.released else [0.0, 0.0]
+
+
+class Place:
+    """Where an actor is on the lanes of its way; it never goes back."""
+
+    def __init__(self, network, spec):
+        self.lanes = [network.get_lane((start, end, number)) for start, end, number in spec["way"]]
+        self.starts = [spec["begins_m"]]
+        for lane in self.lanes:
+            self.starts.append(self.starts[-1] + lane.length)
+        self.segment = 0
+
+    def update(self, position):
+        s, t = self.lanes[self.segment].local_coordinates(position)
+        while s > self.lanes[self.segment].length and self.segment + 1 < len(self.lanes):
+            self.segment += 1
+            s, t = self.lanes[self.segment].local_coordinates(position)
+        self.s, self.t = s, t
+        self.path_s = self.starts[self.segment] + s
+
+    def way_at(self, path_s):
+        """Heading and curvature (positive to the left) at a place not behind the lane it is on."""
+        segment = self.segment
+        while segment + 1 < len(self.lanes) and self.starts[segment + 1] <= path_s:
+            segment += 1
+        lane, s = self.lanes[segment], path_s - self.starts[segment]
+        if s > lane.length:
+            return lane.heading_theta_at(lane.length), 0.0
+        radius = getattr(lane, "radius", None)
+        return lane.heading_theta_at(s), lane.direction / radius if radius else 0.0
+
+
+class PartnerPolicy(IDMPolicy):
+    """What a plan asks for: the same law as recrash's crates/plan, function by function."""
+
+    def __init__(self, vehicle, spec):
+        super().__init__(vehicle, 0)
+        self.spec, self.plan, self.way = spec, spec["plan"], spec["partner_way"]
+        self.script = self.plan["speed"]
+        # Of the IDM policy the gap law is used, nothing else.
+        self.NORMAL_SPEED = self.target_speed = 3.6 * self.script["speed_mps"]
+        self.enable_lane_change = False
+        self.standing_steps = 0
+        self.last_heading = None
+
+    def waits(self, step):
+        return self.script["type"] == "wait" and (self.script["until"] is None or step < self.script["until"])
+
+    def has_plans(self, step):
+        script, kind = self.script, self.script["type"]
+        if kind == "wait":
+            return script["speed_mps"] > 0 and script["until"] is not None and step <= script["until"]
+        if kind == "timed":
+            return script["speed_mps"] > 0 or step < max(script["brake_until"], script["throttle_until"])
+        return False
+
+    def decide(self, world, me):
+        actor = world.actors[me]
+        if self.waits(world.step):
+            # The controllers begin when it sets off.
+            return [0.0, hold_still(actor.vehicle.speed)]
+        throttle = hold_still(actor.vehicle.speed) if actor.halted else self.pedal(world, me)
+        return [self.steer(world, actor), throttle]
+
+    def lateral_target(self, time):
+        """Offset wanted from the lane's centre, and its rate; a move takes over from wherever the last one is."""
+        offset, moves = self.plan["start_t_m"], self.way["moves"]
+        for position, move in enumerate(moves):
+            if time < move["start_s"]:
+                return offset, 0.0
+            rate = (move["to_t_m"] - offset) / max(move["duration_s"], Law.shortest_move_s)
+            following = moves[position + 1]["start_s"] if position + 1 < len(moves) else math.inf
+            until = min(following, move["start_s"] + move["duration_s"])
+            if time < until:
+                return offset + rate * (time - move["start_s"]), rate
+            offset += rate * max(until - move["start_s"], 0.0)
+        return offset, 0.0
+
+    def line(self, time):
+        """The line of its moves, each corner rounded."""
+        half = 0.5 * self.way["blend_s"]
+        if half <= 0.0:
+            return self.lateral_target(time)
+        before, now, after = (self.lateral_target(time + share * half)[0] for share in (-1, 0, 1))
+        return (before + 4.0 * now + after) / 6.0, (after - before) / (2.0 * half)
+
+    def steer(self, world, actor):
+        plan, vehicle, place = self.plan, actor.vehicle, actor.place
+        preview, greatest = Law.preview_s, plan["greatest_drift_rad"]
+        wanted, rate = self.line(world.step * Law.step_s + preview - Law.seen_late_s)
+        drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, Law.slow_mps))))
+        drift = max(-greatest, min(greatest, drift))
+
+        heading, speed, last = vehicle.heading_theta, vehicle.speed, self.last_heading
+        yaw_rate = 0.0 if last is None else wrap(heading - last) / Law.step_s
+        self.last_heading = heading
+        arm = plan["rear_axle_m"] - plan["slip_s"] * speed
+        lane, curvature = place.way_at(place.path_s)
+        here = wrap(heading + arm * curvature - lane)
+        lane, curvature = place.way_at(place.path_s + speed * preview)
+        ahead = wrap(heading + yaw_rate * preview + arm * curvature - lane)
+        offset = place.t - speed * preview * math.sin(0.5 * (here + ahead))
+
+        length = max(speed * Law.return_s, Law.return_wheelbases * plan["wheelbase_m"])
+        per_offset = 1.0 / length**2
+        per_course = max(2.0 / length - arm * per_offset, 1.0 / length)
+        angle = drift - (wanted - offset) * per_offset / per_course
+        angle = max(-greatest, min(greatest, angle))
+        bend = curvature / max(1.0 + curvature * offset, 0.1) + per_course * wrap(angle - ahead)
+        most = plan["sideways_mps2"] / max(speed, Law.slow_mps) ** 2
+        return math.atan(plan["wheelbase_m"] * max(-most, min(most, bend))) / plan["full_wheel_rad"]
+
+    def pedal(self, world, me):
+        plan, script, kind = self.plan, self.script, self.script["type"]
+        actor = world.actors[me]
+        speed, place = actor.vehicle.speed, actor.place
+        if kind == "timed" and script["brake_from"] <= world.step < script["brake_until"]:
+            return hold_still(speed)
+        if kind == "timed" and world.step < script["throttle_until"]:
+            wanted = self.meaning(script["throttle"])
+        elif kind == "follow":
+            wanted = self.meaning(self.gap_law(actor.vehicle))
+        else:
+            if script["speed_mps"] < Law.standing_mps and speed < Law.hold_below_mps:
+                return Law.hold_brake
+            wanted = max(plan["gain_per_s"] * (script["speed_mps"] - speed), -plan["comfortable_mps2"])
+        acceleration = wanted
+        stop = min([math.inf] + self.give_way(world, me) + self.blocked_ahead(world, place))
+        if -Law.committed_m <= stop < math.inf:
+            left = max(stop - Law.stop_short_m, 0.0)
+            at_line = math.sqrt(2.0 * plan["stopping_mps2"] * left)
+            if at_line < Law.standing_mps and speed < Law.hold_below_mps:
+                return Law.hold_brake
+            acceleration = min(acceleration, self.come_down(speed, 0.0, left, plan["stopping_mps2"]))
+        for bend in self.way["bends"]:
+            if bend["to_m"] > place.path_s:
+                left = max(bend["from_m"] - place.path_s, 0.0)
+                slower = self.come_down(speed, bend["speed_mps"], left, plan["comfortable_mps2"])
+                acceleration = min(acceleration, slower)
+        hardest = min(-plan["greatest_braking_mps2"], wanted)
+        acceleration = max(hardest, min(acceleration, plan["full_throttle_mps2"]))
+        if acceleration < 0.0:
+            return acceleration / plan["full_brake_mps2"]
+        return max(acceleration / max(plan["full_throttle_mps2"], 1e-3), Law.least_throttle)
+
+    def meaning(self, pedal):
+        """The acceleration that a pedal asks for."""
+        pedal = max(-1.0, min(1.0, pedal))
+        return pedal * self.plan["full_brake_mps2" if pedal < 0.0 else "full_throttle_mps2"]
+
+    @staticmethod
+    def come_down(speed, target, distance, deceleration):
+        """The acceleration along the parabola that ends at a place with a speed."""
+        on_parabola = math.sqrt(target * target + 2.0 * deceleration * distance)
+        slope = deceleration * speed / on_parabola if distance > 0.0 else 0.0
+        return (on_parabola - speed) / Law.catch_up_s - slope
+
+    def gap_law(self, vehicle):
+        self.target_speed = self.NORMAL_SPEED
+        front, distance = None, 5
+        try:
+            objects = vehicle.lidar.get_surrounding_objects(vehicle)
+            around = FrontBackObjects.get_find_front_back_objs(
+                objects, vehicle.lane, vehicle.position, self.MAX_LONG_DIST
+            )
+            front, distance = around.front_object(), around.front_min_distance()
+        except AttributeError:
+            pass
+        return self.acceleration(front, distance)
+
+    def blocked_ahead(self, world, place):
+        """Distances to obstacles that lie on its line."""
+        wanted, half = self.line(world.step * Law.step_s)[0], self.plan["half_width_m"] - Law.brushes_m
+        left, right = min(place.t, wanted) - half, max(place.t, wanted) + half
+        there = [each for each in self.way["blocked"] if each["left_m"] < right and each["right_m"] > left]
+        aheads = (each["from_m"] - self.plan["half_length_m"] - place.path_s for each in there)
+        return [ahead for ahead in aheads if ahead >= -Law.committed_m]
+
+    def give_way(self, world, me):
+        """Distances to where it has to wait for others."""
+        if self.script["type"] != "give_way":
+            return []
+        speed, place = world.actors[me].vehicle.speed, world.actors[me].place
+        self.standing_steps = self.standing_steps + 1 if speed < Law.standing_mps else 0
+        aheads = []
+        for crossing in self.spec["crossings"]:
+            ahead = crossing["mine"]["from"] - place.path_s
+            if ahead >= -Law.committed_m and self.must_wait(world, me, crossing, ahead):
+                aheads.append(max(ahead, 0.0))
+        return aheads
+
+    def must_wait(self, world, me, crossing, ahead):
+        number, merges, mine, theirs = (crossing[name] for name in ("other", "merges", "mine", "theirs"))
+        own, other = world.actors[me], world.actors[number]
+        if other.gone:
+            return False
+        other_s, other_speed = other.place.path_s, other.vehicle.speed
+        if other_s > (theirs["from"] + Law.merged_m if merges else theirs["to"]):
+            return False
+        if other_s > theirs["from"]:
+            return True
+        own_speed = own.vehicle.speed
+        if other_speed < Law.standing_mps:
+            patient = self.standing_steps < Law.patience_steps
+            return number < me and own_speed < Law.standing_mps and patient
+        speed = max(own_speed, 0.5 * self.script["speed_mps"], Law.standing_mps)
+        own_entry = max(ahead, 0.0) / speed
+        own_exit = own_entry + Law.merging_s if merges else (mine["to"] - own.place.path_s) / speed
+        way = theirs["from"] - other_s
+        # The earliest they can be there.
+        a = Law.their_acceleration_mps2
+        their_entry = (math.sqrt(other_speed * other_speed + 2.0 * a * way) - other_speed) / a
+        their_exit = way / other_speed + Law.merging_s if merges else (theirs["to"] - other_s) / other_speed
+        if their_entry > Law.horizon_s or own_entry > Law.horizon_s:
+            return False
+        gap = self.script["gap_s"]
+        return own_exit + gap > their_entry and their_exit + 0.5 * gap > own_entry
+
+
+class OpenLoopPolicy:
+    """Given controls, one pair a step; none behind their end."""
+
+    def __init__(self, controls):
+        self.controls = controls
+
+    def decide(self, world, me):
+        return self.controls[world.step] if world.step < len(self.controls) else [0.0, 0.0]
+
+
+class Actor:
+    def __init__(self, vehicle, policy, place, spec):
+        self.vehicle, self.policy, self.place = vehicle, policy, place
+        self.radius = 0.5 * math.hypot(spec["body"]["length_m"], spec["body"]["width_m"])
+        self.halted = False
+        # Background traffic that has driven off the map: its last state, going straight on.
+        self.gone = None
+
+    def state(self):
+        """Position, heading and velocity."""
+        if self.gone is not None:
+            return self.gone
+        x, y = self.vehicle.position
+        heading = math.atan2(math.sin(self.vehicle.heading_theta), math.cos(self.vehicle.heading_theta))
+        vx, vy = self.vehicle.velocity
+        return [float(x), float(y), float(heading), float(vx), float(vy)]
+
+    def go_on(self):
+        x, y, heading, vx, vy = self.gone
+        self.gone = [x + vx * Law.step_s, y + vy * Law.step_s, heading, vx, vy]
+
+
+CLASSES = {}
+
+
+def vehicle_class(body):
+    """StaticDefaultVehicle with another body, tyres, engine and brakes."""
+    key = json.dumps(body, sort_keys=True)
+    if key not in CLASSES:
+        # Per wheel: force over mass, and brake impulse over mass and physics step (measured, METADRIVE 3.4).
+        mass = StaticDefaultVehicle.MASS
+        space = {
+            "wheel_friction": body["friction"],
+            "max_engine_force": body["acceleration_mps2"] * mass / 4.0,
+            "max_brake_force": body["brake_mps2"] * mass * 0.02 / 4.0,
+            "max_steering": math.degrees(body["wheel_angle_rad"]),
+            "max_speed_km_h": 3.6 * body["speed_mps"],
+        }
+        fields = {
+            "PARAMETER_SPACE": ParameterSpace({name: ConstantSpace(value) for name, value in space.items()}),
+            "DEFAULT_LENGTH": body["length_m"],
+            "DEFAULT_WIDTH": body["width_m"],
+            "FRONT_WHEELBASE": body["front_axle_m"],
+            "REAR_WHEELBASE": body["rear_axle_m"],
+            "LATERAL_TIRE_TO_CENTER": body["half_track_m"],
+        }
+        CLASSES[key] = type("Vehicle%d" % len(CLASSES), (StaticDefaultVehicle,), fields)
+        vehicle_class_to_type[CLASSES[key]] = "static_default"
+    return CLASSES[key]
+
+
+def adjust_inertia(vehicle, body):
+    """A body shorter than its chassis keeps the chassis's inertia, or it would tumble."""
+    if body["length_m"] == body["chassis_length_m"]:
+        return
+    length, width, height = body["chassis_length_m"], body["chassis_width_m"], vehicle.HEIGHT
+    share = vehicle.MASS / 12.0
+    # Panda's vehicles face along y.
+    about = (length**2 + height**2, width**2 + height**2, length**2 + width**2)
+    vehicle.body.setInertia(Vec3(*(share * each for each in about)))
+
+
+def nodes_of(spec):
+    return [spec["way"][0][0]] + [end for _, end, _ in spec["way"]]
 
 
 def spawn_config(spec):
+    start, end, number = spec["way"][0]
+    Route.nodes = nodes_of(spec)
     return {
-        "spawn_lane_index": tuple(spec["spawn_lane"]),
-        "spawn_longitude": spec["spawn_s_m"],
-        "spawn_lateral": 0.0,
-        "spawn_velocity": [spec["speed_mps"], 0.0],
-        "spawn_velocity_car_frame": True,
+        "spawn_lane_index": (start, end, number),
+        "spawn_longitude": spec["s_m"],
+        # Far from its lane's centre MetaDrive would take it for a vehicle of another road; it is moved there later.
+        **{"spawn_lateral": 0.0, "spawn_velocity": [spec["speed_mps"], 0.0], "spawn_velocity_car_frame": True},
         "destination": spec["way"][-1][1],
     }
 
 
-def outline(vehicle, spec):
-    c, s = math.cos(vehicle.heading_theta), math.sin(vehicle.heading_theta)
-    x, y = vehicle.position
-    half = (0.5 * spec["length_m"], 0.5 * spec["width_m"])
-    corners = [(half[0], half[1]), (-half[0], half[1]), (-half[0], -half[1]), (half[0], -half[1])]
-    return Polygon([(x + a * c - b * s, y + a * s + b * c) for a, b in corners])
+def make_env():
+    # Recycled bodies keep the state of their solver: only new ones (force_destroy) give the same bits again.
+    ended_by_nothing = ("out_of_road_done", "on_continuous_line_done", "crash_vehicle_done", "crash_object_done")
+    config = dict.fromkeys(ended_by_nothing, False)
+    config.update(use_render=False, log_level=50, num_scenarios=1, start_seed=0, traffic_density=0.0, horizon=None)
+    config.update(agent_observation=DummyObservation, agent_policy=FreePolicy, force_destroy=True)
+    config.update(random_spawn_lane_index=False, show_sidewalk=False, show_crosswalk=False)
+    config["vehicle_config"] = {"vehicle_model": "static_default", "show_navi_mark": False}
+    return ScenarioEnv(config)
 
 
-def run(scenario, window, trace):
-    ScenarioMapManager.spec = scenario["map"]
-    vehicle_type["static_default"] = vehicle_class(scenario["ego"])
-    EgoPolicy.target_speed_mps = scenario["ego"]["target_speed_mps"]
-    env = ScenarioEnv(
-        {
-            "use_render": False, "log_level": 50, "num_scenarios": 1, "start_seed": 0, "traffic_density": 0.0,
-            "agent_observation": DummyObservation, "agent_policy": EgoPolicy, "force_destroy": True,
-            "vehicle_config": {"vehicle_model": "static_default", "show_navi_mark": False},
-            "random_spawn_lane_index": False, "out_of_road_done": False, "on_continuous_line_done": False,
-            "crash_vehicle_done": False, "crash_object_done": False, "horizon": None,
-        }
-    )
-    env.config["agent_configs"]["default_agent"].update(spawn_config(scenario["ego"]))
-    env.reset(seed=0)
-    engine, network, ego = env.engine, env.engine.current_map.road_network, env.agent
-    specs, vehicles, policies = [scenario["ego"]], [ego], [engine.get_policy(ego.name)]
-    for spec in scenario["partners"]:
-        config = spawn_config(spec)
-        vehicle = engine.spawn_object(vehicle_class(spec), vehicle_config=config, random_seed=0)
-        if spec["t_m"]:
-            vehicle.set_position(network.get_lane(tuple(spec["spawn_lane"])).position(spec["spawn_s_m"], spec["t_m"]))
-        specs.append(spec)
-        vehicles.append(vehicle)
-        policies.append(PartnerPolicy(vehicle, spec, network))
-    for obstacle in scenario["obstacles"]:
-        engine.spawn_object(
-            OBSTACLES[obstacle["kind"]], lane=network.get_lane(tuple(obstacle["lane"])), static=True,
-            position=[obstacle["x_m"], obstacle["y_m"]], heading_theta=obstacle["heading_rad"],
-        )
-    for vehicle in vehicles:
+class World:
+    """One scenario in the engine."""
+
+    def __init__(self, env, spec):
+        self.env, self.spec, self.step = env, spec, 0
+        self.engine = env.engine
+        self.spawned = []
+        self.events = []
+        self.released = False
+
+    def set_up(self):
+        env, spec = self.env, self.spec
+        for name, value in spec["constants"].items():
+            setattr(Law, name, value)
+        ScenarioMapManager.spec = spec["map"]
+        ego = spec["ego"]
+        FreePolicy.target_mps, FreePolicy.timer_steps = ego["target_speed_mps"], ego["overtake_timer_steps"]
+        vehicle_type["static_default"] = vehicle_class(ego["body"])
+        env.config["agent_configs"]["default_agent"].update(spawn_config(ego))
+        env.reset(seed=0)
+        self.engine = env.engine
+        self.network = self.engine.current_map.road_network
+        policy = self.engine.get_policy(env.agent.name)
+        driver = OpenLoopPolicy(ego["controls"]) if ego.get("controls") is not None else policy
+        self.actors = [self.introduce(env.agent, driver, ego)]
+        for partner in spec["partners"]:
+            vehicle = self.spawn(partner)
+            self.actors.append(self.introduce(vehicle, PartnerPolicy(vehicle, partner), partner))
+        for other in spec["traffic"]:
+            vehicle = self.spawn(other)
+            TrafficPolicy.target_mps = other["target_speed_mps"]
+            TrafficPolicy.timer_steps = other["overtake_timer_steps"]
+            self.actors.append(self.introduce(vehicle, TrafficPolicy(vehicle, 0), other))
+        self.first_traffic = 1 + len(spec["partners"])
+        self.obstacles = []
+        for obstacle in spec["obstacles"]:
+            thing = self.engine.spawn_object(
+                OBSTACLES[obstacle["kind"]],
+                lane=self.network.get_lane(tuple(obstacle["lane"])),
+                position=[obstacle["x"], obstacle["y"]],
+                **{"heading_theta": obstacle["heading"], "static": True},
+            )
+            self.spawned.append(thing.id)
+            self.obstacles.append((thing, math.hypot(obstacle["length_m"], obstacle["width_m"])))
+
+    def spawn(self, spec):
+        kind, config = vehicle_class(spec["body"]), spawn_config(spec)
+        vehicle = self.engine.spawn_object(kind, vehicle_config=config, random_seed=0, auto_fill_random_seed=False)
+        self.spawned.append(vehicle.id)
+        return vehicle
+
+    def introduce(self, vehicle, policy, spec):
+        adjust_inertia(vehicle, spec["body"])
+        # A contact is an event and pushes nobody, as in the native simulator: whoever has touched brakes, and is in nobody's way.
+        vehicle.body.setCollisionResponse(False)
+        place = Place(self.network, spec)
+        if spec["t_m"] != 0.0:
+            vehicle.set_position(place.lanes[0].position(spec["s_m"], spec["t_m"]))
         vehicle.after_step()
+        # A start that MetaDrive takes for one on another road is no error to it.
+        if list(vehicle.navigation.checkpoints) != nodes_of(spec):
+            raise RuntimeError("route %s instead of %s" % (vehicle.navigation.checkpoints, nodes_of(spec)))
+        place.update(vehicle.position)
+        return Actor(vehicle, policy, place, spec)
 
-    states, least, end, step = [], (math.inf, None), "timeout", 0
-    ego_lanes = [network.get_lane(tuple(index)) for index in scenario["ego"]["way"]]
-    while True:
-        states.append([[float(v.position[0]), float(v.position[1]), float(v.heading_theta), float(v.speed)] for v in vehicles])
-        ego_box = outline(ego, specs[0])
-        for vehicle, spec in zip(vehicles[1:], specs[1:]):
-            gap = ego_box.distance(outline(vehicle, spec))
-            if gap < least[0]:
-                least = (gap, step * STEP_S)
-        if least[0] == 0.0:
-            end = "contact"
-        elif env._is_arrive_destination(ego):
-            end = "arrived"
-        elif not ego.on_lane:
-            end = "off_road"
-        if end != "timeout" or step >= scenario["max_steps"]:
-            break
-        actions = [drive_ego(env, ego, policies[0])]
-        for policy, spec in zip(policies[1:], specs[1:]):
-            actions.append(policy.decide(step, ego_time_to(spec.get("conflict"), ego, ego_lanes)))
-        for vehicle, action in zip(vehicles, actions):
-            vehicle.before_step([max(-1.0, min(1.0, float(part))) for part in action])
-        for _ in range(5):  # of 0.02 s
-            engine.step_physics_world()
-        for vehicle in vehicles:
-            vehicle.after_step()
-        step += 1
-        if window:
-            env.render(mode="topdown", window=True, screen_size=(900, 700))
+    def state(self, number, action):
+        return self.actors[number].state() + [float(action[0]), float(action[1])]
+
+    def run(self, window=False):
+        physics = self.engine.physics_world.dynamic_world
+        tracks = [[] for _ in self.actors]
+        touched = set()
+        ego, standing = self.actors[0].vehicle, 0
+        while True:
+            self.released = self.released or ego.navigation.current_road.start_node != ENTRANCE
+            standing = standing + 1 if ego.speed < Law.standing_mps else 0
+            end = self.verdict(touched, standing)
+            actions = [[0.0, 0.0]] * len(self.actors)
+            if end is None:
+                actions = []
+                for number, actor in enumerate(self.actors):
+                    action = [0.0, 0.0] if actor.gone else actor.policy.decide(self, number)
+                    actions.append([max(-1.0, min(1.0, float(part))) for part in action])
+            for number, track in enumerate(tracks):
+                track.append(self.state(number, actions[number]))
+            if end is not None:
+                return {"end": end, "time_s": self.step * Law.step_s, "tracks": tracks, "events": self.events}
+            present = [actor for actor in self.actors if actor.gone is None]
+            for actor, action in zip(self.actors, actions):
+                if actor.gone is None:
+                    actor.vehicle.before_step(action)
+            near = self.near_pairs()
+            for substep in range(1, SUBSTEPS + 1):
+                self.engine.step_physics_world()
+                self.touch(physics, near, touched, actions, self.step * Law.step_s + substep * 0.02)
+            for thing, _ in self.obstacles:
+                # One that was hit keeps its place but gets a velocity, which the IDM would believe.
+                thing.body.setLinearVelocity(LVector3(0, 0, 0))
+            for actor in self.actors:
+                if actor.gone is not None:
+                    actor.go_on()
+            for actor in present:
+                actor.vehicle.after_step()
+                actor.place.update(actor.vehicle.position)
+            self.remove_who_left()
+            self.step += 1
+            if window:
+                self.env.render(mode="topdown", window=True, screen_size=(900, 700))
+
+    def remove_who_left(self):
+        """Background traffic that is on no lane any more is unseen and untouchable from then on."""
+        for actor in self.actors[self.first_traffic :]:
+            if actor.gone is None and self.is_off_road(actor.vehicle):
+                actor.gone = actor.state()
+                self.spawned.remove(actor.vehicle.id)
+                self.engine.clear_objects([actor.vehicle.id], force_destroy=True)
+
+    def near_pairs(self):
+        """Who may touch whom within this step: actors by number, obstacles behind them."""
+        found, count = [], len(self.actors)
+        for a, first in enumerate(self.actors):
+            if first.gone:
+                continue
+            x, y = first.vehicle.position
+            reach = first.radius + 0.1 * first.vehicle.speed + 1.0
+            for b in range(a + 1, count):
+                second = self.actors[b]
+                if second.gone:
+                    continue
+                u, v = second.vehicle.position
+                if math.hypot(u - x, v - y) < reach + second.radius + 0.1 * second.vehicle.speed:
+                    found.append((a, b))
+            for number, (thing, radius) in enumerate(self.obstacles):
+                u, v = thing.position
+                if math.hypot(u - x, v - y) < reach + radius:
+                    found.append((a, count + number))
+        return found
+
+    def touch(self, physics, near, touched, actions, time):
+        """First contacts at this physics step, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
+        count = len(self.actors)
+        for a, b in near:
+            if (a, b) in touched:
+                continue
+            other = self.actors[b].vehicle if b < count else self.obstacles[b - count][0]
+            if physics.contactTestPair(self.actors[a].vehicle.body, other.body).getNumContacts() == 0:
+                continue
+            touched.add((a, b))
+            event = {"time_s": time, "a": a, "a_state": self.state(a, actions[a])}
+            if b < count:
+                self.actors[a].halted = self.actors[b].halted = True
+                event.update(b=b, b_state=self.state(b, actions[b]))
+            else:
+                event.update(obstacle=b - count)
+            self.events.append(event)
+
+    def verdict(self, touched, standing):
+        ego, count = self.actors[0].vehicle, len(self.actors)
+        finite = all(math.isfinite(part) for n in range(count) for part in self.state(n, [0.0, 0.0]))
+        if not finite:
+            raise RuntimeError("a state is no longer finite")
+        if any(a == 0 and b < count for a, b in touched):
+            return "contact"
+        # Given controls are played to their end, wherever that is.
+        if not isinstance(self.actors[0].policy, OpenLoopPolicy):
+            if self.env._is_arrive_destination(ego):
+                return "arrived"
+            if self.is_off_road(ego):
+                return "off_road"
+            if standing >= Law.stuck_steps and not self.anybody_moves():
+                return "stuck"
+        if self.step * Law.step_s >= self.spec["duration_s"] - 0.5 * Law.step_s:
+            return "timeout"
+        return None
+
+    def is_off_road(self, vehicle):
+        """MetaDrive's rule; but its ray misses a long lane now and then for a step, in the middle of the road."""
+        if vehicle.on_lane:
+            return False
+        roads = self.network.graph.values()
+        lanes = (lane for ends in roads for lanes in ends.values() for lane in lanes)
+        places = ((lane, lane.local_coordinates(vehicle.position)) for lane in lanes)
+        return not any(0.0 <= s <= lane.length and abs(t) <= 0.5 * lane.width for lane, (s, t) in places)
+
+    def anybody_moves(self):
+        return any(
+            actor.vehicle.speed >= Law.standing_mps or (not actor.halted and actor.policy.has_plans(self.step))
+            for actor in self.actors[1:]
+            if actor.gone is None
+        )
+
+    def clear(self):
+        self.engine.clear_objects(self.spawned, force_destroy=True)
+
+
+def work():
+    """Answers requests until there are no more."""
+    hello(VERSION)
+    env = make_env()
+    for line in sys.stdin.buffer:
+        request = json.loads(line)
+        world = World(env, request["run"])
+        try:
+            world.set_up()
+            done = world.run()
+            done["maps"] = len(ScenarioMapManager.built)
+            answer = {"id": request["id"], "done": done}
+        except Exception as error:  # told, and the next request goes on
+            answer = {"id": request["id"], "error": ("%s: %s" % (type(error).__name__, error))[:500]}
+        if world.engine is not None:
+            world.clear()
+        send(answer)
     env.close()
-    if trace:
-        with open(trace, "w", encoding="utf-8") as file:
-            json.dump({"step_s": STEP_S, "columns": ["x_m", "y_m", "heading_rad", "speed_mps"],
-                       "actors": ["ego"] + [spec["id"] for spec in specs[1:]], "states": states}, file)
-    gap, when = least
-    return {"scenario": scenario["id"], "end": end, "time_s": round(step * STEP_S, 1),
-            "min_gap_m": None if math.isinf(gap) else round(gap, 3), "min_gap_time_s": when and round(when, 1)}
 
 
-def ego_time_to(conflict, ego, lanes):
-    """Seconds until the ego is where the ways meet; infinite behind it."""
-    if not conflict:
-        return math.inf
-    driven = 0.0
-    for lane in lanes:
-        s, t = lane.local_coordinates(ego.position)
-        if 0 <= s <= lane.length and abs(t) < lane.width:
-            left = conflict["ego_s_m"] - driven - s
-            return left / max(ego.speed, 1.0) if left > 0 else math.inf
-        driven += lane.length
-    return math.inf
+def least_gap(run, done):
+    """Least gap between the boxes of the ego and the partners at the steps, and its time; none at a contact."""
+    from shapely.geometry import Polygon
+
+    def outline(spec, state):
+        x, y, heading = state[:3]
+        c, s = math.cos(heading), math.sin(heading)
+        a, b = 0.5 * spec["body"]["length_m"], 0.5 * spec["body"]["width_m"]
+        return Polygon([(x + u * c - v * s, y + u * s + v * c) for u, v in ((a, b), (-a, b), (-a, -b), (a, -b))])
+
+    tracks, partners = done["tracks"], run["partners"]
+    touched = [event for event in done["events"] if event["a"] == 0 and 0 < event.get("b", 0) <= len(partners)]
+    least = [(0.0, event["time_s"]) for event in touched]
+    for number, partner in enumerate(partners, 1):
+        for step, (mine, theirs) in enumerate(zip(tracks[0], tracks[number])):
+            gap = outline(run["ego"], mine).distance(outline(partner, theirs))
+            least.append((gap, step * Law.step_s))
+    return min(least, default=(math.inf, None))
 
 
-if __name__ == "__main__":
+def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenario", help="an exported *.metadrive.json")
     parser.add_argument("--headless", action="store_true", help="no window even where there is a display")
@@ -282,5 +781,21 @@ if __name__ == "__main__":
     arguments = parser.parse_args()
     with open(arguments.scenario, encoding="utf-8") as source:
         content = json.load(source)
-    display = os.name == "nt" or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
-    print(json.dumps(run(content, display and not arguments.headless, arguments.trace)))
+    run, env = content["run"], make_env()
+    world = World(env, run)
+    world.set_up()
+    display = os.name == "nt" or not {"DISPLAY", "WAYLAND_DISPLAY"}.isdisjoint(os.environ)
+    done = world.run(display and not arguments.headless)
+    env.close()
+    if arguments.trace:
+        actors = [spec["id"] for spec in [run["ego"]] + run["partners"] + run["traffic"]]
+        columns = ["x_m", "y_m", "heading_rad", "vx_mps", "vy_mps", "steering", "throttle"]
+        trace = {"step_s": Law.step_s, "columns": columns, "actors": actors, "states": list(zip(*done["tracks"]))}
+        with open(arguments.trace, "w", encoding="utf-8") as file:
+            json.dump(trace, file)
+    gap, when = least_gap(run, done)
+    last = {"min_gap_m": None if when is None else round(gap, 3), "min_gap_time_s": when and round(when, 2)}
+    print(json.dumps({"scenario": content["id"], "end": done["end"], "time_s": round(done["time_s"], 2), **last}))
+
+
+work() if WORKER else main()

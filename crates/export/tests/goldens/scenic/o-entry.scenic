@@ -34,9 +34,16 @@ PARTNER1_SPEED_MPS = 6.5
 PARTNER1_POLICY_TARGET_SPEED_MPS = 7
 DURATION_S = 40
 
+# What recrash's plans mean (docs/models/policies.md): SI units, and MetaDrive's own for its gap law.
+GAIN = 0.3
+STOPPING = 3
+SIGHT = 30
+STANDSTILL_DISTANCE = 10
+TIME_HEADWAY = 1.5
+COMFORT = 4.472135955
+
 # ---- driving: the same in every file -----------------------------------------------------------------------------
 
-GAIN = 0.3            # throttle per m/s of missing speed, as in recrash
 STEP = 0.1            # [s]
 IN_METADRIVE = 'metadrive' in Car.__module__
 
@@ -90,7 +97,7 @@ def steering(car, way, t):
 
 def pedals(car, command):
     """Throttle and brake for a command from -1 (full brake) to 1 (full throttle) in terms of recrash's vehicles."""
-    engine, demand, tyres = car.limits
+    engine, demand, tyres, comfortable = car.limits
     command = max(-1.0, min(1.0, command))
     acceleration = command * engine if command >= 0 else max(command * demand, -tyres)
     if acceleration >= 0:
@@ -104,9 +111,11 @@ def drive(car, way, command, t):
     throttle, brake = pedals(car, command)
     return (SetThrottleAction(throttle), SetBrakeAction(brake), SetSteerAction(steering(car, way, t)))
 
-def hold(car, speed):
-    """The command that holds a speed."""
-    return GAIN * (speed - car.speed)
+def hold(car, speed, gain=GAIN):
+    """The command that holds a speed, or comes down to it comfortably."""
+    engine, demand, tyres, comfortable = car.limits
+    acceleration = max(gain * engine * (speed - car.speed), -comfortable)
+    return acceleration / (engine if acceleration >= 0 else demand)
 
 def follow(car, way, speed):
     """MetaDrive's gap law: speed in km/h, gaps in m, blind to whatever is not ahead on its own way within 30 m."""
@@ -114,9 +123,9 @@ def follow(car, way, speed):
     for other in simulation().objects:
         point = shapely.geometry.Point(other.position.x, other.position.y)
         gap = way.project(point) - here
-        if other is not car and 0 < gap < 30 and way.distance(point) < 1.75:
+        if other is not car and 0 < gap < SIGHT and way.distance(point) < 1.75:
             v, dv = 3.6 * car.speed, 3.6 * (car.speed - getattr(other, 'speed', 0.0))
-            command = min(command, 1 - (car.speed / speed) ** 10 - ((10 + 1.5 * v + v * dv / 4.47) / gap) ** 2)
+            command = min(command, 1 - (car.speed / speed) ** 10 - ((STANDSTILL_DISTANCE + TIME_HEADWAY * v + v * dv / COMFORT) / gap) ** 2)
     return command
 
 def contact(a, b):
@@ -185,14 +194,14 @@ behavior Partner1():    # "cp1", idm_nominal: MetaDrive's gap law
 
 # The system under test: replace Follow by your own behavior.
 ego = new Car at place(EGO_WAY, EGO_S_M, 0), facing direction(EGO_WAY, EGO_S_M),
-    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13),
+    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13, 2),
     with speed EGO_SPEED_MPS, with requireVisible False,
     with behavior Follow(EGO_WAY, EGO_TARGET_SPEED_MPS)
 
 PARTNER1_S = 59.483957601 - PARTNER1_POLICY_TARGET_SPEED_MPS * ((65.171329776 - EGO_S_M) / EGO_TARGET_SPEED_MPS + PARTNER1_START_ARRIVAL_GAP_S)    # start along its way [m]
 require 0 <= PARTNER1_S <= PARTNER1_WAY.length
 partner1 = new Car at place(PARTNER1_WAY, PARTNER1_S, 0), facing direction(PARTNER1_WAY, PARTNER1_S),
-    with length 4.87, with width 2.046, with limits (2.909090909, 27.272727273, 15.13),
+    with length 4.87, with width 2.046, with limits (2.909090909, 27.272727273, 15.13, 2),
     with speed PARTNER1_SPEED_MPS, with requireVisible False,
     with behavior Partner1()
 

@@ -41,9 +41,16 @@ PARTNER2_POLICY_TARGET_SPEED_MPS = 7
 PARTNER2_POLICY_GAP_S = 4
 DURATION_S = 30
 
+# What recrash's plans mean (docs/models/policies.md): SI units, and MetaDrive's own for its gap law.
+GAIN = 0.3
+STOPPING = 3
+SIGHT = 30
+STANDSTILL_DISTANCE = 10
+TIME_HEADWAY = 1.5
+COMFORT = 4.472135955
+
 # ---- driving: the same in every file -----------------------------------------------------------------------------
 
-GAIN = 0.3            # throttle per m/s of missing speed, as in recrash
 STEP = 0.1            # [s]
 IN_METADRIVE = 'metadrive' in Car.__module__
 
@@ -97,7 +104,7 @@ def steering(car, way, t):
 
 def pedals(car, command):
     """Throttle and brake for a command from -1 (full brake) to 1 (full throttle) in terms of recrash's vehicles."""
-    engine, demand, tyres = car.limits
+    engine, demand, tyres, comfortable = car.limits
     command = max(-1.0, min(1.0, command))
     acceleration = command * engine if command >= 0 else max(command * demand, -tyres)
     if acceleration >= 0:
@@ -111,9 +118,11 @@ def drive(car, way, command, t):
     throttle, brake = pedals(car, command)
     return (SetThrottleAction(throttle), SetBrakeAction(brake), SetSteerAction(steering(car, way, t)))
 
-def hold(car, speed):
-    """The command that holds a speed."""
-    return GAIN * (speed - car.speed)
+def hold(car, speed, gain=GAIN):
+    """The command that holds a speed, or comes down to it comfortably."""
+    engine, demand, tyres, comfortable = car.limits
+    acceleration = max(gain * engine * (speed - car.speed), -comfortable)
+    return acceleration / (engine if acceleration >= 0 else demand)
 
 def follow(car, way, speed):
     """MetaDrive's gap law: speed in km/h, gaps in m, blind to whatever is not ahead on its own way within 30 m."""
@@ -121,9 +130,9 @@ def follow(car, way, speed):
     for other in simulation().objects:
         point = shapely.geometry.Point(other.position.x, other.position.y)
         gap = way.project(point) - here
-        if other is not car and 0 < gap < 30 and way.distance(point) < 1.75:
+        if other is not car and 0 < gap < SIGHT and way.distance(point) < 1.75:
             v, dv = 3.6 * car.speed, 3.6 * (car.speed - getattr(other, 'speed', 0.0))
-            command = min(command, 1 - (car.speed / speed) ** 10 - ((10 + 1.5 * v + v * dv / 4.47) / gap) ** 2)
+            command = min(command, 1 - (car.speed / speed) ** 10 - ((STANDSTILL_DISTANCE + TIME_HEADWAY * v + v * dv / COMFORT) / gap) ** 2)
     return command
 
 def contact(a, b):
@@ -170,21 +179,21 @@ behavior Partner2():    # "pickup", yielding: holds a speed, waits while the ego
 
 # The system under test: replace Follow by your own behavior.
 ego = new Car at place(EGO_WAY, EGO_S_M, 0), facing direction(EGO_WAY, EGO_S_M),
-    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13),
+    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13, 2),
     with speed EGO_SPEED_MPS, with requireVisible False,
     with behavior Follow(EGO_WAY, EGO_TARGET_SPEED_MPS)
 
 PARTNER1_S = 115.702404352 - PARTNER1_POLICY_TARGET_SPEED * ((70.704156664 - EGO_S_M) / EGO_TARGET_SPEED_MPS + PARTNER1_START_ARRIVAL_GAP_S)    # start along its way [m]
 require 0 <= PARTNER1_S <= PARTNER1_WAY.length
 partner1 = new Car at place(PARTNER1_WAY, PARTNER1_S, 0), facing direction(PARTNER1_WAY, PARTNER1_S),
-    with length 1.8, with width 0.6, with limits (1, 3.4, 3.4),
+    with length 1.8, with width 0.6, with limits (1, 3.4, 3.4, 2),
     with speed PARTNER1_SPEED_MPS, with requireVisible False,
     with behavior Partner1()
 
 PARTNER2_S = EGO_S_M + PARTNER2_START_DELTA_S_M    # start along its way [m]
 require 0 <= PARTNER2_S <= PARTNER2_WAY.length
 partner2 = new Car at place(PARTNER2_WAY, PARTNER2_S, PARTNER2_START_DELTA_T_M), facing direction(PARTNER2_WAY, PARTNER2_S),
-    with length 5.74, with width 2.3, with limits (2.909090909, 27.272727273, 15.13),
+    with length 5.74, with width 2.3, with limits (2.909090909, 27.272727273, 15.13, 2),
     with speed PARTNER2_SPEED_MPS, with requireVisible False,
     with behavior Partner2()
 
