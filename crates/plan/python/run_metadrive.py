@@ -591,7 +591,7 @@ class World:
 
     def introduce(self, vehicle, policy, spec):
         adjust_inertia(vehicle, spec["body"])
-        # A contact is an event and pushes nobody, as in the native simulator: whoever has touched brakes, and is in nobody's way.
+        # A contact is an event and pushes nobody, as in the native simulator.
         vehicle.body.setCollisionResponse(False)
         place = Place(self.network, spec)
         if spec["t_m"] != 0.0:
@@ -717,8 +717,7 @@ class World:
         """MetaDrive's rule; but its ray misses a long lane now and then for a step, in the middle of the road."""
         if vehicle.on_lane:
             return False
-        roads = self.network.graph.values()
-        lanes = (lane for ends in roads for lanes in ends.values() for lane in lanes)
+        lanes = (lane for ends in self.network.graph.values() for lanes in ends.values() for lane in lanes)
         places = ((lane, lane.local_coordinates(vehicle.position)) for lane in lanes)
         return not any(0.0 <= s <= lane.length and abs(t) <= 0.5 * lane.width for lane, (s, t) in places)
 
