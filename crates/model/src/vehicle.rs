@@ -54,7 +54,7 @@ const CAR: VehicleSpec = VehicleSpec {
     max_acceleration_mps2: 2.909_090_909_090_909,
     max_deceleration_mps2: 15.13,
     brake_demand_mps2: 27.272_727_272_727_273,
-    sideways_mps2: 7.0,
+    sideways_mps2: 8.0,
     max_speed_mps: 80.0 / 3.6,
     max_wheel_angle_rad: 40.0 * std::f64::consts::PI / 180.0,
 };

@@ -84,6 +84,8 @@ pub fn plan(feedback: &[Feedback], told: bool, side_by_side: bool) -> Plan {
                 plan.aim = match (told, unfaithful) {
                     (true, 1..=3) => Aim::Touch,
                     (true, 4) => Aim::Pass(CLOSE_PASS_M),
+                    // They were nearest where they began, side by side: only what touches is nearer.
+                    _ if side_by_side && failed(CheckKind::Road) => Aim::Touch,
                     _ if too_far => Aim::Pass(CLOSE_PASS_M),
                     _ => Aim::Pass(WIDE_PASS_M),
                 };
