@@ -59,6 +59,6 @@ def test_damaged_weights_are_told_and_a_pull_mends_them_whole(recrash: str, cach
 
 def test_rows_are_those_of_an_independent_bert(cache: Path) -> None:
     """The Rust test that needs the published weights; its figures come from `crates/embed/oracle/oracle.py`."""
-    test = ["test", "--quiet", "--release", "--package", "recrash-embed", "--test", "embedder"]
+    test = ["test", "--quiet", "--release", "--package", "recrash-embed", "--test", "suite", "embedder"]
     environment = os.environ | {"MINILM_DIR": str(cache / "all-MiniLM-L6-v2")}
     subprocess.run([os.environ.get("CARGO", "cargo"), *test], cwd=ROOT, env=environment, check=True)

@@ -9,11 +9,10 @@ use recrash_model::scenario::{MapSpec, Turn};
 pub const LEAST_TOLD_SPEED_MPS: f64 = 3.0;
 
 /// Greatest speed that lets a vehicle hold its lane, below the limits measured in MetaDrive (right turns 10, left turns
-/// 12, roundabouts 8.3, straight 22.2 m/s) with a margin for the lanes' centre lines. On a roundabout so slow that no car slows for the
-/// entry's curve of 10 m, which would part two who drive beside each other. [m/s]
+/// 12, roundabouts 8.3, straight 22.2 m/s) with a margin for the lanes' centre lines. [m/s]
 pub fn most_speed(ground: Ground, turn: Turn) -> f64 {
     match (ground, turn) {
-        (Ground::Circle, _) => 4.9,
+        (Ground::Circle, _) => 6.5,
         (Ground::Road, _) => 20.0,
         (Ground::Junction, Turn::Right) => 6.0,
         (Ground::Junction, Turn::Left) => 8.0,
