@@ -42,7 +42,9 @@ def check_driven(cases: list[Export], found: list[dict], sideways_m: float) -> N
     for export, report in zip(cases, found):
         assert "error" not in report, report
         sideways = {spec["id"] for spec in export.scenario["partners"] if spec.get("lateral")}
-        within(export, report["trajectory"], {actor: sideways_m for actor in sideways})
+        # A partner of ours slows for its bend (since its sideways acceleration is bounded), Scenic's does not: 0.54 and 0.61 m.
+        turning = {spec["id"]: 0.65 for spec in export.scenario["partners"] if spec.get("turn", "straight") != "straight"}
+        within(export, report["trajectory"], turning | {actor: sideways_m for actor in sideways})
 
 
 def within(export: Export, trajectory: list, bounds_m: dict[str, float]) -> None:
