@@ -4,7 +4,6 @@ use crate::scene::time_of;
 use recrash_model::metrics::{Finding, FindingKind, Metrics, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
-use recrash_model::scenario::ObstacleKind;
 use recrash_roads::Scenario;
 
 /// Slower than this the ego stands. [m/s]
@@ -60,11 +59,7 @@ fn contact(metrics: &Metrics) -> Option<Finding> {
 
 fn obstacle_contacts<'a>(rollout: &'a Rollout, metrics: &'a Metrics) -> impl Iterator<Item = Finding> + 'a {
     metrics.obstacles_hit.iter().filter_map(move |&hit| {
-        let kind = match rollout.obstacles.get(hit)?.kind {
-            ObstacleKind::Cone => "cone",
-            ObstacleKind::Barrier => "barrier",
-            ObstacleKind::Warning => "warning sign",
-        };
+        let kind = rollout.obstacles.get(hit)?.kind.label();
         let (time_s, speed) = rollout.events.iter().find_map(|event| match event.kind {
             EventKind::ObstacleContact { actor: 0, obstacle, state } if obstacle == hit => {
                 Some((event.time_s, state.velocity().length()))

@@ -20,7 +20,7 @@ const ROUNDABOUT_ANGLE_RAD: f64 = math::PI / 3.0;
 pub(crate) fn build(map: &MapSpec) -> RoadNetwork {
     let carriageway = map.carriageway();
     let mut builder = Builder {
-        network: RoadNetwork { map: map.clone(), roads: Vec::new(), lanes: Vec::new() },
+        network: RoadNetwork { map: map.clone(), roads: Vec::new(), lanes: Vec::new(), named: Vec::new() },
         lanes: carriageway.lanes,
         width: carriageway.lane_width_m,
     };
@@ -43,6 +43,7 @@ pub(crate) fn build(map: &MapSpec) -> RoadNetwork {
         MapSpec::X(m) => builder.junction(approach.end, m.arm_m),
         MapSpec::T(m) => builder.junction(approach.end, m.arm_m),
         MapSpec::O(m) => builder.roundabout(approach.end, m),
+        MapSpec::G(_) => unreachable!("a network of roads is no block"),
     }
     builder.network
 }
@@ -86,6 +87,7 @@ pub(crate) fn route_nodes(map: &MapSpec, approach: Approach, turn: Turn) -> Opti
             nodes.extend(arms.outward((first_part + parts) % 4, 2));
             Some(nodes)
         }
+        MapSpec::G(_) => None,
     }
 }
 

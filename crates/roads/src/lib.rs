@@ -24,6 +24,6 @@ pub use lane::{Centreline, Lane, LaneId};
 pub use network::{Road, RoadId, RoadNetwork, RoadPart};
 pub use path::{Conflict, Footprint, LanePath, PathPoint};
 pub use read::{MAX_SCENARIO_BYTES, read_draft, scenario_schema, write_draft};
-pub use scenario::{ObstaclePlacement, Placement, Scenario, obstacle_size};
+pub use scenario::{ObstaclePlacement, Placement, Scenario};
 pub use simulator::{RunError, Simulator};
 pub use traffic::{TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic};

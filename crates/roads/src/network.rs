@@ -3,7 +3,7 @@
 use crate::lane::{Lane, LaneId};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
-use recrash_model::scenario::{Approach, MapSpec, Turn};
+use recrash_model::scenario::{Approach, MapSpec, StripKind, Turn};
 
 /// Position of a road in [`RoadNetwork::roads`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -24,6 +24,10 @@ pub enum RoadPart {
     Inner,
     /// Part of a roundabout's ring.
     Ring,
+    /// Driving lanes of a road of a network, outside of its junctions.
+    Open,
+    /// A strip beside the driving lanes: a lane of its own, which nobody is routed along unless a plan names it.
+    Beside(StripKind),
 }
 
 /// A road: a bundle of parallel lanes from one node to another, in one direction.
@@ -39,6 +43,19 @@ pub struct Road {
     pub lanes: Vec<LaneId>,
 }
 
+/// A road in one direction, as places and plans name it: `main+`, `main-.bike`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedRoad {
+    /// Its name.
+    pub name: String,
+    /// The roads it consists of, one behind the other.
+    pub pieces: Vec<RoadId>,
+    /// What it is for.
+    pub kind: StripKind,
+    /// Posted speed. [m/s]
+    pub speed_limit_mps: Option<f64>,
+}
+
 /// The road network of one map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoadNetwork {
@@ -48,6 +65,8 @@ pub struct RoadNetwork {
     pub roads: Vec<Road>,
     /// Every lane.
     pub lanes: Vec<Lane>,
+    /// Roads by name.
+    pub named: Vec<NamedRoad>,
 }
 
 impl RoadNetwork {

@@ -104,13 +104,21 @@ pub(crate) fn convert(object: &Map<String, Value>, parts: &mut Parts) -> Option<
         id,
         source: Source { narrative, ..serde_json::from_value(json!({})).ok()? },
         map,
-        ego: EgoSpec { turn: ego_turn, lane: LANES / 2, s_m: ego_s, speed_mps: target, target_speed_mps: target },
+        ego: EgoSpec {
+            turn: ego_turn,
+            lane: LANES / 2,
+            s_m: ego_s,
+            speed_mps: target,
+            target_speed_mps: target,
+            ..EgoSpec::default()
+        },
         partners,
         obstacles,
         // A seed is a whole number; what is none becomes the nearest.
         traffic: Traffic { density, seed: seed.abs() as u64 },
         environment: Environment::default(),
         duration_s,
+        ..ScenarioDraft::default()
     })
 }
 

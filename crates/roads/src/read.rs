@@ -3,7 +3,8 @@
 use crate::json_place::add_lines;
 use crate::paper_dialect;
 use recrash_model::scenario::{
-    CrossMap, CurveMap, MapSpec, Policy, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, StraightMap, TeeMap,
+    CrossMap, CurveMap, GraphMap, MapSpec, Policy, RoundaboutMap, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft,
+    StraightMap, TeeMap,
 };
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
 use serde::de::DeserializeOwned;
@@ -12,7 +13,7 @@ use serde_json::{Map, Value};
 /// The longest scenario file that is read. [bytes]
 pub const MAX_SCENARIO_BYTES: usize = 1 << 20;
 
-/// Reads a draft from JSON: `recrash.scenario/1`, or the paper's dialect, which is converted.
+/// Reads a draft from JSON: `recrash.scenario/2` or `/1`, or the paper's dialect, which is converted.
 ///
 /// # Errors
 /// One diagnostic per problem of syntax or type, with line and JSON path.
@@ -50,7 +51,7 @@ pub fn write_draft(draft: &ScenarioDraft) -> String {
     text
 }
 
-/// The JSON Schema of `recrash.scenario/1`.
+/// The JSON Schema of `recrash.scenario/2`.
 pub fn scenario_schema() -> Value {
     schemars::schema_for!(ScenarioDraft).to_value()
 }
@@ -145,17 +146,21 @@ fn join(path: &str, inner: &str) -> String {
 }
 
 /// The fields of a draft, in order, and whether each must be there.
-const FIELDS: [(&str, bool); 10] = [
+const FIELDS: [(&str, bool); 14] = [
     ("format", true),
     ("id", true),
     ("source", true),
     ("map", true),
     ("ego", true),
     ("partners", false),
+    ("actors", false),
+    ("objects", false),
+    ("control", false),
     ("obstacles", false),
     ("traffic", false),
     ("environment", false),
     ("duration_s", true),
+    ("after_contact_s", false),
 ];
 
 fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraft> {
@@ -168,7 +173,7 @@ fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraf
     for (name, required) in FIELDS {
         if required && !object.contains_key(name) {
             let hint = if name == "format" {
-                "write \"format\": \"recrash.scenario/1\""
+                "write \"format\": \"recrash.scenario/2\""
             } else {
                 "`recrash schema` prints every field"
             };
@@ -177,10 +182,12 @@ fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraf
     }
     let format: Option<String> = object.get("format").and_then(|value| parts.read(value, "format"));
     if let Some(format) = &format
-        && format != SCENARIO_FORMAT
+        && ![SCENARIO_FORMAT, SCENARIO_FORMAT_1].contains(&format.as_str())
     {
         let shown: String = format.chars().take(60).collect();
-        let message = format!("format is {shown:?}; this program reads {SCENARIO_FORMAT:?} and the paper's dialect");
+        let message = format!(
+            "format is {shown:?}; this program reads {SCENARIO_FORMAT:?}, {SCENARIO_FORMAT_1:?} and the paper's dialect"
+        );
         parts.error("scenario.format", "format", message, "a later version of recrash may read it");
         return None;
     }
@@ -204,16 +211,21 @@ fn native(object: &Map<String, Value>, parts: &mut Parts) -> Option<ScenarioDraf
     let environment = optional(object, "environment", parts);
     let duration_s = object.get("duration_s").and_then(|value| parts.read(value, "duration_s"));
     Some(ScenarioDraft {
-        format: format?,
+        // A draft of the format before is one of this format too.
+        format: format.map(|_| SCENARIO_FORMAT.to_owned())?,
         id: id?,
         source: source?,
         map: map?,
         ego: ego?,
         partners: partners?,
+        actors: list(object, "actors", parts, |value, path, parts| parts.read(value, path))?,
+        objects: list(object, "objects", parts, |value, path, parts| parts.read(value, path))?,
+        control: list(object, "control", parts, |value, path, parts| parts.read(value, path))?,
         obstacles: obstacles?,
         traffic: traffic?,
         environment: environment?,
         duration_s: duration_s?,
+        after_contact_s: optional(object, "after_contact_s", parts)?,
     })
 }
 
@@ -242,19 +254,19 @@ fn list<T>(
 
 /// The map: by hand, because serde forgets the path inside a tagged enum.
 fn map(value: &Value, parts: &mut Parts) -> Option<MapSpec> {
-    let (kind, fields) = tagged(value, "map", &["S", "C", "X", "T", "O"], MAP_HINT, parts)?;
+    let (kind, fields) = tagged(value, "map", &["S", "C", "X", "T", "O", "G"], MAP_HINT, parts)?;
     let fields = Value::Object(fields);
     match kind.as_str() {
         "S" => parts.read::<StraightMap>(&fields, "map").map(MapSpec::S),
         "C" => parts.read::<CurveMap>(&fields, "map").map(MapSpec::C),
         "X" => parts.read::<CrossMap>(&fields, "map").map(MapSpec::X),
         "T" => parts.read::<TeeMap>(&fields, "map").map(MapSpec::T),
-        _ => parts.read::<RoundaboutMap>(&fields, "map").map(MapSpec::O),
+        "O" => parts.read::<RoundaboutMap>(&fields, "map").map(MapSpec::O),
+        _ => parts.read::<GraphMap>(&fields, "map").map(MapSpec::G),
     }
 }
 
-const MAP_HINT: &str =
-    "allowed: S (straight), C (curve), X (four-way intersection), T (three-way intersection), O (roundabout)";
+const MAP_HINT: &str = "allowed: S (straight), C (curve), X (four-way intersection), T (three-way intersection), O (roundabout), G (roads)";
 
 /// The tag and the other fields of a tagged object.
 fn tagged(

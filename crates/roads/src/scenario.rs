@@ -6,7 +6,7 @@ use crate::path::{Conflict, LanePath};
 use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;
-use recrash_model::scenario::{ObstacleKind, ScenarioDraft};
+use recrash_model::scenario::ScenarioDraft;
 use std::sync::Arc;
 
 /// A scenario that passed the check. Made by [`crate::check()`] alone.
@@ -71,14 +71,5 @@ impl Scenario {
     /// The obstacles, in the draft's order.
     pub fn obstacles(&self) -> &[ObstaclePlacement] {
         &self.obstacles
-    }
-}
-
-/// Extent of an obstacle along and across the road. [m]
-pub fn obstacle_size(kind: ObstacleKind) -> (f64, f64) {
-    match kind {
-        ObstacleKind::Cone => (0.4, 0.4),
-        ObstacleKind::Barrier => (0.3, 2.0),
-        ObstacleKind::Warning => (1.0, 1.0),
     }
 }

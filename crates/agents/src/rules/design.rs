@@ -270,6 +270,7 @@ impl<'a> Stage<'a> {
                 s_m: ego_start_m,
                 speed_mps: self.ego_mps,
                 target_speed_mps: self.ego_mps,
+                ..EgoSpec::default()
             },
             partners: vec![Partner {
                 id: "cp1".to_owned(),
@@ -286,6 +287,7 @@ impl<'a> Stage<'a> {
             traffic: Traffic::default(),
             environment: self.brief.told(self.narrative).map_or_else(Environment::default, environment),
             duration_s: 30.0,
+            ..ScenarioDraft::default()
         }
     }
 

@@ -35,6 +35,8 @@ pub fn ground_of(map: &MapSpec) -> Ground {
     match map {
         MapSpec::S(_) | MapSpec::C(_) => Ground::Road,
         MapSpec::X(_) | MapSpec::T(_) => Ground::Junction,
+        MapSpec::G(network) if network.junctions.is_empty() => Ground::Road,
+        MapSpec::G(_) => Ground::Junction,
         MapSpec::O(_) => Ground::Circle,
     }
 }

@@ -107,6 +107,7 @@ fn tags(scenario: &Scenario) -> Element {
         MapSpec::S(_) | MapSpec::C(_) => tags.extend(["rural", "oncoming_traffic"]),
         MapSpec::X(_) | MapSpec::T(_) => tags.extend(["urban", "intersection"]),
         MapSpec::O(_) => tags.extend(["urban", "roundabout"]),
+        MapSpec::G(_) => tags.push("urban"),
     }
     match (draft.ego.turn, &draft.map) {
         (Turn::Left, MapSpec::X(_) | MapSpec::T(_)) => tags.push("turn_left"),
@@ -124,7 +125,7 @@ fn tags(scenario: &Scenario) -> Element {
 fn static_obstacle(id: usize, obstacle: &PlacedObstacle) -> Element {
     let kind = match obstacle.kind {
         ObstacleKind::Cone | ObstacleKind::Barrier => "constructionZone",
-        ObstacleKind::Warning => "unknown",
+        _ => "unknown",
     };
     Element::new("staticObstacle").with("id", id.to_string()).children([
         leaf("type", kind),

@@ -206,6 +206,7 @@ fn junctions(network: &RoadNetwork) -> Vec<Option<u32>> {
                     && network.roads.iter().filter(|other| other.to == road.to).count() > 1
             }
             RoadPart::Approach | RoadPart::Departure | RoadPart::ArmOut | RoadPart::ArmIn => false,
+            RoadPart::Open | RoadPart::Beside(_) => false,
         })
         .collect();
     let mut junction_of = vec![None; network.roads.len()];
@@ -272,6 +273,8 @@ fn name_of(network: &RoadNetwork, id: RoadId, connecting: bool) -> String {
         }
         (RoadPart::Inner, true) => format!("{} arm to {} arm", arm(&road.from), arm(&road.to)),
         (RoadPart::Ring, false) => format!("ring behind the {} entry", ring_entry(&road.from)),
+        (RoadPart::Open, _) => road.from.clone(),
+        (RoadPart::Beside(kind), _) => format!("{} {}", road.from, kind.name()),
         (RoadPart::Ring, true) => format!("ring before the {} entry", ring_entry(&road.to)),
     }
 }

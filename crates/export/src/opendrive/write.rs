@@ -209,6 +209,6 @@ fn road_mark(kind: &str, color: &str, lane_change: &str) -> Element {
 fn road_type(map: &MapSpec) -> &'static str {
     match map {
         MapSpec::S(_) | MapSpec::C(_) => "rural",
-        MapSpec::X(_) | MapSpec::T(_) | MapSpec::O(_) => "town",
+        MapSpec::X(_) | MapSpec::T(_) | MapSpec::O(_) | MapSpec::G(_) => "town",
     }
 }

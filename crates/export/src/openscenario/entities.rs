@@ -27,9 +27,9 @@ pub(super) fn entities(context: &Context<'_>) -> Element {
     for (position, obstacle) in draft.obstacles.iter().enumerate() {
         let placed = &context.scenario.obstacles()[position].placed;
         list.push(Element::new("ScenarioObject").with("name", obstacle_name(position)).child(misc_object(
-            obstacle_kind_name(obstacle.kind),
+            obstacle.kind.label(),
             if obstacle.kind == ObstacleKind::Barrier { "barrier" } else { "obstacle" },
-            [placed.length_m, placed.width_m, obstacle_height(obstacle.kind)],
+            [placed.length_m, placed.width_m, obstacle.kind.height_m()],
             obstacle,
         )));
     }
@@ -132,23 +132,6 @@ fn between_vertices() -> Element {
 
 pub(super) fn property(name: &str, value: &str) -> Element {
     Element::new("Property").with("name", name).with("value", value)
-}
-
-/// Heights of obstacles; the plane model has none. Usual sizes, assumed. [m]
-fn obstacle_height(kind: ObstacleKind) -> f64 {
-    match kind {
-        ObstacleKind::Cone => 0.75,
-        ObstacleKind::Barrier => 1.0,
-        ObstacleKind::Warning => 0.8,
-    }
-}
-
-fn obstacle_kind_name(kind: ObstacleKind) -> &'static str {
-    match kind {
-        ObstacleKind::Cone => "cone",
-        ObstacleKind::Barrier => "barrier",
-        ObstacleKind::Warning => "warning",
-    }
 }
 
 /// Heights of road users; the plane model has none. Usual sizes, assumed. [m]

@@ -7,7 +7,7 @@ use crate::opendrive::DriveMap;
 use crate::openscenario::names::Declarations;
 use crate::xml::{number, rounded};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::scenario::{DEFAULT_SPEED_KP, ObstacleKind, Policy};
+use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
 use recrash_model::surroundings::Surface;
 use recrash_model::tuning::Parameter;
 use recrash_model::vehicle::VehicleSpec;
@@ -231,11 +231,7 @@ fn obstacles(context: &Context<'_>) -> String {
     let mut text = String::from("\nif not IN_METADRIVE:\n");
     for (position, obstacle) in draft.obstacles.iter().enumerate() {
         let placed = &context.scenario.obstacles()[position].placed;
-        let kind = match obstacle.kind {
-            ObstacleKind::Cone => "cone",
-            ObstacleKind::Barrier => "barrier",
-            ObstacleKind::Warning => "warning",
-        };
+        let kind = obstacle.kind.label();
         let s = context.value(&format!("/obstacles/{position}/s_m"), obstacle.s_m);
         let t = context.value(&format!("/obstacles/{position}/t_m"), obstacle.t_m);
         let _ = writeln!(

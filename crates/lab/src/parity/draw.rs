@@ -76,6 +76,7 @@ fn random_draft(rng: &mut Rng, number: usize) -> ScenarioDraft {
         s_m: rng.range(5.0, 20.0),
         speed_mps,
         target_speed_mps,
+        ..EgoSpec::default()
     };
     let partners = 1 + usize::from(rng.uniform() < 0.3);
     let partners = (0..partners)
@@ -103,6 +104,7 @@ fn random_draft(rng: &mut Rng, number: usize) -> ScenarioDraft {
         traffic: Traffic { density, seed: rng.next_u64() >> 32 },
         environment: Environment { surface, ..Environment::default() },
         duration_s: 40.0,
+        ..ScenarioDraft::default()
     }
 }
 

@@ -32,7 +32,7 @@ pub enum Layout {
 impl Layout {
     /// The layout of a network; `None` for one without roads.
     pub fn of(network: &RoadNetwork) -> Option<Self> {
-        match network.map {
+        match &network.map {
             MapSpec::S(_) | MapSpec::C(_) => {
                 let roads = network.route(Approach::Same, Turn::Straight).filter(|roads| !roads.is_empty())?;
                 Some(Self::Plain { along: LanePath::new(network, roads, 0) })
@@ -41,6 +41,14 @@ impl Layout {
                 let (min, max) = extent(network, RoadPart::Inner)?;
                 Some(Self::Junction { min, max })
             }
+            MapSpec::G(_) => match extent(network, RoadPart::Inner) {
+                Some((min, max)) => Some(Self::Junction { min, max }),
+                None => {
+                    let roads =
+                        network.named.first().map(|road| road.pieces.clone()).filter(|roads| !roads.is_empty())?;
+                    Some(Self::Plain { along: LanePath::new(network, roads, 0) })
+                }
+            },
             MapSpec::O(_) => {
                 let (min, max) = extent(network, RoadPart::Ring)?;
                 let centre = (min + max) * 0.5;

@@ -373,6 +373,7 @@ fn scenario(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64) -> ScenarioDraft
             s_m: 5.0,
             speed_mps: plan.ego_speed,
             target_speed_mps: plan.ego_speed,
+            ..EgoSpec::default()
         },
         partners: vec![Partner {
             id: "cp1".into(),
@@ -389,5 +390,6 @@ fn scenario(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64) -> ScenarioDraft
         traffic: Traffic::default(),
         environment: Environment::default(),
         duration_s: 40.0,
+        ..ScenarioDraft::default()
     }
 }

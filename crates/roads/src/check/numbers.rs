@@ -161,6 +161,7 @@ fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
             fit &= remarks.number("map.exit_radius_m", m.exit_radius_m, 5.0, 15.0, "m");
             fit &= remarks.number("map.inner_radius_m", m.inner_radius_m, 15.0, 45.0, "m");
         }
+        MapSpec::G(_) => {}
     }
     fit
 }

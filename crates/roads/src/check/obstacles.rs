@@ -3,7 +3,7 @@
 use super::{Remarks, shown};
 use crate::lane::LaneId;
 use crate::network::RoadNetwork;
-use crate::scenario::{ObstaclePlacement, Placement, obstacle_size};
+use crate::scenario::{ObstaclePlacement, Placement};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;
@@ -28,7 +28,7 @@ pub(super) fn place(
         return None;
     }
     let pose = ego.path.pose(obstacle.s_m, obstacle.t_m);
-    let (length_m, width_m) = obstacle_size(obstacle.kind);
+    let (length_m, width_m) = obstacle.kind.size_m();
     let lane = network.lane_at(pose.position, pose.heading).unwrap_or_else(|| nearest_lane(network, pose.position));
     Some(ObstaclePlacement { placed: PlacedObstacle { kind: obstacle.kind, pose, length_m, width_m }, lane })
 }
@@ -66,7 +66,7 @@ pub(super) fn way_through(draft: &ScenarioDraft, placed: &[Option<ObstaclePlacem
         .filter(|(_, obstacle)| obstacle.is_some())
         .map(|(position, _)| {
             let obstacle = &draft.obstacles[position];
-            let half = 0.5 * obstacle_size(obstacle.kind).1;
+            let half = 0.5 * obstacle.kind.size_m().1;
             Taken { position, s: obstacle.s_m, from: obstacle.t_m - half, to: obstacle.t_m + half }
         })
         .collect();

@@ -431,5 +431,6 @@ fn map_name(map: &MapSpec) -> &'static str {
         MapSpec::X(_) => "a four-way intersection (map X)",
         MapSpec::T(_) => "this three-way intersection (map T)",
         MapSpec::O(_) => "a roundabout (map O)",
+        MapSpec::G(_) => "a network of roads (map G)",
     }
 }

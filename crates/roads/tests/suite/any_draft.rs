@@ -142,7 +142,14 @@ fn partner(number: fn(f64, f64) -> BoxedStrategy<f64>) -> impl Strategy<Value = 
 
 fn draft(number: fn(f64, f64) -> BoxedStrategy<f64>, lanes: BoxedStrategy<u8>) -> impl Strategy<Value = ScenarioDraft> {
     let ego = (turn(), 0..3_u8, number(0.0, 20.0), number(0.0, 10.0), number(2.0, 10.0)).prop_map(
-        |(turn, lane, s_m, speed_mps, target_speed_mps)| EgoSpec { turn, lane, s_m, speed_mps, target_speed_mps },
+        |(turn, lane, s_m, speed_mps, target_speed_mps)| EgoSpec {
+            turn,
+            lane,
+            s_m,
+            speed_mps,
+            target_speed_mps,
+            ..EgoSpec::default()
+        },
     );
     let obstacles = prop::collection::vec(
         (number(25.0, 100.0), number(-6.0, 6.0)).prop_map(|(s_m, t_m)| Obstacle {
@@ -165,6 +172,7 @@ fn draft(number: fn(f64, f64) -> BoxedStrategy<f64>, lanes: BoxedStrategy<u8>) -
             traffic: Traffic { density, seed: 1 },
             environment: Environment::default(),
             duration_s,
+            ..ScenarioDraft::default()
         },
     )
 }

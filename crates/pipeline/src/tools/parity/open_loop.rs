@@ -9,7 +9,7 @@ use recrash_model::Seed;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::SUBSTEPS;
 use recrash_model::scenario::{
-    EgoSpec, Environment, MapSpec, SCENARIO_FORMAT, ScenarioDraft, Source, StraightMap, Traffic, Turn,
+    EgoSpec, Environment, MapSpec, SCENARIO_FORMAT, ScenarioDraft, Source, StraightMap, Traffic,
 };
 use recrash_model::seed::Rng;
 use recrash_model::surroundings::Surface;
@@ -146,12 +146,13 @@ fn plain_road(speed_mps: f64) -> Scenario {
         id: "open-loop".to_owned(),
         source: Source::default(),
         map: MapSpec::S(StraightMap { lanes: 4, lane_width_m: 3.5, approach_m: 60.0, length_m: 200.0 }),
-        ego: EgoSpec { turn: Turn::Straight, lane: 1, s_m: 5.0, speed_mps, target_speed_mps: speed_mps },
+        ego: EgoSpec { lane: 1, s_m: 5.0, speed_mps, target_speed_mps: speed_mps, ..EgoSpec::default() },
         partners: Vec::new(),
         obstacles: Vec::new(),
         traffic: Traffic::default(),
         environment: Environment::default(),
         duration_s: 0.1 * STEPS as f64,
+        ..ScenarioDraft::default()
     };
     check(draft).unwrap_or_else(|problems| unreachable!("a plain road is fit to drive on: {problems:?}")).value
 }

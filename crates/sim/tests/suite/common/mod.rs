@@ -64,12 +64,13 @@ pub fn alone(map: MapSpec, turn: Turn, lane: u8, speed_mps: f64, target_speed_mp
         id: "test".to_owned(),
         source: Source { author: Author::Person, ..Source::default() },
         map,
-        ego: EgoSpec { turn, lane, s_m: 5.0, speed_mps, target_speed_mps },
+        ego: EgoSpec { turn, lane, s_m: 5.0, speed_mps, target_speed_mps, ..EgoSpec::default() },
         partners: Vec::new(),
         obstacles: Vec::new(),
         traffic: Traffic::default(),
         environment: Environment::default(),
         duration_s: 40.0,
+        ..ScenarioDraft::default()
     }
 }
 
