@@ -138,6 +138,7 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, run: &Run, done: Done)
 fn track(actor: &Actor, states: &[[f64; 7]]) -> ActorTrack {
     let size = VehicleSpec::of(actor.kind);
     ActorTrack {
+        part_of: None,
         id: actor.id.clone(),
         role: actor.role,
         kind: actor.kind,

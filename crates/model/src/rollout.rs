@@ -32,7 +32,8 @@ pub struct Rollout {
     pub simulator: String,
     /// Ego that was run.
     pub ego: String,
-    /// Road users: the ego first, then the partners in the scenario's order, then background traffic.
+    /// Road users: the ego first, then the partners and the actors in the scenario's order, then background traffic, then
+    /// parts of any of them.
     pub actors: Vec<ActorTrack>,
     /// Static obstacles, in the scenario's order.
     pub obstacles: Vec<PlacedObstacle>,
@@ -54,6 +55,8 @@ pub enum Role {
     Partner,
     /// Background traffic.
     Traffic,
+    /// A box that belongs to another road user: a door, a mirror, a trailer.
+    Part,
 }
 
 /// One road user over time.
@@ -63,6 +66,9 @@ pub struct ActorTrack {
     pub id: String,
     /// What it is to the scenario.
     pub role: Role,
+    /// Of a part: its owner's position among the actors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part_of: Option<usize>,
     /// Kind.
     pub kind: PartnerKind,
     /// Length of its box. [m]

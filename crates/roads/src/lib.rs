@@ -6,6 +6,8 @@
 mod blocks;
 pub mod check;
 mod conflict;
+pub mod course;
+pub mod curve;
 pub mod drawing;
 pub mod json_place;
 pub mod lane;
@@ -16,14 +18,16 @@ mod read;
 pub mod scenario;
 pub mod simulator;
 pub mod traffic;
+pub mod ways;
 
 pub use check::check;
+pub use course::{Beside, Course, CourseLeg, CoursePiece, Spot, StopLine};
 pub use drawing::{LineKind, RoadDrawing, RoadLine};
 pub use json_place::{add_lines, locate};
 pub use lane::{Centreline, Lane, LaneId};
 pub use network::{Road, RoadId, RoadNetwork, RoadPart};
 pub use path::{Conflict, Footprint, LanePath, PathPoint};
 pub use read::{MAX_SCENARIO_BYTES, read_draft, scenario_schema, write_draft};
-pub use scenario::{ObstaclePlacement, Placement, Scenario};
+pub use scenario::{ActorPlacement, ControlPlacement, ObstaclePlacement, Placement, Scenario};
 pub use simulator::{RunError, Simulator};
 pub use traffic::{TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic};

@@ -1,7 +1,9 @@
 //! Names, counts and ranges: everything that can be said without looking at the road.
 
 use super::{Remarks, shown};
-use recrash_model::scenario::{LateralMove, MapSpec, Obstacle, Partner, Policy, SCENARIO_FORMAT, ScenarioDraft, Start};
+use recrash_model::scenario::{
+    LateralMove, MapSpec, Obstacle, Partner, Policy, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft, Start,
+};
 use std::collections::BTreeSet;
 
 /// The fastest any vehicle drives: MetaDrive cuts the engine at 80 km/h. [m/s]
@@ -25,7 +27,7 @@ pub(super) struct Fit {
 
 /// Checks names, counts and ranges.
 pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
-    if draft.format != SCENARIO_FORMAT {
+    if ![SCENARIO_FORMAT, SCENARIO_FORMAT_1].contains(&draft.format.as_str()) {
         let message = format!("format is {:?}, not {SCENARIO_FORMAT:?}", shorten(&draft.format));
         remarks.error("scenario.format", "format", message, "write the format tag as shown");
     }
@@ -35,7 +37,11 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
     let ego = {
         let speed = remarks.number("ego.speed_mps", draft.ego.speed_mps, 0.0, MAX_SPEED_MPS, "m/s");
         let target = remarks.number("ego.target_speed_mps", draft.ego.target_speed_mps, 1.0, MAX_SPEED_MPS, "m/s");
-        let longest = if map { draft.map.carriageway().approach_m } else { 300.0 };
+        let longest = match &draft.map {
+            MapSpec::G(_) => 2000.0,
+            _ if map => draft.map.carriageway().approach_m,
+            _ => 300.0,
+        };
         let start = remarks.number("ego.s_m", draft.ego.s_m, 0.0, longest, "m");
         speed && target && start
     };
@@ -77,7 +83,7 @@ impl Remarks {
         true
     }
 
-    fn count(&mut self, path: &str, found: usize, most: usize) -> bool {
+    pub(super) fn count(&mut self, path: &str, found: usize, most: usize) -> bool {
         if found > most {
             let message = format!("{found} {path}, at most {most} are allowed");
             self.error("scenario.count", path, message, "leave out those that the conflict does not need");
@@ -102,7 +108,7 @@ fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(40).chain(['…']).collect() }
 }
 
-fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
+pub(super) fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
     let listed = marks.chars().map(|mark| format!("'{mark}'")).collect::<Vec<_>>().join(", ");
     let allowed = format!("allowed: 1 to {longest} letters a-z A-Z, digits and {listed}");
     let length = text.chars().count();
@@ -121,6 +127,9 @@ fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remar
 }
 
 fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
+    if matches!(map, MapSpec::G(_)) {
+        return true;
+    }
     let shared = map.carriageway();
     let mut fit = true;
     if !(1..=4).contains(&shared.lanes) {
