@@ -77,7 +77,7 @@ impl<'a> Scene<'a> {
                     .iter()
                     .enumerate()
                     .take_while(counts)
-                    .map(|(_, state)| OrientedBox::new(state.pose(), track.length_m, track.width_m))
+                    .map(|(step, _)| track.outline(step))
                     .collect()
             })
             .collect();

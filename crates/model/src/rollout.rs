@@ -17,6 +17,9 @@ pub const STEP_S: f64 = 0.1;
 /// Physics steps in one step.
 pub const SUBSTEPS: usize = 5;
 
+/// Where who is not in the world is taken for. [m]
+const NOWHERE_M: f64 = 1e6;
+
 /// Name of the ego in every list of actors; it is always the first.
 pub const EGO_ID: &str = "ego";
 
@@ -75,8 +78,18 @@ pub struct ActorTrack {
     pub length_m: f64,
     /// Width of its box. [m]
     pub width_m: f64,
-    /// One state per step, from time 0.
+    /// It is not in the world before this time. [s]
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub appears_s: f64,
+    /// It is not in the world from this time on. [s]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gone_s: Option<f64>,
+    /// One state per step, from time 0; before it appears and after it is gone, where it would be.
     pub states: Vec<ActorState>,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// State of an actor at one step, and the controls it chose for the next.
@@ -150,9 +163,19 @@ impl ActorState {
 }
 
 impl ActorTrack {
-    /// The actor's box at a step.
+    /// The actor's box at a step; far away from everything while it is not in the world.
     pub fn outline(&self, step: usize) -> OrientedBox {
-        OrientedBox::new(self.states[step].pose(), self.length_m, self.width_m)
+        let mut pose = self.states[step].pose();
+        if !self.is_present(step) {
+            pose.position = Vec2::new(NOWHERE_M, NOWHERE_M);
+        }
+        OrientedBox::new(pose, self.length_m, self.width_m)
+    }
+
+    /// Whether it is in the world at a step.
+    pub fn is_present(&self, step: usize) -> bool {
+        let time_s = step as f64 * STEP_S;
+        time_s >= self.appears_s - 1e-9 && self.gone_s.is_none_or(|gone_s| time_s < gone_s - 1e-9)
     }
 }
 
@@ -208,6 +231,11 @@ pub enum EventKind {
         obstacle: usize,
         /// The actor's state at that time.
         state: ActorState,
+    },
+    /// An actor left the world because its plan says so.
+    Gone {
+        /// Actor.
+        actor: usize,
     },
 }
 

@@ -193,7 +193,13 @@ impl VehicleState {
     /// A vehicle that has been on the road for a while: its springs carry it.
     pub(crate) fn rolling(pose: Pose, velocity: Vec2, yaw_rate: f64) -> Self {
         let axis = Vec2::from_heading(pose.heading);
+        // What others see lags by a physics step; so that it goes on without a break, the body is ahead by one.
+        let body = Pose {
+            position: pose.position + velocity * PHYSICS_STEP_S,
+            heading: pose.heading + yaw_rate * PHYSICS_STEP_S,
+        };
         Self {
+            body,
             forward_mps: velocity.dot(axis).max(0.0),
             leftward_mps: velocity.dot(axis.left()),
             yaw_rate,

@@ -21,6 +21,8 @@ pub struct CastMember {
     pub length_m: f64,
     /// Width of its box. [m]
     pub width_m: f64,
+    /// The step at which it appears.
+    pub appears: u32,
     /// Of a part: its owner's position in the cast.
     pub owner: Option<u16>,
     /// Of a part: its position among its owner's.
@@ -91,6 +93,8 @@ impl Recorder for RolloutRecorder {
             id: member.id(draft, position),
             role: member.role,
             part_of: member.owner.map(usize::from),
+            appears_s: f64::from(member.appears) * STEP_S,
+            gone_s: None,
             kind: member.kind,
             length_m: member.length_m,
             width_m: member.width_m,
@@ -119,6 +123,9 @@ impl Recorder for RolloutRecorder {
 
     fn event(&mut self, event: &Event) {
         if let Some(rollout) = &mut self.rollout {
+            if let EventKind::Gone { actor } = event.kind {
+                rollout.actors[actor].gone_s = Some(event.time_s);
+            }
             rollout.events.push(event.clone());
         }
     }

@@ -32,7 +32,7 @@ use crate::recorder::CastMember;
 use crate::scene::Scene;
 use crate::world::{Driver, Setting, State, Workspace, prepare};
 use recrash_model::geometry::Vec2;
-use recrash_model::rollout::{ActorState, Event, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
+use recrash_model::rollout::{ActorState, Event, EventKind, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_plan::acts::{Glimpse, Sight};
 use recrash_plan::constants::{STANDING_MPS, STUCK_STEPS};
@@ -295,6 +295,7 @@ impl Run {
                 continue;
             }
             let (parts, step) = (&mut state.parts, state.step);
+            let was_present = progress.present;
             programme.decide(progress, actor, &sight, |part, to_rad, steps| {
                 let own =
                     setting.parts.iter().zip(parts.iter_mut()).filter(|(each, _)| usize::from(each.owner) == actor);
@@ -302,6 +303,9 @@ impl Run {
                     moved.turn(to_rad, step, steps);
                 }
             });
+            if was_present && !progress.present {
+                self.workspace.events.push(Event { time_s, kind: EventKind::Gone { actor } });
+            }
         }
     }
 

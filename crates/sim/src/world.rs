@@ -204,7 +204,7 @@ impl Workspace {
         self.near.clear();
         self.near.reserve(pairs);
         self.events.clear();
-        self.events.reserve(pairs);
+        self.events.reserve(pairs + actors);
     }
 }
 
@@ -310,7 +310,7 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
     let place = Navigator::new(route, at as u32, path.segments[at].lane.0);
     setting.chassis.push(Chassis::new(&spec, surface));
     let (length_m, width_m) = (spec.length_m, spec.width_m);
-    setting.cast.push(CastMember { role, kind, length_m, width_m, owner: None, part: 0 });
+    setting.cast.push(CastMember { role, kind, length_m, width_m, owner: None, part: 0, appears: 0 });
     setting.masses_kg.push(VehicleSpec::mass_kg(kind));
     setting.parts_reach_m.push(0.0);
     setting.programme_of.push(None);
@@ -434,6 +434,7 @@ fn follow_plan(setting: &mut Setting, state: &mut State, actor: usize, programme
     let (pose, velocity, yaw_rate) = programme.motion(&progress);
     state.bodies[actor].carry(pose, velocity, yaw_rate);
     state.seen[actor].present = progress.present;
+    setting.cast[actor].appears = programme.appears;
     setting.programme_of[actor] = u16::try_from(setting.programmes.len()).ok();
     setting.programmes.push(programme);
     state.progress.push(progress);
@@ -447,7 +448,7 @@ fn attach(setting: &mut Setting, state: &mut State, owner: usize, parts: &[Part]
         let kind = setting.cast[owner].kind;
         let (length_m, width_m) = (part.length_m, part.width_m);
         let (owner_number, number) = (owner as u16, number as u16);
-        let member = CastMember { role: Role::Part, kind, length_m, width_m, owner: Some(owner_number), part: number };
+        let member = CastMember { role: Role::Part, kind, length_m, width_m, owner: Some(owner_number), part: number, appears: 0 };
         setting.cast.push(member);
         let attached = Attached { owner: owner_number, part: part.clone() };
         setting.parts_reach_m[owner] = setting.parts_reach_m[owner].max(attached.reach_m());

@@ -163,7 +163,7 @@ fn a_queue_that_is_pushed_from_behind_reaches_the_ego() {
         .iter()
         .filter_map(|event| match event.kind {
             EventKind::Contact { a, b, .. } => Some((a, b)),
-            EventKind::ObstacleContact { .. } => None,
+            EventKind::ObstacleContact { .. } | EventKind::Gone { .. } => None,
         })
         .collect();
     assert_eq!(contacts, [(1, 2), (0, 1)]);
