@@ -2,6 +2,7 @@
 //!
 //! Every rule has a stable code, `scenario.*`; they are listed in `docs/models/roads.md`.
 
+mod graph;
 mod motion;
 mod numbers;
 mod obstacles;
@@ -25,7 +26,13 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
     if !fit.counts || !fit.map || !fit.ego {
         return Err(remarks.list);
     }
-    let network = Arc::new(RoadNetwork::build(&draft.map));
+    let network = match RoadNetwork::try_build(&draft.map) {
+        Ok(network) => Arc::new(network),
+        Err(problems) => {
+            remarks.list.extend(problems);
+            return Err(remarks.list);
+        }
+    };
     let Some(ego) = places::ego(&draft, &network, &mut remarks) else {
         return Err(remarks.list);
     };

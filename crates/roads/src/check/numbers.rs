@@ -77,7 +77,7 @@ impl Remarks {
         true
     }
 
-    fn count(&mut self, path: &str, found: usize, most: usize) -> bool {
+    pub(super) fn count(&mut self, path: &str, found: usize, most: usize) -> bool {
         if found > most {
             let message = format!("{found} {path}, at most {most} are allowed");
             self.error("scenario.count", path, message, "leave out those that the conflict does not need");
@@ -98,11 +98,11 @@ fn last_name(path: &str) -> &str {
 }
 
 /// The beginning of a text that may be very long.
-fn shorten(text: &str) -> String {
+pub(super) fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(40).chain(['…']).collect() }
 }
 
-fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
+pub(super) fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
     let listed = marks.chars().map(|mark| format!("'{mark}'")).collect::<Vec<_>>().join(", ");
     let allowed = format!("allowed: 1 to {longest} letters a-z A-Z, digits and {listed}");
     let length = text.chars().count();
@@ -121,6 +121,9 @@ fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remar
 }
 
 fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
+    if let MapSpec::G(graph) = map {
+        return super::graph::numbers(graph, remarks);
+    }
     let shared = map.carriageway();
     let mut fit = true;
     if !(1..=4).contains(&shared.lanes) {
