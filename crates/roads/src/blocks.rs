@@ -4,11 +4,11 @@
 //! x points into it, y to the left. Measures are those of MetaDrive 0.4.3, see `docs/models/roads.md`.
 
 use crate::lane::{Centreline, Lane, LaneId};
-use crate::network::{Road, RoadId, RoadNetwork, RoadPart};
+use crate::network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::narrative::Side;
-use recrash_model::scenario::{Approach, ENTRANCE_LENGTH_M, MapSpec, MissingArm, RoundaboutMap, Turn};
+use recrash_model::scenario::{Approach, ENTRANCE_LENGTH_M, MapSpec, MissingArm, RoundaboutMap, StripKind, Turn};
 
 /// Radius of the rightmost lane's right turn at a junction; MetaDrive's constant. [m]
 pub const JUNCTION_RADIUS_M: f64 = 10.0;
@@ -20,7 +20,14 @@ const ROUNDABOUT_ANGLE_RAD: f64 = math::PI / 3.0;
 pub(crate) fn build(map: &MapSpec) -> RoadNetwork {
     let carriageway = map.carriageway();
     let mut builder = Builder {
-        network: RoadNetwork { map: map.clone(), roads: Vec::new(), lanes: Vec::new(), named: Vec::new() },
+        network: RoadNetwork {
+            map: map.clone(),
+            roads: Vec::new(),
+            lanes: Vec::new(),
+            followers: Vec::new(),
+            named: Vec::new(),
+            lines: Vec::new(),
+        },
         lanes: carriageway.lanes,
         width: carriageway.lane_width_m,
     };
@@ -45,7 +52,46 @@ pub(crate) fn build(map: &MapSpec) -> RoadNetwork {
         MapSpec::O(m) => builder.roundabout(approach.end, m),
         MapSpec::G(_) => unreachable!("a network of roads is no block"),
     }
+    builder.network.followers = crate::ways::followers(&builder.network.lanes, |_| true, |_| true);
+    name_roads(&mut builder.network);
     builder.network
+}
+
+/// Names the roads as places do: `ego+` leads towards the block, the other arms' `+` away from it. On S and C the road
+/// leads through the block.
+fn name_roads(network: &mut RoadNetwork) {
+    let letter = network.map.letter();
+    let arms: Vec<(&str, Vec<String>)> = match letter {
+        'S' | 'C' => [Approach::Same, Approach::Opposite]
+            .map(|approach| route_nodes(&network.map, approach, Turn::Straight).unwrap_or_default())
+            .into_iter()
+            .zip(["ego+", "ego-"])
+            .map(|(nodes, name)| (name, nodes))
+            .collect(),
+        _ => {
+            let arms = Arms { letter, last_part: if letter == 'O' { 3 } else { 1 } };
+            let near = arms.last_part - 1;
+            let ego = [("ego+", arms.inward(0, near)), ("ego-", arms.outward(0, near))];
+            let others = [("right+", "right-", 1), ("ahead+", "ahead-", 2), ("left+", "left-", 3)];
+            ego.into_iter()
+                .chain(others.into_iter().flat_map(|(away, towards, arm)| {
+                    [(away, arms.outward(arm, near)), (towards, arms.inward(arm, near))]
+                }))
+                .collect()
+        }
+    };
+    for (name, nodes) in arms {
+        let pieces: Vec<RoadId> =
+            nodes.windows(2).filter_map(|pair| network.road_between(&pair[0], &pair[1])).collect();
+        if !pieces.is_empty() {
+            network.named.push(NamedRoad {
+                name: name.to_owned(),
+                pieces,
+                kind: StripKind::Driving,
+                speed_limit_mps: None,
+            });
+        }
+    }
 }
 
 /// The nodes of a way through the map, or `None` where the map has no such way.
@@ -231,8 +277,14 @@ impl Builder {
         let road = RoadId(u16::try_from(self.network.roads.len()).expect("a map has a few dozen roads"));
         let mut ids = Vec::with_capacity(usize::from(self.lanes));
         for index in 0..self.lanes {
-            let base =
-                Lane { road, index, centreline: rightmost.centreline, length_m: rightmost.length, width_m: self.width };
+            let base = Lane {
+                road,
+                index,
+                centreline: rightmost.centreline,
+                length_m: rightmost.length,
+                width_m: self.width,
+                end_width_m: self.width,
+            };
             let lane = if oncoming {
                 base.beside(-f64::from(self.lanes + index) * self.width).reversed()
             } else {

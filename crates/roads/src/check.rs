@@ -4,6 +4,7 @@
 
 mod actors;
 mod control;
+mod graph;
 mod motion;
 mod numbers;
 mod obstacles;
@@ -30,7 +31,13 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
     if !fit.counts || !fit.map || !fit.ego {
         return Err(remarks.list);
     }
-    let network = Arc::new(RoadNetwork::build(&draft.map));
+    let network = match RoadNetwork::try_build(&draft.map) {
+        Ok(network) => Arc::new(network),
+        Err(problems) => {
+            remarks.list.extend(problems);
+            return Err(remarks.list);
+        }
+    };
     let control = control::place(&draft, &network, &mut remarks);
     let recorded = match &draft.ego.recorded {
         Some(plan) if planned => {

@@ -3,7 +3,7 @@
 //! `s` counts from the start in the direction of motion; in reverse gear the road user faces against it. What lies beside
 //! the line is counted to the right of the road user. Equations: `docs/models/acts.md`.
 
-use crate::curve::{Stroke, between};
+use crate::graph::{Stretch, biarc};
 use crate::lane::{Centreline, LaneId};
 use crate::path::{LanePath, SegmentShape};
 use recrash_model::geometry::{Pose, Vec2};
@@ -140,8 +140,15 @@ impl Course {
             let heading = if reverse { math::wrap_angle(pose.heading + math::PI) } else { pose.heading };
             Pose { heading, ..pose }
         };
-        let Some(strokes) = between(turned(from), turned(to)) else { return false };
-        self.strokes(&strokes);
+        let (from, to) = (turned(from), turned(to));
+        let Some(arcs) = biarc(from, to) else { return false };
+        // More than half a circle is a loop.
+        if arcs.iter().any(|arc| (arc.curvature * arc.length_m).abs() > math::PI) {
+            return false;
+        }
+        for arc in &arcs {
+            self.stretch(arc);
+        }
         self.end_leg(reverse, true);
         true
     }
@@ -160,15 +167,12 @@ impl Course {
         self.end_leg(false, true);
     }
 
-    fn strokes(&mut self, strokes: &[Stroke]) {
-        for (line, length_m) in strokes {
-            self.push(SegmentShape::of_line(line, *length_m), *length_m, None);
-        }
+    fn stretch(&mut self, stretch: &Stretch) {
+        self.push(SegmentShape::of_line(&stretch.centreline(), stretch.length_m), stretch.length_m, None);
     }
 
     fn straight(&mut self, from: Pose, length_m: f64) {
-        let line = Centreline::Straight { start: from.position, heading: from.heading };
-        self.push(SegmentShape::of_line(&line, length_m), length_m, None);
+        self.stretch(&Stretch { start: from, curvature: 0.0, length_m });
     }
 
     fn push(&mut self, shape: SegmentShape, length_m: f64, lane: Option<(LaneId, f64)>) {

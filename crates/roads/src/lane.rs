@@ -53,11 +53,22 @@ pub struct Lane {
     pub centreline: Centreline,
     /// Length of the centre line. [m]
     pub length_m: f64,
-    /// Width. [m]
+    /// Width at its beginning. [m]
     pub width_m: f64,
+    /// Width at its end; it changes evenly. [m]
+    pub end_width_m: f64,
 }
 
 impl Lane {
+    /// Width at s; beyond an end, that at the end. [m]
+    #[inline]
+    pub fn width_at(&self, s: f64) -> f64 {
+        if self.width_m == self.end_width_m {
+            return self.width_m;
+        }
+        self.width_m + (self.end_width_m - self.width_m) * (s / self.length_m).clamp(0.0, 1.0)
+    }
+
     /// The point at (s, t). `s` may lie outside the lane: it is then continued.
     pub fn position(&self, s: f64, t: f64) -> Vec2 {
         match self.centreline {
@@ -92,7 +103,7 @@ impl Lane {
     /// Whether a point lies on the lane, its edges included.
     pub fn contains(&self, point: Vec2) -> bool {
         let (s, t) = self.local(point);
-        (0.0..=self.length_m).contains(&s) && t.abs() <= 0.5 * self.width_m
+        (0.0..=self.length_m).contains(&s) && t.abs() <= 0.5 * self.width_at(s)
     }
 
     /// The same stretch, `t` to the right. [m]
@@ -112,6 +123,18 @@ impl Lane {
         }
     }
 
+    /// The part between two places. [m]
+    pub(crate) fn part(&self, from_m: f64, to_m: f64) -> Self {
+        let centreline = match self.centreline {
+            Centreline::Straight { heading, .. } => Centreline::Straight { start: self.position(from_m, 0.0), heading },
+            Centreline::Arc { centre, radius, start_angle, turn } => {
+                Centreline::Arc { centre, radius, start_angle: start_angle + turn * from_m / radius, turn }
+            }
+        };
+        let (width_m, end_width_m) = (self.width_at(from_m), self.width_at(to_m));
+        Self { centreline, length_m: to_m - from_m, width_m, end_width_m, ..*self }
+    }
+
     /// The same stretch driven the other way.
     pub(crate) fn reversed(&self) -> Self {
         let centreline = match self.centreline {
@@ -126,6 +149,6 @@ impl Lane {
                 turn: -turn,
             },
         };
-        Self { centreline, ..*self }
+        Self { centreline, width_m: self.end_width_m, end_width_m: self.width_m, ..*self }
     }
 }

@@ -1,4 +1,4 @@
-//! Road geometry of the five maps (S, C, X, T, O), and the check that turns a draft into a runnable scenario.
+//! Road geometry of the paper's five blocks (S, C, X, T, O) and of networks of roads (G), and the check that turns a draft into a runnable scenario.
 //!
 //! Lane-local coordinates are the one road interface: `s` along the centre line, `t` to the **right** of it. [m]
 //! Lane 0 is the leftmost of its road.
@@ -7,26 +7,30 @@ mod blocks;
 pub mod check;
 mod conflict;
 pub mod course;
-pub mod curve;
 pub mod drawing;
+pub mod graph;
 pub mod json_place;
 pub mod lane;
+mod lane_change;
+mod near;
 pub mod network;
 mod paper_dialect;
 pub mod path;
+pub mod place;
 mod read;
 pub mod scenario;
 pub mod simulator;
 pub mod traffic;
-pub mod ways;
+mod ways;
 
 pub use check::check;
 pub use course::{Beside, Course, CourseLeg, CoursePiece, Spot, StopLine};
 pub use drawing::{LineKind, RoadDrawing, RoadLine};
 pub use json_place::{add_lines, locate};
 pub use lane::{Centreline, Lane, LaneId};
-pub use network::{Road, RoadId, RoadNetwork, RoadPart};
+pub use network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};
 pub use path::{Conflict, Footprint, LanePath, PathPoint};
+pub use place::{BEYOND_END_M, OnLane, OnRoad, PlaceError, Placed};
 pub use read::{MAX_SCENARIO_BYTES, read_draft, scenario_schema, write_draft};
 pub use scenario::{ActorPlacement, ControlPlacement, ObstaclePlacement, Placement, Scenario};
 pub use simulator::{RunError, Simulator};

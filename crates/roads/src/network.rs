@@ -1,6 +1,8 @@
 //! The road network of a map: nodes, roads between them, lanes on them; node for node MetaDrive's.
 
+use crate::graph::ReferenceLine;
 use crate::lane::{Lane, LaneId};
+use recrash_model::Diagnostic;
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::scenario::{Approach, MapSpec, StripKind, Turn};
@@ -65,14 +67,33 @@ pub struct RoadNetwork {
     pub roads: Vec<Road>,
     /// Every lane.
     pub lanes: Vec<Lane>,
+    /// The lanes that follow each lane.
+    pub followers: Vec<Vec<LaneId>>,
     /// Roads by name.
     pub named: Vec<NamedRoad>,
+    /// The reference line of each road of a network of roads, in the map's order; none on the paper's blocks.
+    pub lines: Vec<ReferenceLine>,
 }
 
 impl RoadNetwork {
-    /// Builds the network. The numbers of `map` must be in range (see [`crate::check()`]).
+    /// Builds the network of a map that is known to be sound: a block of the paper whose numbers are in range, or what
+    /// [`crate::check()`] has let through.
+    ///
+    /// # Panics
+    /// Where [`Self::try_build`] finds a problem.
     pub fn build(map: &MapSpec) -> Self {
-        crate::blocks::build(map)
+        Self::try_build(map).expect("the map is sound")
+    }
+
+    /// Builds the network. The numbers of `map` must be in range (see [`crate::check()`]).
+    ///
+    /// # Errors
+    /// What is wrong with a network of roads, each with its JSON path.
+    pub fn try_build(map: &MapSpec) -> Result<Self, Vec<Diagnostic>> {
+        match map {
+            MapSpec::G(map) => crate::graph::build(map),
+            _ => Ok(crate::blocks::build(map)),
+        }
     }
 
     /// A lane.
@@ -108,11 +129,11 @@ impl RoadNetwork {
         let mut best: Option<(bool, f64, usize)> = None;
         for (position, lane) in self.lanes.iter().enumerate() {
             let (s, t) = lane.local(point);
-            if !(0.0..=lane.length_m).contains(&s) || t.abs() > 0.5 * lane.width_m {
+            if !(0.0..=lane.length_m).contains(&s) || t.abs() > 0.5 * lane.width_at(s) {
                 continue;
             }
             let turned = math::wrap_angle(lane.heading(s) - heading).abs();
-            let candidate = (turned > math::FRAC_PI_2, t.abs() + lane.width_m * turned, position);
+            let candidate = (turned > math::FRAC_PI_2, t.abs() + lane.width_at(s) * turned, position);
             let better = match best {
                 None => true,
                 Some(best) => (candidate.0, candidate.1) < (best.0, best.1),

@@ -14,9 +14,9 @@ pub struct PathSegment {
     pub lane: LaneId,
     /// The path's s where the lane begins. [m]
     pub start_m: f64,
-    /// The lane's length. [m]
+    /// Its length on the path: the lane's, but where the path changes lanes. [m]
     pub length_m: f64,
-    /// The lane's centre line, prepared for fast look-ups.
+    /// Its line: the lane's centre line but where the path changes lanes. Prepared for fast look-ups.
     pub shape: SegmentShape,
 }
 
@@ -49,12 +49,12 @@ pub enum SegmentShape {
     },
 }
 
-/// Lanes with the same number on consecutive roads, as one line.
+/// Lanes one behind the other, as one line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LanePath {
-    /// Roads, in order.
+    /// The roads of the lanes.
     pub roads: Vec<RoadId>,
-    /// Lanes, in order, one per road.
+    /// Lanes, in order, and parts of lanes where the path changes from one to another.
     pub segments: Vec<PathSegment>,
     /// Length. [m]
     pub length_m: f64,
@@ -165,6 +165,20 @@ impl SegmentShape {
         }
     }
 
+    /// The same line the other way. [m]
+    pub(crate) fn reversed(&self, length_m: f64) -> Self {
+        match *self {
+            Self::Straight { forward, heading, .. } => {
+                let heading = math::wrap_angle(heading + math::PI);
+                Self::Straight { start: self.frame(length_m).0, forward: -forward, heading }
+            }
+            Self::Arc { centre, radius, middle, middle_heading, half_length, turn } => {
+                let middle_heading = math::wrap_angle(middle_heading + math::PI);
+                Self::Arc { centre, radius, middle, middle_heading, half_length, turn: -turn }
+            }
+        }
+    }
+
     /// Curvature, positive to the left. [1/m]
     #[inline]
     pub fn curvature(&self) -> f64 {
@@ -239,6 +253,39 @@ impl LanePath {
             length_m += geometry.length_m;
         }
         Self { roads, segments, length_m }
+    }
+
+    /// The path along lanes that follow each other. Where two lanes of one road do, the path changes from one to the other
+    /// in an S of two arcs.
+    ///
+    /// # Panics
+    /// Without lanes.
+    pub fn of_lanes(network: &RoadNetwork, lanes: Vec<LaneId>) -> Self {
+        assert!(!lanes.is_empty(), "a path has at least one lane");
+        let pieces = crate::lane_change::pieces(network, &lanes);
+        let mut path = Self { roads: Vec::with_capacity(pieces.len()), segments: Vec::new(), length_m: 0.0 };
+        for (id, geometry) in pieces {
+            path.roads.push(geometry.road);
+            path.segments.push(PathSegment {
+                lane: id,
+                start_m: path.length_m,
+                length_m: geometry.length_m,
+                shape: SegmentShape::of(&geometry),
+            });
+            path.length_m += geometry.length_m;
+        }
+        path
+    }
+
+    /// The same line the other way. Its lanes are driven against their direction.
+    pub fn reversed(&self) -> Self {
+        let mut path = Self { roads: self.roads.clone(), segments: Vec::with_capacity(self.segments.len()), ..*self };
+        path.roads.reverse();
+        for segment in self.segments.iter().rev() {
+            let start_m = self.length_m - segment.start_m - segment.length_m;
+            path.segments.push(PathSegment { start_m, shape: segment.shape.reversed(segment.length_m), ..*segment });
+        }
+        path
     }
 
     /// Pose at (s, t), heading along the path. Before its beginning and behind its end the path goes straight on.

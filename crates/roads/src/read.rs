@@ -1,6 +1,7 @@
 //! Scenario files: JSON in and out, with errors that say where and how to mend.
 
 use crate::json_place::add_lines;
+use crate::near::nearest;
 use crate::paper_dialect;
 use recrash_model::scenario::{
     CrossMap, CurveMap, GraphMap, MapSpec, Policy, RoundaboutMap, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft,
@@ -375,31 +376,4 @@ pub(crate) fn policy(value: &Value, path: &str, parts: &mut Parts) -> Option<Pol
 /// A value for a message.
 pub(crate) fn brief(value: &Value) -> String {
     value.to_string().chars().take(40).collect()
-}
-
-/// The known name that was probably meant.
-fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
-    let found: String = found.chars().take(40).collect();
-    known
-        .iter()
-        .map(|name| (edits(&found, name), *name))
-        .filter(|(edits, name)| *edits <= 1 + name.len() / 4 || (found.len() > 3 && name.starts_with(&found)))
-        .min()
-        .map(|(_, name)| name)
-}
-
-/// Levenshtein's distance: the fewest insertions, deletions and replacements of one letter.
-fn edits(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, to) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(from != *to);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
 }

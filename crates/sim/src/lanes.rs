@@ -31,6 +31,8 @@ pub(crate) struct PreparedLane {
     hull: Option<Hull>,
     pub(crate) length_m: f64,
     half_width_m: f64,
+    /// Change of half of its width along it.
+    widens: f64,
     /// Where the lane's collision body ends, along the lane. [m]
     body_end_m: f64,
     start: Vec2,
@@ -64,7 +66,7 @@ impl PreparedLane {
             Centreline::Arc { turn, .. } => {
                 let start_forward = Vec2::from_heading(lane.heading(0.0));
                 let end_forward = Vec2::from_heading(lane.heading(lane.length_m));
-                let inner = -turn * 0.5 * lane.width_m;
+                let inner = -turn * 0.5 * lane.width_m.max(lane.end_width_m);
                 let chord = lane.position(0.0, inner) - start_forward * BODY_SAMPLE_M;
                 let chord_end = lane.position(body_end_m, inner) + end_forward * BODY_SAMPLE_M;
                 let along = chord_end - chord;
@@ -76,6 +78,7 @@ impl PreparedLane {
             hull,
             length_m: lane.length_m,
             half_width_m: 0.5 * lane.width_m,
+            widens: 0.5 * (lane.end_width_m - lane.width_m) / lane.length_m,
             body_end_m,
             start,
             end,
@@ -96,10 +99,16 @@ impl PreparedLane {
         self.shape.heading(s)
     }
 
-    /// Width. [m]
+    /// Width at s. [m]
     #[inline]
-    pub(crate) fn width_m(&self) -> f64 {
-        2.0 * self.half_width_m
+    pub(crate) fn width_m(&self, s: f64) -> f64 {
+        2.0 * self.half_width_m(s)
+    }
+
+    /// Half of the width at s; beyond an end, that at the end. [m]
+    #[inline]
+    fn half_width_m(&self, s: f64) -> f64 {
+        self.half_width_m + self.widens * s.clamp(0.0, self.length_m)
     }
 
     /// Radius of the centre line; `None` where it is straight. [m]
@@ -129,7 +138,7 @@ impl PreparedLane {
     /// Whether a point with these lane coordinates lies on the lane proper.
     #[inline]
     fn holds(&self, s: f64, t: f64) -> bool {
-        s >= 0.0 && s <= self.length_m && t.abs() <= self.half_width_m
+        s >= 0.0 && s <= self.length_m && t.abs() <= self.half_width_m(s)
     }
 
     /// Whether a point lies on the lane's collision body.
@@ -139,11 +148,11 @@ impl PreparedLane {
             None => {
                 s >= -BODY_MARGIN_M
                     && s <= self.body_end_m + BODY_MARGIN_M
-                    && t.abs() <= self.half_width_m + BODY_MARGIN_M
+                    && t.abs() <= self.half_width_m(s) + BODY_MARGIN_M
             }
             Some(hull) => {
                 let beyond_end = self.body_end_m - self.length_m + BODY_SAMPLE_M;
-                hull.turn * t <= self.half_width_m + BODY_MARGIN_M
+                hull.turn * t <= self.half_width_m(s) + BODY_MARGIN_M
                     && (point - self.start).dot(hull.start_forward) >= -BODY_SAMPLE_M - BODY_MARGIN_M
                     && (point - self.end).dot(hull.end_forward) <= beyond_end + BODY_MARGIN_M
                     && hull.turn * hull.chord_forward.cross(point - hull.chord) <= BODY_MARGIN_M

@@ -388,7 +388,7 @@ impl Run {
         lanes.iter().any(|&lane| {
             let lane = setting.lanes.lane(lane);
             let (s, t) = lane.local(ego.pose.position);
-            (s - lane.length_m).abs() < ARRIVAL_RANGE_M && t.abs() <= 0.5 * lane.width_m()
+            (s - lane.length_m).abs() < ARRIVAL_RANGE_M && t.abs() <= 0.5 * lane.width_m(s)
         })
     }
 

@@ -126,7 +126,7 @@ fn blocks<'a>(
 fn bounds(scene: &Scene<'_>, me: usize) -> (f64, f64) {
     let lane = scene.lanes.lane(scene.path_lane(me));
     let lanes = scene.lanes.of_road(recrash_roads::RoadId(lane.road)).len() as f64;
-    let (number, width) = (f64::from(lane.number), lane.width_m());
+    let (number, width) = (f64::from(lane.number), lane.width_m(0.5 * lane.length_m));
     let room = 0.5 * width - scene.actors[me].half_width - EDGE_ROOM_M;
     (-number * width - room, (lanes - 1.0 - number) * width + room)
 }

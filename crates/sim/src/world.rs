@@ -448,7 +448,15 @@ fn attach(setting: &mut Setting, state: &mut State, owner: usize, parts: &[Part]
         let kind = setting.cast[owner].kind;
         let (length_m, width_m) = (part.length_m, part.width_m);
         let (owner_number, number) = (owner as u16, number as u16);
-        let member = CastMember { role: Role::Part, kind, length_m, width_m, owner: Some(owner_number), part: number, appears: 0 };
+        let member = CastMember {
+            role: Role::Part,
+            kind,
+            length_m,
+            width_m,
+            owner: Some(owner_number),
+            part: number,
+            appears: 0,
+        };
         setting.cast.push(member);
         let attached = Attached { owner: owner_number, part: part.clone() };
         setting.parts_reach_m[owner] = setting.parts_reach_m[owner].max(attached.reach_m());

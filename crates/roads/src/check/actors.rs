@@ -5,8 +5,9 @@ use super::{Remarks, shown};
 use crate::course::{Course, rear_of};
 use crate::network::RoadNetwork;
 use crate::path::LanePath;
+use crate::place::PlaceError;
 use crate::scenario::{ActorPlacement, ControlPlacement};
-use recrash_model::geometry::{OrientedBox, Pose};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::EGO_ID;
@@ -444,7 +445,7 @@ fn ahead(rear: Pose, arm_m: f64) -> Pose {
     rear_of(rear, -arm_m)
 }
 
-/// A way along lanes, and where its last road begins along it. [m]
+/// A way along lanes, and where it enters its last road. [m]
 fn lanes_leg(
     network: &RoadNetwork,
     roads: &[String],
@@ -453,11 +454,37 @@ fn lanes_leg(
     against: bool,
     from: Pose,
 ) -> Result<(LanePath, f64), (String, String)> {
-    let first_lane = first_lane.unwrap_or_else(|| network.nearest_lane_of(&roads[0], from.position));
-    let way = if against { network.way_against(roads, first_lane) } else { network.way(roads, first_lane, last_lane) }
-        .map_err(|error| (error.message, error.hint))?;
-    let last = roads.last().map_or(0.0, |last| network.begins_on(&way, last));
-    Ok((way, last))
+    let told = |error: PlaceError| (error.message, error.hint);
+    let first_lane = match first_lane {
+        Some(lane) => lane,
+        None => nearest_lane(network, &roads[0], from.position).map_err(told)?,
+    };
+    let way = if against {
+        network.way_against(roads, first_lane, last_lane)
+    } else {
+        network.way(roads, first_lane, last_lane)
+    };
+    let way = way.map_err(told)?;
+    let last = network.named_road(&roads[roads.len() - 1], "roads").map_err(told)?;
+    let pieces = &network.named[last].pieces;
+    let enters = way.segments.iter().find(|segment| pieces.contains(&network.lane(segment.lane).road));
+    let enters_m = enters.map_or(0.0, |segment| segment.start_m);
+    Ok((way, enters_m))
+}
+
+/// The number of the lane of a road that passes nearest to a point.
+fn nearest_lane(network: &RoadNetwork, road: &str, point: Vec2) -> Result<u8, PlaceError> {
+    let road = &network.named[network.named_road(road, "roads[0]")?];
+    let mut best = (f64::INFINITY, 0);
+    for lane in 0..network.lanes_of(road) {
+        let path = network.lane_of(road, lane)?;
+        let beside = path.project(point, 0);
+        let apart = path.pose(beside.s, 0.0).position.distance(point);
+        if apart < best.0 {
+            best = (apart, lane);
+        }
+    }
+    Ok(best.1)
 }
 
 /// Bends that its wheels cannot follow.

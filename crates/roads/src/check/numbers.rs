@@ -104,7 +104,7 @@ fn last_name(path: &str) -> &str {
 }
 
 /// The beginning of a text that may be very long.
-fn shorten(text: &str) -> String {
+pub(super) fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(40).chain(['…']).collect() }
 }
 
@@ -127,8 +127,8 @@ pub(super) fn name(path: &str, text: &str, longest: usize, marks: &str, remarks:
 }
 
 fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
-    if matches!(map, MapSpec::G(_)) {
-        return true;
+    if let MapSpec::G(graph) = map {
+        return super::graph::numbers(graph, remarks);
     }
     let shared = map.carriageway();
     let mut fit = true;
