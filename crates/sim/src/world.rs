@@ -330,7 +330,6 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
         half_width: 0.5 * spec.width_m,
         present: true,
         on_lane: true,
-        plan_s_m: None,
     });
 }
 
@@ -527,7 +526,7 @@ impl State {
                 Mover::Plan => {
                     let Some(number) = setting.programme_of[actor].map(usize::from) else { continue };
                     let (programme, progress) = (&setting.programmes[number], &mut self.progress[number]);
-                    if progress.stands() {
+                    if !progress.present || progress.stands() {
                         continue;
                     }
                     programme.advance(progress, PHYSICS_STEP_S);

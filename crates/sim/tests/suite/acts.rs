@@ -283,6 +283,32 @@ fn every_built_in_ego_stops_for_red_and_goes_at_green() {
 }
 
 #[test]
+fn who_takes_over_sees_how_far_it_has_come_along_its_route() {
+    for ego in Ego::DRIVERS {
+        let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 10.0, 10.0);
+        let start = ActorPlan::standing(Place::at(60.0, 0.0, 0.0));
+        draft.ego.recorded = Some(ActorPlan { speed_mps: 10.0, course: vec![straight_on(350.0, 0.0)], ..start });
+        draft.ego.handover_s = Some(2.0);
+        draft.control.push(signal(&[(Aspect::Red, 60.0)]));
+        let rollout = simulate(&checked(draft), ego);
+        // The line lies at 160 m, the course began at 60 m.
+        let front = rollout.actors[0].states.last().unwrap().x + 0.5 * 4.515;
+        assert!(front <= 160.0 && front > 156.5, "{ego}: {front}");
+    }
+}
+
+#[test]
+fn who_appears_later_begins_at_its_start() {
+    let mut draft = scene();
+    draft.actors.push(actor("wheel", 30.0, 0.0, 6.0, vec![straight_on(250.0, 0.0)], Vec::new()));
+    draft.actors[0].plan.appears_s = 4.0;
+    let rollout = recorded(draft);
+    let states = &track(&rollout, "wheel").states;
+    assert!(states[..=40].iter().all(|state| state.x == 30.0), "{:?}", states[40]);
+    assert!((states[50].x - 36.0).abs() < 1e-9, "{:?}", states[50]);
+}
+
+#[test]
 fn a_stop_of_the_task_is_made_and_left_again() {
     for ego in Ego::DRIVERS {
         let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 8.0, 8.0);

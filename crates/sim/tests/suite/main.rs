@@ -4,6 +4,7 @@ mod acts;
 mod behaviour;
 mod common;
 mod driven;
+mod gallery;
 mod parity;
 mod partners;
 mod reference;
