@@ -131,6 +131,38 @@ fn run_all(cases: &[Case], threads: usize) -> Vec<Rollout> {
     all.into_iter().map(|(_, rollout)| rollout).collect()
 }
 
+/// What came out, for a reader.
+fn outcome(rollout: &Rollout) -> String {
+    let mut told = Vec::new();
+    for event in &rollout.events {
+        let (time_s, id) = (event.time_s, |actor: usize| &rollout.actors[actor].id);
+        told.push(match &event.kind {
+            EventKind::Contact { a, b, a_state, b_state } => {
+                let zones = zones(rollout, (*a, a_state), (*b, b_state)).replace('_', " ").replace('/', " on ");
+                match a {
+                    0 => format!("{} at {time_s:.1} s, {zones}", id(*b)),
+                    _ => format!("{} and {} at {time_s:.1} s, {zones}", id(*a), id(*b)),
+                }
+            }
+            EventKind::ObstacleContact { obstacle, .. } => {
+                format!("{} at {time_s:.1} s", rollout.obstacles[*obstacle].kind.label())
+            }
+            EventKind::Gone { actor } => format!("{} leaves at {time_s:.1} s", id(*actor)),
+        });
+    }
+    if told.is_empty() { "no contact".to_owned() } else { told.join("; ") }
+}
+
+/// The table of `cases/README.md`.
+fn table(cases: &[Case], rollouts: &[Rollout]) -> String {
+    let mut table = "| Case | What it shows | As recorded | With `idm` |\n| --- | --- | --- | --- |\n".to_owned();
+    for (case, runs) in cases.iter().zip(rollouts.chunks(EGOS.len())) {
+        let (name, says) = (&case.name, &case.draft.source.narrative);
+        writeln!(table, "| [{name}]({name}.json) | {says} | {} | {} |", outcome(&runs[0]), outcome(&runs[1])).unwrap();
+    }
+    table
+}
+
 /// To renew it after a change of the model run with `RECRASH_RENEW_GOLDENS=1`; that run fails.
 #[test]
 fn every_case_runs_as_the_golden_says_in_any_number_of_threads() {
@@ -146,8 +178,13 @@ fn every_case_runs_as_the_golden_says_in_any_number_of_threads() {
         golden += "\n";
     }
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/gallery.txt");
+    let readme_file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/README.md");
+    let readme = std::fs::read_to_string(readme_file).unwrap();
+    let text = readme.find("| Case |").map_or(readme.as_str(), |table| &readme[..table]);
+    let readme_is = format!("{text}{}", table(&cases, &rollouts));
     if std::env::var_os("RECRASH_RENEW_GOLDENS").is_some() {
         std::fs::write(file, golden).unwrap();
+        std::fs::write(readme_file, readme_is).unwrap();
         panic!("the golden has been renewed: look at the difference, then run again without RECRASH_RENEW_GOLDENS");
     }
     let committed = std::fs::read_to_string(file).unwrap();
@@ -155,6 +192,10 @@ fn every_case_runs_as_the_golden_says_in_any_number_of_threads() {
         assert_eq!(is, was);
     }
     assert_eq!(golden.lines().count(), committed.lines().count());
+    for (is, was) in readme_is.lines().zip(readme.lines()) {
+        assert_eq!(is, was, "the table of the README");
+    }
+    assert_eq!(readme_is.len(), readme.len(), "the table of the README");
 }
 
 #[test]
