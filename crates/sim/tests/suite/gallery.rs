@@ -9,7 +9,7 @@ use recrash_sim::{Ego, Run, Seat, simulate};
 use serde_json::{Value, to_value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Who drives in the golden.
 const EGOS: [Ego; 2] = [Ego::Recorded, Ego::Idm];
@@ -39,20 +39,28 @@ struct Case {
     scenario: Scenario,
 }
 
-/// All cases, in order of their names.
-fn cases() -> Vec<Case> {
-    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases"));
-    let mut files = Vec::new();
+/// The folder of the cases.
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
+
+/// The names of all cases: paths below `cases/` without `.json`.
+pub(crate) fn case_names() -> BTreeSet<String> {
+    let root = Path::new(ROOT);
+    let mut files: Vec<PathBuf> = Vec::new();
     for folder in std::fs::read_dir(root).expect("there are cases").map(|entry| entry.unwrap().path()) {
         if folder.is_dir() {
             files.extend(std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
         }
     }
     files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
-    files.sort();
-    let case = |file: &std::path::PathBuf| {
-        let name = file.strip_prefix(root).unwrap().with_extension("").to_string_lossy().replace('\\', "/");
-        let json = std::fs::read_to_string(file).unwrap();
+    let name =
+        |file: &PathBuf| file.strip_prefix(root).unwrap().with_extension("").to_string_lossy().replace('\\', "/");
+    files.iter().map(name).collect()
+}
+
+/// All cases, in order of their names.
+fn cases() -> Vec<Case> {
+    let case = |name: String| {
+        let json = std::fs::read_to_string(Path::new(ROOT).join(format!("{name}.json"))).unwrap();
         let draft = match recrash_roads::read_draft(&json) {
             Ok(read) => read.value,
             Err(problems) => panic!("{name}: {problems:#?}"),
@@ -62,7 +70,7 @@ fn cases() -> Vec<Case> {
             Err(problems) => panic!("{name}: {problems:#?}"),
         }
     };
-    files.iter().map(case).collect()
+    case_names().into_iter().map(case).collect()
 }
 
 /// The zone of a body where another touches it.
@@ -178,8 +186,8 @@ fn every_case_runs_as_the_golden_says_in_any_number_of_threads() {
         golden += "\n";
     }
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/gallery.txt");
-    let readme_file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/README.md");
-    let readme = std::fs::read_to_string(readme_file).unwrap();
+    let readme_file = Path::new(ROOT).join("README.md");
+    let readme = std::fs::read_to_string(&readme_file).unwrap();
     let text = readme.find("| Case |").map_or(readme.as_str(), |table| &readme[..table]);
     let readme_is = format!("{text}{}", table(&cases, &rollouts));
     if std::env::var_os("RECRASH_RENEW_GOLDENS").is_some() {

@@ -3,6 +3,7 @@
 mod acts;
 mod behaviour;
 mod common;
+mod demand;
 mod driven;
 mod gallery;
 mod parity;
