@@ -399,7 +399,7 @@ pub(super) fn placement(
                     remarks.error("scenario.way", format!("{at}.lanes.until_m"), message, "allowed: farther along");
                     return None;
                 }
-                course.follow(&way, from_m, to_m, *reverse, until_m.is_some());
+                course.follow(&way, (from_m, to_m), *against, *reverse, until_m.is_some());
             }
             Leg::Curve { to, reverse } => {
                 let to = match network.place(to) {
