@@ -219,7 +219,7 @@ impl Chunker<'_> {
             return (Some(Chunk::Joint(joint)), length);
         }
         let relation = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(_)));
-        let relation = relation.filter(|found| !self.is_place_only(at, found.length));
+        let relation = relation.filter(|found| !self.is_no_relation(at, found.length));
         let verb = self.verb(at, before);
         let piece = self.piece(at);
         let noun = self.noun(at);
@@ -245,7 +245,8 @@ impl Chunker<'_> {
             if let Some((sense, form, length)) = verb.filter(|(_, _, length)| *length == longest) {
                 return (Some(Chunk::Verb(sense, form)), length);
             }
-            if let Some((piece, length)) = piece.filter(|(_, length)| *length == longest) {
+            let thing = noun.as_ref().is_some_and(|(noun, length)| *length == longest && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
+            if let Some((piece, length)) = piece.filter(|(piece, length)| *length == longest && (piece.owner.is_some() || !thing)) {
                 return (Some(Chunk::Piece(piece)), length);
             }
             if let Some((noun, length)) = noun {
@@ -307,31 +308,12 @@ impl Chunker<'_> {
         }
     }
 
-    /// "on the left side of the road" is no place beside a vehicle.
-    fn is_place_only(&self, at: usize, length: usize) -> bool {
-        // "on the right front of the van" is a part.
-        let last = self.text(at + length - 1);
-        if matches!(last, "left" | "right")
-            && self
-                .part(at + length)
-                .is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(at + length), "side" | "half"))
-        {
-            return true;
-        }
-        let behind: Vec<&str> = (at + length..at + length + 4).map(|at| self.text(at)).collect();
-        let ends_with_of = self.text(at + length - 1) == "of";
-        let road = |word: &str| {
-            matches!(
-                word,
-                "road" | "roadway" | "street" | "lane" | "intersection" | "highway" | "[xxx]" | "alley" | "driveway"
-            )
-        };
-        if ends_with_of {
-            let noun = behind.iter().find(|word| !DETERMINERS.contains(word));
-            return noun.is_some_and(|word| road(word));
-        }
-        behind[0] == "of"
-            && behind.iter().skip(1).find(|word| !DETERMINERS.contains(word)).is_some_and(|word| road(word))
+    /// "on the right front of the van" is a part, "from the right lane" a lane.
+    fn is_no_relation(&self, at: usize, length: usize) -> bool {
+        let (last, behind) = (self.text(at + length - 1), at + length);
+        let side = matches!(last, "left" | "right");
+        let part = self.part(behind).is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));
+        side && (part || matches!(self.text(behind), "lane" | "lanes" | "turn" | "most"))
     }
 
     fn parenthesis(&self, at: usize) -> usize {
@@ -418,6 +400,16 @@ impl Chunker<'_> {
         let word = self.text(at);
         if word == "shoulder" {
             return Some((LaneWord::Shoulder, 1));
+        }
+        // "the second lane from the right", "the second from the right lane": neither the first nor the last.
+        if matches!(word, "second" | "third" | "2nd" | "3rd" | "number") {
+            let words: Vec<&str> = (at + 1..at + 6).map(|at| self.text(at)).collect();
+            match words.as_slice() {
+                ["lane", "from", "the", "left" | "right", ..] | ["from", "the", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 5)),
+                ["lane", "from", "left" | "right", ..] => return Some((LaneWord::Center, 4)),
+                ["to", "the", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 5)),
+                _ => {}
+            }
         }
         let modifier = |word: &str| {
             matches!(
@@ -704,7 +696,8 @@ impl Chunker<'_> {
         // "the front", "the left" alone are places unless somebody owns them or a part is named.
         let sure = owner.is_some() || nouns > 0 || its;
         let plain_noun = parts == [Part::Noun] && owner.is_none() && !its && !door;
-        if !sure && !(placed && self.text(first) == "the" && self.ends_clause(at)) {
+        let bare = placed && self.text(first) == "the" && self.ends_clause(at);
+        if !(sure || bare) {
             return None;
         }
         if plain_noun
@@ -996,11 +989,11 @@ impl Chunker<'_> {
             }
         }
         // Possessive: the owner of what follows, a part or somebody inside.
-        if self.text(at) == "'s" {
-            if let Some((mut piece_or, length)) = self.owned_person(at + 1) {
-                piece_or.owner = Some(Box::new(noun));
-                return Some((piece_or, at + 1 + length - first));
-            }
+        if self.text(at) == "'s"
+            && let Some((mut person, length)) = self.owned_person(at + 1)
+        {
+            person.owner = Some(Box::new(noun));
+            return Some((person, at + 1 + length - first));
         }
         Some((noun, at - first))
     }

@@ -269,7 +269,9 @@ impl Parser<'_> {
             Chunk::Lane(lane) => self.lane(*lane, placed, carry),
             Chunk::Spot(spot) => self.spot(*spot, carry),
             Chunk::Preposition(word) => {
-                carry.preposition = Some(word);
+                // "out of" goes out.
+                let out = *word == "of" && carry.preposition == Some("out");
+                carry.preposition = if out { Some("out") } else { Some(word) };
                 carry.relation = None;
                 if *word == "to" {
                     carry.to = true;
@@ -679,12 +681,20 @@ impl Parser<'_> {
         carry.to = false;
         let Some(frame) = carry.frame else { return };
         let taken = &mut self.frames[frame];
-        let leaves = matches!(word, Some("of" | "from" | "out"))
-            || matches!(taken.act(), Some(Act::PullOut)) && !matches!(word, Some("into" | "onto" | "to"));
-        if leaves && taken.out_of.is_none() {
-            taken.out_of = Some(spot);
-        } else if matches!(taken.act(), Some(Act::Reverse)) && word.is_none() && taken.out_of.is_none() {
-            taken.out_of = Some(spot);
+        let moves = matches!(
+            taken.act(),
+            Some(Act::Reverse | Act::PullOut | Act::Enter | Act::Follow | Act::SetOff | Act::Turn | Act::Drift | Act::Cross | Act::Swerve | Act::Accelerate)
+        ) || taken.sense == Sense::Approach;
+        let says_out = (taken.first..taken.end).any(|at| self.tokens[at].text == "out");
+        let leaves = match word {
+            Some("out") => moves || taken.sense == Sense::Other,
+            Some("from") => moves,
+            Some("of") => moves && says_out,
+            Some("into" | "onto" | "to" | "in" | "at" | "on" | "near" | "through" | "towards" | "toward") => false,
+            _ => matches!(taken.act(), Some(Act::PullOut | Act::Reverse)),
+        };
+        if leaves && taken.happened() {
+            taken.out_of.get_or_insert(spot);
         }
     }
 
@@ -825,7 +835,8 @@ impl Parser<'_> {
         carry.governed = false;
         carry.preposition = None;
         carry.relation = None;
-        if !leads && !(matches!(next, Some(Chunk::Joint(Joint::And))) && carry.progress.is_some()) {
+        let row = carry.progress.is_some() && matches!(next, Some(Chunk::Joint(Joint::And)));
+        if !(leads || row) {
             carry.progress = None;
         }
         carry.began = leads;

@@ -146,7 +146,7 @@ impl World {
         if noun.article == Article::Indefinite
             || (noun.article == Article::None && noun.names.is_empty() && !noun.several)
         {
-            return self.latest(|known| known.announced && fits(known) && known.several == noun.several);
+            return self.latest(|known| known.announced && fits(known) && known.several == noun.several && known.kind.is_none_or(|known| introduces(known, kind)));
         }
         if noun.several && noun.article == Article::None {
             return self.latest(|known| known.several && fits(known));
@@ -260,6 +260,12 @@ fn relation_of(noun: &Noun) -> Option<Relation> {
 
 fn contradicts(known: &[String], said: &[String]) -> bool {
     !known.is_empty() && !said.is_empty() && !known.iter().any(|name| said.contains(name))
+}
+
+/// Whether "a" noun of the second kind can bring on somebody who was announced as the first.
+fn introduces(announced: Kind, said: Kind) -> bool {
+    let generic = matches!(announced, Kind::Vehicle | Kind::HeavyTruck | Kind::FirstResponder | Kind::PassengerCar) || announced.group() == KindGroup::Object;
+    announced == said || said == Kind::Vehicle || (same_kind(announced, said) && (generic || !matches!(said, Kind::HeavyTruck | Kind::PassengerCar | Kind::Object)))
 }
 
 /// Whether a noun of the second kind can mean somebody known by the first.

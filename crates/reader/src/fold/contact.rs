@@ -43,7 +43,7 @@ impl Contacts {
             let (first, partner) = again.copied().unwrap_or((first, partner));
             contacts.first = Some(first);
             contacts.partner = Some(partner);
-            contacts.earlier = (0..first).filter(|&number| between_others(&frames[number])).collect();
+            contacts.earlier = (0..frames.len()).filter(|&number| between_others(&frames[number]) && comes_first(story, number, first, &touching)).collect();
             return contacts;
         }
         let others = (0..frames.len()).find(|&number| between_others(&frames[number]));
@@ -112,6 +112,14 @@ fn between_others(frame: &Frame) -> bool {
         && frame.who.is_some()
         && frame.object.is_some()
         && frame.who != frame.object
+}
+
+/// Whether a contact of two others came before the crash: told before it, told as the first, or followed by the crash told
+/// again.
+fn comes_first(story: &Story, number: usize, crash: usize, touching: &[(usize, Actor)]) -> bool {
+    let frame = &story.frames[number];
+    let says_first = story.tokens[frame.first.saturating_sub(2)..frame.end].iter().any(|token| token.text == "first");
+    number < crash || says_first || touching.iter().any(|(touch, _)| *touch > number)
 }
 
 /// Who was named last before this frame, or announced.

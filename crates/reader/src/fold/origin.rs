@@ -141,15 +141,20 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
     }
     let heading = account.partner.as_ref()?.heading.as_ref();
-    let turn = account.sv.heading.as_ref().zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
+    // After a turn that is done, its new direction counts.
+    let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
+    let turn = turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
     let first = first_relation(clues);
     // Beside it, before it passes or changes lanes.
     let beside = |side: LeftRight| {
         let relation = if side == LeftRight::Left { Relation::Left } else { Relation::Right };
         told_as(Origin::Beside { side }, clues.has(relation))
     };
-    if behind && first != Some(Relation::Left) && first != Some(Relation::Right) && first != Some(Relation::Ahead) {
+    if behind && !matches!(first, Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Beside)) {
         return told_as(Origin::Behind, clues.has(Relation::Behind));
+    }
+    if first == Some(Relation::Beside) && let Some(side) = lane_side(account).or_else(|| zone_side(account)) {
+        return told_as(Origin::Beside { side }, clues.has(Relation::Beside));
     }
     let crossing = did(Act::Cross)
         || frames().any(|(_, frame)| {
@@ -179,6 +184,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
                 }
                 if let Some(side) = side.filter(|_| !did(Act::Pass) || first_is_side(clues)) {
                     return beside(side);
+                }
+                if let Some(side) = lane_side(account).filter(|_| did(Act::Pass)) {
+                    return Some(Fact { value: Origin::Beside { side }, source });
                 }
                 if did(Act::Pass) {
                     return told_as(Origin::Behind, clues.source(|frame| frame.act() == Some(Act::Pass)));
@@ -230,6 +238,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let Some(side) = lane_side(account).or_else(|| changed_from(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
     }
+    // Who turns and is met by one of whom no direction is told: the side that was touched tells it.
+    let turning = super::types::turning(&account.sv) && !super::types::turning(account.partner.as_ref()?) && !did(Act::Pass);
+    if let (true, Some(side)) = (turning && !has_zone(&account.sv, |zone| zone.is_rear()), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));
+    }
     let rear_ended = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);
     if rear_ended {
         let by_subject = reading.contacts.first.is_some_and(|number| reading.story.frames[number].who == Some(SUBJECT));
@@ -244,7 +257,7 @@ fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
         .relations
         .iter()
         .copied()
-        .find(|relation| !matches!(relation, Relation::Same | Relation::Beside))
+        .find(|relation| *relation != Relation::Same)
 }
 
 fn first_is_side(clues: &Clues<'_>) -> bool {

@@ -74,7 +74,7 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
 }
 
 /// Whether a turn of this side is under way at the contact: told last but for slowing and stopping.
-fn turning(party: &Party) -> bool {
+pub(crate) fn turning(party: &Party) -> bool {
     let before: Vec<_> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
     let Some(last) = before.iter().rposition(|fact| matches!(fact.act, Act::Turn | Act::UTurn)) else { return false };
     let later = &before[last + 1..];
