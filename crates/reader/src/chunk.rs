@@ -613,6 +613,9 @@ impl Chunker<'_> {
         {
             return None;
         }
+        if self.text(at) == "cross" && matches!(self.text(at + 1), "traffic" | "street" | "road" | "walk") {
+            return None;
+        }
         if self.text(at) == "contacts" || (self.text(at) == "stop" && self.text(at + 1) == "sign") {
             return None;
         }
@@ -860,6 +863,11 @@ impl Chunker<'_> {
             return None;
         }
         // "light", "sign" of "traffic sign" and "stop sign" are no things that are struck, unless they are.
+        if self.text(at) == "traffic"
+            && matches!(self.text(at + 1), "light" | "lights" | "signal" | "signals" | "circle" | "lane" | "lanes" | "control" | "congestion" | "stop" | "conditions" | "queue" | "sign" | "cone" | "barrier" | "island" | "cones")
+        {
+            return None;
+        }
         if matches!(self.text(at), "sign") && at > self.first && matches!(self.text(at - 1), "stop" | "yield") {
             return None;
         }

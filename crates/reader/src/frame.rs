@@ -184,6 +184,10 @@ struct Carry {
     /// Who the clause around a relative clause is about, where it still waits for its verb.
     outer: Option<Mention>,
     after_comma: bool,
+    /// Who the relative clause before the comma was about.
+    described: Option<Mention>,
+    /// The first of two subjects joined by "and".
+    also: Option<Mention>,
     /// Frames whose subject is named later: "While stopped, the van ..."
     pending: Vec<usize>,
     /// Tokens of the last progress word.
@@ -198,6 +202,8 @@ struct Mention {
     actor: Actor,
     piece: Option<Piece>,
     person: Option<Occupant>,
+    /// Token behind it.
+    end: usize,
 }
 
 impl Parser<'_> {
@@ -224,7 +230,7 @@ impl Parser<'_> {
                 let actor = self.world.resolve(noun, (placed.first, placed.end), hint);
                 self.attribute(noun, actor, placed, carry);
                 let person = noun.occupant.map(|(who, _)| who);
-                self.mention(Mention { actor, piece: None, person }, placed, carry, next);
+                self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
             }
             Chunk::Piece(piece) => {
                 let actor = match &piece.owner {
@@ -238,14 +244,14 @@ impl Parser<'_> {
                 };
                 match actor {
                     Some(actor) => {
-                        self.mention(Mention { actor, piece: Some(piece.clone()), person: None }, placed, carry, next);
+                        self.mention(Mention { actor, piece: Some(piece.clone()), person: None, end: placed.end }, placed, carry, next);
                     }
                     None => self.loose_piece(piece, placed, carry),
                 }
             }
             Chunk::Pronoun => {
                 let actor = self.its(carry);
-                self.mention(Mention { actor, piece: None, person: None }, placed, carry, next);
+                self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             }
             Chunk::Relative => {
                 if let Some(last) = carry.last.clone() {
@@ -282,6 +288,7 @@ impl Parser<'_> {
                 carry.after_comma = true;
                 (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
                 carry.progress = None;
+                carry.described = carry.subject.clone().filter(|_| carry.relative);
                 if carry.relative && carry.has_verb {
                     // A relative clause ends at its comma.
                     carry.relative = false;
@@ -390,6 +397,10 @@ impl Parser<'_> {
                 carry.last = Some(mention);
                 carry.governed = false;
                 match taken.sense {
+                    Sense::Act(Act::Follow) => {
+                        let who = taken.who;
+                        self.follows(who, actor);
+                    }
                     Sense::Push => carry.pushed = true,
                     Sense::Headline if actor != SUBJECT => self.world.actors[actor].announced = true,
                     Sense::Tow => {
@@ -414,6 +425,10 @@ impl Parser<'_> {
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
                     carry.main = Some(mention.clone());
                 }
+                if carry.also.as_ref().is_some_and(|also| carry.subject.as_ref() != Some(also) || also.actor == actor) {
+                    carry.also = None;
+                }
+                self.world.actors[actor].acted = true;
                 carry.subject = Some(mention.clone());
                 carry.last = Some(mention);
                 carry.has_verb = false;
@@ -472,6 +487,9 @@ impl Parser<'_> {
                     taken.who = Some(actor);
                     taken.with.clone_from(&mention.piece);
                     (taken.passive, taken.end) = (true, placed.end);
+                    if let (Sense::Act(Act::Follow), Some(followed)) = (taken.sense, taken.object) {
+                        self.follows(Some(actor), followed);
+                    }
                     if carry.relative || carry.subject.is_some() {
                         carry.governed = true;
                     }
@@ -569,6 +587,14 @@ impl Parser<'_> {
         }
     }
 
+    fn follows(&mut self, who: Option<Actor>, whom: Actor) {
+        match who {
+            Some(SUBJECT) if whom != SUBJECT => self.note(whom, Relation::Ahead),
+            Some(who) if whom == SUBJECT && who != SUBJECT => self.note(who, Relation::Behind),
+            _ => {}
+        }
+    }
+
     fn note(&mut self, actor: Actor, relation: Relation) {
         let relations = &mut self.world.actors[actor].relations;
         if !relations.contains(&relation) {
@@ -582,14 +608,23 @@ impl Parser<'_> {
             Some(Chunk::Piece(piece)) => piece.owner.is_some() || piece.its,
             _ => false,
         };
+        // "behind [XXX]", "next to the mall": places.
+        let last = self.tokens[placed.end - 1].text.as_str();
+        let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside") || (last == "behind" && placed.end == placed.first + 1);
+        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) {
+            return;
+        }
         // "to the left" is a side of what is done there, or a place.
         let side = match relation {
             Relation::Left => Some(LeftRight::Left),
             Relation::Right => Some(LeftRight::Right),
             _ => None,
         };
+        let stays = |act: Option<Act>| governs && matches!(act, Some(Act::Park | Act::PullOut | Act::PullOver));
         if let (Some(side), Some(frame)) = (side, carry.frame)
             && self.frames[frame].act().is_some_and(sided)
+            && !stays(self.frames[frame].act())
+            && self.frames[frame].sense != Sense::Parked
             && self.frames[frame].side.is_none()
         {
             self.frames[frame].side = Some(side);
@@ -608,14 +643,26 @@ impl Parser<'_> {
         }
     }
 
+    /// "on the left side of the roadway".
+    fn of_road(&self, at: usize) -> bool {
+        self.tokens.get(at..(at + 3).min(self.tokens.len())).unwrap_or_default().iter().any(|token| {
+            matches!(token.text.as_str(), "road" | "roadway" | "street" | "alley" | "driveway" | "lane" | "highway")
+        })
+    }
+
     fn compass(&mut self, compass: Compass, placed: &Placed, carry: &mut Carry) {
         let stands = (compass, placed.first, placed.end);
         let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
+        let from = carry.preposition == Some("from");
         carry.preposition = None;
         // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
         match carry.frame {
             Some(frame) => {
                 let taken = &mut self.frames[frame];
+                if let (true, Some(who)) = (from, taken.who) {
+                    self.world.actors[who].heading.get_or_insert(stands);
+                    return;
+                }
                 let turns =
                     matches!(taken.act(), Some(Act::Turn | Act::UTurn | Act::PullOut | Act::Enter | Act::LaneChange));
                 if taken.heading.is_none() {
@@ -705,8 +752,10 @@ impl Parser<'_> {
             && !carry.has_verb
             && carry.subject.is_some();
         if nouns {
+            carry.also = carry.subject.clone();
             return;
         }
+        carry.also = None;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
         if joint != Joint::And {
             carry.joint = Some(joint);
@@ -772,19 +821,28 @@ impl Parser<'_> {
         }
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
-        let who = self.who_of(form, placed, carry, purpose);
+        let who = self.who_of(sense, form, placed, carry, purpose);
         let mut frame = self.frame(who.as_ref().map(|mention| mention.actor), sense, form, placed, carry);
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
         frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
         frame.person = who.as_ref().and_then(|mention| mention.person);
+        // "a van parked on the left began to move": the first verb describes, the second one tells.
+        let bare = placed.end == placed.first + 1;
+        let describes = matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow);
+        let described = form == Form::Past && !carry.be && describes && !carry.has_verb && carry.last_is(carry.subject.as_ref()) && another_finite(all, at);
         let be = std::mem::take(&mut carry.be);
         if be && form == Form::Past && matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold)) {
             frame.state = true;
             frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
         }
-        let participle = !be
+        if described && matches!(sense, Sense::Act(Act::Stop | Act::Park)) {
+            frame.state = true;
+            frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
+        }
+        let participle = bare
+            && !be
             && form == Form::Past
             && (carry.governed || carry.joint.is_some_and(|joint| joint != Joint::And))
             && who.is_some()
@@ -793,7 +851,8 @@ impl Parser<'_> {
             frame.state = true;
             frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
         }
-        if carry.fresh
+        if bare
+            && carry.fresh
             && form == Form::Past
             && !be
             && matches!(sense, Sense::Act(Act::Stop | Act::Park))
@@ -808,7 +867,7 @@ impl Parser<'_> {
         {
             frame.progress = if carry.pushed { Progress::Real } else { Progress::Wished };
         }
-        if carry.joint == Some(Joint::Before) && frame.progress == Progress::Real && form == Form::Ing {
+        if carry.joint == Some(Joint::Before) && carry.fresh && frame.progress == Progress::Real && form == Form::Ing {
             frame.progress = Progress::Wished;
         }
         frame.passive = be && form == Form::Past && matches!(next_preposition(all, at), Some("by"));
@@ -821,16 +880,27 @@ impl Parser<'_> {
         if matches!(sense, Sense::Push) && carry.pushed {
             carry.pushed = false;
         }
+        if frame.side.is_none() && frame.act().is_some_and(sided) {
+            frame.side = self.side_in(placed);
+        }
+        if frame.act() == Some(Act::PullOut) {
+            frame.out_of = self.spot_in(placed);
+        }
         let unnamed = frame.who.is_none()
             && !frame.passive
             && !matches!(sense, Sense::ContactMade | Sense::LightGreen | Sense::LightRed | Sense::LightYellow);
+        if let (Some(also), false) = (&carry.also, frame.passive) {
+            let mut twin = frame.clone();
+            (twin.who, twin.with) = (Some(also.actor), also.piece.clone());
+            self.frames.push(twin);
+        }
         self.frames.push(frame);
         let number = self.frames.len() - 1;
         if unnamed {
             carry.pending.push(number);
         }
         carry.frame = Some(number);
-        carry.has_verb |= finite || to || carry.be || unnamed;
+        carry.has_verb |= (finite && !described) || carry.be || unnamed;
         carry.fresh = false;
         carry.governed = false;
         carry.preposition = None;
@@ -843,35 +913,62 @@ impl Parser<'_> {
         carry.negated = false;
     }
 
+    /// The side that the words of a verb name: "moved into the left lane".
+    fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
+        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
+            "left" | "leftmost" => Some(LeftRight::Left),
+            "right" | "rightmost" => Some(LeftRight::Right),
+            _ => None,
+        })
+    }
+
+    /// The place that the words of a verb name: "exited its parking stall".
+    fn spot_in(&self, placed: &Placed) -> Option<Spot> {
+        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
+            "stall" | "space" | "spot" | "carport" => Some(Spot::Stall),
+            "driveway" | "lot" | "garage" | "alley" => Some(Spot::Driveway),
+            "curb" => Some(Spot::Curb),
+            _ => None,
+        })
+    }
+
     /// Of whom a verb is told.
-    fn who_of(&self, form: Form, placed: &Placed, carry: &Carry, purpose: bool) -> Option<Mention> {
+    fn who_of(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry, purpose: bool) -> Option<Mention> {
         if carry.pushed && purpose {
             return carry.last.clone();
+        }
+        if carry.after_comma && form == Form::Ing && sense == Sense::Face && carry.described.is_some() {
+            return carry.described.clone();
         }
         let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
         // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
         let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose;
-        if adjacent && participle && carry.has_verb && self.touches_last(placed, carry) {
+        if adjacent && participle && carry.has_verb && self.touches_last(sense, placed, carry) {
             return carry.last.clone();
         }
         carry.subject.clone()
     }
 
     /// Whether the noun named last stands right before.
-    fn touches_last(&self, placed: &Placed, carry: &Carry) -> bool {
+    fn touches_last(&self, sense: Sense, placed: &Placed, carry: &Carry) -> bool {
         let Some(last) = &carry.last else { return false };
         // The subject of the clause takes its own verbs; only objects are described by participles.
         if carry.subject.as_ref() == Some(last) {
             return false;
         }
-        let Some(before) = placed.first.checked_sub(1).map(|at| &self.tokens[at]) else { return false };
-        let small = matches!(before.text.as_str(), "was" | "and" | "then" | "to" | ",");
+        // Things are described by few verbs, and nobody by one that stands apart.
+        let between = self.tokens.get(last.end..placed.first).unwrap_or_default();
+        let near = between.len() <= 2 && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | "to" | "," | "of" | "[xxx]"));
+        let lively = acts(self.world.actors[last.actor].kind) || matches!(sense, Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked);
+        if !near || !lively {
+            return false;
+        }
         carry.frame.is_some_and(|frame| {
             let frame = &self.frames[frame];
             let object = frame.object == Some(last.actor)
                 || frame.relations.iter().any(|(_, actor)| *actor == Some(last.actor))
                 || carry.governed;
-            object && !small
+            object
         })
     }
 }
@@ -945,6 +1042,18 @@ fn next_is_verb(all: &[Placed], at: usize) -> bool {
             Chunk::Verb(_, Form::Ing | Form::Base) => return true,
             Chunk::Preposition("to") | Chunk::Word | Chunk::Be => {}
             _ => return false,
+        }
+    }
+    false
+}
+
+/// Whether a finite verb stands behind in the same clause.
+fn another_finite(all: &[Placed], at: usize) -> bool {
+    for placed in &all[at + 1..] {
+        match &placed.chunk {
+            Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be => return true,
+            Chunk::Joint(_) | Chunk::Comma | Chunk::Relative => return false,
+            _ => {}
         }
     }
     false

@@ -35,6 +35,8 @@ pub struct Known {
     pub last: usize,
     /// How often it was named.
     pub mentions: usize,
+    /// A clause was about it.
+    pub acted: bool,
     /// Who tows it.
     pub towed_by: Option<Actor>,
 }
@@ -66,6 +68,8 @@ impl World {
         known.mentions += 1;
         if actor != SUBJECT && noun.occupant.is_none() {
             refine(known, noun, tokens);
+        } else if noun.subject && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
+            known.kind = known.kind.or(noun.kind);
         }
         if let Some(relation) = relation_of(noun)
             && noun.occupant.is_none()
@@ -115,7 +119,7 @@ impl World {
     }
 
     fn latest(&self, wanted: impl Fn(&Known) -> bool) -> Option<Actor> {
-        (1..self.actors.len()).filter(|&actor| wanted(&self.actors[actor])).max_by_key(|&actor| self.actors[actor].last)
+        (1..self.actors.len()).filter(|&actor| wanted(&self.actors[actor])).max_by_key(|&actor| (self.actors[actor].acted, self.actors[actor].last))
     }
 
     fn find(&mut self, noun: &Noun, hint: Option<Relation>) -> Option<Actor> {

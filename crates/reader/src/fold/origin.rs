@@ -109,6 +109,13 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     ) {
         return told_as(Origin::Stall { side }, source);
     }
+    // It was ahead in one lane, and the subject vehicle left that lane.
+    if let (Some(Relation::Ahead), Some(change)) = (first_relation(clues), account.sv.acts.iter().find(|fact| fact.act == Act::LaneChange && !fact.after_contact))
+        && let Some(moved) = change.side
+        && (did(Act::Swerve) || did(Act::LaneChange) || did(Act::Turn))
+    {
+        return told_as(Origin::Beside { side: moved.other() }, change.source.clone());
+    }
     let ahead = clues.any(Relation::Ahead);
     let behind = clues.any(Relation::Behind);
     if did(Act::Reverse) && !behind {
