@@ -245,8 +245,12 @@ impl Chunker<'_> {
             if let Some((sense, form, length)) = verb.filter(|(_, _, length)| *length == longest) {
                 return (Some(Chunk::Verb(sense, form)), length);
             }
-            let thing = noun.as_ref().is_some_and(|(noun, length)| *length == longest && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
-            if let Some((piece, length)) = piece.filter(|(piece, length)| *length == longest && (piece.owner.is_some() || !thing)) {
+            let thing = noun.as_ref().is_some_and(|(noun, length)| {
+                *length == longest && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
+            });
+            if let Some((piece, length)) =
+                piece.filter(|(piece, length)| *length == longest && (piece.owner.is_some() || !thing))
+            {
                 return (Some(Chunk::Piece(piece)), length);
             }
             if let Some((noun, length)) = noun {
@@ -312,7 +316,9 @@ impl Chunker<'_> {
     fn is_no_relation(&self, at: usize, length: usize) -> bool {
         let (last, behind) = (self.text(at + length - 1), at + length);
         let side = matches!(last, "left" | "right");
-        let part = self.part(behind).is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));
+        let part = self
+            .part(behind)
+            .is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));
         side && (part || matches!(self.text(behind), "lane" | "lanes" | "turn" | "most"))
     }
 
@@ -405,7 +411,9 @@ impl Chunker<'_> {
         if matches!(word, "second" | "third" | "2nd" | "3rd" | "number") {
             let words: Vec<&str> = (at + 1..at + 6).map(|at| self.text(at)).collect();
             match words.as_slice() {
-                ["lane", "from", "the", "left" | "right", ..] | ["from", "the", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 5)),
+                ["lane", "from", "the", "left" | "right", ..] | ["from", "the", "left" | "right", "lane", ..] => {
+                    return Some((LaneWord::Center, 5));
+                }
                 ["lane", "from", "left" | "right", ..] => return Some((LaneWord::Center, 4)),
                 ["to", "the", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 5)),
                 _ => {}
@@ -864,7 +872,26 @@ impl Chunker<'_> {
         }
         // "light", "sign" of "traffic sign" and "stop sign" are no things that are struck, unless they are.
         if self.text(at) == "traffic"
-            && matches!(self.text(at + 1), "light" | "lights" | "signal" | "signals" | "circle" | "lane" | "lanes" | "control" | "congestion" | "stop" | "conditions" | "queue" | "sign" | "cone" | "barrier" | "island" | "cones")
+            && matches!(
+                self.text(at + 1),
+                "light"
+                    | "lights"
+                    | "signal"
+                    | "signals"
+                    | "circle"
+                    | "lane"
+                    | "lanes"
+                    | "control"
+                    | "congestion"
+                    | "stop"
+                    | "conditions"
+                    | "queue"
+                    | "sign"
+                    | "cone"
+                    | "barrier"
+                    | "island"
+                    | "cones"
+            )
         {
             return None;
         }
@@ -923,6 +950,12 @@ impl Chunker<'_> {
         }
         noun.subject = subject && noun.occupant.is_none();
         noun.several |= plural;
+        let alone = (first..at).any(|at| {
+            matches!(self.text(at), "abandoned" | "parked" | "unattended" | "riderless" | "fallen" | "unoccupied")
+        });
+        if alone && matches!(noun.kind, Some(Kind::ScooterRider | Kind::Bicycle | Kind::EBike)) {
+            noun.kind = Some(Kind::Scooter);
+        }
         self.finish(noun, first, at)
     }
 

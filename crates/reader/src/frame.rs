@@ -63,6 +63,7 @@ impl Frame {
         match self.sense {
             Sense::Act(act) | Sense::Sided(act, _) => Some(act),
             Sense::Parked => Some(Act::Hold),
+            Sense::Approach => Some(Act::Follow),
             Sense::ReverseContact => Some(Act::Reverse),
             Sense::OpenDoorInto => Some(Act::OpenDoor),
             Sense::Yield => None,
@@ -228,7 +229,19 @@ impl Parser<'_> {
             Chunk::Noun(noun) => {
                 let hint = relation_behind(all, at, &self.world);
                 let actor = self.world.resolve(noun, (placed.first, placed.end), hint);
-                self.attribute(noun, actor, placed, carry);
+                self.attribute(
+                    noun.owner.as_deref().filter(|_| noun.occupant.is_some()).unwrap_or(noun),
+                    actor,
+                    placed,
+                    carry,
+                );
+                // "in a queue of westbound traffic": the direction is also that of who stands in it.
+                if let (Some(compass), true, Some("of" | "in" | "behind")) =
+                    (noun.compass, noun.several, carry.preposition)
+                {
+                    self.compass(compass, placed, carry);
+                    carry.preposition = Some("of");
+                }
                 let person = noun.occupant.map(|(who, _)| who);
                 self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
             }
@@ -244,7 +257,12 @@ impl Parser<'_> {
                 };
                 match actor {
                     Some(actor) => {
-                        self.mention(Mention { actor, piece: Some(piece.clone()), person: None, end: placed.end }, placed, carry, next);
+                        self.mention(
+                            Mention { actor, piece: Some(piece.clone()), person: None, end: placed.end },
+                            placed,
+                            carry,
+                            next,
+                        );
                     }
                     None => self.loose_piece(piece, placed, carry),
                 }
@@ -283,7 +301,7 @@ impl Parser<'_> {
                     carry.to = true;
                 }
             }
-            Chunk::Joint(joint) => self.joint(*joint, carry, next),
+            Chunk::Joint(joint) => self.joint(*joint, carry, &all[at + 1..]),
             Chunk::Comma => {
                 carry.after_comma = true;
                 (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
@@ -545,6 +563,14 @@ impl Parser<'_> {
                     taken.object = Some(actor);
                 }
             }
+            "for"
+                if matches!(sense, Sense::Act(Act::Stop | Act::Hold))
+                    && self.frames[frame].who == Some(SUBJECT)
+                    && self.world.actors[actor].kind.is_some_and(Kind::is_vehicle)
+                    && !self.world.actors[actor].several =>
+            {
+                self.note(actor, Relation::Ahead);
+            }
             "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
                 let taken = &mut self.frames[frame];
                 if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
@@ -610,7 +636,8 @@ impl Parser<'_> {
         };
         // "behind [XXX]", "next to the mall": places.
         let last = self.tokens[placed.end - 1].text.as_str();
-        let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside") || (last == "behind" && placed.end == placed.first + 1);
+        let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
+            || (last == "behind" && placed.end == placed.first + 1);
         if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) {
             return;
         }
@@ -730,7 +757,18 @@ impl Parser<'_> {
         let taken = &mut self.frames[frame];
         let moves = matches!(
             taken.act(),
-            Some(Act::Reverse | Act::PullOut | Act::Enter | Act::Follow | Act::SetOff | Act::Turn | Act::Drift | Act::Cross | Act::Swerve | Act::Accelerate)
+            Some(
+                Act::Reverse
+                    | Act::PullOut
+                    | Act::Enter
+                    | Act::Follow
+                    | Act::SetOff
+                    | Act::Turn
+                    | Act::Drift
+                    | Act::Cross
+                    | Act::Swerve
+                    | Act::Accelerate
+            )
         ) || taken.sense == Sense::Approach;
         let says_out = (taken.first..taken.end).any(|at| self.tokens[at].text == "out");
         let leaves = match word {
@@ -745,11 +783,20 @@ impl Parser<'_> {
         }
     }
 
-    fn joint(&mut self, joint: Joint, carry: &mut Carry, next: Option<&Chunk>) {
+    fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
+        let next = behind.first().map(|placed| &placed.chunk);
+        // "between the van and a parked car": the second of a pair, and no new clause.
+        let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
+        let ends = behind.get(1).is_none_or(|placed| matches!(placed.chunk, Chunk::Comma | Chunk::Joint(_)));
+        if joint == Joint::And && noun && ends && carry.has_verb {
+            carry.preposition = Some("and");
+            return;
+        }
         // "the van and the bus": nouns in a row.
         let nouns = joint == Joint::And
             && matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)))
             && !carry.has_verb
+            && !carry.after_comma
             && carry.subject.is_some();
         if nouns {
             carry.also = carry.subject.clone();
@@ -830,8 +877,14 @@ impl Parser<'_> {
         frame.person = who.as_ref().and_then(|mention| mention.person);
         // "a van parked on the left began to move": the first verb describes, the second one tells.
         let bare = placed.end == placed.first + 1;
-        let describes = matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow);
-        let described = form == Form::Past && !carry.be && describes && !carry.has_verb && carry.last_is(carry.subject.as_ref()) && another_finite(all, at);
+        let describes =
+            matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow);
+        let described = form == Form::Past
+            && !carry.be
+            && describes
+            && !carry.has_verb
+            && carry.last_is(carry.subject.as_ref())
+            && another_finite(all, at);
         let be = std::mem::take(&mut carry.be);
         if be && form == Form::Past && matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold)) {
             frame.state = true;
@@ -942,15 +995,15 @@ impl Parser<'_> {
         }
         let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
         // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
-        let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose;
-        if adjacent && participle && carry.has_verb && self.touches_last(sense, placed, carry) {
+        let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began;
+        if adjacent && participle && carry.has_verb && self.touches_last(sense, form, placed, carry) {
             return carry.last.clone();
         }
         carry.subject.clone()
     }
 
     /// Whether the noun named last stands right before.
-    fn touches_last(&self, sense: Sense, placed: &Placed, carry: &Carry) -> bool {
+    fn touches_last(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> bool {
         let Some(last) = &carry.last else { return false };
         // The subject of the clause takes its own verbs; only objects are described by participles.
         if carry.subject.as_ref() == Some(last) {
@@ -958,8 +1011,13 @@ impl Parser<'_> {
         }
         // Things are described by few verbs, and nobody by one that stands apart.
         let between = self.tokens.get(last.end..placed.first).unwrap_or_default();
-        let near = between.len() <= 2 && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | "to" | "," | "of" | "[xxx]"));
-        let lively = acts(self.world.actors[last.actor].kind) || matches!(sense, Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked);
+        let near = (between.len() <= 2 || form == Form::Past)
+            && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
+        let lively = acts(self.world.actors[last.actor].kind)
+            || matches!(
+                sense,
+                Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked
+            );
         if !near || !lively {
             return false;
         }

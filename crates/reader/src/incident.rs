@@ -57,8 +57,10 @@ pub fn incidents(records: &[CrashRecord]) -> Vec<Incident> {
         }
     }
     // A report without a story of its own belongs to the one that it names.
-    let told: Vec<usize> =
-        (0..reports.len()).filter(|&number| reports[number].telling == Telling::Tells).map(|number| sets.root(number)).collect();
+    let told: Vec<usize> = (0..reports.len())
+        .filter(|&number| reports[number].telling == Telling::Tells)
+        .map(|number| sets.root(number))
+        .collect();
     for (number, report) in reports.iter().enumerate().filter(|(_, report)| report.telling == Telling::Refers) {
         if told.contains(&sets.root(number)) {
             continue;

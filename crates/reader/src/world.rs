@@ -119,7 +119,9 @@ impl World {
     }
 
     fn latest(&self, wanted: impl Fn(&Known) -> bool) -> Option<Actor> {
-        (1..self.actors.len()).filter(|&actor| wanted(&self.actors[actor])).max_by_key(|&actor| (self.actors[actor].acted, self.actors[actor].last))
+        (1..self.actors.len())
+            .filter(|&actor| wanted(&self.actors[actor]))
+            .max_by_key(|&actor| (self.actors[actor].acted, self.actors[actor].last))
     }
 
     fn find(&mut self, noun: &Noun, hint: Option<Relation>) -> Option<Actor> {
@@ -150,7 +152,12 @@ impl World {
         if noun.article == Article::Indefinite
             || (noun.article == Article::None && noun.names.is_empty() && !noun.several)
         {
-            return self.latest(|known| known.announced && fits(known) && known.several == noun.several && known.kind.is_none_or(|known| introduces(known, kind)));
+            return self.latest(|known| {
+                known.announced
+                    && fits(known)
+                    && known.several == noun.several
+                    && known.kind.is_none_or(|known| introduces(known, kind))
+            });
         }
         if noun.several && noun.article == Article::None {
             return self.latest(|known| known.several && fits(known));
@@ -268,8 +275,12 @@ fn contradicts(known: &[String], said: &[String]) -> bool {
 
 /// Whether "a" noun of the second kind can bring on somebody who was announced as the first.
 fn introduces(announced: Kind, said: Kind) -> bool {
-    let generic = matches!(announced, Kind::Vehicle | Kind::HeavyTruck | Kind::FirstResponder | Kind::PassengerCar) || announced.group() == KindGroup::Object;
-    announced == said || said == Kind::Vehicle || (same_kind(announced, said) && (generic || !matches!(said, Kind::HeavyTruck | Kind::PassengerCar | Kind::Object)))
+    let generic = matches!(announced, Kind::Vehicle | Kind::HeavyTruck | Kind::FirstResponder | Kind::PassengerCar)
+        || announced.group() == KindGroup::Object;
+    announced == said
+        || said == Kind::Vehicle
+        || (same_kind(announced, said)
+            && (generic || !matches!(said, Kind::HeavyTruck | Kind::PassengerCar | Kind::Object)))
 }
 
 /// Whether a noun of the second kind can mean somebody known by the first.
@@ -287,7 +298,7 @@ pub fn same_kind(known: Kind, said: Kind) -> bool {
         Kind::Trailer => matches!(known, Kind::SemiTrailerTruck | Kind::PickupWithTrailer),
         Kind::Object | Kind::Debris => one == KindGroup::Object,
         Kind::Pedestrian => one == KindGroup::OnFoot,
-        Kind::Scooter => matches!(known, Kind::ScooterRider | Kind::Moped),
+        Kind::Scooter => known == Kind::Moped,
         Kind::Pickup if known == Kind::PickupWithTrailer => true,
         _ if known == Kind::Vehicle => said.is_vehicle(),
         _ if known == Kind::HeavyTruck => other == KindGroup::Truck,

@@ -43,7 +43,9 @@ impl Contacts {
             let (first, partner) = again.copied().unwrap_or((first, partner));
             contacts.first = Some(first);
             contacts.partner = Some(partner);
-            contacts.earlier = (0..frames.len()).filter(|&number| between_others(&frames[number]) && comes_first(story, number, first, &touching)).collect();
+            contacts.earlier = (0..frames.len())
+                .filter(|&number| between_others(&frames[number]) && comes_first(story, number, first, &touching))
+                .collect();
             return contacts;
         }
         let others = (0..frames.len()).find(|&number| between_others(&frames[number]));

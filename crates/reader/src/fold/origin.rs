@@ -110,7 +110,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return told_as(Origin::Stall { side }, source);
     }
     // It was ahead in one lane, and the subject vehicle left that lane.
-    if let (Some(Relation::Ahead), Some(change)) = (first_relation(clues), account.sv.acts.iter().find(|fact| fact.act == Act::LaneChange && !fact.after_contact))
+    if let (Some(Relation::Ahead), Some(change)) =
+        (first_relation(clues), account.sv.acts.iter().find(|fact| fact.act == Act::LaneChange && !fact.after_contact))
         && let Some(moved) = change.side
         && (did(Act::Swerve) || did(Act::LaneChange) || did(Act::Turn))
     {
@@ -123,8 +124,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             return told_as(Origin::Ahead, clues.source(|frame| frame.act() == Some(Act::Reverse)));
         }
         if clues.any(Relation::Opposite) {
+            // In the opposing lane, which is on the left.
             return told_as(
-                side.map_or(Origin::Opposite, |side| Origin::Beside { side }),
+                side.or(Some(LeftRight::Left)).map_or(Origin::Opposite, |side| Origin::Beside { side }),
                 clues.has(Relation::Opposite),
             );
         }
@@ -143,24 +145,31 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     }
     let leaves_curb =
         did(Act::PullOut) && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
-    if leaves_curb && !behind_first(clues) {
+    if leaves_curb && (parked || !behind_first(clues)) {
         let source = clues.source(|frame| frame.act() == Some(Act::PullOut));
         return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
     }
     let heading = account.partner.as_ref()?.heading.as_ref();
     // After a turn that is done, its new direction counts.
     let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
-    let turn = turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
+    let turn =
+        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
     let first = first_relation(clues);
     // Beside it, before it passes or changes lanes.
     let beside = |side: LeftRight| {
         let relation = if side == LeftRight::Left { Relation::Left } else { Relation::Right };
         told_as(Origin::Beside { side }, clues.has(relation))
     };
+    let moved_over = did(Act::LaneChange) || did(Act::Swerve) || did(Act::Drift);
+    if let Some(side) = lane_side(account).filter(|_| behind && moved_over) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
+    }
     if behind && !matches!(first, Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Beside)) {
         return told_as(Origin::Behind, clues.has(Relation::Behind));
     }
-    if first == Some(Relation::Beside) && let Some(side) = lane_side(account).or_else(|| zone_side(account)) {
+    if first == Some(Relation::Beside)
+        && let Some(side) = lane_side(account).or_else(|| zone_side(account))
+    {
         return told_as(Origin::Beside { side }, clues.has(Relation::Beside));
     }
     let crossing = did(Act::Cross)
@@ -245,8 +254,21 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let Some(side) = lane_side(account).or_else(|| changed_from(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
     }
+    // Both turn the same way, side by side.
+    if reading.did(SUBJECT, Act::Turn)
+        && did(Act::Turn)
+        && let Some(side) = zone_side(account)
+    {
+        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched, where both turn"));
+    }
+    if told(&account.sv.state) == Some(ContactState::Reversing)
+        && let Some(side) = zone_side(account)
+    {
+        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched, where it goes backwards"));
+    }
     // Who turns and is met by one of whom no direction is told: the side that was touched tells it.
-    let turning = super::types::turning(&account.sv) && !super::types::turning(account.partner.as_ref()?) && !did(Act::Pass);
+    let turning =
+        super::types::turning(&account.sv) && !super::types::turning(account.partner.as_ref()?) && !did(Act::Pass);
     if let (true, Some(side)) = (turning && !has_zone(&account.sv, |zone| zone.is_rear()), zone_side(account)) {
         return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));
     }
@@ -260,11 +282,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
 
 /// The relation told first.
 fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
-    clues.reading.story.world.actors[clues.actor]
-        .relations
-        .iter()
-        .copied()
-        .find(|relation| *relation != Relation::Same)
+    clues.reading.story.world.actors[clues.actor].relations.iter().copied().find(|relation| *relation != Relation::Same)
 }
 
 fn first_is_side(clues: &Clues<'_>) -> bool {

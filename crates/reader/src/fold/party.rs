@@ -510,6 +510,7 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     let record = reading.record;
     let column = record.sv_movement.known();
     let words = told(&account.sv.state);
+    let rolls = record.sv_speed_mps.is_some_and(|speed| speed > 0.6);
     let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
     let value = match (words, column) {
         (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
@@ -519,7 +520,19 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         (None, _) if zero => Some(ContactState::Stopped),
         (None, Some(_)) => Some(ContactState::Moving),
         // Slowing in words, standing in numbers: it had come to stand.
-        (Some(ContactState::Moving | ContactState::SettingOff), Some(Movement::Stopped | Movement::Parked))
+        // Told to come to a stop, and still rolling in numbers.
+        (Some(ContactState::Stopped), _)
+            if rolls && !account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact) =>
+        {
+            Some(ContactState::Moving)
+        }
+        // It moved into something.
+        (Some(ContactState::Stopped), Some(movement))
+            if rolls && moves_at_contact(reading) && movement != Movement::Stopped =>
+        {
+            Some(ContactState::Moving)
+        }
+        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
             if zero && !moves_at_contact(reading) =>
         {
             Some(ContactState::Stopped)

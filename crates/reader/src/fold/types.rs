@@ -209,7 +209,8 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         Some(Origin::Parked { .. }) => Some((CrashType::Lateral, "from the kerb beside it")),
         Some(Origin::Sidewalk { .. }) => Some((CrashType::Intersection, "crossing paths")),
         Some(Origin::Beside { .. }) => {
-            let one_turns = sv_turns != cp_turns;
+            let both_turned = account.sv.did(Act::Turn) && partner.did(Act::Turn);
+            let one_turns = sv_turns != cp_turns && !both_turned;
             if one_turns && !(sv_turns && sv.is_some_and(ContactState::stands)) {
                 return Some((CrashType::Intersection, "one turned across the other"));
             }
