@@ -1023,10 +1023,9 @@ impl Parser<'_> {
         }
         carry.frame.is_some_and(|frame| {
             let frame = &self.frames[frame];
-            let object = frame.object == Some(last.actor)
+            frame.object == Some(last.actor)
                 || frame.relations.iter().any(|(_, actor)| *actor == Some(last.actor))
-                || carry.governed;
-            object
+                || carry.governed
         })
     }
 }
