@@ -1,12 +1,12 @@
 //! Prints the event frames of the text on standard input: `cargo run -p recrash-reader --example frames < text`.
 
-use recrash_reader::frame::{story, zone_of};
+use recrash_reader::frame::{Own, story, zone_of};
 use std::io::Read;
 
 fn main() {
     let mut text = String::new();
     std::io::stdin().read_to_string(&mut text).expect("a text");
-    let story = story(&text, None);
+    let story = story(&text, Own::default());
     for (number, known) in story.world.actors.iter().enumerate() {
         println!(
             "{number}: {:?} {:?} {:?} heading {:?} lane {:?} announced {}",

@@ -641,6 +641,9 @@ impl Chunker<'_> {
         {
             return false;
         }
+        if word.ends_with("ly") && at >= 2 && self.text(at - 2) == "to" {
+            return true;
+        }
         match word {
             "to" | "not" | "will" | "would" | "could" | "can" | "may" | "might" | "should" | "must" | "did" | "t"
             | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then" | "safely" => true,
@@ -834,6 +837,9 @@ impl Chunker<'_> {
             if !unknown || self.verb_stands(at) {
                 return self.only_named(noun, first, at, company, make);
             }
+            if token.capital && token.kind == TokenKind::Word {
+                noun.names.push(token.text.clone());
+            }
             strange += 1;
             at += 1;
         };
@@ -867,6 +873,11 @@ impl Chunker<'_> {
         // "passenger side", "driver door" are parts.
         if matches!(found.meaning, Meaning::Occupant(_))
             && (part > found.length || (part > 0 && self.part(at + part).is_some()))
+        {
+            return None;
+        }
+        if matches!(self.text(at + found.length), "rack" | "racks" | "lane" | "lanes" | "path" | "share" | "yard")
+            && !matches!(found.meaning, Meaning::Subject)
         {
             return None;
         }
@@ -948,7 +959,7 @@ impl Chunker<'_> {
                 head = None;
             }
         }
-        noun.subject = subject && noun.occupant.is_none();
+        noun.subject = (subject || self.text(first) == "our") && noun.occupant.is_none();
         noun.several |= plural;
         let alone = (first..at).any(|at| {
             matches!(self.text(at), "abandoned" | "parked" | "unattended" | "riderless" | "fallen" | "unoccupied")

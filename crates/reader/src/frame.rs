@@ -101,11 +101,20 @@ pub struct Story {
     pub world: World,
 }
 
+/// What is known of the subject vehicle beforehand.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Own<'a> {
+    /// Its kind.
+    pub kind: Option<Kind>,
+    /// The make by which the company that reports calls it.
+    pub make: Option<&'a str>,
+}
+
 /// Most tokens of a narrative that are read; the longest published one has a sixth of it.
 const MOST_TOKENS: usize = 12_000;
 
 /// Reads a narrative. `own`: kind of the subject vehicle, where it is known.
-pub fn story(text: &str, own: Option<Kind>) -> Story {
+pub fn story(text: &str, own: Own<'_>) -> Story {
     let mut tokens = crate::token::tokens(text);
     tokens.truncate(MOST_TOKENS);
     let sentences = crate::token::sentences(&tokens);
@@ -124,7 +133,13 @@ pub fn story(text: &str, own: Option<Kind>) -> Story {
         parser.looks_back = looks_back(words);
         parser.read(*sentence);
     }
-    let (frames, world) = (parser.frames, parser.world);
+    let (mut frames, world) = (parser.frames, parser.world);
+    for frame in &mut frames {
+        // Nobody touches itself.
+        if frame.is_contact() && frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
+            frame.who = None;
+        }
+    }
     Story { tokens, sentences, standing, frames, world }
 }
 
@@ -185,6 +200,10 @@ struct Carry {
     /// Who the clause around a relative clause is about, where it still waits for its verb.
     outer: Option<Mention>,
     after_comma: bool,
+    /// Who began, tried or wished what the next verb tells.
+    lead_who: Option<Mention>,
+    /// "and" stands between the last verb and the next.
+    row: bool,
     /// Who the relative clause before the comma was about.
     described: Option<Mention>,
     /// The first of two subjects joined by "and".
@@ -437,8 +456,13 @@ impl Parser<'_> {
                     carry.governed = true;
                     return;
                 }
+                // "While stopped at a light, a man began to cross": of somebody new it is not told.
+                let new = self.world.actors[actor].mentions == 1 && actor != SUBJECT && carry.main.is_none();
                 for pending in std::mem::take(&mut carry.pending) {
-                    self.frames[pending].who = Some(actor);
+                    let dangles = new
+                        && self.frames[pending].state
+                        && matches!(self.frames[pending].sense, Sense::Act(Act::Hold) | Sense::Parked);
+                    self.frames[pending].who = Some(if dangles { self.world.topic } else { actor });
                 }
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
                     carry.main = Some(mention.clone());
@@ -810,6 +834,7 @@ impl Parser<'_> {
         }
         if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
             carry.negated = false;
+            carry.row = true;
             if carry.relative {
                 // "a van that was behind it and struck it" goes on with the van.
                 carry.has_verb = true;
@@ -848,6 +873,9 @@ impl Parser<'_> {
                 carry.to = false;
             }
             if swallowed {
+                carry.began = false;
+                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false);
+                carry.began = true;
                 carry.has_verb |= form != Form::Ing || carry.be;
                 return;
             }
@@ -963,6 +991,8 @@ impl Parser<'_> {
             carry.progress = None;
         }
         carry.began = leads;
+        carry.lead_who = None;
+        carry.row = false;
         carry.negated = false;
     }
 
@@ -989,6 +1019,32 @@ impl Parser<'_> {
     fn who_of(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry, purpose: bool) -> Option<Mention> {
         if carry.pushed && purpose {
             return carry.last.clone();
+        }
+        if carry.began && carry.lead_who.is_some() {
+            return carry.lead_who.clone();
+        }
+        // "a van braking too late and striking": the second participle is of who does the first.
+        if let (true, Form::Ing, Some(before)) =
+            (carry.row && !carry.be, form, carry.frame.map(|frame| &self.frames[frame]))
+            && before.form == Form::Ing
+            && let Some(actor) = before.who
+        {
+            return Some(Mention { actor, piece: None, person: None, end: before.end });
+        }
+        if carry.subject.is_none()
+            && form == Form::Ing
+            && !carry.be
+            && carry.governed
+            && !carry.fresh
+            && !carry.after_comma
+        {
+            let near = carry
+                .last
+                .as_ref()
+                .filter(|last| placed.first <= last.end + 1 && acts(self.world.actors[last.actor].kind));
+            if near.is_some() {
+                return near.cloned();
+            }
         }
         if carry.after_comma && form == Form::Ing && sense == Sense::Face && carry.described.is_some() {
             return carry.described.clone();

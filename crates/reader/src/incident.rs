@@ -1,6 +1,6 @@
 //! Rows of crash files into incidents: versions, copies of other companies, entities and editions of one crash together.
 
-use crate::frame::story;
+use crate::frame::{Own, story};
 use recrash_model::hash::Fnv;
 use recrash_model::incident::{Incident, IncidentReport, Telling};
 use recrash_model::record::{CrashRecord, Redaction};
@@ -209,7 +209,7 @@ fn speaker(reports: &[IncidentReport]) -> Option<usize> {
 
 /// How much a narrative tells: its events.
 fn events(narrative: &str) -> usize {
-    story(narrative, None).frames.iter().filter(|frame| frame.act().is_some() || frame.is_contact()).count()
+    story(narrative, Own::default()).frames.iter().filter(|frame| frame.act().is_some() || frame.is_contact()).count()
 }
 
 /// What differs between two versions, or between two editions of the file.

@@ -475,9 +475,13 @@ impl Lexicon {
         for verb in &file.verb {
             let sense = sense_of(&verb.sense).expect("a sense");
             for phrase in &verb.words {
-                let (base, rest) = phrase.split_once(' ').unwrap_or((phrase, ""));
-                for (word, form) in forms(base, &file.irregular) {
-                    lexicon.add(format!("{word} {rest}").trim(), Meaning::Verb(sense, form));
+                let words = split(phrase);
+                let bends = words.iter().position(|word| word.ends_with('+')).unwrap_or(0);
+                let Some(base) = words.get(bends).map(|word| word.trim_end_matches('+').to_owned()) else { continue };
+                for (word, form) in forms(&base, &file.irregular) {
+                    let mut bent = words.clone();
+                    bent[bends] = word;
+                    lexicon.add(&bent.join(" "), Meaning::Verb(sense, form));
                 }
             }
             verb.fixed.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Verb(sense, Form::Past)));
@@ -621,6 +625,9 @@ mod tests {
             at_start("made an unprotected left turn"),
             Some(Meaning::Verb(Sense::Sided(Act::Turn, LeftRight::Left), Form::Past))
         ));
+        for text in ["rear ended by", "rear-ending", "double-parked there"] {
+            assert!(matches!(at_start(text), Some(Meaning::Verb(..))), "{text}");
+        }
         assert!(matches!(at_start("hit the pole"), Some(Meaning::Verb(Sense::Contact, _))));
     }
 

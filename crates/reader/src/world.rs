@@ -53,8 +53,9 @@ pub struct World {
 
 impl World {
     /// A world with the subject vehicle in it.
-    pub fn new(kind: Option<Kind>) -> Self {
-        let subject = Known { kind, ..Known::default() };
+    pub fn new(own: crate::frame::Own<'_>) -> Self {
+        let names = own.make.into_iter().map(str::to_owned).collect();
+        let subject = Known { kind: own.kind, names, ..Known::default() };
         Self { actors: vec![subject], clock: 0, topic: SUBJECT }
     }
 
@@ -137,7 +138,20 @@ impl World {
                 return known;
             }
         }
+        let by_own_make = noun.article == Article::Definite
+            && noun.names.iter().any(|name| self.actors[SUBJECT].names.contains(name));
+        if by_own_make && !self.actors[1..].iter().any(|known| known.names.iter().any(|name| noun.names.contains(name)))
+        {
+            return Some(SUBJECT);
+        }
         let kind = noun.kind?;
+        if noun.article == Article::None
+            && !noun.several
+            && matches!(kind, Kind::Bus)
+            && self.actors[SUBJECT].kind == Some(kind)
+        {
+            return Some(SUBJECT);
+        }
         let has = |adjective: Adjective| noun.adjectives.contains(&adjective);
         let fits = |known: &Known| {
             (known.kind.is_none() || known.kind.is_some_and(|known| same_kind(known, kind)))

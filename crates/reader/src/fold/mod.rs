@@ -7,7 +7,7 @@ mod place;
 mod types;
 
 use crate::chunk::Piece;
-use crate::frame::{Frame, Story, story};
+use crate::frame::{Frame, Own, Story, story};
 use crate::lexicon::{Lexicon, Sense};
 use crate::world::{Actor, SUBJECT};
 use contact::Contacts;
@@ -97,7 +97,8 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let report = incident.spoken()?;
     let record = &report.record;
     let text = record.narrative.as_str();
-    let story = story(text, own_kind(record));
+    let make = own_make(record);
+    let story = story(text, Own { kind: own_kind(record), make: make.as_deref() });
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };
     let mut account = Account {
@@ -132,7 +133,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     account.striker = types::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
     account.role = types::role(&reading, &account);
-    account.order = types::order(&reading, &account);
+    account.order = types::order(&account);
     account.first_contact = types::first_contact(&reading, &account);
     account.scenario = types::scenario(&account);
     account.matrix = types::matrix(&account);
@@ -149,6 +150,13 @@ fn own_kind(record: &CrashRecord) -> Option<Kind> {
     }
     let shuttle = ["navya", "olli", "easymile", "e-palette", "autonom"];
     shuttle.iter().any(|make| vehicle.contains(make)).then_some(Kind::Bus)
+}
+
+/// The first word of the company's name, where the vehicle is called by it: "the Volvo".
+fn own_make(record: &CrashRecord) -> Option<String> {
+    let name: String = record.entity.chars().take_while(|c| c.is_alphanumeric()).collect();
+    let name = name.to_lowercase();
+    record.vehicle.to_lowercase().contains(&name).then_some(name).filter(|name| !name.is_empty())
 }
 
 fn words_of(story: &Story) -> u32 {

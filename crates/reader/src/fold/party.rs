@@ -110,7 +110,9 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     let keeps = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
     let goes_on = keeps.starts_with("continu") || keeps.starts_with("remain");
     match act {
-        Act::Follow if !goes_on && stood().is_some() => Some(Act::SetOff),
+        Act::Follow if !goes_on && frame.sense != Sense::Approach && stood().is_some() => Some(Act::SetOff),
+        // "passed through the junction" passes nobody.
+        Act::Pass if frame.who == Some(SUBJECT) && frame.object.is_none() && frame.side.is_none() => Some(Act::Follow),
         _ => Some(act),
     }
 }
@@ -513,6 +515,12 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     let rolls = record.sv_speed_mps.is_some_and(|speed| speed > 0.6);
     let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
     let value = match (words, column) {
+        // In the lane, for passengers.
+        (Some(ContactState::Parked), Some(Movement::Stopped))
+            if account.sv.reasons.iter().any(|reason| reason.value == StandReason::PickupDropoff) =>
+        {
+            Some(ContactState::Stopped)
+        }
         (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
         (None, Some(Movement::Parked)) => Some(ContactState::Parked),
         (None, Some(Movement::Stopped)) => Some(ContactState::Stopped),
@@ -588,7 +596,22 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
         partner.movement = if group == Some(KindGroup::Object) {
             None
         } else {
-            movement(partner, reading.record.cp_movement.known(), "CP Pre-Crash Movement")
+            let column = reading.record.cp_movement.known();
+            let mut movement = movement(partner, column, "CP Pre-Crash Movement");
+            if let Some(fact) = &mut movement {
+                let crosses = group == Some(KindGroup::OnFoot)
+                    && partner.acts.iter().any(|fact| fact.act == Act::Cross && !fact.after_contact);
+                let oncoming = account
+                    .came_from
+                    .as_ref()
+                    .is_some_and(|from| from.value == recrash_model::account::Origin::Opposite);
+                if crosses {
+                    fact.value = Movement::NmCrossing;
+                } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
+                    fact.value = Movement::Straight;
+                }
+            }
+            movement
         };
     }
 }
@@ -608,6 +631,12 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
     let before = || party.acts.iter().filter(|fact| !fact.after_contact);
     let mut best: Option<(u8, Movement, &Source)> = None;
     for fact in before() {
+        // Who drives on has done with its turn.
+        if fact.act == Act::Follow
+            && best.as_ref().is_some_and(|(_, known, _)| matches!(known, Movement::LeftTurn | Movement::RightTurn))
+        {
+            best = None;
+        }
         let Some((weight, value)) = weight(fact, column) else { continue };
         // The last of those that say as much.
         if best.as_ref().is_none_or(|(known, ..)| weight >= *known) {

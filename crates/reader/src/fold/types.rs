@@ -426,7 +426,10 @@ pub(crate) fn order(reading: &Reading<'_>, account: &Account) -> Option<Fact<Fir
     // Whose front touches comes later than whose flank is touched.
     let front = |party: &Party| has_zone(party, |zone| zone.is_front()) && !has_zone(party, |zone| !zone.is_front());
     let flank = |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front());
-    let _ = reading;
+    if partner.zones.is_empty() && !account.sv.zones.is_empty() {
+        let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
+        return rule(value, "whose flank is touched is there first");
+    }
     match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {
         (_, true, true, _) => rule(FirstMover::Sv, "whose flank is touched is there first"),
         (true, _, _, true) => rule(FirstMover::Cp, "whose flank is touched is there first"),
