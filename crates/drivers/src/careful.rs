@@ -1,12 +1,12 @@
-//! The careful and competent human driver of UN R157 (unece157, Annex 4, Appendix 3).
+//! The careful and competent human driver of UN R157 (unr157, Annex 4, Appendix 3).
 
 use crate::driver::{Body, Sees};
 
 /// Deceleration of a car whose driver has left the accelerator and does not brake yet (as published by mattas2022). [m/s^2]
 pub const RELEASE_MPS2: f64 = 0.4;
-/// A cut-in is a danger up to this time to collision (unece157, Annex 4, Appendix 3). [s]
+/// A cut-in is a danger up to this time to collision (unr157, Annex 4, Appendix 3). [s]
 const CRITICAL_TIME_TO_COLLISION_S: f64 = 2.0;
-/// Time gap behind a leader of the same speed (unece157, Annex 4, Appendix 3). [s]
+/// Time gap behind a leader of the same speed (unr157, Annex 4, Appendix 3). [s]
 const TIME_GAP_S: f64 = 2.0;
 
 /// See [`crate::ReferenceDriver::following_distance_m`].

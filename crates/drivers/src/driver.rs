@@ -4,11 +4,11 @@ use crate::{careful, fuzzy, regulation, responsibility};
 
 /// Steps of the published simulation. [1/s]
 pub const STEPS_PER_S: f64 = 10.0;
-/// Jerk of a braking driver: 0.774 g within 0.6 s (unece157, Annex 4, Appendix 3), rounded as published. [m/s^3]
+/// Jerk of a braking driver: 0.774 g within 0.6 s (unr157, Annex 4, Appendix 3), rounded as published. [m/s^3]
 pub(crate) const BRAKING_JERK_MPS3: f64 = 12.65;
-/// Full braking of a driver: 0.774 g (unece157, Annex 4, Appendix 3). [m/s^2]
+/// Full braking of a driver: 0.774 g (unr157, Annex 4, Appendix 3). [m/s^2]
 pub(crate) const FULL_BRAKING_MPS2: f64 = 0.774 * 9.81;
-/// From seeing the danger to braking (unece157, Annex 4, Appendix 3; mattas2022 uses it for all but the regulation's). [s]
+/// From seeing the danger to braking (unr157, Annex 4, Appendix 3; mattas2022 uses it for all but the regulation's). [s]
 pub(crate) const REACTION_TIME_S: f64 = 0.75;
 
 /// One vehicle on the straight road, seen from above.

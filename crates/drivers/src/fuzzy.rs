@@ -1,4 +1,4 @@
-//! The fuzzy safety model (mattas2020, mattas2022; unece157 since its 01 series, Annex 3).
+//! The fuzzy safety model (mattas2020, mattas2022; unr157 since its 01 series, Annex 3).
 
 use crate::driver::{Body, FULL_BRAKING_MPS2, REACTION_TIME_S, STEPS_PER_S, Sees};
 use recrash_model::math::sq;

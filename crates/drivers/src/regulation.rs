@@ -1,4 +1,4 @@
-//! What UN R157 asks of the system itself in a cut-in (unece157, paragraph 5.2.5.2).
+//! What UN R157 asks of the system itself in a cut-in (unr157, paragraph 5.2.5.2).
 
 use crate::driver::{Body, STEPS_PER_S, Sees};
 

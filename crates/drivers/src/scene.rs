@@ -16,7 +16,7 @@ const LATERAL_GAP_M: f64 = 1.6;
 const LATERAL_MPS2: f64 = 1.5;
 /// How far a vehicle that leaves the lane goes aside. [m]
 const LANE_CHANGE_M: f64 = 4.0;
-/// Swaying in the lane; beyond it a vehicle leaves the lane (unece157, Annex 4, Appendix 3). [m]
+/// Swaying in the lane; beyond it a vehicle leaves the lane (unr157, Annex 4, Appendix 3). [m]
 const SWAYING_M: f64 = 0.375;
 /// The vehicle that stands behind a cut-out is longer than the others, as published. [m]
 const STANDING_LENGTH_M: f64 = 5.0;
