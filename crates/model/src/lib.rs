@@ -22,6 +22,7 @@ pub mod run;
 pub mod scenario;
 pub mod seed;
 pub mod selection;
+pub mod severity;
 pub mod spreadsheet;
 pub mod surroundings;
 pub mod template;
