@@ -20,4 +20,4 @@ mod scene;
 pub use driver::{Body, Conflict, Driver, ReferenceDriver, STEPS_PER_S};
 pub use grid::{Concrete, Grid};
 pub use limits::{Occupants, least_time_to_collision_s};
-pub use scene::{Crash, drive};
+pub use scene::{Crash, WIDTH_M, drive};

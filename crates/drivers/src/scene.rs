@@ -7,7 +7,8 @@ use crate::driver::{Body, Conflict, Driver, ReferenceDriver, STEPS_PER_S};
 use crate::grid::Concrete;
 
 const LENGTH_M: f64 = 4.3;
-const WIDTH_M: f64 = 1.9;
+/// Width of every vehicle in the published grids. [m]
+pub const WIDTH_M: f64 = 1.9;
 /// Steps after the start of the scenario.
 const STEPS: usize = 350;
 /// Between the two that drive side by side before a cut-in. [m]
@@ -93,16 +94,27 @@ fn summed(start_m: f64, speeds_mps: impl Iterator<Item = f64>) -> impl Iterator<
 
 fn cut_in(model: ReferenceDriver, ego_mps: f64, other_mps: f64, gap_m: f64, lateral_mps: f64) -> Option<Crash> {
     let before: Vec<f64> = gaining(lateral_mps);
-    let others = cutting_in(&before, other_mps, gap_m, lateral_mps);
     let start_m = before.iter().fold(0.0, |sum, _| sum - ego_mps / STEPS_PER_S);
     let mut ego = Ego::new(model, Conflict::CutIn, start_m, ego_mps);
-    for (step, other) in others.iter().enumerate().take(others.len() - 1) {
-        ego.step(step, other);
+    let others = cutting_in(&before, other_mps, gap_m, lateral_mps);
+    for (step, other) in others.enumerate().take(before.len() + STEPS) {
+        if apart_for_good(&ego.body, &other) {
+            break;
+        }
+        ego.step(step, &other);
         if ego.crash.is_some() || ego.driver.settled() {
             break;
         }
     }
     ego.crash
+}
+
+/// Whether two that do not touch never will: the other keeps its speed, nobody here gains any, and who has passed the other
+/// keeps its own.
+fn apart_for_good(ego: &Body, other: &Body) -> bool {
+    let falls_back =
+        if ego.along_m > other.along_m { ego.speed_mps >= other.speed_mps } else { ego.speed_mps <= other.speed_mps };
+    falls_back && ego.gap_m(other) > 0.0
 }
 
 /// Lateral speeds of the steps in which a vehicle that cuts in gains its own, towards the other lane. [m/s]
@@ -112,23 +124,24 @@ fn gaining(lateral_mps: f64) -> Vec<f64> {
 }
 
 /// The vehicle that cuts in, step by step: while it gains lateral speed, at the moment when it has it, and from then on.
-fn cutting_in(before_mps: &[f64], speed_mps: f64, gap_m: f64, lateral_mps: f64) -> Vec<Body> {
+fn cutting_in(before_mps: &[f64], speed_mps: f64, gap_m: f64, lateral_mps: f64) -> impl Iterator<Item = Body> {
     let (along_m, across_m) = (gap_m + LENGTH_M, LATERAL_GAP_M + WIDTH_M);
-    let at = |along_m, across_m, lateral_mps| Body { across_m, lateral_mps, ..body(along_m, speed_mps) };
+    let at = move |along_m, across_m, lateral_mps| Body { across_m, lateral_mps, ..body(along_m, speed_mps) };
     // Backwards from where it has gained it.
     let (mut back_m, mut aside_m) = (0.0, 0.0);
-    let mut bodies = vec![at(along_m, across_m, -lateral_mps)];
+    let mut gaining = vec![at(along_m, across_m, -lateral_mps)];
     for &before_mps in before_mps.iter().rev() {
         back_m -= speed_mps / STEPS_PER_S;
         aside_m -= before_mps / STEPS_PER_S;
-        bodies.push(at(back_m + along_m, aside_m + across_m, before_mps));
+        gaining.push(at(back_m + along_m, aside_m + across_m, before_mps));
     }
-    bodies.reverse();
+    gaining.reverse();
     let moving = if lateral_mps > 0.0 { steps_aside(across_m, lateral_mps) } else { 0 };
-    let laterals = (0..STEPS).map(|step| if step < moving { -lateral_mps } else { 0.0 });
-    let places = summed(along_m, (0..STEPS).map(|_| speed_mps)).zip(summed(across_m, laterals.clone()));
-    bodies.extend(places.zip(laterals).map(|((along_m, across_m), lateral_mps)| at(along_m, across_m, lateral_mps)));
-    bodies
+    let laterals = (0..STEPS).map(move |step| if step < moving { -lateral_mps } else { 0.0 });
+    let places = summed(along_m, (0..STEPS).map(move |_| speed_mps)).zip(summed(across_m, laterals.clone()));
+    gaining
+        .into_iter()
+        .chain(places.zip(laterals).map(move |((along_m, across_m), lateral_mps)| at(along_m, across_m, lateral_mps)))
 }
 
 fn cut_out(model: ReferenceDriver, speed_mps: f64, gap_m: f64, lateral_mps: f64) -> Option<Crash> {

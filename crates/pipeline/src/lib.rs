@@ -53,6 +53,9 @@ pub use stages::{
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
+pub use tools::check_driver::{
+    AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,
+};
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{
