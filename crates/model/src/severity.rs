@@ -72,3 +72,28 @@ pub enum RiskCurve {
     /// Pedestrians, cyclists, motorcyclists and car drivers who meet the front of a car, by closing speed and age (lubbe2022).
     Lubbe2022,
 }
+
+impl InjuryOutcome {
+    /// Words for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Mais1 => "minor injury",
+            Self::Mais2 => "moderate injury",
+            Self::Mais3 => "serious injury",
+            Self::Mais4 => "severe injury",
+            Self::Mais5 => "critical injury",
+            Self::Fatal => "death",
+        }
+    }
+}
+
+impl RiskCurve {
+    /// Key of its source in `docs/references.bib`.
+    pub fn source(self) -> &'static str {
+        match self {
+            Self::Wang2022 => "wang2022",
+            Self::Tefft2013 => "tefft2013",
+            Self::Lubbe2022 => "lubbe2022",
+        }
+    }
+}

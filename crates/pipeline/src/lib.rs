@@ -42,6 +42,7 @@ pub use recrash_child::end_all as end_programs;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_lab::run_scenario;
+pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
