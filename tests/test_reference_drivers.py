@@ -19,7 +19,7 @@ def published() -> dict[Part, str]:
     folder = os.environ.get("RECRASH_JRC_FSM")
     if not folder:
         pytest.skip("needs $RECRASH_JRC_FSM, a checkout of the repository ec-jrc/JRC-FSM")
-    found = answers("oracle-jrc", "jrc_fsm.py", folder)
+    found = answers("oracle-jrc", "jrc_fsm.py", folder, timeout_s=3600)
     return {(row["grid"], row["driver"], row["ego_kmh"], row["other_kmh"]): row["crashes"] for row in found}
 
 

@@ -123,6 +123,7 @@ pub struct Driver {
     /// Of the step before; equal to the speed at the start. [m/s]
     speed_before_mps: Option<f64>,
     settled: bool,
+    reacts: bool,
 }
 
 impl Driver {
@@ -135,12 +136,18 @@ impl Driver {
             deceleration_mps2: 0.0,
             speed_before_mps: None,
             settled: false,
+            reacts: false,
         }
     }
 
     /// Whether the model has found the conflict to be none, and has nothing more to decide.
     pub fn settled(&self) -> bool {
         self.settled
+    }
+
+    /// Whether it has seen danger by now.
+    pub fn reacts(&self) -> bool {
+        self.reacts
     }
 
     /// Its speed one step on. [m/s]
@@ -152,6 +159,7 @@ impl Driver {
         if sees != Sees::Danger {
             return ego.speed_mps;
         }
+        self.reacts = true;
         if self.waits_s > 0.0 {
             self.waits_s -= 1.0 / STEPS_PER_S;
             if self.model == ReferenceDriver::Careful {

@@ -48,7 +48,7 @@ pub fn drive(scenario: &Concrete, model: ReferenceDriver) -> Option<Crash> {
     }
 }
 
-fn body(along_m: f64, speed_mps: f64) -> Body {
+pub(crate) fn body(along_m: f64, speed_mps: f64) -> Body {
     Body { along_m, across_m: 0.0, speed_mps, lateral_mps: 0.0, length_m: LENGTH_M, width_m: WIDTH_M }
 }
 
@@ -118,13 +118,18 @@ fn apart_for_good(ego: &Body, other: &Body) -> bool {
 }
 
 /// Lateral speeds of the steps in which a vehicle that cuts in gains its own, towards the other lane. [m/s]
-fn gaining(lateral_mps: f64) -> Vec<f64> {
+pub(crate) fn gaining(lateral_mps: f64) -> Vec<f64> {
     let gain_mps = LATERAL_MPS2 / STEPS_PER_S;
     (0..(lateral_mps / gain_mps).ceil() as u32).map(|step| -(f64::from(step) * gain_mps)).collect()
 }
 
 /// The vehicle that cuts in, step by step: while it gains lateral speed, at the moment when it has it, and from then on.
-fn cutting_in(before_mps: &[f64], speed_mps: f64, gap_m: f64, lateral_mps: f64) -> impl Iterator<Item = Body> {
+pub(crate) fn cutting_in(
+    before_mps: &[f64],
+    speed_mps: f64,
+    gap_m: f64,
+    lateral_mps: f64,
+) -> impl Iterator<Item = Body> {
     let (along_m, across_m) = (gap_m + LENGTH_M, LATERAL_GAP_M + WIDTH_M);
     let at = move |along_m, across_m, lateral_mps| Body { across_m, lateral_mps, ..body(along_m, speed_mps) };
     // Backwards from where it has gained it.

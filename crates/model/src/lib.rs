@@ -15,6 +15,7 @@ pub mod kinds;
 pub mod math;
 pub mod metrics;
 pub mod narrative;
+pub mod preventability;
 pub mod profile;
 pub mod record;
 pub mod rollout;

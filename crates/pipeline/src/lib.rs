@@ -39,6 +39,7 @@ pub use reading::records::{TableFormat, read_records, record_outputs, write_reco
 pub use reading::scenarios::{FileRequest, FileRun, read_scenario, simulate_file};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_child::end_all as end_programs;
+pub use recrash_drivers::preventability;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_lab::run_scenario;

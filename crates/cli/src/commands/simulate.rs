@@ -6,8 +6,11 @@ use crate::output::{self, Output};
 use crate::screen::{bold, println, red, yellow};
 use crate::table::{Cell, number, table};
 use clap::Args;
+use recrash_model::preventability::Preventability;
 use recrash_model::severity::{InjuryOutcome, Suffered};
-use recrash_pipeline::{FileRequest, FileRun, Options, PipelineError, Stage, severity_of, simulate_file};
+use recrash_pipeline::{
+    FileRequest, FileRun, Options, PipelineError, Stage, preventability, severity_of, simulate_file,
+};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -109,6 +112,9 @@ pub(super) fn show(result: &FileRun) {
             println!("  {}", suffered("the ego", &severity.first));
             println!("  {}", suffered("the partner", &severity.second));
         }
+        if let Some(prevented) = preventability(&run.rollout) {
+            println!("  {}", in_their_place(&prevented));
+        }
     }
     for finding in &run.findings {
         let mark = if finding.kind.is_failure() { red("FAIL") } else { yellow("odd ") };
@@ -128,4 +134,18 @@ fn suffered(who: &str, side: &Suffered) -> String {
         line += &format!("; {} {:.1} % ({})", risk.outcome.label(), 100.0 * risk.probability, risk.curve.source());
     }
     line
+}
+
+/// What the reference drivers make of a contact, in a line.
+fn in_their_place(prevented: &Preventability) -> String {
+    let each: Vec<String> = prevented
+        .drivers
+        .iter()
+        .map(|driver| match driver.closing_speed_mps {
+            None => format!("{} avoids it", driver.driver),
+            Some(closing_mps) => format!("{} closes with {closing_mps:.1} m/s", driver.driver),
+        })
+        .collect();
+    let told = if each.is_empty() { String::new() } else { format!(": {}", each.join(", ")) };
+    format!("{}{told}", prevented.bracket().label())
 }

@@ -65,3 +65,25 @@ fn an_ego_that_is_not_there_stops_it_with_one_line() {
     assert!(told.contains("no ego is called `nobody`") && told.lines().count() == 1, "{told}");
     assert!(!place.path("check-driver").exists());
 }
+
+#[test]
+fn a_contact_is_told_with_its_severity_and_who_would_have_avoided_it() {
+    let place = Place::new();
+    let scenario = r#"{ "format": "recrash.scenario/1", "id": "braking-leader", "source": {}, "duration_s": 20.0,
+        "map": { "type": "S", "lanes": 2, "lane_width_m": 3.5, "approach_m": 60.0, "length_m": 300.0 },
+        "ego": { "lane": 1, "turn": "straight", "s_m": 5.0, "speed_mps": 12.0, "target_speed_mps": 12.0 },
+        "partners": [ { "id": "cp1", "approach": "same", "start": { "delta_s_m": 30.0 }, "speed_mps": 12.0,
+            "policy": { "type": "sudden_brake", "target_speed": 0.0, "brake_step": 5, "brake_steps": 100 } } ] }"#;
+    std::fs::write(place.path("scenario.json"), scenario).expect("written");
+    std::fs::write(place.path("ego.py"), driving_ego(12.0)).expect("written");
+    let (code, shown, told) = place.run(&["simulate", "scenario.json", "--ego", "cmd:python3 ego.py"]);
+    assert_eq!(code, 0, "{told}");
+    for words in [
+        "the ego: delta-v 5.8",
+        "force from 12 o'clock",
+        "the partner: delta-v 5.8",
+        "avoided by all reference drivers: careful avoids it",
+    ] {
+        assert!(shown.contains(words), "does not say \"{words}\":\n{shown}");
+    }
+}
