@@ -166,7 +166,7 @@ impl InLane {
             }
             let other = self.other_at(step);
             if ego.touches(&other) {
-                place.closing_speed_mps = Some(ego.speed_mps - other.speed_mps);
+                place.closing_speed_mps = Some((ego.speed_mps - other.speed_mps).max(0.0));
                 break;
             }
             if acts_from.is_some_and(|from| step < from) {
