@@ -3,6 +3,7 @@
 mod bench;
 mod bench_embed;
 mod bench_sim;
+mod check_driver;
 mod doctor;
 mod eval;
 mod export;
@@ -133,6 +134,8 @@ pub enum Command {
     Model(model::ModelArgs),
     /// Run the same scenarios on both simulators, and tell how far they agree.
     Parity(parity::ParityArgs),
+    /// Try drivers in cut-ins, cut-outs and behind braking leaders: those of UN R157, and an ego.
+    CheckDriver(check_driver::CheckDriverArgs),
     /// Tell what is installed of all that can be used, and how to get the rest.
     Doctor(doctor::DoctorArgs),
     /// Measure speeds on this machine.
@@ -193,6 +196,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Fetch(args) => fetch::run(args, output),
         Command::Model(args) => model::run(args, output),
         Command::Parity(args) => parity::run(args, output),
+        Command::CheckDriver(args) => check_driver::run(args, output),
         Command::Doctor(args) => doctor::run(args, output),
         Command::Bench(args) => bench::run(args, output),
         #[cfg(feature = "parquet")]
