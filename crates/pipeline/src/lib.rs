@@ -52,6 +52,7 @@ pub use stages::{
     StageReport, StrategyStudy, Summary, run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
+pub use tools::accounts::{Accounts, ToldFact, read_accounts, told_facts, write_accounts};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};

@@ -1,5 +1,6 @@
 //! What is no stage of a suite: each file is one command's work.
 
+pub(crate) mod accounts;
 pub(crate) mod bench_sim;
 pub(crate) mod doctor;
 pub(crate) mod embed_bench;
