@@ -54,6 +54,7 @@ pub use stages::{
     StageReport, StrategyStudy, Summary, run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
+pub use tools::accounts::{Accounts, ToldFact, read_accounts, told_facts, write_accounts};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use tools::check_driver::{
     AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,

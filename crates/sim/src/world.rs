@@ -25,6 +25,9 @@ use recrash_roads::{
     ActorPlacement, Footprint, LanePath, Placement, RoadId, Scenario, StopLine, TRAFFIC_SPEED_MPS, TrafficPlacement,
 };
 
+/// What stands firm is taken for this heavy. [kg]
+const FIRM_KG: f64 = 1e6;
+
 /// A course shorter than this leads nowhere. [m]
 const MOVES_M: f64 = 2.0;
 
@@ -314,7 +317,7 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
     setting.chassis.push(Chassis::new(&spec, surface));
     let (length_m, width_m) = (spec.length_m, spec.width_m);
     setting.cast.push(CastMember { role, kind, length_m, width_m, owner: None, part: 0, appears: 0 });
-    setting.masses_kg.push(VehicleSpec::mass_kg(kind));
+    setting.masses_kg.push(VehicleSpec::mass_kg(kind).unwrap_or(FIRM_KG));
     setting.parts_reach_m.push(0.0);
     setting.programme_of.push(None);
     state.movers.push(Mover::Wheels);

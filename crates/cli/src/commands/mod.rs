@@ -13,6 +13,7 @@ mod ledger;
 mod model;
 mod parity;
 mod prompt;
+mod read;
 mod records;
 mod run;
 mod schema;
@@ -122,6 +123,8 @@ pub enum Command {
     Export(export::ExportArgs),
     /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
     Import(import::ImportArgs),
+    /// Read each incident of crash files into an account: what happened, with the words or the column each fact stands in.
+    Read(read::ReadArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
@@ -190,6 +193,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
+        Command::Read(args) => read::run(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),
         Command::Ledger(args) => ledger::run(args, output),

@@ -11,6 +11,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout};
 use recrash_model::severity::{Severity, Suffered};
+use recrash_model::vehicle::VehicleSpec;
 
 /// One of the two at the time of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,26 +47,6 @@ impl Default for Impact {
     }
 }
 
-/// Mass of a road user with who is in or on it; `None` for what stands firm. [kg]
-pub const fn mass_kg(kind: PartnerKind) -> Option<f64> {
-    match kind {
-        // Mean of new cars and of all new light vehicles in the United States, 2017 to 2022 (iihs2025).
-        PartnerKind::PassengerCar => Some(1500.0),
-        PartnerKind::Suv | PartnerKind::Van => Some(1814.0),
-        // The pickup and the single-unit truck that roadside barriers are tested with (mash2016: 2270P, 10000S).
-        PartnerKind::PickupTruck | PartnerKind::FirstResponder => Some(2270.0),
-        PartnerKind::HeavyTruck => Some(10_000.0),
-        // A city bus of 12 m without passengers; assumed, as are those below.
-        PartnerKind::Bus => Some(13_600.0),
-        PartnerKind::Motorcycle => Some(300.0),
-        PartnerKind::Cyclist => Some(95.0),
-        PartnerKind::OtherNonMotorist => Some(90.0),
-        PartnerKind::Pedestrian => Some(80.0),
-        PartnerKind::Animal => Some(70.0),
-        PartnerKind::FixedObject => None,
-    }
-}
-
 /// Severity of the ego's first contact with a road user; `None` where there is none.
 pub fn severity_of(rollout: &Rollout) -> Option<Severity> {
     let (actor, _, ego, other) = rollout.first_ego_contact()?;
@@ -96,7 +77,7 @@ pub fn severity(first: &Party, second: &Party, impact: Impact) -> Severity {
 }
 
 fn suffered(party: &Party, impulse: Vec2, pair: &injury::Pair, side: usize) -> Suffered {
-    let mass_kg = mass_kg(party.kind);
+    let mass_kg = VehicleSpec::mass_kg(party.kind);
     let delta_v_mps = mass_kg.map_or(0.0, |mass_kg| impulse.length() / mass_kg);
     let force_clock = (impulse.length() > 0.0).then(|| clock(&party.outline, -impulse));
     Suffered {
@@ -151,7 +132,7 @@ fn impulse(first: &Party, second: &Party, normal: Vec2, point: Vec2, impact: Imp
     // What a unit impulse across and along changes of the relative velocity at the point, across, along and crosswise. [1/kg]
     let [mut across_across, mut along_along, mut across_along] = [0.0; 3];
     for party in [first, second] {
-        let Some(mass_kg) = mass_kg(party.kind) else { continue };
+        let Some(mass_kg) = VehicleSpec::mass_kg(party.kind) else { continue };
         let (length, width) = (2.0 * party.outline.half_length, 2.0 * party.outline.half_width);
         let inertia = mass_kg * (math::sq(length) + math::sq(width)) / 12.0;
         let arm = point - party.outline.centre;

@@ -402,7 +402,7 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
 }
 
 /// Who was at the place of the conflict first.
-pub(crate) fn order(reading: &Reading<'_>, account: &Account) -> Option<Fact<FirstMover>> {
+pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
     let partner = account.partner.as_ref()?;
     let rule = |value, name: &str| Some(Fact::by_rule(value, name));
     let sv_stands = sv_state(account)?.stands();

@@ -432,7 +432,7 @@ pub(super) fn placement(
 }
 
 /// From the rear axle forward to the centre; who walks turns about its middle. [m]
-pub(crate) fn arm_m(kind: PartnerKind, length_m: f64) -> f64 {
+pub fn arm_m(kind: PartnerKind, length_m: f64) -> f64 {
     let spec = VehicleSpec::of(kind);
     if VehicleSpec::is_nimble(kind) || kind == PartnerKind::FixedObject {
         0.0

@@ -98,12 +98,13 @@ fn draft(ego_mps: f64, partners: Vec<Partner>, duration_s: f64) -> ScenarioDraft
         id: "check-driver".to_owned(),
         source: Source { author: Author::Rules, ..Source::default() },
         map: MapSpec::S(StraightMap { lanes: 3, lane_width_m: LANE_WIDTH_M, approach_m: 300.0, length_m: 600.0 }),
-        ego: EgoSpec { turn: Turn::Straight, lane: 1, s_m: 10.0, speed_mps: ego_mps, target_speed_mps: ego_mps },
+        ego: EgoSpec { lane: 1, s_m: 10.0, speed_mps: ego_mps, target_speed_mps: ego_mps, ..EgoSpec::default() },
         partners,
         obstacles: Vec::new(),
         traffic: Traffic::default(),
         environment: Environment::default(),
         duration_s,
+        ..ScenarioDraft::default()
     }
 }
 
