@@ -142,6 +142,9 @@ const PREPOSITIONS: [&str; 28] = [
 const DETERMINERS: [&str; 14] =
     ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
 
+/// Most tokens that name one part.
+const LONGEST_PIECE: usize = 14;
+
 const COLOURS: [&str; 14] = [
     "white", "black", "red", "blue", "silver", "gray", "grey", "green", "yellow", "orange", "brown", "tan", "gold",
     "beige",
@@ -645,8 +648,9 @@ impl Chunker<'_> {
             return true;
         }
         match word {
-            "to" | "not" | "will" | "would" | "could" | "can" | "may" | "might" | "should" | "must" | "did" | "t"
-            | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then" | "safely" => true,
+            "to" | "not" | "had" | "has" | "have" | "will" | "would" | "could" | "can" | "may" | "might" | "should"
+            | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"
+            | "safely" => true,
             "and" | "or" => {
                 before.iter().rev().skip(1).take(4).any(|placed| matches!(placed.chunk, Chunk::Verb(_, Form::Base)))
             }
@@ -664,7 +668,7 @@ impl Chunker<'_> {
         }
         let (mut parts, mut door, mut open, mut nouns) = (Vec::new(), false, false, 0);
         let mut last_joined = at;
-        while at < self.tokens.len() {
+        while at < self.tokens.len().min(first + LONGEST_PIECE) {
             let word = self.text(at);
             if matches!(word, "open" | "opened" | "opening") && self.tokens.get(at + 1).is_some() {
                 (open, at) = (true, at + 1);

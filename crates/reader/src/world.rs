@@ -67,7 +67,11 @@ impl World {
         let known = &mut self.actors[actor];
         known.last = self.clock;
         known.mentions += 1;
-        if actor != SUBJECT && noun.occupant.is_none() {
+        if actor != SUBJECT
+            && let Some(owner) = noun.owner.as_deref().filter(|_| noun.occupant.is_some())
+        {
+            refine(known, owner, tokens);
+        } else if actor != SUBJECT && noun.occupant.is_none() {
             refine(known, noun, tokens);
         } else if noun.subject && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
             known.kind = known.kind.or(noun.kind);

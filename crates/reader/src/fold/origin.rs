@@ -385,6 +385,14 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
     if sv_rear && cp_front && !sv_front {
         return rule(Origin::Behind);
     }
+    // Told to touch its rear, and nothing told of the partner's own side or way.
+    let into_rear = sv_rear
+        && partner.zones.is_empty()
+        && account.sv.zones.iter().all(|zone| zone.value.is_rear() && zone.source.is_told());
+    let turns = [Act::Turn, Act::Reverse, Act::LaneChange, Act::Cross].into_iter().any(|act| partner.did(act));
+    if into_rear && !turns && told(&account.sv.state) != Some(ContactState::Reversing) {
+        return rule(Origin::Behind);
+    }
     if sv_front && cp_rear && !sv_rear {
         return rule(Origin::Ahead);
     }
