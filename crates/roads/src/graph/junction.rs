@@ -84,7 +84,7 @@ impl Builder<'_> {
         };
         let boxes: Vec<OrientedBox> = arms.iter().map(mouth).collect();
         let mut found = false;
-        for (a, b) in (0..arms.len()).flat_map(|a| (0..a).map(move |b| (b, a))) {
+        for (a, b) in (0..arms.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
             if boxes[a].overlaps(&boxes[b]) {
                 found = true;
                 let name = |arm: &Arm| self.map.roads[arm.road].id.clone();
