@@ -138,6 +138,9 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, run: &Run, done: Done)
 fn track(actor: &Actor, states: &[[f64; 7]]) -> ActorTrack {
     let size = VehicleSpec::of(actor.kind);
     ActorTrack {
+        part_of: None,
+        appears_s: 0.0,
+        gone_s: None,
         id: actor.id.clone(),
         role: actor.role,
         kind: actor.kind,

@@ -72,13 +72,7 @@ impl<'a> Scene<'a> {
             .iter()
             .map(|track| {
                 let counts = |&(step, state): &(usize, &ActorState)| time_of(step) <= last_s && state.is_finite();
-                track
-                    .states
-                    .iter()
-                    .enumerate()
-                    .take_while(counts)
-                    .map(|(_, state)| OrientedBox::new(state.pose(), track.length_m, track.width_m))
-                    .collect()
+                track.states.iter().enumerate().take_while(counts).map(|(step, _)| track.outline(step)).collect()
             })
             .collect();
         let recorded = outlines.first().map_or(0, Vec::len);

@@ -17,6 +17,9 @@ pub const STEP_S: f64 = 0.1;
 /// Physics steps in one step.
 pub const SUBSTEPS: usize = 5;
 
+/// Where who is not in the world is taken for. [m]
+const NOWHERE_M: f64 = 1e6;
+
 /// Name of the ego in every list of actors; it is always the first.
 pub const EGO_ID: &str = "ego";
 
@@ -32,7 +35,8 @@ pub struct Rollout {
     pub simulator: String,
     /// Ego that was run.
     pub ego: String,
-    /// Road users: the ego first, then the partners in the scenario's order, then background traffic.
+    /// Road users: the ego first, then the partners and the actors in the scenario's order, then background traffic, then
+    /// parts of any of them.
     pub actors: Vec<ActorTrack>,
     /// Static obstacles, in the scenario's order.
     pub obstacles: Vec<PlacedObstacle>,
@@ -54,6 +58,8 @@ pub enum Role {
     Partner,
     /// Background traffic.
     Traffic,
+    /// A box that belongs to another road user: a door, a mirror, a trailer.
+    Part,
 }
 
 /// One road user over time.
@@ -63,14 +69,27 @@ pub struct ActorTrack {
     pub id: String,
     /// What it is to the scenario.
     pub role: Role,
+    /// Of a part: its owner's position among the actors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part_of: Option<usize>,
     /// Kind.
     pub kind: PartnerKind,
     /// Length of its box. [m]
     pub length_m: f64,
     /// Width of its box. [m]
     pub width_m: f64,
-    /// One state per step, from time 0.
+    /// It is not in the world before this time. [s]
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub appears_s: f64,
+    /// It is not in the world from this time on. [s]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gone_s: Option<f64>,
+    /// One state per step, from time 0; before it appears and after it is gone, where it would be.
     pub states: Vec<ActorState>,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// State of an actor at one step, and the controls it chose for the next.
@@ -144,9 +163,19 @@ impl ActorState {
 }
 
 impl ActorTrack {
-    /// The actor's box at a step.
+    /// The actor's box at a step; far away from everything while it is not in the world.
     pub fn outline(&self, step: usize) -> OrientedBox {
-        OrientedBox::new(self.states[step].pose(), self.length_m, self.width_m)
+        let mut pose = self.states[step].pose();
+        if !self.is_present(step) {
+            pose.position = Vec2::new(NOWHERE_M, NOWHERE_M);
+        }
+        OrientedBox::new(pose, self.length_m, self.width_m)
+    }
+
+    /// Whether it is in the world at a step.
+    pub fn is_present(&self, step: usize) -> bool {
+        let time_s = step as f64 * STEP_S;
+        time_s >= self.appears_s - 1e-9 && self.gone_s.is_none_or(|gone_s| time_s < gone_s - 1e-9)
     }
 }
 
@@ -202,6 +231,11 @@ pub enum EventKind {
         obstacle: usize,
         /// The actor's state at that time.
         state: ActorState,
+    },
+    /// An actor left the world because its plan says so.
+    Gone {
+        /// Actor.
+        actor: usize,
     },
 }
 

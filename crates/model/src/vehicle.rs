@@ -123,6 +123,25 @@ impl VehicleSpec {
         }
     }
 
+    /// Mass with driver. Cars and light trucks: averages of new ones by class (epa2023); single-unit truck and city bus at a
+    /// middling load, people with what they ride: assumed. [kg]
+    pub const fn mass_kg(kind: PartnerKind) -> f64 {
+        match kind {
+            PartnerKind::PassengerCar => 1650.0,
+            PartnerKind::Suv => 2000.0,
+            PartnerKind::Van => 2150.0,
+            PartnerKind::PickupTruck | PartnerKind::FirstResponder => 2350.0,
+            PartnerKind::HeavyTruck => 12_000.0,
+            PartnerKind::Bus => 14_000.0,
+            PartnerKind::Motorcycle => 300.0,
+            PartnerKind::Cyclist => 95.0,
+            PartnerKind::OtherNonMotorist => 95.0,
+            PartnerKind::Pedestrian => 80.0,
+            PartnerKind::Animal => 30.0,
+            PartnerKind::FixedObject => 1e6,
+        }
+    }
+
     /// Whether this kind can turn on the spot, almost: it walks, or steps on and off what it rides.
     pub const fn is_nimble(kind: PartnerKind) -> bool {
         matches!(kind, PartnerKind::Pedestrian | PartnerKind::Animal | PartnerKind::OtherNonMotorist)

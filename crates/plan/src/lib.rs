@@ -7,6 +7,7 @@
 //!
 //! What this crate does **not** do: it moves nobody. Vehicles belong to the simulators.
 
+pub mod acts;
 mod alone;
 pub mod constants;
 mod follow;

@@ -200,6 +200,7 @@ fn events(run: &JudgedRun) -> Vec<Value> {
             EventKind::ObstacleContact { actor, .. } => {
                 (event.time_s, "obstacle", format!("{} touches an obstacle", name(*actor)))
             }
+            EventKind::Gone { actor } => (event.time_s, "gone", format!("{} is gone", name(*actor))),
         });
     }
     if let Some(gap) = run.metrics.min_gap {
@@ -223,10 +224,12 @@ fn actor(track: &ActorTrack) -> Value {
     let states = |of: fn(&ActorState) -> f64, scale: f64| column(track.states.iter().map(of), scale);
     json!({
         "id": words::clean(&track.id, 40),
-        "role": match track.role { Role::Ego => "ego", Role::Partner => "partner", Role::Traffic => "traffic" },
+        "role": match track.role { Role::Ego => "ego", Role::Partner => "partner", Role::Traffic => "traffic", Role::Part => "part" },
         "shape": shape(track.kind),
         "length": track.length_m,
         "width": track.width_m,
+        "from": track.appears_s,
+        "until": track.gone_s,
         "x": states(|state| state.x, 1000.0),
         "y": states(|state| state.y, 1000.0),
         "heading": states(|state| state.heading, 10_000.0),
@@ -260,6 +263,7 @@ fn contacts(rollout: &Rollout) -> Vec<Value> {
             EventKind::ObstacleContact { actor, obstacle, state } => {
                 (touching_point(&outline(*actor, state)?, &rollout.obstacles.get(*obstacle)?.outline()), *actor)
             }
+            EventKind::Gone { .. } => return None,
         };
         Some(json!([short(event.time_s, 3), short(at.x, 3), short(at.y, 3), actor]))
     };

@@ -2,6 +2,8 @@
 //!
 //! Every rule has a stable code, `scenario.*`; they are listed in `docs/models/roads.md`.
 
+mod actors;
+mod control;
 mod graph;
 mod motion;
 mod numbers;
@@ -9,8 +11,10 @@ mod obstacles;
 mod places;
 
 use crate::network::RoadNetwork;
-use crate::scenario::Scenario;
-use recrash_model::scenario::ScenarioDraft;
+use crate::scenario::{ActorPlacement, Placement, Scenario};
+use recrash_model::geometry::OrientedBox;
+use recrash_model::scenario::{MapSpec, ScenarioDraft};
+use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{Diagnostic, Outcome};
 use std::sync::Arc;
 
@@ -21,6 +25,7 @@ use std::sync::Arc;
 pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
     let mut remarks = Remarks::default();
     let fit = numbers::check(&draft, &mut remarks);
+    let planned = actors::numbers(&draft, &mut remarks);
     // Geometry needs numbers it can be built from; what does not depend on it has been checked above in any case. And
     // each is compared with each other, so that thousands of them would be compared for hours.
     if !fit.counts || !fit.map || !fit.ego {
@@ -33,10 +38,29 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
             return Err(remarks.list);
         }
     };
-    let Some(ego) = places::ego(&draft, &network, &mut remarks) else {
+    let control = control::place(&draft, &network, &mut remarks);
+    let recorded = match &draft.ego.recorded {
+        Some(plan) if planned => {
+            let body = (draft.ego.kind, draft.ego.size, draft.ego.parts.as_slice());
+            actors::placement(&network, &control, body, plan, "ego.recorded", &mut remarks)
+        }
+        _ => None,
+    };
+    let ego = match &draft.map {
+        MapSpec::G(_) => places::ego_on_roads(&draft, &network, recorded.as_ref(), &mut remarks),
+        _ => places::ego(&draft, &network, &mut remarks),
+    };
+    let Some(mut ego) = ego else {
         return Err(remarks.list);
     };
-    motion::ego(&draft, &network, &ego, &mut remarks);
+    if let Some(recorded) = &recorded {
+        ego.pose = recorded.pose;
+        ego.speed_mps = draft.ego.recorded.as_ref().map_or(0.0, |plan| plan.speed_mps);
+        ego.s_m = ego.path.project(recorded.pose.position, 0).s.clamp(0.0, ego.path.length_m);
+    }
+    if !matches!(draft.map, MapSpec::G(_)) {
+        motion::ego(&draft, &network, &ego, &mut remarks);
+    }
     let mut partners = Vec::with_capacity(draft.partners.len());
     for (position, partner) in draft.partners.iter().enumerate() {
         let path = format!("partners[{position}]");
@@ -62,14 +86,63 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
             },
         )
         .collect();
-    places::overlaps(&draft, &ego, &partners, &placed_obstacles, &mut remarks);
+    let mut planned_actors = Vec::with_capacity(draft.actors.len());
+    let mut objects = Vec::with_capacity(draft.objects.len());
+    if planned {
+        let names = actors::Names::of(&draft);
+        if let Some(plan) = &draft.ego.recorded {
+            actors::references(&draft, &names, plan, &draft.ego.parts, "ego.recorded", &mut remarks);
+        }
+        for (position, actor) in draft.actors.iter().enumerate() {
+            let path = format!("actors[{position}].plan");
+            actors::references(&draft, &names, &actor.plan, &actor.parts, &path, &mut remarks);
+            let body = (actor.kind, actor.size, actor.parts.as_slice());
+            planned_actors.push(actors::placement(&network, &control, body, &actor.plan, &path, &mut remarks));
+        }
+        for (position, object) in draft.objects.iter().enumerate() {
+            objects.push(obstacles::place_object(object, position, &network, &mut remarks));
+        }
+    }
+    if draft.actors.is_empty() && draft.objects.is_empty() && recorded.is_none() {
+        places::overlaps(&draft, &ego, &partners, &placed_obstacles, &mut remarks);
+    } else {
+        actors::overlaps(&everybody(&draft, &ego, &partners, &planned_actors), &mut remarks);
+    }
     obstacles::way_through(&draft, &placed_obstacles, &mut remarks);
     if remarks.list.iter().any(Diagnostic::is_error) {
         return Err(remarks.list);
     }
     let partners = partners.into_iter().flatten().collect();
-    let obstacles = placed_obstacles.into_iter().flatten().collect();
-    Ok(Outcome { value: Scenario { draft, network, ego, partners, obstacles }, diagnostics: remarks.list })
+    let actors = planned_actors.into_iter().flatten().collect();
+    let obstacles = placed_obstacles.into_iter().chain(objects).flatten().collect();
+    let scenario = Scenario { draft, network, ego, partners, obstacles, actors, recorded, control };
+    Ok(Outcome { value: scenario, diagnostics: remarks.list })
+}
+
+/// Everybody who is there at the start: name, path and box.
+fn everybody(
+    draft: &ScenarioDraft,
+    ego: &Placement,
+    partners: &[Option<Placement>],
+    actors: &[Option<ActorPlacement>],
+) -> Vec<(String, String, OrientedBox)> {
+    let outline = |placement: &Placement| {
+        let size = VehicleSpec::of(placement.kind);
+        OrientedBox::new(placement.pose, size.length_m, size.width_m)
+    };
+    let mut all = vec![("the ego".to_owned(), "ego".to_owned(), outline(ego))];
+    for (position, (partner, placed)) in draft.partners.iter().zip(partners).enumerate() {
+        let name = format!("partner {:?}", partner.id);
+        all.extend(placed.iter().map(|placed| (name.clone(), format!("partners[{position}]"), outline(placed))));
+    }
+    for (position, (actor, placed)) in draft.actors.iter().zip(actors).enumerate() {
+        if actor.plan.appears_s == 0.0 {
+            let name = format!("actor {:?}", actor.id);
+            let path = format!("actors[{position}].plan");
+            all.extend(placed.iter().map(|placed| (name.clone(), path.clone(), actors::outline(placed))));
+        }
+    }
+    all
 }
 
 /// The diagnostics of one check.

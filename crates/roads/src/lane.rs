@@ -32,6 +32,16 @@ pub enum Centreline {
     },
 }
 
+impl Centreline {
+    /// Its heading at s, in (-pi, pi]. [rad]
+    pub fn heading(&self, s: f64) -> f64 {
+        math::wrap_angle(match *self {
+            Self::Straight { heading, .. } => heading,
+            Self::Arc { radius, start_angle, turn, .. } => start_angle + turn * (s / radius + math::FRAC_PI_2),
+        })
+    }
+}
+
 /// A lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lane {
@@ -74,10 +84,7 @@ impl Lane {
 
     /// Heading of the centre line at s, in (-pi, pi]. [rad]
     pub fn heading(&self, s: f64) -> f64 {
-        math::wrap_angle(match self.centreline {
-            Centreline::Straight { heading, .. } => heading,
-            Centreline::Arc { radius, start_angle, turn, .. } => start_angle + turn * (s / radius + math::FRAC_PI_2),
-        })
+        self.centreline.heading(s)
     }
 
     /// (s, t) of a point. On an arc, s is continuous around the lane's middle.

@@ -6,6 +6,7 @@
 mod blocks;
 pub mod check;
 mod conflict;
+pub mod course;
 pub mod drawing;
 pub mod graph;
 pub mod json_place;
@@ -23,6 +24,7 @@ pub mod traffic;
 mod ways;
 
 pub use check::check;
+pub use course::{Beside, Course, CourseLeg, CoursePiece, Spot, StopLine};
 pub use drawing::{LineKind, RoadDrawing, RoadLine};
 pub use json_place::{add_lines, locate};
 pub use lane::{Centreline, Lane, LaneId};
@@ -30,6 +32,6 @@ pub use network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};
 pub use path::{Conflict, Footprint, LanePath, PathPoint};
 pub use place::{BEYOND_END_M, OnLane, OnRoad, PlaceError, Placed};
 pub use read::{MAX_SCENARIO_BYTES, read_draft, scenario_schema, write_draft};
-pub use scenario::{ObstaclePlacement, Placement, Scenario};
+pub use scenario::{ActorPlacement, ControlPlacement, ObstaclePlacement, Placement, Scenario};
 pub use simulator::{RunError, Simulator};
 pub use traffic::{TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic};

@@ -121,18 +121,44 @@ impl Conflict {
 impl SegmentShape {
     /// That of a lane.
     pub fn of(lane: &Lane) -> Self {
-        match lane.centreline {
+        Self::of_line(&lane.centreline, lane.length_m)
+    }
+
+    /// That of a line of this length. [m]
+    pub fn of_line(line: &Centreline, length_m: f64) -> Self {
+        match *line {
             Centreline::Straight { start, heading } => {
                 Self::Straight { start, forward: Vec2::from_heading(heading), heading }
             }
             Centreline::Arc { centre, radius, start_angle, turn } => {
-                let half_length = 0.5 * lane.length_m;
+                let half_length = 0.5 * length_m;
                 Self::Arc {
                     centre,
                     radius,
                     middle: Vec2::from_heading(start_angle + turn * half_length / radius),
-                    middle_heading: lane.heading(half_length),
+                    middle_heading: line.heading(half_length),
                     half_length,
+                    turn,
+                }
+            }
+        }
+    }
+
+    /// The part of it between two distances from its beginning. [m]
+    pub fn part(&self, from_m: f64, to_m: f64) -> Self {
+        match *self {
+            Self::Straight { start, forward, heading } => {
+                Self::Straight { start: start + forward * from_m, forward, heading }
+            }
+            Self::Arc { centre, radius, turn, .. } => {
+                let half = 0.5 * (to_m - from_m);
+                let (point, _, heading) = self.frame(from_m + half);
+                Self::Arc {
+                    centre,
+                    radius,
+                    middle: (point - centre) * (1.0 / radius),
+                    middle_heading: heading,
+                    half_length: half,
                     turn,
                 }
             }
@@ -150,6 +176,15 @@ impl SegmentShape {
                 let middle_heading = math::wrap_angle(middle_heading + math::PI);
                 Self::Arc { centre, radius, middle, middle_heading, half_length, turn: -turn }
             }
+        }
+    }
+
+    /// Curvature, positive to the left. [1/m]
+    #[inline]
+    pub fn curvature(&self) -> f64 {
+        match *self {
+            Self::Straight { .. } => 0.0,
+            Self::Arc { radius, turn, .. } => turn / radius,
         }
     }
 

@@ -1,12 +1,13 @@
 //! Checked scenarios: everything resolved, so that the simulator cannot fail.
 
+use crate::course::Course;
 use crate::lane::LaneId;
 use crate::network::RoadNetwork;
 use crate::path::{Conflict, LanePath};
 use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;
-use recrash_model::scenario::ScenarioDraft;
+use recrash_model::scenario::{Part, ScenarioDraft};
 use std::sync::Arc;
 
 /// A scenario that passed the check. Made by [`crate::check()`] alone.
@@ -17,6 +18,9 @@ pub struct Scenario {
     pub(crate) ego: Placement,
     pub(crate) partners: Vec<Placement>,
     pub(crate) obstacles: Vec<ObstaclePlacement>,
+    pub(crate) actors: Vec<ActorPlacement>,
+    pub(crate) recorded: Option<ActorPlacement>,
+    pub(crate) control: Vec<ControlPlacement>,
 }
 
 /// A road user's start and way.
@@ -36,6 +40,32 @@ pub struct Placement {
     pub speed_mps: f64,
     /// Where its path meets the ego's (absent for the ego itself, and where they never meet).
     pub conflict: Option<Conflict>,
+}
+
+/// Somebody with a plan: where it starts, and the line it follows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActorPlacement {
+    /// Kind.
+    pub kind: PartnerKind,
+    /// Length of its box. [m]
+    pub length_m: f64,
+    /// Width of its box. [m]
+    pub width_m: f64,
+    /// Centre of its box at the start.
+    pub pose: Pose,
+    /// The line of its rear axle.
+    pub course: Course,
+    /// Start beside that line, to its right. [m]
+    pub t_m: f64,
+    /// What belongs to it.
+    pub parts: Vec<Part>,
+}
+
+/// Where control of traffic acts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ControlPlacement {
+    /// Lanes it is for, each with the place of its stop line along it. [m]
+    pub lines: Vec<(LaneId, f64)>,
 }
 
 /// A static obstacle in the world, and the lane it lies in (the nearest, where it lies beside all).
@@ -68,8 +98,23 @@ impl Scenario {
         &self.partners
     }
 
-    /// The obstacles, in the draft's order.
+    /// The obstacles, in the draft's order, and behind them its objects.
     pub fn obstacles(&self) -> &[ObstaclePlacement] {
         &self.obstacles
+    }
+
+    /// Road users with a plan, in the draft's order.
+    pub fn actors(&self) -> &[ActorPlacement] {
+        &self.actors
+    }
+
+    /// The ego as it was driven in the record, where that is told.
+    pub fn recorded(&self) -> Option<&ActorPlacement> {
+        self.recorded.as_ref()
+    }
+
+    /// Signals and signs, in the draft's order.
+    pub fn control(&self) -> &[ControlPlacement] {
+        &self.control
     }
 }

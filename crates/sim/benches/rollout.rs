@@ -29,7 +29,7 @@ fn busy_roundabout() -> Scenario {
 fn rollouts(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("rollout");
     for (name, scenario) in [("crossing", crossing()), ("busy_roundabout", busy_roundabout())] {
-        for ego in Ego::ALL {
+        for ego in Ego::DRIVERS {
             let mut runner = Runner::new();
             let mut recorder = SummaryRecorder::new();
             runner.run(&scenario, ego, &mut recorder);

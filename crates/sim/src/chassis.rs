@@ -190,6 +190,31 @@ impl VehicleState {
         }
     }
 
+    /// A vehicle that has been on the road for a while: its springs carry it.
+    pub(crate) fn rolling(pose: Pose, velocity: Vec2, yaw_rate: f64) -> Self {
+        let axis = Vec2::from_heading(pose.heading);
+        // What others see lags by a physics step; so that it goes on without a break, the body is ahead by one.
+        let body = Pose {
+            position: pose.position + velocity * PHYSICS_STEP_S,
+            heading: pose.heading + yaw_rate * PHYSICS_STEP_S,
+        };
+        Self {
+            body,
+            forward_mps: velocity.dot(axis).max(0.0),
+            leftward_mps: velocity.dot(axis.left()),
+            yaw_rate,
+            height_m: FREE_HEIGHT_M - GRAVITY_MPS2 / (4.0 * SPRING_PER_S2),
+            ..Self::new(pose, 0.0)
+        }
+    }
+
+    /// Puts the body where something else than its wheels has moved it.
+    pub(crate) fn carry(&mut self, pose: Pose, velocity: Vec2, yaw_rate: f64) {
+        (self.pose, self.body, self.axis) = (pose, pose, Vec2::from_heading(pose.heading));
+        (self.forward_mps, self.leftward_mps) = (velocity.dot(self.axis), velocity.dot(self.axis.left()));
+        self.yaw_rate = yaw_rate;
+    }
+
     /// Speed over ground. [m/s]
     #[inline]
     pub fn speed(&self) -> f64 {

@@ -1,6 +1,8 @@
 //! Who touches whom.
 
 use crate::chassis::Controls;
+use crate::impact;
+use crate::movement::{Loose, Mover};
 use crate::scene::Seen;
 use crate::world::{Setting, State, Workspace};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -12,11 +14,13 @@ pub(crate) fn find_near(setting: &Setting, state: &State, near: &mut Vec<(u16, u
     near.clear();
     let actors = state.seen.len();
     let columns = actors + setting.obstacles.len();
-    let radius = |seen: &Seen| (math::sq(seen.half_length) + math::sq(seen.half_width)).sqrt();
+    let radius = |actor: usize, seen: &Seen| {
+        (math::sq(seen.half_length) + math::sq(seen.half_width)).sqrt().max(setting.parts_reach_m[actor])
+    };
     for (a, first) in state.seen.iter().enumerate().filter(|(_, seen)| seen.present) {
-        let reach = radius(first) + (first.speed + 1.0) * STEP_S;
+        let reach = radius(a, first) + (first.speed + 1.0) * STEP_S;
         for (b, second) in state.seen.iter().enumerate().skip(a + 1).filter(|(_, seen)| seen.present) {
-            let reach = reach + radius(second) + (second.speed + 1.0) * STEP_S;
+            let reach = reach + radius(b, second) + (second.speed + 1.0) * STEP_S;
             let offset = second.pose.position - first.pose.position;
             if offset.length_squared() <= reach * reach && !state.touched[a * columns + b] {
                 near.push((a as u16, b as u16));
@@ -51,13 +55,20 @@ pub(crate) fn collide(setting: &Setting, state: &mut State, workspace: &mut Work
             let (first, second) = (&state.seen[a], &state.seen[b]);
             let reach = first.half_length + first.half_width + second.half_length + second.half_width;
             let offset = state.bodies[b].pose.position - state.bodies[a].pose.position;
-            if offset.length_squared() > reach * reach || !outline(a).overlaps(&outline(b)) {
+            let parts_m = setting.parts_reach_m[a] + setting.parts_reach_m[b];
+            let reach = reach + parts_m;
+            if offset.length_squared() > reach * reach {
+                return true;
+            }
+            let bodies = outline(a).overlaps(&outline(b));
+            if !bodies && (parts_m == 0.0 || !parts_touch(setting, state, a, b)) {
                 return true;
             }
             EventKind::Contact { a, b, a_state: state_of(a), b_state: state_of(b) }
         } else {
             let obstacle = b - actors;
-            if !outline(a).overlaps(&setting.obstacles[obstacle].outline) {
+            let thing = &setting.obstacles[obstacle].outline;
+            if !outline(a).overlaps(thing) && !boxes_of(setting, state, a).skip(1).any(|part| part.overlaps(thing)) {
                 return true;
             }
             EventKind::ObstacleContact { actor: a, obstacle, state: state_of(a) }
@@ -66,11 +77,57 @@ pub(crate) fn collide(setting: &Setting, state: &mut State, workspace: &mut Work
         if b < actors {
             state.halted[a] = true;
             state.halted[b] = true;
-            state.ego_contact |= a == 0;
+            if a == 0 && !state.ego_contact {
+                state.ego_contact = true;
+                state.contact_s = time_s;
+            }
+            push(setting, state, a, b);
         }
         workspace.events.push(Event { time_s, kind });
         false
     });
+}
+
+/// The boxes of an actor: its own, then those of its parts.
+fn boxes_of<'a>(setting: &'a Setting, state: &'a State, actor: usize) -> impl Iterator<Item = OrientedBox> + 'a {
+    let (member, pose) = (&setting.cast[actor], state.bodies[actor].pose);
+    let own = OrientedBox::new(pose, member.length_m, member.width_m);
+    let parts = setting.parts.iter().zip(&state.parts).filter(move |(part, _)| usize::from(part.owner) == actor);
+    std::iter::once(own).chain(parts.map(move |(part, now)| part.outline(now, pose)))
+}
+
+fn parts_touch(setting: &Setting, state: &State, a: usize, b: usize) -> bool {
+    boxes_of(setting, state, a).any(|mine| boxes_of(setting, state, b).any(|theirs| mine.overlaps(&theirs)))
+}
+
+/// Passes momentum on between two who touch, where one of them moves by a plan or has been pushed: both are left to their
+/// momentum then. A touch of a door or a mirror pushes nobody.
+fn push(setting: &Setting, state: &mut State, a: usize, b: usize) {
+    let planned = |actor: usize| state.movers[actor] != Mover::Wheels;
+    let ego_goes_on = setting.after_contact_s > 0.0;
+    if !(planned(a) || planned(b) || (a == 0 && ego_goes_on)) {
+        return;
+    }
+    let heavy = |actor: usize| {
+        let parts = setting.parts.iter().zip(&state.parts).filter(move |(part, _)| usize::from(part.owner) == actor);
+        let pose = state.bodies[actor].pose;
+        let own = OrientedBox::new(pose, setting.cast[actor].length_m, setting.cast[actor].width_m);
+        std::iter::once(own)
+            .chain(parts.filter(|(part, _)| part.pushes()).map(move |(part, now)| part.outline(now, pose)))
+    };
+    let touching = heavy(a).find_map(|mine| heavy(b).find(|theirs| mine.overlaps(theirs)).map(|theirs| (mine, theirs)));
+    let Some((mine, theirs)) = touching else { return };
+    let body = |actor: usize, outline: OrientedBox| impact::Body {
+        outline,
+        velocity: state.bodies[actor].velocity(),
+        yaw_rate: state.bodies[actor].yaw_rate(),
+        mass_kg: setting.masses_kg[actor],
+    };
+    let (first, second) = impact::collide(&body(a, mine), &body(b, theirs));
+    for (actor, after) in [(a, first), (b, second)] {
+        state.loose[actor] = Loose { pose: state.bodies[actor].pose, ..after };
+        state.movers[actor] = Mover::Momentum;
+    }
 }
 
 /// A state as it is recorded.

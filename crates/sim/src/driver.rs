@@ -7,7 +7,8 @@ use crate::chassis::Controls;
 use crate::recorder::CastMember;
 use crate::scene::Seen;
 use recrash_model::rollout::{ActorState, Termination};
-use recrash_roads::Scenario;
+use recrash_model::scenario::{Aspect, MissionStop};
+use recrash_roads::{Scenario, StopLine};
 
 /// Drives the ego from outside.
 pub trait EgoDriver {
@@ -49,6 +50,14 @@ pub struct Observation<'a> {
     /// Everybody's state, in the order of the cast, the ego first; controls are those of the step before.
     pub states: &'a [ActorState],
     pub(crate) seen: &'a [Seen],
+    /// What signals show, in the scenario's order of control; `None` for signs.
+    pub signals: &'a [Option<Aspect>],
+    /// Stop lines on the ego's route: where its centre is when its front is there, and what stands there.
+    pub lines: &'a [StopLine],
+    /// Stops of its task that lie ahead.
+    pub stops: &'a [MissionStop],
+    /// The recorded driver still drives: controls are not asked for yet.
+    pub recorded: bool,
 }
 
 impl Observation<'_> {

@@ -12,14 +12,19 @@ pub enum Ego {
     Idm,
     /// A competent and careful human driver, after UN Regulation No. 157.
     Reference,
+    /// Whoever drove in the record: the scenario's own plan of the ego, to the end.
+    Recorded,
 }
 
 impl Ego {
+    /// Those that can be a system under test: they decide for themselves.
+    pub const DRIVERS: [Self; 3] = [Self::MetadriveIdm, Self::Idm, Self::Reference];
+
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::MetadriveIdm, Self::Idm, Self::Reference];
+    pub const ALL: [Self; 4] = [Self::MetadriveIdm, Self::Idm, Self::Reference, Self::Recorded];
 
     /// Their names, in the same order.
-    pub const NAMES: [&'static str; 3] = ["metadrive-idm", "idm", "reference"];
+    pub const NAMES: [&'static str; 4] = ["metadrive-idm", "idm", "reference", "recorded"];
 
     /// Its name.
     pub const fn name(self) -> &'static str {
@@ -27,6 +32,7 @@ impl Ego {
             Self::MetadriveIdm => "metadrive-idm",
             Self::Idm => "idm",
             Self::Reference => "reference",
+            Self::Recorded => "recorded",
         }
     }
 }
@@ -67,6 +73,6 @@ mod tests {
             assert_eq!(name.parse(), Ok(ego));
             assert_eq!(ego.to_string(), name);
         }
-        assert!("human".parse::<Ego>().unwrap_err().to_string().contains("metadrive-idm, idm, reference"));
+        assert!("human".parse::<Ego>().unwrap_err().to_string().contains("metadrive-idm, idm, reference, recorded"));
     }
 }

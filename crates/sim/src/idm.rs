@@ -113,7 +113,7 @@ impl Idm {
 
     pub(crate) fn decide(&mut self, scene: &Scene<'_>, me: usize, crossings: &[Crossing]) -> Controls {
         let seen = &scene.actors[me];
-        let steer = self.keeper.steer(scene.lanes.lane(scene.path_lane(me)), seen.pose, 0.0, 0.0);
+        let steer = self.keeper.steer(scene.lanes.lane(scene.path_lane(me)), seen.pose, scene.ego_beside_m, 0.0);
         let parameters = &self.parameters;
         let mut acceleration = parameters.acceleration(seen.speed, None);
         let mut keep_off = |gap_m: f64, lead_mps: f64| {

@@ -67,7 +67,12 @@ impl MetadriveIdm {
         let own = view(scene, me, lane);
         let (target, lead) = if routed { self.overtake(scene, me, lanes, lane, own) } else { (lane, own.front) };
         Controls {
-            steer: self.keeper.steer(scene.lanes.lane(target), seen.pose, 0.0, 0.0),
+            steer: self.keeper.steer(
+                scene.lanes.lane(target),
+                seen.pose,
+                if me == 0 { scene.ego_beside_m } else { 0.0 },
+                0.0,
+            ),
             throttle: gap_law(seen.speed, self.target_mps, seen.forward, seen.velocity, lead),
         }
         .clipped()
@@ -184,7 +189,7 @@ fn view(scene: &Scene<'_>, me: usize, lane: LaneIndex) -> LaneView {
         }
     };
     for (other, actor) in scene.actors.iter().enumerate() {
-        if other != me && actor.present {
+        if other != me && actor.present && actor.on_lane {
             consider(actor.place.lane, actor.place.s, actor.velocity, actor.speed);
         }
     }

@@ -21,6 +21,12 @@ pub struct CastMember {
     pub length_m: f64,
     /// Width of its box. [m]
     pub width_m: f64,
+    /// The step at which it appears.
+    pub appears: u32,
+    /// Of a part: its owner's position in the cast.
+    pub owner: Option<u16>,
+    /// Of a part: its position among its owner's.
+    pub part: u16,
 }
 
 impl CastMember {
@@ -28,8 +34,22 @@ impl CastMember {
     pub fn id(&self, draft: &ScenarioDraft, position: usize) -> String {
         match self.role {
             Role::Ego => EGO_ID.to_owned(),
-            Role::Partner => draft.partners[position - 1].id.clone(),
-            Role::Traffic => format!("traffic{}", position - draft.partners.len()),
+            Role::Partner => {
+                let (partners, position) = (draft.partners.len(), position - 1);
+                if position < partners { &draft.partners[position].id } else { &draft.actors[position - partners].id }
+                    .clone()
+            }
+            Role::Traffic => format!("traffic{}", position - draft.partners.len() - draft.actors.len()),
+            Role::Part => {
+                let part = usize::from(self.part);
+                match usize::from(self.owner.unwrap_or(0)) {
+                    0 => format!("{EGO_ID}.{}", draft.ego.parts[part].id),
+                    owner => {
+                        let actor = &draft.actors[owner - 1 - draft.partners.len()];
+                        format!("{}.{}", actor.id, actor.parts[part].id)
+                    }
+                }
+            }
         }
     }
 }
@@ -72,6 +92,9 @@ impl Recorder for RolloutRecorder {
         let actors = cast.iter().enumerate().map(|(position, member)| ActorTrack {
             id: member.id(draft, position),
             role: member.role,
+            part_of: member.owner.map(usize::from),
+            appears_s: f64::from(member.appears) * STEP_S,
+            gone_s: None,
             kind: member.kind,
             length_m: member.length_m,
             width_m: member.width_m,
@@ -100,6 +123,9 @@ impl Recorder for RolloutRecorder {
 
     fn event(&mut self, event: &Event) {
         if let Some(rollout) = &mut self.rollout {
+            if let EventKind::Gone { actor } = event.kind {
+                rollout.actors[actor].gone_s = Some(event.time_s);
+            }
             rollout.events.push(event.clone());
         }
     }
@@ -159,7 +185,8 @@ impl Recorder for SummaryRecorder {
             (member.length_m, member.width_m, radius)
         }));
         let partners = cast.iter().filter(|member| member.role == Role::Partner).count();
-        self.watched = if partners > 0 { 1..1 + partners } else { 1..cast.len() };
+        let road_users = cast.iter().filter(|member| member.role != Role::Part).count();
+        self.watched = if partners > 0 { 1..1 + partners } else { 1..road_users };
         self.last_speed_mps = None;
     }
 

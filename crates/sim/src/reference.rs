@@ -219,8 +219,11 @@ impl Reference {
         }
         let full = if acceleration >= 0.0 { self.full_throttle_mps2 } else { self.full_brake_mps2 };
         let (line, drift) = self.swerve.line(seen.speed);
-        Controls { steer: self.keeper.steer(lane, seen.pose, line, drift), throttle: acceleration / full.max(1e-3) }
-            .clipped()
+        Controls {
+            steer: self.keeper.steer(lane, seen.pose, line + scene.ego_beside_m, drift),
+            throttle: acceleration / full.max(1e-3),
+        }
+        .clipped()
     }
 
     /// The acceleration that one other road user asks for, or nothing special. [m/s^2]

@@ -22,15 +22,19 @@
 //! }
 //! ```
 
-use crate::chassis::Controls;
+use crate::chassis::{Controls, VehicleState};
 use crate::contacts::{collide, find_near};
 use crate::driver::Observation;
 use crate::ego::Ego;
+use crate::halts;
+use crate::movement::Mover;
 use crate::recorder::CastMember;
 use crate::scene::Scene;
 use crate::world::{Driver, Setting, State, Workspace, prepare};
 use recrash_model::geometry::Vec2;
-use recrash_model::rollout::{ActorState, Event, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
+use recrash_model::rollout::{ActorState, Event, EventKind, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
+use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::acts::{Glimpse, Sight};
 use recrash_plan::constants::{STANDING_MPS, STUCK_STEPS};
 use recrash_plan::hold_still;
 use recrash_roads::Scenario;
@@ -99,7 +103,7 @@ impl Run {
 
     /// The world as it is now.
     pub fn observe(&self) -> Observation<'_> {
-        let (scene, state) = (self.scene(), &self.state);
+        let (scene, state, setting) = (self.scene(), &self.state, &self.setting);
         Observation {
             step: state.step,
             time_s: f64::from(state.step) / STEPS_PER_S,
@@ -107,6 +111,10 @@ impl Run {
             route_t_m: scene.lanes.lane(scene.path_lane(0)).local(state.seen[0].pose.position).1,
             states: &state.states,
             seen: &state.seen,
+            signals: &state.signals,
+            lines: &setting.ego_lines,
+            stops: &setting.stops[usize::from(state.errand.stops_done).min(setting.stops.len())..],
+            recorded: state.movers[0] == Mover::Plan,
         }
     }
 
@@ -158,13 +166,13 @@ impl Run {
     }
 
     fn scene(&self) -> Scene<'_> {
-        scene(&self.setting, &self.state.seen, self.state.step)
+        scene(&self.setting, &self.state, 0.0)
     }
 
     /// Freezes the world for the next decision.
     fn sense(&mut self) {
         let (setting, state) = (&*self.setting, &mut self.state);
-        for ((seen, body), member) in state.seen.iter_mut().zip(&state.bodies).zip(&setting.cast) {
+        for (actor, ((seen, body), member)) in state.seen.iter_mut().zip(&state.bodies).zip(&setting.cast).enumerate() {
             if !body.is_finite() {
                 state.diverged = true;
                 continue;
@@ -173,25 +181,48 @@ impl Run {
             seen.forward = Vec2::from_heading(body.pose.heading);
             seen.velocity = body.velocity();
             seen.speed = body.speed();
+            let programme = setting.programme_of[actor].filter(|_| state.movers[actor] != Mover::Wheels);
+            if let Some(programme) = programme {
+                let progress = &state.progress[usize::from(programme)];
+                seen.present = progress.present;
+                seen.plan_s_m = Some(progress.s_m);
+            }
             if seen.present {
                 seen.place.localise(&setting.lanes, &setting.routes, body.pose.position, body.pose.heading);
                 seen.progress.follow(&setting.lanes, &setting.route_lanes, &seen.place, body.pose.position);
                 // Background traffic that has left the road goes on straight and is out of the game.
                 seen.present = seen.place.on_road || member.role != Role::Traffic;
+                seen.on_lane = programme.is_none() || seen.place.on_road;
             }
         }
         let ego = &state.seen[0];
         state.traffic_released |= !ego.place.on_first_road();
-        state.standing_steps = if ego.speed < STANDING_MPS { state.standing_steps + 1 } else { 0 };
+        let waits = state.movers[0] != Mover::Wheels || halts::stays(setting, state);
+        state.standing_steps = if ego.speed < STANDING_MPS && !waits { state.standing_steps + 1 } else { 0 };
     }
 
     /// Everybody decides on the same frozen world.
     fn decide(&mut self, ego: Option<Controls>) {
+        self.decide_plans();
         let (setting, state) = (&*self.setting, &mut self.state);
-        let scene = scene(setting, &state.seen, state.step);
-        for (me, driver) in state.drivers.iter_mut().enumerate() {
-            let halted = state.halted[me];
-            state.controls[me] = if setting.cast[me].role == Role::Traffic && !state.traffic_released {
+        let halt_m = if state.movers[0] == Mover::Wheels && (!setting.ego_lines.is_empty() || !setting.stops.is_empty())
+        {
+            let s_m = scene(setting, state, 0.0).path_s(0);
+            let speed_mps = state.seen[0].speed;
+            let beside_m = halts::pull_over_m(setting, &state.errand, s_m);
+            Some((halts::nearest(setting, state, s_m, speed_mps), beside_m))
+        } else {
+            None
+        };
+        let State { drivers, halted, controls: chosen, attention, movers, seen, step, traffic_released, .. } = state;
+        let scene = scene_of(setting, seen, *step, halt_m.map_or(0.0, |(_, beside_m)| beside_m));
+        for (me, driver) in drivers.iter_mut().enumerate() {
+            if movers[me] != Mover::Wheels {
+                chosen[me] = Controls::default();
+                continue;
+            }
+            let halted = halted[me];
+            chosen[me] = if setting.cast[me].role == Role::Traffic && !*traffic_released {
                 Controls::default()
             } else {
                 match driver {
@@ -200,19 +231,81 @@ impl Run {
                     }
                     Driver::MetadriveIdm(driver) => driver.decide(&scene, me),
                     Driver::Idm(driver) => driver.decide(&scene, me, &setting.crossings),
-                    Driver::Reference(driver) => driver.decide(&scene, me, &setting.crossings, &mut state.attention),
+                    Driver::Reference(driver) => driver.decide(&scene, me, &setting.crossings, attention),
                     Driver::Script(script) => script.decide(&scene, me, &setting.ways, &setting.crossings, halted),
-                    Driver::Outside => Controls::default(),
+                    Driver::Outside | Driver::Plan => Controls::default(),
                 }
             };
         }
-        if let Some(controls) = ego {
+        if let (Some((Some(distance_m), _)), false) = (halt_m, matches!(drivers[0], Driver::Outside)) {
+            let spec = VehicleSpec::of(setting.cast[0].kind);
+            chosen[0] = halts::before(chosen[0], distance_m, scene.actors[0].speed, &spec);
+        }
+        if state.movers[0] == Mover::Wheels
+            && let Some(controls) = ego
+        {
             state.controls[0] = controls.clipped();
         }
         // The states change hands: these are the decided ones now, and the others are written over after the step.
         std::mem::swap(&mut state.states, &mut self.workspace.decided);
         for (decided, controls) in self.workspace.decided.iter_mut().zip(&state.controls) {
             (decided.steer, decided.throttle) = (controls.steer, controls.throttle);
+        }
+    }
+
+    /// Everybody who has a plan looks at the same frozen world, and chooses an acceleration. The ego's seat takes over where
+    /// its record ends.
+    fn decide_plans(&mut self) {
+        let (setting, state) = (&*self.setting, &mut self.state);
+        let time_s = f64::from(state.step) / STEPS_PER_S;
+        for (shown, device) in state.signals.iter_mut().zip(&setting.control) {
+            *shown = device.aspect(time_s);
+        }
+        if setting.programmes.is_empty() {
+            return;
+        }
+        let glimpses = &mut self.workspace.glimpses;
+        glimpses.clear();
+        for (actor, seen) in state.seen.iter().enumerate() {
+            let progress = setting.programme_of[actor].map(|number| &state.progress[usize::from(number)]);
+            let acceleration_mps2 = match (state.movers[actor], progress) {
+                (Mover::Plan, Some(progress)) => progress.acceleration_mps2(),
+                _ => pedal_mps2(setting.cast[actor].kind, state.controls[actor].throttle, seen.speed),
+            };
+            glimpses.push(Glimpse {
+                outline: seen.outline(),
+                velocity: seen.velocity,
+                acceleration_mps2,
+                hit: state.halted[actor],
+                present: seen.present,
+                begun: progress.map_or(0, |progress| progress.begun),
+            });
+        }
+        let sight = Sight { step: state.step, all: glimpses, signals: &state.signals };
+        for actor in 0..state.seen.len() {
+            let Some(number) = setting.programme_of[actor].filter(|_| state.movers[actor] == Mover::Plan) else {
+                continue;
+            };
+            let (programme, progress) =
+                (&setting.programmes[usize::from(number)], &mut state.progress[usize::from(number)]);
+            if actor == 0 && state.step >= setting.handover {
+                let (pose, velocity, yaw_rate) = programme.motion(progress);
+                state.bodies[0] = VehicleState::rolling(pose, velocity, yaw_rate);
+                state.movers[0] = Mover::Wheels;
+                continue;
+            }
+            let (parts, step) = (&mut state.parts, state.step);
+            let was_present = progress.present;
+            programme.decide(progress, actor, &sight, |part, to_rad, steps| {
+                let own =
+                    setting.parts.iter().zip(parts.iter_mut()).filter(|(each, _)| usize::from(each.owner) == actor);
+                if let Some((_, moved)) = own.into_iter().nth(usize::from(part)) {
+                    moved.turn(to_rad, step, steps);
+                }
+            });
+            if was_present && !progress.present {
+                self.workspace.events.push(Event { time_s, kind: EventKind::Gone { actor } });
+            }
         }
     }
 
@@ -223,10 +316,19 @@ impl Run {
         for ((body, chassis), controls) in state.bodies.iter_mut().zip(&setting.chassis).zip(&state.controls) {
             workspace.commands.push(body.command(chassis, *controls));
         }
+        let all_on_wheels = setting.programmes.is_empty();
         find_near(setting, state, &mut workspace.near);
         for substep in 1..=SUBSTEPS {
-            for ((body, chassis), command) in state.bodies.iter_mut().zip(&setting.chassis).zip(&workspace.commands) {
-                body.advance(chassis, command);
+            if all_on_wheels {
+                for ((body, chassis), command) in state.bodies.iter_mut().zip(&setting.chassis).zip(&workspace.commands)
+                {
+                    body.advance(chassis, command);
+                }
+            } else {
+                state.move_all(setting, workspace);
+            }
+            if !setting.parts.is_empty() {
+                state.move_parts(setting, workspace, substep);
             }
             if workspace.near.is_empty() {
                 continue;
@@ -242,25 +344,34 @@ impl Run {
         if self.state.termination.is_some() {
             self.state.controls.fill(Controls::default());
         }
-        self.state.write_states();
+        let parts = &self.setting.parts;
+        self.state.write_states(parts);
     }
 
     /// Whether the run is over.
     fn verdict(&self) -> Option<Termination> {
         let (setting, state) = (&self.setting, &self.state);
         let time_s = f64::from(state.step) / STEPS_PER_S;
+        // Neither its recorded driver nor a crash has an errand.
+        let drives = state.movers[0] == Mover::Wheels && !state.ego_contact;
         let kind = if state.diverged {
             TerminationKind::Diverged
-        } else if state.ego_contact {
+        } else if state.ego_contact && time_s >= state.contact_s + setting.after_contact_s {
             TerminationKind::Contact
-        } else if self.has_arrived() {
+        } else if drives && self.has_arrived() {
             TerminationKind::Arrived
-        } else if !state.seen[0].place.on_road {
+        } else if drives && !state.seen[0].place.on_road {
             TerminationKind::OffRoad
         } else if state.standing_steps >= STUCK_STEPS && !self.anybody_moves() {
             TerminationKind::Stuck
         } else if time_s >= setting.duration_s - 0.5 * STEP_S {
-            TerminationKind::Timeout
+            if state.ego_contact {
+                TerminationKind::Contact
+            } else if drives && halts::stays(setting, state) {
+                TerminationKind::Arrived
+            } else {
+                TerminationKind::Timeout
+            }
         } else {
             return None;
         };
@@ -288,14 +399,25 @@ impl Run {
             let plans = match &state.drivers[actor] {
                 Driver::Script(script) => !state.halted[actor] && script.has_plans(state.step),
                 Driver::MetadriveIdm(_) | Driver::Idm(_) | Driver::Reference(_) | Driver::Outside => false,
+                Driver::Plan => match (state.movers[actor], self.setting.programme_of[actor]) {
+                    (Mover::Plan, Some(number)) => {
+                        let number = usize::from(number);
+                        !self.setting.programmes[number].is_over(&state.progress[number])
+                    }
+                    _ => false,
+                },
             };
             state.seen[actor].present && (plans || state.seen[actor].speed >= STANDING_MPS)
         })
     }
 }
 
-/// What everybody sees.
-fn scene<'a>(setting: &'a Setting, seen: &'a [crate::scene::Seen], step: u32) -> Scene<'a> {
+/// What everybody sees. The ego wants to be this far beside its lane's centre. [m]
+fn scene<'a>(setting: &'a Setting, state: &'a State, ego_beside_m: f64) -> Scene<'a> {
+    scene_of(setting, &state.seen, state.step, ego_beside_m)
+}
+
+fn scene_of<'a>(setting: &'a Setting, seen: &'a [crate::scene::Seen], step: u32, ego_beside_m: f64) -> Scene<'a> {
     Scene {
         step,
         lanes: &setting.lanes,
@@ -304,5 +426,18 @@ fn scene<'a>(setting: &'a Setting, seen: &'a [crate::scene::Seen], step: u32) ->
         route_starts: &setting.route_starts,
         actors: seen,
         obstacles: &setting.obstacles,
+        ego_beside_m,
+    }
+}
+
+/// The acceleration that a pedal asks for. [m/s^2]
+fn pedal_mps2(kind: recrash_model::kinds::PartnerKind, throttle: f64, speed_mps: f64) -> f64 {
+    let spec = VehicleSpec::of(kind);
+    if throttle >= 0.0 {
+        throttle * spec.max_acceleration_mps2
+    } else if speed_mps < STANDING_MPS {
+        0.0
+    } else {
+        throttle * spec.brake_demand_mps2
     }
 }

@@ -21,6 +21,18 @@ pub(crate) struct Seen {
     pub(crate) half_width: f64,
     /// Still in the world: background traffic that drove off the map is not.
     pub(crate) present: bool,
+    /// On the lane that its place names; who moves by a plan may be beside all.
+    pub(crate) on_lane: bool,
+    /// Along its plan's course, where it moves by one. [m]
+    pub(crate) plan_s_m: Option<f64>,
+}
+
+impl Seen {
+    /// Its box.
+    pub(crate) fn outline(&self) -> OrientedBox {
+        let (half_length, half_width) = (self.half_length, self.half_width);
+        OrientedBox { centre: self.pose.position, axis: self.forward, half_length, half_width }
+    }
 }
 
 /// An obstacle as others see it.
@@ -47,6 +59,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) route_starts: &'a [f64],
     pub(crate) actors: &'a [Seen],
     pub(crate) obstacles: &'a [SeenObstacle],
+    /// How far to the right of its lane's centre the ego's task wants it. [m]
+    pub(crate) ego_beside_m: f64,
 }
 
 impl Scene<'_> {
@@ -65,6 +79,9 @@ impl Scene<'_> {
     /// How far an actor has come along its path. [m]
     #[inline]
     pub(crate) fn path_s(&self, actor: usize) -> f64 {
+        if let Some(s_m) = self.actors[actor].plan_s_m {
+            return s_m;
+        }
         let progress = &self.actors[actor].progress;
         self.route_starts[progress.at as usize] + progress.s
     }

@@ -1,11 +1,12 @@
 //! The parts of a run: what is fixed in it, what is true at a time, and scratch; and how they are put together.
 
-use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
+use crate::chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand};
 use crate::contacts::actor_state;
 use crate::ego::Ego;
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
+use crate::movement::{Attached, Loose, Mover, PartState};
 use crate::recorder::CastMember;
 use crate::reference::{Attention, Reference};
 use crate::run::Seat;
@@ -13,13 +14,16 @@ use crate::scene::{Seen, SeenObstacle};
 use crate::script::Script;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::rollout::{ActorState, Event, Role, Termination};
-use recrash_model::scenario::Policy;
+use recrash_model::rollout::{ActorState, Event, Role, SUBSTEPS, Termination};
+use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy, ScenarioDraft};
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
+use recrash_plan::acts::{self, Glimpse, Programme, Who};
 use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
 use recrash_plan::{Crossing, Plan, Way};
-use recrash_roads::{Footprint, LanePath, Placement, RoadId, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement};
+use recrash_roads::{
+    ActorPlacement, Footprint, LanePath, Placement, RoadId, Scenario, StopLine, TRAFFIC_SPEED_MPS, TrafficPlacement,
+};
 
 /// What is fixed during a run.
 #[derive(Debug, Default)]
@@ -36,6 +40,21 @@ pub(crate) struct Setting {
     pub(crate) ways: Vec<Way>,
     pub(crate) crossings: Vec<Crossing>,
     pub(crate) duration_s: f64,
+    /// Plans of acts, and for each actor which is its own.
+    pub(crate) programmes: Vec<Programme>,
+    pub(crate) programme_of: Vec<Option<u16>>,
+    /// The step at which the ego's seat takes over from its recorded driver.
+    pub(crate) handover: u32,
+    pub(crate) after_contact_s: f64,
+    pub(crate) parts: Vec<Attached>,
+    /// How far an actor's parts reach from its centre; 0 without any. [m]
+    pub(crate) parts_reach_m: Vec<f64>,
+    pub(crate) masses_kg: Vec<f64>,
+    pub(crate) friction: f64,
+    pub(crate) control: Vec<Device>,
+    /// Stop lines on the ego's path.
+    pub(crate) ego_lines: Vec<StopLine>,
+    pub(crate) stops: Vec<MissionStop>,
 }
 
 /// What is true at a time: all that has to be kept to go on from there.
@@ -60,6 +79,27 @@ pub(crate) struct State {
     /// What can be observed: everybody's state, with the controls chosen last.
     pub(crate) states: Vec<ActorState>,
     pub(crate) termination: Option<Termination>,
+    pub(crate) movers: Vec<Mover>,
+    pub(crate) progress: Vec<acts::Progress>,
+    pub(crate) loose: Vec<Loose>,
+    pub(crate) parts: Vec<PartState>,
+    /// What signals show; `None` for signs.
+    pub(crate) signals: Vec<Option<Aspect>>,
+    /// The ego's halts: which stop is next and how long it has been standing there, which stop line it has passed.
+    pub(crate) errand: Errand,
+    /// When the ego touched somebody first. [s]
+    pub(crate) contact_s: f64,
+}
+
+/// How far the ego has come with its stops, and with the signs on its way.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Errand {
+    /// Stops that are over.
+    pub(crate) stops_done: u16,
+    pub(crate) stood_steps: u32,
+    /// Stop lines of signs that it may pass.
+    pub(crate) signs_done: u16,
+    pub(crate) stood_at_sign: u32,
 }
 
 impl Clone for State {
@@ -86,6 +126,13 @@ impl Clone for State {
             controls,
             states,
             termination,
+            movers,
+            progress,
+            loose,
+            parts,
+            signals,
+            errand,
+            contact_s,
         } = source;
         self.step = *step;
         self.bodies.clone_from(bodies);
@@ -101,6 +148,13 @@ impl Clone for State {
         self.controls.clone_from(controls);
         self.states.clone_from(states);
         self.termination = *termination;
+        self.movers.clone_from(movers);
+        self.progress.clone_from(progress);
+        self.loose.clone_from(loose);
+        self.parts.clone_from(parts);
+        self.signals.clone_from(signals);
+        self.errand = *errand;
+        self.contact_s = *contact_s;
     }
 }
 
@@ -114,6 +168,10 @@ pub(crate) struct Workspace {
     pub(crate) events: Vec<Event>,
     /// Pairs that may touch during the step: an actor, and a column of `touched`.
     pub(crate) near: Vec<(u16, u16)>,
+    /// What plans see of everybody.
+    pub(crate) glimpses: Vec<Glimpse>,
+    /// Where everybody was before a physics step.
+    pub(crate) before: Vec<Pose>,
 }
 
 /// What decides for an actor.
@@ -126,6 +184,8 @@ pub(crate) enum Driver {
     Script(Script),
     /// Somebody outside the simulator, see [`crate::Run::step`].
     Outside,
+    /// Nobody: it moves by its plan.
+    Plan,
 }
 
 impl Workspace {
@@ -137,10 +197,14 @@ impl Workspace {
         self.commands.reserve(actors);
         self.decided.clear();
         self.decided.resize(actors, ActorState::default());
+        self.glimpses.clear();
+        self.glimpses.reserve(actors);
+        self.before.clear();
+        self.before.resize(actors, Pose::default());
         self.near.clear();
         self.near.reserve(pairs);
         self.events.clear();
-        self.events.reserve(pairs);
+        self.events.reserve(pairs + actors);
     }
 }
 
@@ -168,6 +232,7 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
         }
         Seat::BuiltIn(Ego::Idm) => Driver::Idm(Idm::new(&spec, target_mps, surface)),
         Seat::BuiltIn(Ego::Reference) => Driver::Reference(Reference::new(&spec, target_mps, surface)),
+        Seat::BuiltIn(Ego::Recorded) => Driver::Plan,
     };
     enter(setting, state, surface, Entrance::of(Role::Ego, scenario.ego(), driver));
 
@@ -176,6 +241,21 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
         setting.ways.push(Way::new(scenario, number, &plan));
         let driver = Driver::Script(Script::new(plan, number));
         enter(setting, state, surface, Entrance::of(Role::Partner, placement, driver));
+    }
+
+    for placement in scenario.actors() {
+        let entrance = Entrance {
+            role: Role::Partner,
+            kind: placement.kind,
+            path: &scenario.ego().path,
+            s_m: 0.0,
+            pose: placement.pose,
+            speed_mps: 0.0,
+            driver: Driver::Plan,
+        };
+        enter(setting, state, surface, entrance);
+        setting.resize_last(placement);
+        state.resize_last(placement);
     }
 
     let spawns = recrash_roads::background_traffic(scenario);
@@ -190,12 +270,13 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
         );
     }
     setting.find_crossings(scenario, seat, &spawns);
+    plan(setting, state, scenario, seat);
 
-    let (actors, obstacles) = (setting.cast.len(), setting.obstacles.len());
+    let (actors, obstacles) = (state.bodies.len(), setting.obstacles.len());
     state.attention.resize(actors, Attention::default());
     state.touched.resize(actors * (actors + obstacles), false);
     state.controls.resize(actors, Controls::default());
-    state.states.resize(actors, ActorState::default());
+    state.states.resize(setting.cast.len(), ActorState::default());
 }
 
 /// An actor that is about to enter.
@@ -228,7 +309,13 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
     let route = (first, setting.routes.len() as u32);
     let place = Navigator::new(route, at as u32, path.segments[at].lane.0);
     setting.chassis.push(Chassis::new(&spec, surface));
-    setting.cast.push(CastMember { role, kind, length_m: spec.length_m, width_m: spec.width_m });
+    let (length_m, width_m) = (spec.length_m, spec.width_m);
+    setting.cast.push(CastMember { role, kind, length_m, width_m, owner: None, part: 0, appears: 0 });
+    setting.masses_kg.push(VehicleSpec::mass_kg(kind));
+    setting.parts_reach_m.push(0.0);
+    setting.programme_of.push(None);
+    state.movers.push(Mover::Wheels);
+    state.loose.push(Loose::default());
     state.bodies.push(VehicleState::new(pose, speed_mps));
     state.drivers.push(driver);
     state.halted.push(false);
@@ -242,17 +329,19 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
         half_length: 0.5 * spec.length_m,
         half_width: 0.5 * spec.width_m,
         present: true,
+        on_lane: true,
+        plan_s_m: None,
     });
 }
 
 impl Setting {
     /// Finds where the paths of those who give way meet other paths.
     fn find_crossings(&mut self, scenario: &Scenario, seat: Seat, spawns: &[TrafficPlacement]) {
-        let partners = scenario.partners().len();
+        let (partners, planned) = (scenario.partners().len(), scenario.actors().len());
         let path = |actor: usize| match actor {
             0 => &scenario.ego().path,
             _ if actor <= partners => &scenario.partners()[actor - 1].path,
-            _ => &spawns[actor - 1 - partners].path,
+            _ => &spawns[actor - 1 - partners - planned].path,
         };
         let gives_way = |actor: usize| match actor {
             0 => matches!(seat, Seat::BuiltIn(Ego::Idm | Ego::Reference)),
@@ -260,7 +349,7 @@ impl Setting {
             _ => false,
         };
         for me in (0..=partners).filter(|&actor| gives_way(actor)) {
-            for other in (0..self.cast.len()).filter(|&other| other != me) {
+            for other in (0..1 + partners).chain(1 + partners + planned..self.cast.len()).filter(|&other| other != me) {
                 let size = |actor: usize| {
                     let member = &self.cast[actor];
                     Footprint { length_m: member.length_m, width_m: member.width_m }
@@ -283,14 +372,191 @@ impl Setting {
         self.obstacles.clear();
         self.ways.clear();
         self.crossings.clear();
+        self.programmes.clear();
+        self.programme_of.clear();
+        self.handover = 0;
+        self.after_contact_s = 0.0;
+        self.parts.clear();
+        self.parts_reach_m.clear();
+        self.masses_kg.clear();
+        self.control.clear();
+        self.ego_lines.clear();
+        self.stops.clear();
+    }
+
+    /// Makes the last actor as large as its placement says.
+    fn resize_last(&mut self, placement: &ActorPlacement) {
+        if let Some(member) = self.cast.last_mut() {
+            (member.length_m, member.width_m) = (placement.length_m, placement.width_m);
+        }
+    }
+}
+
+/// Gives everybody who has a plan of acts their plan, and what belongs to them; lays out control and the ego's errand.
+fn plan(setting: &mut Setting, state: &mut State, scenario: &Scenario, seat: Seat) {
+    let draft = scenario.draft();
+    setting.friction = draft.environment.surface.relative_friction();
+    setting.after_contact_s = draft.after_contact_s;
+    setting.control.extend(draft.control.iter().map(|control| control.device.clone()));
+    setting.stops.extend_from_slice(&draft.ego.stops);
+    setting.ego_lines.extend(stop_lines(scenario));
+    state.signals.resize(setting.control.len(), None);
+    let names = Names(draft);
+    if let (Some(placement), Some(recorded)) = (scenario.recorded(), &draft.ego.recorded) {
+        let programme = Programme::new(
+            recorded,
+            placement.course.clone(),
+            placement.t_m,
+            &placement.parts,
+            0.5 * placement.length_m,
+            &names,
+        );
+        let handover_s = draft.ego.handover_s.unwrap_or(0.0);
+        setting.handover = match seat {
+            Seat::BuiltIn(Ego::Recorded) => u32::MAX,
+            _ => (handover_s * 10.0).round() as u32,
+        };
+        follow_plan(setting, state, 0, programme);
+    }
+    for (position, (actor, placement)) in draft.actors.iter().zip(scenario.actors()).enumerate() {
+        let number = 1 + draft.partners.len() + position;
+        let half_length_m = 0.5 * placement.length_m;
+        let (course, t_m) = (placement.course.clone(), placement.t_m);
+        let programme = Programme::new(&actor.plan, course, t_m, &actor.parts, half_length_m, &names);
+        follow_plan(setting, state, number, programme);
+        attach(setting, state, number, &actor.parts);
+    }
+    attach(setting, state, 0, &draft.ego.parts);
+}
+
+fn follow_plan(setting: &mut Setting, state: &mut State, actor: usize, programme: Programme) {
+    let progress = programme.start();
+    let (pose, velocity, yaw_rate) = programme.motion(&progress);
+    state.bodies[actor].carry(pose, velocity, yaw_rate);
+    state.seen[actor].present = progress.present;
+    setting.cast[actor].appears = programme.appears;
+    setting.programme_of[actor] = u16::try_from(setting.programmes.len()).ok();
+    setting.programmes.push(programme);
+    state.progress.push(progress);
+    state.movers[actor] = Mover::Plan;
+}
+
+/// Adds the parts of an actor, behind everybody in the cast.
+fn attach(setting: &mut Setting, state: &mut State, owner: usize, parts: &[Part]) {
+    let heading = state.bodies[owner].pose.heading;
+    for (number, part) in parts.iter().enumerate() {
+        let kind = setting.cast[owner].kind;
+        let (length_m, width_m) = (part.length_m, part.width_m);
+        let (owner_number, number) = (owner as u16, number as u16);
+        let member = CastMember {
+            role: Role::Part,
+            kind,
+            length_m,
+            width_m,
+            owner: Some(owner_number),
+            part: number,
+            appears: 0,
+        };
+        setting.cast.push(member);
+        let attached = Attached { owner: owner_number, part: part.clone() };
+        setting.parts_reach_m[owner] = setting.parts_reach_m[owner].max(attached.reach_m());
+        setting.parts.push(attached);
+        state.parts.push(PartState::resting(part, heading));
+    }
+}
+
+/// Where the ego's path passes stop lines.
+fn stop_lines(scenario: &Scenario) -> impl Iterator<Item = StopLine> + '_ {
+    let (path, half_length_m) = (&scenario.ego().path, 0.5 * VehicleSpec::of(scenario.ego().kind).length_m);
+    scenario.control().iter().enumerate().flat_map(move |(control, placed)| {
+        placed.lines.iter().filter_map(move |&(lane, line_m)| {
+            let segment = path.segments.iter().find(|segment| segment.lane == lane)?;
+            Some(StopLine { at_m: segment.start_m + line_m - half_length_m, control })
+        })
+    })
+}
+
+/// What names mean in a draft.
+struct Names<'a>(&'a ScenarioDraft);
+
+impl Who for Names<'_> {
+    fn actor(&self, id: &str) -> Option<u16> {
+        if id == recrash_model::rollout::EGO_ID {
+            return Some(0);
+        }
+        let partners = self.0.partners.iter().map(|partner| &partner.id);
+        let position = partners.chain(self.0.actors.iter().map(|actor| &actor.id)).position(|other| other == id)?;
+        u16::try_from(position + 1).ok()
+    }
+
+    fn act(&self, actor: &str, act: &str) -> Option<u8> {
+        let plan = if actor == recrash_model::rollout::EGO_ID {
+            self.0.ego.recorded.as_ref()?
+        } else {
+            &self.0.actors.iter().find(|other| other.id == actor)?.plan
+        };
+        let position = plan.acts.iter().position(|other| other.id.as_deref() == Some(act))?;
+        u8::try_from(position).ok()
+    }
+
+    fn control(&self, at: &str) -> Option<u16> {
+        let position = self.0.control.iter().position(|control| control.at == at)?;
+        u16::try_from(position).ok()
     }
 }
 
 impl State {
     /// Writes down everybody's state, with the controls chosen last.
-    pub(crate) fn write_states(&mut self) {
+    pub(crate) fn write_states(&mut self, parts: &[Attached]) {
         for ((slot, seen), controls) in self.states.iter_mut().zip(&self.seen).zip(&self.controls) {
             *slot = actor_state(seen.pose, seen.velocity, *controls);
+        }
+        for ((slot, attached), part) in self.states[self.seen.len()..].iter_mut().zip(parts).zip(&self.parts) {
+            let owner = &self.seen[usize::from(attached.owner)];
+            *slot = actor_state(attached.pose(part, owner.pose), owner.velocity, Controls::default());
+        }
+    }
+
+    /// One physics step of everybody, each by what moves it.
+    pub(crate) fn move_all(&mut self, setting: &Setting, workspace: &mut Workspace) {
+        for actor in 0..self.bodies.len() {
+            let before = self.bodies[actor].pose;
+            workspace.before[actor] = before;
+            match self.movers[actor] {
+                Mover::Wheels => self.bodies[actor].advance(&setting.chassis[actor], &workspace.commands[actor]),
+                Mover::Plan => {
+                    let Some(number) = setting.programme_of[actor].map(usize::from) else { continue };
+                    let (programme, progress) = (&setting.programmes[number], &mut self.progress[number]);
+                    if progress.stands() {
+                        continue;
+                    }
+                    programme.advance(progress, PHYSICS_STEP_S);
+                    let (pose, velocity, yaw_rate) = programme.motion(progress);
+                    self.bodies[actor].carry(pose, velocity, yaw_rate);
+                }
+                Mover::Momentum => {
+                    let loose = &mut self.loose[actor];
+                    loose.advance(setting.friction, PHYSICS_STEP_S);
+                    self.bodies[actor].carry(loose.pose, loose.velocity, loose.yaw_rate);
+                }
+            }
+        }
+    }
+
+    /// Turns doors and arms, and draws trailers on.
+    pub(crate) fn move_parts(&mut self, setting: &Setting, workspace: &Workspace, substep: usize) {
+        let step = f64::from(self.step) + substep as f64 / SUBSTEPS as f64;
+        for (attached, part) in setting.parts.iter().zip(&mut self.parts) {
+            part.swing(step);
+            let owner = usize::from(attached.owner);
+            attached.draw(part, workspace.before[owner], self.bodies[owner].pose);
+        }
+    }
+
+    /// Makes the last actor as large as its placement says.
+    fn resize_last(&mut self, placement: &ActorPlacement) {
+        if let Some(seen) = self.seen.last_mut() {
+            (seen.half_length, seen.half_width) = (0.5 * placement.length_m, 0.5 * placement.width_m);
         }
     }
 
@@ -309,5 +575,12 @@ impl State {
         self.controls.clear();
         self.states.clear();
         self.termination = None;
+        self.movers.clear();
+        self.progress.clear();
+        self.loose.clear();
+        self.parts.clear();
+        self.signals.clear();
+        self.errand = Errand::default();
+        self.contact_s = f64::INFINITY;
     }
 }

@@ -84,7 +84,7 @@ pub enum Leg {
     Lanes {
         /// Roads with direction, in order; the first is the one it is on. Between two of them the shortest way is taken.
         roads: Vec<String>,
-        /// Where on the last road the leg ends; at its end where not given. [m]
+        /// How far on the last road the leg ends, from where it enters it; at its end where not given. [m]
         #[serde(default, skip_serializing_if = "Option::is_none")]
         until_m: Option<f64>,
         /// Lane on the last road; as near as may be to the one it comes from where not given.

@@ -99,7 +99,7 @@ pub(crate) fn check_simulator(kind: SimulatorKind, ego: &str) -> Result<(), Pipe
 
 /// The built-in egos on the native simulator, which others are held against.
 pub(crate) fn built_in() -> Vec<Box<dyn Simulator>> {
-    Ego::ALL.into_iter().map(|ego| Box::new(Native::new(ego)) as Box<dyn Simulator>).collect()
+    Ego::DRIVERS.into_iter().map(|ego| Box::new(Native::new(ego)) as Box<dyn Simulator>).collect()
 }
 
 fn metadrive_only_runs_its_own(ego: &str) -> PipelineError {

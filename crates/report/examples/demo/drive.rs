@@ -291,6 +291,9 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         width_m: 0.4,
     };
     let track = |id: &str, role, kind, spec: VehicleSpec, states| ActorTrack {
+        part_of: None,
+        appears_s: 0.0,
+        gone_s: None,
         id: id.into(),
         role,
         kind,

@@ -1,7 +1,9 @@
 //! Names, counts and ranges: everything that can be said without looking at the road.
 
 use super::{Remarks, shown};
-use recrash_model::scenario::{LateralMove, MapSpec, Obstacle, Partner, Policy, SCENARIO_FORMAT, ScenarioDraft, Start};
+use recrash_model::scenario::{
+    LateralMove, MapSpec, Obstacle, Partner, Policy, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft, Start,
+};
 use std::collections::BTreeSet;
 
 /// The fastest any vehicle drives: MetaDrive cuts the engine at 80 km/h. [m/s]
@@ -25,7 +27,7 @@ pub(super) struct Fit {
 
 /// Checks names, counts and ranges.
 pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
-    if draft.format != SCENARIO_FORMAT {
+    if ![SCENARIO_FORMAT, SCENARIO_FORMAT_1].contains(&draft.format.as_str()) {
         let message = format!("format is {:?}, not {SCENARIO_FORMAT:?}", shorten(&draft.format));
         remarks.error("scenario.format", "format", message, "write the format tag as shown");
     }
@@ -35,7 +37,11 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
     let ego = {
         let speed = remarks.number("ego.speed_mps", draft.ego.speed_mps, 0.0, MAX_SPEED_MPS, "m/s");
         let target = remarks.number("ego.target_speed_mps", draft.ego.target_speed_mps, 1.0, MAX_SPEED_MPS, "m/s");
-        let longest = if map { draft.map.carriageway().approach_m } else { 300.0 };
+        let longest = match &draft.map {
+            MapSpec::G(_) => 2000.0,
+            _ if map => draft.map.carriageway().approach_m,
+            _ => 300.0,
+        };
         let start = remarks.number("ego.s_m", draft.ego.s_m, 0.0, longest, "m");
         speed && target && start
     };

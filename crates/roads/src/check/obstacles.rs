@@ -7,7 +7,7 @@ use crate::scenario::{ObstaclePlacement, Placement};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;
-use recrash_model::scenario::{Obstacle, ScenarioDraft};
+use recrash_model::scenario::{ObjectSpec, Obstacle, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;
 
 /// Free space beside a car that drives past an obstacle, on both sides together. [m]
@@ -31,6 +31,25 @@ pub(super) fn place(
     let (length_m, width_m) = obstacle.kind.size_m();
     let lane = network.lane_at(pose.position, pose.heading).unwrap_or_else(|| nearest_lane(network, pose.position));
     Some(ObstaclePlacement { placed: PlacedObstacle { kind: obstacle.kind, pose, length_m, width_m }, lane })
+}
+
+/// A thing's place in the world.
+pub(super) fn place_object(
+    object: &ObjectSpec,
+    position: usize,
+    network: &RoadNetwork,
+    remarks: &mut Remarks,
+) -> Option<ObstaclePlacement> {
+    let pose = match network.place(&object.at) {
+        Ok(placed) => placed.pose,
+        Err(error) => {
+            remarks.error("scenario.place", format!("objects[{position}].at"), error.message, error.hint);
+            return None;
+        }
+    };
+    let (length_m, width_m) = object.size.map_or(object.kind.size_m(), |size| (size.length_m, size.width_m));
+    let lane = network.lane_at(pose.position, pose.heading).unwrap_or_else(|| nearest_lane(network, pose.position));
+    Some(ObstaclePlacement { placed: PlacedObstacle { kind: object.kind, pose, length_m, width_m }, lane })
 }
 
 /// The lane whose centre line passes nearest to a point beside the road.

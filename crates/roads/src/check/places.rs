@@ -3,7 +3,7 @@
 use super::{Remarks, shown};
 use crate::network::{RoadNetwork, RoadPart};
 use crate::path::{Conflict, LanePath};
-use crate::scenario::{ObstaclePlacement, Placement};
+use crate::scenario::{ActorPlacement, ObstaclePlacement, Placement};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Approach, MapSpec, Partner, ScenarioDraft, Start, Turn};
@@ -57,7 +57,7 @@ pub(super) fn ego(draft: &ScenarioDraft, network: &RoadNetwork, remarks: &mut Re
     let path = LanePath::new(network, route, draft.ego.lane);
     let pose = path.pose(draft.ego.s_m, 0.0);
     Some(Placement {
-        kind: PartnerKind::PassengerCar,
+        kind: draft.ego.kind,
         path,
         s_m: draft.ego.s_m,
         t_m: 0.0,
@@ -65,6 +65,57 @@ pub(super) fn ego(draft: &ScenarioDraft, network: &RoadNetwork, remarks: &mut Re
         speed_mps: draft.ego.speed_mps,
         conflict: None,
     })
+}
+
+/// The ego's placement on a network of roads.
+pub(super) fn ego_on_roads(
+    draft: &ScenarioDraft,
+    network: &RoadNetwork,
+    recorded: Option<&ActorPlacement>,
+    remarks: &mut Remarks,
+) -> Option<Placement> {
+    let ego = &draft.ego;
+    let refuse = |remarks: &mut Remarks, code: &str, path: &str, message: &str, hint: &str| {
+        remarks.error(code, path, message, hint);
+    };
+    if !draft.partners.is_empty() {
+        let hint = "write them as actors, with a plan";
+        refuse(remarks, "scenario.map-form", "partners", "partners with a policy drive on the paper's maps only", hint);
+    }
+    if !draft.obstacles.is_empty() {
+        let hint = "write them as objects, with a place";
+        refuse(remarks, "scenario.map-form", "obstacles", "obstacles lie beside a block's way only", hint);
+    }
+    if draft.traffic.density > 0.0 {
+        let hint = "leave traffic out, or use actors";
+        refuse(
+            remarks,
+            "scenario.map-form",
+            "traffic.density",
+            "background traffic drives on the paper's maps only",
+            hint,
+        );
+    }
+    if ego.route.is_empty() {
+        let hint = "name the roads it takes, with direction, from the one it starts on: [\"west-\", \"east+\"]";
+        refuse(remarks, "scenario.missing-field", "ego.route", "on a network of roads the ego has a route", hint);
+        return None;
+    }
+    let path = match network.way(&ego.route, ego.lane, None) {
+        Ok(path) => path,
+        Err(error) => {
+            remarks.error("scenario.way", "ego.route", error.message, error.hint);
+            return None;
+        }
+    };
+    if recorded.is_none() && ego.s_m > path.length_m {
+        let message = format!("it starts {} m behind the end of its route", shown(ego.s_m - path.length_m));
+        remarks.error("scenario.place", "ego.s_m", message, format!("allowed: 0 to {} m", shown(path.length_m)));
+        return None;
+    }
+    let pose = path.pose(ego.s_m, 0.0);
+    let (kind, s_m, speed_mps) = (ego.kind, ego.s_m, ego.speed_mps);
+    Some(Placement { kind, path, s_m, t_m: 0.0, pose, speed_mps, conflict: None })
 }
 
 /// A partner's placement, where it has one.

@@ -1,7 +1,7 @@
 //! The check, rule by rule: one draft that passes, and for each rule the smallest change that breaks it.
 
 use recrash_model::geometry::OrientedBox;
-use recrash_model::scenario::{Approach, ScenarioDraft};
+use recrash_model::scenario::{Approach, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{Diagnostic, Severity};
 use recrash_roads::{check, read_draft, write_draft};
@@ -158,7 +158,7 @@ fn ids_are_safe_for_file_names() {
     refused(&[("/id", json!("a".repeat(81)))], "scenario.id", "id");
     refused(&[("/partners/0/id", json!("cp 1"))], "scenario.id", "partners[0].id");
     refused(&[("/partners/0/id", json!("ego"))], "scenario.id", "partners[0].id");
-    refused(&[("/format", json!("recrash.scenario/2"))], "scenario.format", "format");
+    refused(&[("/format", json!("recrash.scenario/3"))], "scenario.format", "format");
 }
 
 #[test]
@@ -425,8 +425,11 @@ fn all_problems_are_told_at_once() {
 
 #[test]
 fn writing_and_reading_a_draft_gives_it_back() {
-    let draft = with(&[("/partners/0/approach", json!("right"))]);
+    let mut draft = with(&[("/partners/0/approach", json!("right"))]);
     assert_eq!(draft.partners[0].approach, Approach::Right);
+    // A draft of the format before is read as one of this.
+    assert_eq!(draft.format, SCENARIO_FORMAT_1);
+    draft.format = SCENARIO_FORMAT.to_owned();
     let read = read_draft(&write_draft(&draft)).expect("it reads what it writes");
     assert_eq!(read.value, draft);
     assert_eq!(write_draft(&read.value), write_draft(&draft));

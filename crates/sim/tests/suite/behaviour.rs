@@ -502,7 +502,7 @@ mod terminations {
                     continue;
                 }
                 for lane in 0..2 {
-                    for ego in Ego::ALL {
+                    for ego in Ego::DRIVERS {
                         let rollout = run(alone(map(letter) as MapSpec, turn, lane, 6.0, 7.0), ego);
                         assert_eq!(
                             rollout.termination.kind,

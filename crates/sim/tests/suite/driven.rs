@@ -91,7 +91,7 @@ proptest! {
 fn stepped_from_outside_a_built_in_ego_drives_as_in_the_loop_of_the_simulator() {
     for draft in (0..200).filter_map(|number| random_draft(13, number)).take(10) {
         let scenario = checked(draft);
-        for ego in Ego::ALL {
+        for ego in Ego::DRIVERS {
             let rollout = simulate(&scenario, ego);
             let mut run = Run::new(&scenario, Seat::BuiltIn(ego));
             let shown = drive(&mut run, |_| None);
@@ -176,7 +176,7 @@ fn neither_step_nor_observe_nor_restore_allocates() {
     let mut crossing = alone(wide_cross(2), Turn::Straight, 1, 8.0, 8.0);
     crossing.partners.push(steady(Approach::Left, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 0.0 }, 8.0));
     for scenario in [checked(busy), checked(crossing)] {
-        for seat in [Seat::Outside].into_iter().chain(Ego::ALL.map(Seat::BuiltIn)) {
+        for seat in [Seat::Outside].into_iter().chain(Ego::DRIVERS.map(Seat::BuiltIn)) {
             let mut run = Run::new(&scenario, seat);
             let start = run.snapshot();
             let mut travelled = 0.0;

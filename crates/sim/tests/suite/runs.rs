@@ -49,7 +49,7 @@ proptest! {
             draft.environment.surface = surface;
             // Another kind may be too large or too fast for where it is: then the check says so.
             if let Ok(scenario) = recrash_roads::check(draft) {
-                for ego in Ego::ALL {
+                for ego in Ego::DRIVERS {
                     assert_sound(&simulate(&scenario.value, ego));
                 }
             }
@@ -79,7 +79,7 @@ fn a_step_allocates_nothing() {
     let mut crossing = alone(wide_cross(2), Turn::Straight, 1, 4.0, 4.0);
     crossing.partners.push(steady(Approach::Left, Turn::Straight, Start::ArrivalGap { arrival_gap_s: 4.5 }, 8.0));
     for mut draft in [busy, crossing] {
-        for ego in Ego::ALL {
+        for ego in Ego::DRIVERS {
             let mut runner = Runner::new();
             let mut recorder = SummaryRecorder::new();
             let mut allocations = |duration_s: f64| {
@@ -238,7 +238,7 @@ fn golden_scenarios() -> Vec<Scenario> {
 /// A line per scenario and ego: name, steps and state hash, from this many threads that share the work.
 fn golden_lines(scenarios: &[Scenario], threads: usize) -> Vec<String> {
     let runs: Vec<(&Scenario, Ego)> =
-        scenarios.iter().flat_map(|scenario| Ego::ALL.map(|ego| (scenario, ego))).collect();
+        scenarios.iter().flat_map(|scenario| Ego::DRIVERS.map(|ego| (scenario, ego))).collect();
     let next = AtomicUsize::new(0);
     let lines: Mutex<Vec<(usize, String)>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| {

@@ -33,7 +33,17 @@ pub fn straight_on(scenario: &Scenario, steps: usize) -> Rollout {
             ActorState::moving(placement.path.pose(s, placement.t_m), placement.speed_mps)
         });
         let (length_m, width_m) = (spec.length_m, spec.width_m);
-        ActorTrack { id: id.to_owned(), role, kind: placement.kind, length_m, width_m, states: states.collect() }
+        ActorTrack {
+            id: id.to_owned(),
+            role,
+            part_of: None,
+            appears_s: 0.0,
+            gone_s: None,
+            kind: placement.kind,
+            length_m,
+            width_m,
+            states: states.collect(),
+        }
     };
     let mut actors = vec![track(EGO_ID, Role::Ego, scenario.ego())];
     for (partner, placement) in scenario.draft().partners.iter().zip(scenario.partners()) {

@@ -1,0 +1,335 @@
+//! Road users with a plan: what they do is what the formulas say, to the centimetre.
+
+use crate::common::{alone, checked, straight};
+use recrash_model::geometry::Vec2;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
+use recrash_model::scenario::{
+    Act, Actor, ActorPlan, Aspect, Control, Deed, Device, Doing, Leg, MissionStop, Part, PartKind, Phase, Place,
+    ScenarioDraft, Trigger, Turn,
+};
+use recrash_sim::{Ego, Run, Seat, simulate};
+
+/// A road of 300 m for a while; nothing happens on it but what plans ask for.
+fn scene() -> ScenarioDraft {
+    let mut draft = alone(straight(2, 300.0), Turn::Straight, 0, 0.0, 5.0);
+    draft.duration_s = 30.0;
+    // The ego stands out of the way.
+    draft.ego.recorded = Some(ActorPlan::standing(Place::at(5.0, 3.5, 0.0)));
+    draft
+}
+
+fn act(deed: Deed) -> Act {
+    Act { id: None, when: None, delay_s: 0.0, deed }
+}
+
+fn when(trigger: Trigger, deed: Deed) -> Act {
+    Act { when: Some(trigger), ..act(deed) }
+}
+
+fn straight_on(to_x: f64, y: f64) -> Leg {
+    Leg::Curve { to: Place::at(to_x, y, 0.0), reverse: false }
+}
+
+fn actor(id: &str, x: f64, y: f64, speed_mps: f64, course: Vec<Leg>, acts: Vec<Act>) -> Actor {
+    Actor {
+        id: id.to_owned(),
+        kind: PartnerKind::PassengerCar,
+        size: None,
+        parts: Vec::new(),
+        plan: ActorPlan { speed_mps, course, acts, ..ActorPlan::standing(Place::at(x, y, 0.0)) },
+    }
+}
+
+fn recorded(draft: ScenarioDraft) -> Rollout {
+    simulate(&checked(draft), Ego::Recorded)
+}
+
+fn track<'a>(rollout: &'a Rollout, id: &str) -> &'a recrash_model::rollout::ActorTrack {
+    rollout.actors.iter().find(|track| track.id == id).expect("somebody of this name")
+}
+
+#[test]
+fn who_stands_stands_exactly() {
+    let mut draft = scene();
+    let acts = vec![
+        when(Trigger::TimeS(1.0), Deed::Stop { rate_mps2: 3.0, at_m: None }),
+        act(Deed::Hold { for_s: Some(5.0) }),
+        act(Deed::Speed { to_mps: 4.0, rate_mps2: 1.0 }),
+    ];
+    draft.actors.push(actor("cp", 20.0, 0.0, 6.0, vec![straight_on(250.0, 0.0)], acts));
+    let rollout = recorded(draft);
+    let states = &track(&rollout, "cp").states;
+    // 6 m in the first second, 6^2 / 6 = 6 m of braking: exactly 12 m, from 3.0 s to 8.0 s.
+    for state in &states[30..=80] {
+        assert!((state.x - 32.0).abs() < 1e-9, "{}", state.x);
+        assert_eq!((state.x, state.y), (states[30].x, states[30].y));
+        assert_eq!((state.vx, state.vy), (0.0, 0.0));
+    }
+    // Then 4 m/s after 4 s.
+    assert!((states[100].vx - 2.0).abs() < 1e-9 && (states[125].vx - 4.0).abs() < 1e-9);
+    assert!((states[100].x - 34.0).abs() < 1e-9);
+    assert!(rollout.actors[0].states.iter().all(|state| (state.x, state.y, state.vx) == (5.0, 3.5, 0.0)));
+}
+
+#[test]
+fn a_stop_at_a_place_is_there_to_the_millimetre() {
+    let mut draft = scene();
+    let acts = vec![act(Deed::Stop { rate_mps2: 2.5, at_m: Some(60.0) })];
+    draft.actors.push(actor("cp", 20.0, 0.0, 9.7, vec![straight_on(250.0, 0.0)], acts));
+    let rollout = recorded(draft);
+    let states = &track(&rollout, "cp").states;
+    let last = states.last().unwrap();
+    assert!((last.x - 80.0).abs() < 1e-3 && last.vx == 0.0, "{last:?}");
+    let hardest = states.windows(2).map(|pair| (pair[0].vx - pair[1].vx) / 0.1).fold(0.0, f64::max);
+    assert!(hardest <= 2.5 + 1e-9 && hardest > 2.3, "{hardest}");
+}
+
+#[test]
+fn reverse_gear_follows_the_way_it_came_by() {
+    let there = Leg::Curve { to: Place::at(34.0, 3.0, 40.0), reverse: false };
+    let back = Leg::Curve { to: Place::at(20.0, -3.0, 0.0), reverse: true };
+    let mut draft = scene();
+    draft.actors.push(actor("cp", 20.0, -3.0, 3.0, vec![there, back], Vec::new()));
+    let rollout = recorded(draft);
+    let states = &track(&rollout, "cp").states;
+    let turns = states.iter().position(|state| state.speed() < 0.0).expect("it goes back");
+    let last = states.last().unwrap();
+    assert!((last.x - 20.0).abs() < 0.03 && (last.y + 3.0).abs() < 0.03, "{last:?}");
+    assert!(math::wrap_angle(last.heading).abs() < 1e-3);
+    // Every place on the way back lies on the line that it drove there.
+    let line: Vec<Vec2> = states[..turns].iter().map(recrash_model::rollout::ActorState::position).collect();
+    for state in &states[turns..] {
+        let beside = line
+            .windows(2)
+            .map(|pair| {
+                let way = pair[1] - pair[0];
+                let share = ((state.position() - pair[0]).dot(way) / way.length_squared().max(1e-12)).clamp(0.0, 1.0);
+                state.position().distance(pair[0] + way * share)
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(beside < 0.01, "{beside} beside at {state:?}");
+    }
+}
+
+#[test]
+fn a_follower_with_a_reaction_time_stops_where_the_formula_says() {
+    for (speed, reaction, braking) in [(8.0, 0.7, 4.0), (13.0, 1.3, 5.5), (5.0, 2.0, 3.0)] {
+        let mut draft = scene();
+        let brake = vec![when(Trigger::TimeS(2.0), Deed::Stop { rate_mps2: 7.0, at_m: None })];
+        draft.actors.push(actor("lead", 90.0, 0.0, speed, vec![straight_on(290.0, 0.0)], brake));
+        let react = Act {
+            delay_s: reaction,
+            ..when(
+                Trigger::Actor { actor: "lead".to_owned(), is: Doing::Braking },
+                Deed::Stop { rate_mps2: braking, at_m: None },
+            )
+        };
+        draft.actors.push(actor("cp", 20.0, 0.0, speed, vec![straight_on(290.0, 0.0)], vec![react]));
+        let rollout = recorded(draft);
+        let last = track(&rollout, "cp").states.last().unwrap();
+        let formula = 20.0 + speed * (2.0 + reaction) + speed * speed / (2.0 * braking);
+        assert!((last.x - formula).abs() < 0.02, "{} {formula}", last.x);
+    }
+}
+
+#[test]
+fn a_lane_change_ends_where_it_should_and_steers_smoothly() {
+    let mut draft = scene();
+    let acts = vec![when(Trigger::AtM(30.0), Deed::Shift { to_t_m: -3.5, over_m: 40.0 })];
+    draft.actors.push(actor("cp", 20.0, 0.0, 10.0, vec![straight_on(280.0, 0.0)], acts));
+    let rollout = recorded(draft);
+    let states = &track(&rollout, "cp").states;
+    let last = states.last().unwrap();
+    assert!((last.y - 3.5).abs() < 1e-9 && last.heading.abs() < 1e-9);
+    for pair in states.windows(2) {
+        assert!((pair[1].heading - pair[0].heading).abs() < 0.05, "{pair:?}");
+        // What is said of the speed is what the places say.
+        let moved = (pair[1].position() - pair[0].position()).length() / 0.1;
+        assert!((moved - pair[0].velocity().length()).abs() < 0.25, "{moved} {pair:?}");
+    }
+}
+
+#[test]
+fn a_queue_that_is_pushed_from_behind_reaches_the_ego() {
+    let mut draft = scene();
+    draft.ego.recorded = Some(ActorPlan::standing(Place::at(60.0, 0.0, 0.0)));
+    draft.actors.push(actor("between", 54.5, 0.0, 0.0, Vec::new(), Vec::new()));
+    draft.actors.push(actor("cp", 10.0, 0.0, 12.0, vec![straight_on(200.0, 0.0)], Vec::new()));
+    let rollout = recorded(draft);
+    let contacts: Vec<(usize, usize)> = rollout
+        .events
+        .iter()
+        .filter_map(|event| match event.kind {
+            EventKind::Contact { a, b, .. } => Some((a, b)),
+            EventKind::ObstacleContact { .. } | EventKind::Gone { .. } => None,
+        })
+        .collect();
+    assert_eq!(contacts, [(1, 2), (0, 1)]);
+    assert_eq!(rollout.termination.kind, TerminationKind::Contact);
+    let (_, _, ego, other) = rollout.first_ego_contact().unwrap();
+    assert_eq!(ego.vx, 0.0);
+    // Equal masses and a restitution of 0.1: 6.6 m/s, less what half a metre of sliding takes.
+    assert!(other.vx > 5.5 && other.vx < 6.6, "{}", other.vx);
+}
+
+#[test]
+fn a_door_opens_into_who_passes() {
+    let mut draft = scene();
+    let door = Part {
+        id: "door".to_owned(),
+        kind: PartKind::Door,
+        x_m: 0.6,
+        y_m: 0.92,
+        length_m: 1.0,
+        width_m: 0.08,
+        axle_m: None,
+    };
+    let open = Deed::Part { part: "door".to_owned(), to_deg: 70.0, over_s: 1.0 };
+    let mut parked = actor("parked", 60.0, -2.6, 0.0, Vec::new(), vec![when(Trigger::TimeS(4.0), open)]);
+    parked.parts.push(door);
+    draft.actors.push(parked);
+    draft.ego.recorded = Some(ActorPlan {
+        speed_mps: 8.0,
+        course: vec![straight_on(250.0, -0.3)],
+        ..ActorPlan::standing(Place::at(20.0, -0.3, 0.0))
+    });
+    let rollout = recorded(draft.clone());
+    assert_eq!(rollout.termination.kind, TerminationKind::Contact);
+    assert_eq!(track(&rollout, "parked.door").role, Role::Part);
+    assert_eq!(track(&rollout, "parked.door").part_of, Some(1));
+    draft.actors[0].plan.acts.clear();
+    assert_eq!(recorded(draft).termination.kind, TerminationKind::Timeout, "shut, it is passed");
+}
+
+#[test]
+fn a_trailer_cuts_the_corner() {
+    let mut draft = scene();
+    let turn = Leg::Curve { to: Place::at(40.0, 20.0, 90.0), reverse: false };
+    let on = Leg::Curve { to: Place::at(40.0, 120.0, 90.0), reverse: false };
+    let mut truck = actor("truck", 10.0, -10.0, 4.0, vec![straight_on(20.0, -10.0), turn, on], Vec::new());
+    truck.parts.push(Part {
+        id: "trailer".to_owned(),
+        kind: PartKind::Trailer,
+        x_m: -1.4,
+        y_m: 0.0,
+        length_m: 12.0,
+        width_m: 2.5,
+        axle_m: Some(9.0),
+    });
+    draft.actors.push(truck);
+    draft.duration_s = 25.0;
+    let rollout = recorded(draft);
+    let (truck, trailer) = (track(&rollout, "truck"), track(&rollout, "truck.trailer"));
+    // In a steady turn of radius R the axle of a trailer of length l runs on sqrt(R^2 - l^2): it lags behind the tractor.
+    let bent = truck.states.iter().zip(&trailer.states).map(|(a, b)| math::wrap_angle(a.heading - b.heading));
+    let most = bent.fold(0.0, f64::max);
+    assert!(most > 0.2 && most < math::asin(9.0 / 20.0) + 0.02, "{most}");
+    let (a, b) = (truck.states.last().unwrap(), trailer.states.last().unwrap());
+    assert!(math::wrap_angle(a.heading - b.heading).abs() < 0.02, "it straightens out again");
+}
+
+#[test]
+fn the_handover_is_continuous() {
+    for ego in Ego::DRIVERS {
+        let mut draft = scene();
+        let acts = vec![when(Trigger::TimeS(1.0), Deed::Speed { to_mps: 4.5, rate_mps2: 2.25 })];
+        draft.ego.recorded = Some(ActorPlan {
+            speed_mps: 9.0,
+            course: vec![straight_on(80.0, 0.0), Leg::Curve { to: Place::at(120.0, 3.5, 0.0), reverse: false }],
+            acts,
+            ..ActorPlan::standing(Place::at(20.0, 0.0, 0.0))
+        });
+        draft.ego.lane = 1;
+        draft.ego.handover_s = Some(3.0);
+        let told = recorded(draft.clone());
+        let tested = simulate(&checked(draft), ego);
+        for step in 0..=30 {
+            assert_eq!(told.actors[0].states[step].pose(), tested.actors[0].states[step].pose(), "{ego} {step}");
+        }
+        for pair in tested.actors[0].states[28..36].windows(2) {
+            let moved = pair[1].position().distance(pair[0].position());
+            assert!((moved - 0.1 * pair[0].velocity().length()).abs() < 0.08, "{ego}: {pair:?}");
+            assert!(math::wrap_angle(pair[1].heading - pair[0].heading).abs() < 0.02);
+            assert!((pair[1].speed() - pair[0].speed()).abs() < 1.0);
+        }
+    }
+}
+
+fn signal(program: &[(Aspect, f64)]) -> Control {
+    let program = program.iter().map(|&(show, for_s)| Phase { show, for_s }).collect();
+    Control {
+        at: "ego+".to_owned(),
+        set_back_m: 200.0,
+        lanes: Vec::new(),
+        device: Device::Signal { program, offset_s: 0.0 },
+    }
+}
+
+#[test]
+fn every_built_in_ego_stops_for_red_and_goes_at_green() {
+    for ego in Ego::DRIVERS {
+        let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 10.0, 10.0);
+        draft.control.push(signal(&[(Aspect::Red, 25.0), (Aspect::Green, 60.0)]));
+        draft.duration_s = 60.0;
+        let rollout = simulate(&checked(draft), ego);
+        let states = &rollout.actors[0].states;
+        // The line lies 200 m before the end of 360 m.
+        let front = states[249].x + 0.5 * 4.515;
+        assert!(states[249].speed() < 0.1 && front <= 160.0 && front > 156.5, "{ego}: {front} {}", states[249].speed());
+        assert_eq!(rollout.termination.kind, TerminationKind::Arrived, "{ego}");
+    }
+}
+
+#[test]
+fn a_stop_of_the_task_is_made_and_left_again() {
+    for ego in Ego::DRIVERS {
+        let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 8.0, 8.0);
+        draft.ego.stops = vec![MissionStop { s_m: 120.0, t_m: 1.0, for_s: Some(6.0) }];
+        draft.duration_s = 80.0;
+        let rollout = simulate(&checked(draft), ego);
+        let states = &rollout.actors[0].states;
+        let standing: Vec<_> = states.iter().filter(|state| state.speed() < 0.1).collect();
+        assert!(standing.len() >= 58 && standing.len() < 90, "{ego}: {}", standing.len());
+        assert!(standing.iter().all(|state| (state.x - 119.5).abs() < 1.0), "{ego}: {:?}", standing.last());
+        assert!((standing.last().unwrap().y + 1.0).abs() < 0.25, "{ego}: {:?}", standing.last());
+        assert_eq!(rollout.termination.kind, TerminationKind::Arrived, "{ego}");
+    }
+}
+
+#[test]
+fn snapshots_go_on_with_the_same_bytes() {
+    let mut draft = scene();
+    draft.after_contact_s = 2.0;
+    draft.ego.recorded = Some(ActorPlan::standing(Place::at(60.0, 0.0, 0.0)));
+    draft.actors.push(actor("between", 54.0, 0.0, 0.0, Vec::new(), Vec::new()));
+    let follow = Deed::Follow {
+        actor: "between".to_owned(),
+        speed_mps: 14.0,
+        gap_m: 2.0,
+        headway_s: 0.3,
+        reaction_s: 2.0,
+        acceleration_mps2: 2.0,
+        braking_mps2: 4.0,
+    };
+    draft.actors.push(actor("cp", 8.0, 0.0, 14.0, vec![straight_on(200.0, 0.0)], vec![act(follow)]));
+    let scenario = checked(draft);
+    let mut whole = Run::new(&scenario, Seat::BuiltIn(Ego::Recorded));
+    let mut snapshots = Vec::new();
+    let mut states = Vec::new();
+    while whole.termination().is_none() {
+        snapshots.push(whole.snapshot());
+        whole.step(None);
+        states.push(whole.observe().states.to_vec());
+    }
+    assert!(states.len() > 30);
+    let mut again = Run::new(&scenario, Seat::BuiltIn(Ego::Idm));
+    for (step, snapshot) in snapshots.iter().enumerate().step_by(3) {
+        again.restore(snapshot);
+        for expected in &states[step..] {
+            again.step(None);
+            assert_eq!(again.observe().states, expected.as_slice());
+        }
+    }
+}
