@@ -14,8 +14,8 @@ pub use areas::{GroundArea, GroundKind};
 pub use curve::Stretch;
 pub(crate) use curve::biarc;
 pub(crate) use place::undirected;
-pub use strips::ReferenceLine;
 pub(crate) use strips::{LEFT, RIGHT, side_of};
+pub use strips::{ReferenceLine, inner_edge_m};
 
 use crate::lane::{Lane, LaneId};
 use crate::network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};
