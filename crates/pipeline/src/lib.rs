@@ -39,9 +39,11 @@ pub use reading::records::{TableFormat, read_records, record_outputs, write_reco
 pub use reading::scenarios::{FileRequest, FileRun, read_scenario, simulate_file};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_child::end_all as end_programs;
+pub use recrash_drivers::preventability;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_lab::run_scenario;
+pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
@@ -52,7 +54,11 @@ pub use stages::{
     StageReport, StrategyStudy, Summary, run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
+pub use tools::accounts::{Accounts, ToldFact, read_accounts, told_facts, write_accounts};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
+pub use tools::check_driver::{
+    AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,
+};
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{

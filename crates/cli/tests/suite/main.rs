@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod batch;
+mod check_driver;
 mod common;
 mod contradictions;
 mod edits;

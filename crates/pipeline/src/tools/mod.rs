@@ -1,6 +1,8 @@
 //! What is no stage of a suite: each file is one command's work.
 
+pub(crate) mod accounts;
 pub(crate) mod bench_sim;
+pub(crate) mod check_driver;
 pub(crate) mod doctor;
 pub(crate) mod embed_bench;
 pub(crate) mod evaluation;
