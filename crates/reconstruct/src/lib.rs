@@ -54,23 +54,9 @@ pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
     for told in told::Told::of(account)?.by_origin() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
             let draft = came::draft(account, &told, &staging);
-            let checked = match recrash_roads::check(draft) {
-                Ok(checked) => checked,
-                Err(problems) => {
-                    if std::env::var("DEBUG_ROOM").is_ok() {
-                        eprintln!(
-                            "{} {:?}",
-                            account.report,
-                            problems
-                                .iter()
-                                .filter(|p| p.is_error())
-                                .map(|p| (&p.code, &p.location.path, &p.message))
-                                .collect::<Vec<_>>()
-                        );
-                    }
-                    refused += 1;
-                    continue;
-                }
+            let Ok(checked) = recrash_roads::check(draft) else {
+                refused += 1;
+                continue;
             };
             let scenario = checked.value;
             let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
