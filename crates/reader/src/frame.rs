@@ -45,6 +45,8 @@ pub struct Frame {
     pub joint: Option<Joint>,
     /// The second in a row "and": told of a person in the vehicle.
     pub person: Option<Occupant>,
+    /// It is told of a noun by a relative clause or a participle.
+    pub described: bool,
     /// The words behind a passive "by".
     pub passive: bool,
     /// Number of the sentence.
@@ -296,6 +298,7 @@ impl Parser<'_> {
                         carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
                     }
                     carry.subject = Some(last);
+                    carry.frame = None;
                     carry.has_verb = false;
                     carry.relative = true;
                     carry.fresh = false;
@@ -396,6 +399,7 @@ impl Parser<'_> {
             aside: false,
             joint: carry.joint,
             person: None,
+            described: carry.relative,
             passive: false,
             sentence: self.sentence,
             looks_back: self.looks_back,
@@ -909,6 +913,7 @@ impl Parser<'_> {
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
+        frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject;
         frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
         frame.person = who.as_ref().and_then(|mention| mention.person);
         // "a van parked on the left began to move": the first verb describes, the second one tells.
@@ -1056,6 +1061,13 @@ impl Parser<'_> {
         }
         if carry.after_comma && form == Form::Ing && sense == Sense::Face && carry.described.is_some() {
             return carry.described.clone();
+        }
+        // "was struck by a van, traveling east": the van.
+        if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
+            && self.frames[frame].passive
+            && self.frames[frame].who == Some(last.actor)
+        {
+            return carry.last.clone();
         }
         let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
         // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".

@@ -201,6 +201,7 @@ impl World {
         let found = named.or(exact).or(wide);
         // "The vehicle" of a story that knows no other one.
         if found.is_none()
+            && hint.is_none()
             && kind == Kind::Vehicle
             && noun.names.is_empty()
             && !has(Adjective::Other)
@@ -313,7 +314,7 @@ pub fn same_kind(known: Kind, said: Kind) -> bool {
             one == KindGroup::Truck || matches!(known, Kind::Pickup | Kind::PickupWithTrailer | Kind::Vehicle)
         }
         Kind::PassengerCar => matches!(known, Kind::Vehicle | Kind::PoliceCar),
-        Kind::Trailer => matches!(known, Kind::SemiTrailerTruck | Kind::PickupWithTrailer),
+        Kind::Trailer => matches!(known, Kind::SemiTrailerTruck | Kind::PickupWithTrailer | Kind::HeavyTruck | Kind::BoxTruck | Kind::ConstructionVehicle),
         Kind::Object | Kind::Debris => one == KindGroup::Object,
         Kind::Pedestrian => one == KindGroup::OnFoot,
         Kind::Scooter => known == Kind::Moped,

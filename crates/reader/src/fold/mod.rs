@@ -56,7 +56,7 @@ impl Reading<'_> {
         // "made contact while passing": at the same time.
         let simultaneous =
             frame.sentence == at.sentence && frame.joint == Some(crate::chunk::Joint::While) && at.joint != frame.joint;
-        !simultaneous
+        !simultaneous && !(frame.described && frame.sentence == at.sentence)
     }
 
     /// Frames of somebody up to the contact.

@@ -63,7 +63,7 @@ pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact
     if kind.is_some_and(|kind| kind.group() == KindGroup::Object) {
         return of_thing(&clues, account);
     }
-    of_road_user(&clues, account).or_else(|| by_columns(reading, account))
+    of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account))
 }
 
 fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
@@ -278,6 +278,17 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return Some(Fact::by_rule(if by_subject { Origin::Ahead } else { Origin::Behind }, "front on rear"));
     }
     None
+}
+
+/// Who moves over without a side told comes from the side that was touched; an animal in the way is ahead.
+fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
+    let partner = account.partner.as_ref()?;
+    let moved_over = [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass].into_iter().any(|act| partner.did(act));
+    if let (true, Some(side)) = (moved_over || clues.any(Relation::Beside), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
+    }
+    let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
+    (animal && has_zone(&account.sv, |zone| zone.is_front())).then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
 }
 
 /// The relation told first.
