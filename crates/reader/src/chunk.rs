@@ -426,6 +426,10 @@ impl Chunker<'_> {
             matches!(
                 word,
                 "left"
+                    | "of"
+                    | "two"
+                    | "three"
+                    | "four"
                     | "right"
                     | "leftmost"
                     | "rightmost"
@@ -472,7 +476,7 @@ impl Chunker<'_> {
                     | "emergency"
             )
         };
-        if !modifier(word) || word == "and" {
+        if !modifier(word) || matches!(word, "and" | "of" | "two" | "three" | "four") {
             return None;
         }
         let mut end = at;
@@ -935,11 +939,14 @@ impl Chunker<'_> {
                 Meaning::Kind(Kind::Trailer) if noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) => {
                     noun.kind = Some(Kind::SemiTrailerTruck);
                 }
-                Meaning::Kind(Kind::Trailer) if noun.kind == Some(Kind::Pickup) => noun.kind = Some(Kind::PickupWithTrailer),
+                Meaning::Kind(Kind::Trailer) if noun.kind == Some(Kind::Pickup) => {
+                    noun.kind = Some(Kind::PickupWithTrailer)
+                }
                 Meaning::Kind(kind) => {
                     noun.kind = Some(kind);
-                    plural = matches!(self.text(at + length - 1), "people" | "personnel" | "traffic") || self.text(at + length - 1).ends_with('s')
-                        && !matches!(self.text(at + length - 1), "bus" | "debris" | "cross");
+                    plural = matches!(self.text(at + length - 1), "people" | "personnel" | "traffic")
+                        || self.text(at + length - 1).ends_with('s')
+                            && !matches!(self.text(at + length - 1), "bus" | "debris" | "cross");
                 }
                 Meaning::Occupant(who) => {
                     let owner = Noun { occupant: None, owner: None, names: noun.names.clone(), ..noun.clone() };
@@ -960,7 +967,9 @@ impl Chunker<'_> {
                 at += 1;
             }
             // "AV 2", "a different AV": another one of the same company.
-            if let (true, Some(number)) = (subject, self.text(at).parse::<u8>().ok().filter(|number| (1..=4).contains(number))) {
+            if let (true, Some(number)) =
+                (subject, self.text(at).parse::<u8>().ok().filter(|number| (1..=4).contains(number)))
+            {
                 at += 1;
                 if number > 1 {
                     (subject, noun.kind, noun.number) = (false, Some(Kind::PassengerCar), Some(number));
@@ -974,7 +983,10 @@ impl Chunker<'_> {
                 head = None;
             }
         }
-        if subject && noun.occupant.is_none() && noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Another | Adjective::Other)) {
+        if subject
+            && noun.occupant.is_none()
+            && noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Another | Adjective::Other))
+        {
             subject = false;
             noun.kind = noun.kind.or(Some(Kind::PassengerCar));
         }

@@ -54,8 +54,9 @@ impl Reading<'_> {
             return false;
         }
         // "made contact while passing": at the same time.
-        let simultaneous =
-            frame.sentence == at.sentence && frame.joint == Some(crate::chunk::Joint::While) && at.joint != frame.joint;
+        let simultaneous = frame.sentence == at.sentence
+            && frame.joint == Some(crate::chunk::Joint::While)
+            && frame.clause > at.clause;
         !simultaneous && !(frame.described && frame.sentence == at.sentence)
     }
 
