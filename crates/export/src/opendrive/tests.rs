@@ -17,32 +17,14 @@ fn networks() -> impl Iterator<Item = RoadNetwork> {
     MAPS.iter().map(|json| RoadNetwork::build(&serde_json::from_str(json).expect("a map")))
 }
 
-/// A junction of four unequal arms, a ramp that merges, a lane that is dropped.
-const NETWORK: &str = r#"{"type":"G","roads":[
-    {"id":"west","start":{"at":{"x_m":-110,"y_m":0,"heading_deg":0}},"line":[{"straight":{"length_m":85}}],
-     "right":[{"kind":"driving"},{"kind":"driving","width_m":0,"end_width_m":3.3},{"kind":"bike"},{"kind":"sidewalk"}],
-     "left":[{"kind":"driving"},{"kind":"parking","stall_m":6.5}],
-     "crosswalks":[{"s_m":82,"width_m":3}],"driveways":[{"side":"right","s_m":40,"width_m":5,"depth_m":8}]},
-    {"id":"east","start":{"arm":{"junction":"j","bearing_deg":-8,"from_m":25}},
-     "line":[{"straight":{"length_m":20}},{"spiral":{"length_m":30,"to_radius_m":60,"to":"left"}},{"arc":{"length_m":30,"radius_m":60,"to":"left"}}],
-     "right":[{"kind":"centre_turn"},{"kind":"driving"},{"kind":"bike"}],"left":[{"kind":"driving"},{"kind":"driving"}]},
-    {"id":"north","start":{"arm":{"junction":"j","bearing_deg":100,"from_m":25}},
-     "line":[{"points":{"points":[[30,3],[60,-3],[90,5]]}}],
-     "right":[{"kind":"driving"}],"left":[{"kind":"driving","width_m":3,"end_width_m":0},{"kind":"driving"}]},
-    {"id":"south","start":{"arm":{"junction":"j","bearing_deg":265,"from_m":22}},"line":[{"straight":{"length_m":70}}],
-     "right":[{"kind":"median","width_m":2},{"kind":"driving"}],"left":[{"kind":"median","width_m":2},{"kind":"driving"}]},
-    {"id":"on","start":{"after":{"road":"east"}},"line":[{"straight":{"length_m":60}}],
-     "right":[{"kind":"centre_turn","end_width_m":0},{"kind":"driving"},{"kind":"bike"}],"left":[{"kind":"driving"},{"kind":"driving"}]},
-    {"id":"hw","start":{"at":{"x_m":0,"y_m":300,"heading_deg":20}},"line":[{"straight":{"length_m":120}}],
-     "right":[{"kind":"driving"},{"kind":"driving"}]},
-    {"id":"merge","start":{"after":{"road":"hw"}},"line":[{"arc":{"length_m":100,"radius_m":400,"to":"left"}}],
-     "right":[{"kind":"driving"},{"kind":"driving"},{"kind":"driving","end_width_m":0}]},
-    {"id":"ramp","start":{"into_lane":{"road":"merge+","lane":2}},
-     "line":[{"straight":{"length_m":30}},{"spiral":{"length_m":60,"from_radius_m":120,"to":"right"}}],"right":[{"kind":"driving"}]}
-],"junctions":[{"id":"j","ends":["west"],"u_turns":["north"]}]}"#;
-
-fn network() -> RoadNetwork {
-    RoadNetwork::build(&serde_json::from_str(NETWORK).expect("a map"))
+/// A junction of four unequal arms; ramps, and a lane that is dropped.
+fn network(name: &str) -> RoadNetwork {
+    let json = match name {
+        "town" => include_str!("../../tests/networks/town.json"),
+        _ => include_str!("../../tests/networks/ramps.json"),
+    };
+    let scenario: serde_json::Value = serde_json::from_str(json).expect("a scenario");
+    RoadNetwork::build(&serde_json::from_value(scenario["map"].clone()).expect("a map"))
 }
 
 /// OpenDRIVE's definition: along the reference line, then t to its left; lane -k lies behind lanes -1 to -(k - 1), which
@@ -118,55 +100,49 @@ fn neighbours_meet_in_a_point_and_know_each_other() {
 
 #[test]
 fn every_lane_of_a_network_lies_where_ours_does() {
-    let network = network();
-    let map = DriveMap::new(&network, &[]);
-    for (position, lane) in network.lanes.iter().enumerate() {
-        let id = LaneId(u16::try_from(position).unwrap());
-        for share in [0.0, 0.3, 0.5, 1.0] {
-            let (s, t) = (share * lane.length_m, 0.4);
-            let place = map.place(&network, id, s, t);
-            let begins = map.roads.iter().find(|road| road.id == place.road).map_or(0.0, |road| road.length_m);
-            if place.s <= 0.0 || place.s >= begins {
-                // At an end, which a junction of ramps may have taken a metre of.
-                continue;
+    for network in ["town", "ramps"].map(network) {
+        let map = DriveMap::new(&network, &[]);
+        for (position, lane) in network.lanes.iter().enumerate() {
+            let id = LaneId(u16::try_from(position).unwrap());
+            for share in [0.0, 0.3, 0.5, 1.0] {
+                let (s, t) = (share * lane.length_m, 0.4);
+                let place = map.place(&network, id, s, t);
+                let length_m = map.roads[usize::try_from(place.road).unwrap() - 1].length_m;
+                // A junction of ramps may have taken a metre at an end.
+                if (1e-9..=length_m).contains(&place.s) {
+                    // Where widths change, arcs stand for parabolas.
+                    let off = by_definition(&map, place).distance(lane.position(s, t));
+                    assert!(off < 0.05, "{off} m: lane {position} of {:?} at {s}", network.road(lane.road));
+                }
             }
-            let theirs = by_definition(&map, place);
-            // Where widths change, arcs stand for parabolas.
-            assert!(
-                theirs.distance(lane.position(s, t)) < 0.05,
-                "lane {position} of {:?} at {s}",
-                network.road(lane.road)
-            );
         }
     }
 }
 
 #[test]
 fn roads_of_a_network_meet_directly_at_junctions_and_where_ramps_join() {
-    let network = network();
-    let map = DriveMap::new(&network, &[]);
-    let names: Vec<_> = map.junctions.iter().map(|junction| (junction.name.as_str(), junction.roads.len())).collect();
-    // Three lanes lead into the end of the highway: two of its own, one of the ramp.
-    assert_eq!(names[1], ("merge begins", 3));
-    let inner = network.lanes.iter().enumerate().filter(|(_, lane)| {
-        let before = |index: usize| network.followers.iter().position(|next| next.contains(&LaneId(index as u16)));
-        let first = before(usize::from(network.road(lane.road).lanes[0].0));
-        first.is_some_and(|first| map.lane(LaneId(first as u16)).0.junction.is_none())
-            && map.lane(network.road(lane.road).lanes[0]).0.junction.is_some()
-    });
-    assert_eq!(names[0], ("j", inner.count()), "each connection is one road");
-    let road = |name: &str| map.roads.iter().find(|road| road.name == name).unwrap();
-    assert_eq!(road("on").predecessor, Some(Neighbour::Road { id: road("east").id, at_start: false }));
-    assert_eq!(road("hw").successor, Some(Neighbour::Junction(map.junctions[1].id)));
-    assert!((road("merge").length_m - 99.0).abs() < 1e-9);
-    let linked: Vec<_> =
-        road("on").right.iter().chain(&road("on").left).map(|lane| (lane.number, lane.predecessor)).collect();
+    let town = DriveMap::new(&network("town"), &[]);
+    let road = |map: &DriveMap, name: &str| map.roads.iter().find(|road| road.name == name).unwrap().clone();
+    let on = road(&town, "on");
+    assert_eq!(on.predecessor, Some(Neighbour::Road { id: road(&town, "east").id, at_start: false }));
+    let linked: Vec<_> = on.right.iter().chain(&on.left).map(|lane| (lane.number, lane.predecessor)).collect();
     assert_eq!(linked, [-1, -2, -3, 1, 2].map(|number| (number, Some(number))));
+    // From the west one lane ahead, one left, one right and the bicycles; from the east the same with the turn lane in place of
+    // the bicycles; from the north three and one back; from the south three.
+    let junctions = |map: &DriveMap| -> Vec<(String, usize)> {
+        map.junctions.iter().map(|junction| (junction.name.clone(), junction.roads.len())).collect()
+    };
+    assert_eq!(junctions(&town), [("j".to_owned(), 15)]);
+    let ramps = DriveMap::new(&network("ramps"), &[]);
+    assert_eq!(junctions(&ramps), [("merge begins".to_owned(), 3), ("leave ends".to_owned(), 3)]);
+    assert_eq!(road(&ramps, "highway").successor, Some(Neighbour::Junction(ramps.junctions[0].id)));
+    assert_eq!(road(&ramps, "merge").successor, Some(Neighbour::Road { id: road(&ramps, "leave").id, at_start: true }));
+    assert!((road(&ramps, "merge").length_m - 99.0).abs() < 1e-9);
 }
 
 #[test]
 fn signals_and_signs_stand_at_their_roads_ends() {
-    let network = network();
+    let network = network("town");
     let control = r#"[{"at":"west+","set_back_m":5,"lanes":[0],"device":{"signal":{"program":[{"show":"green","for_s":10}]}}},
                       {"at":"north-","device":{"stop_sign":{}}}]"#;
     let map = DriveMap::new(&network, &serde_json::from_str::<Vec<_>>(control).expect("devices"));
@@ -181,6 +157,6 @@ fn signals_and_signs_stand_at_their_roads_ends() {
     assert_eq!((map.controllers.len(), map.junctions[0].controllers.clone()), (1, vec![1]));
     let objects = |road: &str| map.roads.iter().find(|known| known.name == road).unwrap().objects.clone();
     let kinds: Vec<_> = objects("west").iter().map(|object| value(object, "type")).collect();
-    assert_eq!(kinds[..2], ["crosswalk", "patch"]);
-    assert_eq!(kinds.iter().filter(|kind| *kind == "parkingSpace").count(), 13);
+    let count = |wanted: &str| kinds.iter().filter(|kind| *kind == wanted).count();
+    assert_eq!(["crosswalk", "patch", "parkingSpace", "building"].map(count), [1, 1, 13, 1]);
 }
