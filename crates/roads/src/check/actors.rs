@@ -364,7 +364,8 @@ pub(super) fn placement(
             Leg::Lanes { roads, until_m, lane, against, reverse } => {
                 let from = course.end_pose().map_or(start.pose, |rear| ahead(rear, arm_m));
                 let first_lane = match (&plan.start, number) {
-                    (Place::Lane { lane, .. }, 0) => Some(*lane),
+                    // Who stands on a strip beside the lanes follows the nearest of them.
+                    (Place::Lane { road, lane, .. }, 0) if roads.first() == Some(road) => Some(*lane),
                     _ => None,
                 };
                 let found = lanes_leg(network, roads, first_lane, *lane, *against, from);

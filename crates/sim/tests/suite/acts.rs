@@ -260,6 +260,25 @@ fn who_waits_for_its_own_touch_drives_on_and_may_touch_again() {
 }
 
 #[test]
+fn who_pulls_out_of_the_kerb_goes_on_in_the_lane_beside_it() {
+    let lanes = serde_json::json!([{ "kind": "driving" }, { "kind": "driving" }, { "kind": "parking" }]);
+    let draft = serde_json::from_value(serde_json::json!({
+        "format": "recrash.scenario/2", "id": "kerb", "source": {}, "duration_s": 10,
+        "map": { "type": "G", "roads": [{
+            "id": "main", "start": { "at": { "x_m": 0, "y_m": 0, "heading_deg": 0 } },
+            "line": [{ "straight": { "length_m": 100 } }], "right": lanes }] },
+        "ego": { "route": ["main+"], "target_speed_mps": 8, "recorded": { "start": { "road": "main+", "s_m": 90 } } },
+        "actors": [{ "id": "cp", "plan": {
+            "start": { "road": "main+.parking", "s_m": 10 }, "course": [{ "lanes": { "roads": ["main+"] } }],
+            "acts": [{ "do": { "speed": { "to_mps": 5, "rate_mps2": 2 } } }, { "do": { "shift": { "to_t_m": 0, "over_m": 20 } } }] } }]
+    }));
+    let rollout = recorded(draft.unwrap());
+    let states = &track(&rollout, "cp").states;
+    // Two lanes of 3.3 m and half of the 2.4 m for parking; then the middle of the second lane.
+    assert!((states[0].y + 7.8).abs() < 1e-9 && (states.last().unwrap().y + 4.95).abs() < 1e-9, "{:?}", states.last());
+}
+
+#[test]
 fn a_trailer_cuts_the_corner() {
     let mut draft = scene();
     let turn = Leg::Curve { to: Place::at(40.0, 20.0, 90.0), reverse: false };
