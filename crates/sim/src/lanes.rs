@@ -7,6 +7,7 @@
 
 use recrash_model::geometry::Vec2;
 use recrash_model::scenario::MapSpec;
+use recrash_roads::graph::GroundArea;
 use recrash_roads::path::SegmentShape;
 use recrash_roads::{Centreline, RoadId, RoadNetwork};
 
@@ -182,6 +183,8 @@ pub(crate) struct LaneTable {
     lanes_of_roads: Vec<LaneIndex>,
     /// Where each road's lanes begin in `lanes_of_roads`; one more at the end.
     first_lane: Vec<u16>,
+    /// What else is to be driven on.
+    paved: Vec<GroundArea>,
 }
 
 impl LaneTable {
@@ -199,6 +202,8 @@ impl LaneTable {
             self.lanes_of_roads.extend(road.lanes.iter().map(|lane| lane.0));
         }
         self.first_lane.push(self.lanes_of_roads.len() as u16);
+        self.paved.clear();
+        self.paved.extend(network.areas.iter().filter(|area| area.kind.is_paved()).cloned());
         self.map = Some(network.map.clone());
     }
 
@@ -229,6 +234,11 @@ impl LaneTable {
             }
         }
         best.map(|(_, index)| index)
+    }
+
+    /// Whether a point lies on a paved area beside the lanes: a driveway, a forecourt.
+    pub(crate) fn is_paved(&self, point: Vec2) -> bool {
+        self.paved.iter().any(|area| area.contains(point))
     }
 
     /// Whether a point lies on any lane's body.

@@ -364,7 +364,7 @@ impl Run {
             TerminationKind::Contact
         } else if drives && self.has_arrived() {
             TerminationKind::Arrived
-        } else if drives && !state.seen[0].place.on_road {
+        } else if drives && !state.seen[0].place.on_road && !setting.lanes.is_paved(state.seen[0].pose.position) {
             TerminationKind::OffRoad
         } else if state.standing_steps >= STUCK_STEPS && !self.anybody_moves() {
             TerminationKind::Stuck

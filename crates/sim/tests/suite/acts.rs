@@ -279,6 +279,24 @@ fn who_pulls_out_of_the_kerb_goes_on_in_the_lane_beside_it() {
 }
 
 #[test]
+fn a_driveway_is_no_place_off_the_road() {
+    let ends = |driveways: serde_json::Value| {
+        let draft = serde_json::from_value(serde_json::json!({
+            "format": "recrash.scenario/2", "id": "driveway", "source": {}, "duration_s": 1,
+            "map": { "type": "G", "roads": [{
+                "id": "main", "start": { "at": { "x_m": 0, "y_m": 0, "heading_deg": 0 } },
+                "line": [{ "straight": { "length_m": 100 } }], "right": [{ "kind": "driving" }], "driveways": driveways }] },
+            "ego": { "route": ["main+"], "target_speed_mps": 2,
+                "recorded": { "start": { "x_m": 50, "y_m": -10, "heading_deg": 90 } } }
+        }));
+        simulate(&checked(draft.unwrap()), Ego::Idm).termination.kind
+    };
+    let driveway = serde_json::json!([{ "side": "right", "s_m": 50, "width_m": 6, "depth_m": 12 }]);
+    assert_eq!(ends(driveway), TerminationKind::Timeout);
+    assert_eq!(ends(serde_json::json!([])), TerminationKind::OffRoad);
+}
+
+#[test]
 fn a_trailer_cuts_the_corner() {
     let mut draft = scene();
     let turn = Leg::Curve { to: Place::at(40.0, 20.0, 90.0), reverse: false };
