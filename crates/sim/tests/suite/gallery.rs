@@ -234,6 +234,17 @@ fn every_case_goes_on_from_a_snapshot_with_the_same_bytes() {
     }
 }
 
+#[test]
+fn no_step_of_any_case_allocates() {
+    for Case { name, scenario, .. } in cases() {
+        for ego in EGOS {
+            let mut run = Run::new(&scenario, Seat::BuiltIn(ego));
+            let counted = allocation_counter::measure(|| while run.step(None).is_none() {});
+            assert_eq!(counted.count_total, 0, "{name} {ego}");
+        }
+    }
+}
+
 /// In the folder of crashes each recorded run is one, and whoever is tested has some seconds to choose otherwise.
 #[test]
 fn every_crash_is_shown_and_is_taken_over_in_time() {
