@@ -181,7 +181,7 @@ struct Absent;
 #[cfg(not(feature = "live"))]
 impl Answers for Absent {
     fn answer(&self, _question: &Question) -> Result<Exchange, AskError> {
-        let why = "this recrash was built without live models; build it with the feature `live`, or give --llm batch";
+        let why = "this recrash was built without live models; build it with the feature `live`, or have the questions written for a batch";
         Err(AskError::Refused(why.into()))
     }
 }

@@ -535,7 +535,7 @@ fn lock_folder(dir: &Path) -> Result<Option<File>, PipelineError> {
 fn read_saved(store: &Store) -> Result<Saved, PipelineError> {
     let unusable = |problem: String| {
         PipelineError::bad_input(format!(
-            "{}: {problem}; nothing can go on in this folder: choose another --out (with a copy of ledger/ in it, answers \
+            "{}: {problem}; nothing can go on in this folder: choose another folder (with a copy of ledger/ in it, answers \
              of models are kept)",
             store.path(SUITE_FILE).display()
         ))
