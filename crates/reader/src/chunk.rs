@@ -816,6 +816,9 @@ impl Chunker<'_> {
             });
             if let Some(found) = known {
                 match found.meaning {
+                    Meaning::Adjective(adjective) if make && !matches!(adjective, Adjective::Plain) => {
+                        return self.only_named(noun, first, at, company, make);
+                    }
                     Meaning::Adjective(adjective) => {
                         if COLOURS.contains(&self.text(at)) {
                             noun.names.push(self.text(at).to_owned());

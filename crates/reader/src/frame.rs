@@ -621,6 +621,16 @@ impl Parser<'_> {
     fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &Carry) {
         let mut who = None;
         if let Some(frame) = carry.frame {
+            // "made contact with the van ahead": the van.
+            if let (None, Some(last)) = (to, &carry.last)
+                && self.frames[frame].is_contact()
+                && self.frames[frame].who == Some(SUBJECT)
+                && self.frames[frame].object == Some(last.actor)
+                && last.actor != SUBJECT
+                && matches!(relation, Relation::Ahead | Relation::Left | Relation::Right)
+            {
+                return self.note(last.actor, relation);
+            }
             // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
             let of_object = carry.last.is_some() && carry.governed_object(&self.frames[frame]);
             if of_object {
@@ -921,9 +931,13 @@ impl Parser<'_> {
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
+        frame.person = who.as_ref().and_then(|mention| mention.person);
+        if sense == Sense::TakeOver && frame.person == Some(Occupant::Driver) {
+            frame.who = Some(SUBJECT);
+            self.world.own_driver = true;
+        }
         frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject;
         frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
-        frame.person = who.as_ref().and_then(|mention| mention.person);
         // "a van parked on the left began to move": the first verb describes, the second one tells.
         let bare = placed.end == placed.first + 1;
         let describes =

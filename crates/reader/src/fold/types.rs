@@ -99,6 +99,14 @@ pub(crate) fn crash_type(reading: &Reading<'_>, account: &Account) -> Option<Fac
 
 fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
     let partner = account.partner.as_ref()?;
+    if group(account) == Some(KindGroup::Object) {
+        let thrown = matches!(told(&partner.kind), Some(Kind::LooseWheel | Kind::Cargo));
+        return Some(if thrown {
+            (CrashType::Other, "a thing that came off a vehicle")
+        } else {
+            (CrashType::SingleVehicle, "a thing")
+        });
+    }
     if partner.did(Act::Pushed)
         || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
         || separate(reading)
@@ -110,14 +118,6 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         Some(KindGroup::Cyclist) => return Some((CrashType::Cyclist, "kind of the partner")),
         Some(KindGroup::Motorcycle) => return Some((CrashType::Motorcycle, "kind of the partner")),
         Some(KindGroup::Animal | KindGroup::Other) => return Some((CrashType::Other, "kind of the partner")),
-        Some(KindGroup::Object) => {
-            let thrown = matches!(told(&partner.kind), Some(Kind::LooseWheel | Kind::Cargo));
-            return Some(if thrown {
-                (CrashType::Other, "a thing that came off a vehicle")
-            } else {
-                (CrashType::SingleVehicle, "a thing")
-            });
-        }
         _ => {}
     }
     if reading.contacts.others_only {
