@@ -287,6 +287,9 @@ impl Chunker<'_> {
 
     fn joint(&self, at: usize) -> Option<(Joint, usize)> {
         let next = self.text(at + 1);
+        if next == "go" && at > self.first && self.text(at - 1) == "stop" {
+            return None;
+        }
         Some(match self.text(at) {
             "and" | "then" | "but" | "however" | "subsequently" | "or" => (Joint::And, 1),
             "when" | "as" | "while" | "whereupon" | "during" => (Joint::While, 1),

@@ -195,7 +195,7 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         if !in_time_before && !sentence_after(reading, sentence.first) {
             human = human.or(said_human.filter(|_| {
                 !words.iter().any(|token| {
-                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition" | "into")
+                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition")
                 })
             }));
             system = system.or(said_system);
