@@ -186,7 +186,8 @@ fn give_owner(all: &mut Vec<Placed>, tokens: &[Token]) {
         return;
     }
     let merged = Placed {
-        chunk: Chunk::Piece(Piece { owner: Some(noun.clone()), ..piece.clone() }),
+        // "the cars rear bumper" is one car's.
+        chunk: Chunk::Piece(Piece { owner: Some(Noun { several: false, ..noun.clone() }), ..piece.clone() }),
         first: *first,
         end: last.end,
     };

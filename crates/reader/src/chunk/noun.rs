@@ -361,6 +361,14 @@ impl Chunker<'_> {
         if let Some(number) = self.alias(at) {
             noun.subject |= number == 1;
             noun.number = Some(number).filter(|number| *number > 1);
+            // "the motorcycle (Vehicle 2) operator".
+            let behind = at + self.parenthesis(at);
+            if let Some((Meaning::Occupant(who), length)) = self.head(behind).filter(|_| noun.occupant.is_none()) {
+                let owner = noun.clone();
+                (noun.owner, noun.occupant, noun.kind, noun.subject) =
+                    (Some(Box::new(owner)), Some((who, false)), None, false);
+                at = behind + length;
+            }
         }
         if noun.occupant.is_some() && noun.owner.is_none() {
             let mut behind = at;

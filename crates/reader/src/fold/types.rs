@@ -123,9 +123,6 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
     if reading.contacts.others_only {
         return Some((CrashType::Other, "the subject vehicle was not touched"));
     }
-    if account.door.is_some() {
-        return Some((CrashType::Other, "a door"));
-    }
     let sv = sv_state(account);
     let cp = cp_state(account);
     let sv_moves = sv.is_some_and(|state| !state.stands());
@@ -134,6 +131,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         && sv != Some(ContactState::Reversing)
         && !partner.did(Act::PullOut)
         && !double_parked(reading)
+        && account.door.is_none()
     {
         return Some((CrashType::SingleVehicle, "an unoccupied parked vehicle"));
     }
@@ -142,6 +140,9 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         || told(&partner.movement) == Some(Movement::Backing)
     {
         return Some((CrashType::Backing, "one went backwards"));
+    }
+    if account.door.is_some() {
+        return Some((CrashType::Other, "a door"));
     }
     let origin = told(&account.came_from);
     let front = |party: &Party| has_zone(party, |zone| zone.is_front());

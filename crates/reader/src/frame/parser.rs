@@ -333,10 +333,19 @@ impl Parser<'_> {
     }
 
     fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
-        let next = behind.first().map(|placed| &placed.chunk);
+        let next = behind
+            .iter()
+            .take(3)
+            .map(|placed| &placed.chunk)
+            .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
         // "between the van and a parked car": the second of a pair, and no new clause.
         let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
-        let ends = behind.get(1).is_none_or(|placed| matches!(placed.chunk, Chunk::Comma | Chunk::Joint(_)));
+        let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
+            Chunk::Comma => true,
+            // "and the van then reversed" is a clause of its own.
+            Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
+            _ => false,
+        });
         if joint == Joint::And && noun && ends && carry.has_verb {
             carry.preposition = Some("and");
             return;
