@@ -45,6 +45,7 @@ pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_lab::run_scenario;
 pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
+pub use recrash_reconstruct::Shown as ShownFact;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
 pub use simulators::external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
@@ -71,5 +72,8 @@ pub use tools::parity::{
     ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
+pub use tools::reconstructing::{
+    FactShare, Retold, Standing as RetoldStanding, fact_shares, reconstruct_accounts, write_reconstructions,
+};
 #[cfg(feature = "parquet")]
 pub use tools::sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};

@@ -142,6 +142,9 @@ const PREPOSITIONS: [&str; 28] = [
 const DETERMINERS: [&str; 14] =
     ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
 
+/// Most tokens that name one part.
+const LONGEST_PIECE: usize = 14;
+
 const COLOURS: [&str; 14] = [
     "white", "black", "red", "blue", "silver", "gray", "grey", "green", "yellow", "orange", "brown", "tan", "gold",
     "beige",
@@ -423,6 +426,10 @@ impl Chunker<'_> {
             matches!(
                 word,
                 "left"
+                    | "of"
+                    | "two"
+                    | "three"
+                    | "four"
                     | "right"
                     | "leftmost"
                     | "rightmost"
@@ -469,7 +476,7 @@ impl Chunker<'_> {
                     | "emergency"
             )
         };
-        if !modifier(word) || word == "and" {
+        if !modifier(word) || matches!(word, "and" | "of" | "two" | "three" | "four") {
             return None;
         }
         let mut end = at;
@@ -645,8 +652,9 @@ impl Chunker<'_> {
             return true;
         }
         match word {
-            "to" | "not" | "will" | "would" | "could" | "can" | "may" | "might" | "should" | "must" | "did" | "t"
-            | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then" | "safely" => true,
+            "to" | "not" | "had" | "has" | "have" | "will" | "would" | "could" | "can" | "may" | "might" | "should"
+            | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"
+            | "safely" => true,
             "and" | "or" => {
                 before.iter().rev().skip(1).take(4).any(|placed| matches!(placed.chunk, Chunk::Verb(_, Form::Base)))
             }
@@ -664,7 +672,7 @@ impl Chunker<'_> {
         }
         let (mut parts, mut door, mut open, mut nouns) = (Vec::new(), false, false, 0);
         let mut last_joined = at;
-        while at < self.tokens.len() {
+        while at < self.tokens.len().min(first + LONGEST_PIECE) {
             let word = self.text(at);
             if matches!(word, "open" | "opened" | "opening") && self.tokens.get(at + 1).is_some() {
                 (open, at) = (true, at + 1);
@@ -928,10 +936,17 @@ impl Chunker<'_> {
         while let Some((meaning, length)) = head {
             match meaning {
                 Meaning::Subject => subject = true,
+                Meaning::Kind(Kind::Trailer) if noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) => {
+                    noun.kind = Some(Kind::SemiTrailerTruck);
+                }
+                Meaning::Kind(Kind::Trailer) if noun.kind == Some(Kind::Pickup) => {
+                    noun.kind = Some(Kind::PickupWithTrailer)
+                }
                 Meaning::Kind(kind) => {
                     noun.kind = Some(kind);
-                    plural = self.text(at + length - 1).ends_with('s')
-                        && !matches!(self.text(at + length - 1), "bus" | "debris" | "cross");
+                    plural = matches!(self.text(at + length - 1), "people" | "personnel" | "traffic")
+                        || self.text(at + length - 1).ends_with('s')
+                            && !matches!(self.text(at + length - 1), "bus" | "debris" | "cross");
                 }
                 Meaning::Occupant(who) => {
                     let owner = Noun { occupant: None, owner: None, names: noun.names.clone(), ..noun.clone() };
@@ -951,6 +966,15 @@ impl Chunker<'_> {
                 noun.number = Some(number);
                 at += 1;
             }
+            // "AV 2", "a different AV": another one of the same company.
+            if let (true, Some(number)) =
+                (subject, self.text(at).parse::<u8>().ok().filter(|number| (1..=4).contains(number)))
+            {
+                at += 1;
+                if number > 1 {
+                    (subject, noun.kind, noun.number) = (false, Some(Kind::PassengerCar), Some(number));
+                }
+            }
             // Another noun at once makes a compound: "pickup truck driver", "Waymo AV operator". An adjective does not.
             head = self.head(at).filter(|(next, _)| {
                 self.text(at) != "'s" && !(matches!(next, Meaning::Subject) && noun.kind.is_some() && !subject)
@@ -958,6 +982,13 @@ impl Chunker<'_> {
             if matches!(head, Some((Meaning::Kind(kind), _)) if noun.occupant.is_some() && !kind.is_vehicle()) {
                 head = None;
             }
+        }
+        if subject
+            && noun.occupant.is_none()
+            && noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Another | Adjective::Other))
+        {
+            subject = false;
+            noun.kind = noun.kind.or(Some(Kind::PassengerCar));
         }
         noun.subject = (subject || self.text(first) == "our") && noun.occupant.is_none();
         noun.several |= plural;

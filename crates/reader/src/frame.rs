@@ -45,8 +45,12 @@ pub struct Frame {
     pub joint: Option<Joint>,
     /// The second in a row "and": told of a person in the vehicle.
     pub person: Option<Occupant>,
+    /// It is told of a noun by a relative clause or a participle.
+    pub described: bool,
     /// The words behind a passive "by".
     pub passive: bool,
+    /// Number of the clause in its sentence.
+    pub clause: u32,
     /// Number of the sentence.
     pub sentence: usize,
     /// The sentence looks back: "prior to the collision".
@@ -110,8 +114,8 @@ pub struct Own<'a> {
     pub make: Option<&'a str>,
 }
 
-/// Most tokens of a narrative that are read; the longest published one has a sixth of it.
-const MOST_TOKENS: usize = 12_000;
+/// Most tokens of a narrative that are read; the longest published one has a third of it.
+const MOST_TOKENS: usize = 6_000;
 
 /// Reads a narrative. `own`: kind of the subject vehicle, where it is known.
 pub fn story(text: &str, own: Own<'_>) -> Story {
@@ -129,7 +133,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         if drop {
             continue;
         }
-        parser.sentence = number;
+        (parser.sentence, parser.world.sentence) = (number, number);
         parser.looks_back = looks_back(words);
         parser.read(*sentence);
     }
@@ -202,6 +206,8 @@ struct Carry {
     after_comma: bool,
     /// Who began, tried or wished what the next verb tells.
     lead_who: Option<Mention>,
+    /// Number of the clause.
+    clause: u32,
     /// "and" stands between the last verb and the next.
     row: bool,
     /// Who the relative clause before the comma was about.
@@ -296,6 +302,7 @@ impl Parser<'_> {
                         carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
                     }
                     carry.subject = Some(last);
+                    carry.frame = None;
                     carry.has_verb = false;
                     carry.relative = true;
                     carry.fresh = false;
@@ -396,7 +403,9 @@ impl Parser<'_> {
             aside: false,
             joint: carry.joint,
             person: None,
+            described: carry.relative,
             passive: false,
+            clause: carry.clause,
             sentence: self.sentence,
             looks_back: self.looks_back,
             first: placed.first,
@@ -567,6 +576,8 @@ impl Parser<'_> {
                     if taken.sense == Sense::Headline && actor != SUBJECT {
                         self.world.actors[actor].announced = true;
                     }
+                } else if taken.sense == Sense::Yield && taken.object.is_none() {
+                    taken.object = Some(actor);
                 } else if contact && taken.object == Some(actor) && taken.on.is_none() {
                     taken.on.clone_from(&mention.piece);
                     taken.end = placed.end;
@@ -594,6 +605,7 @@ impl Parser<'_> {
                     && !self.world.actors[actor].several =>
             {
                 self.note(actor, Relation::Ahead);
+                self.frames[frame].object.get_or_insert(actor);
             }
             "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
                 let taken = &mut self.frames[frame];
@@ -646,10 +658,7 @@ impl Parser<'_> {
     }
 
     fn note(&mut self, actor: Actor, relation: Relation) {
-        let relations = &mut self.world.actors[actor].relations;
-        if !relations.contains(&relation) {
-            relations.push(relation);
-        }
+        self.world.actors[actor].place(relation, self.sentence);
     }
 
     fn relation(&mut self, relation: Relation, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
@@ -671,7 +680,15 @@ impl Parser<'_> {
             Relation::Right => Some(LeftRight::Right),
             _ => None,
         };
-        let stays = |act: Option<Act>| governs && matches!(act, Some(Act::Park | Act::PullOut | Act::PullOver));
+        // "pulled out of a driveway on the right", "merged from a ramp on the right": a place, and no side.
+        let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in");
+        let stays = |act: Option<Act>| match act {
+            Some(Act::Park | Act::PullOver) => governs,
+            Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn) => {
+                located || (act == Some(Act::PullOut) && governs)
+            }
+            _ => false,
+        };
         if let (Some(side), Some(frame)) = (side, carry.frame)
             && self.frames[frame].act().is_some_and(sided)
             && !stays(self.frames[frame].act())
@@ -827,6 +844,7 @@ impl Parser<'_> {
             return;
         }
         carry.also = None;
+        carry.clause += 1;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
         if joint != Joint::And {
             carry.joint = Some(joint);
@@ -859,27 +877,6 @@ impl Parser<'_> {
         let placed = &all[at];
         let word = self.tokens[placed.first].text.clone();
         let next = all.get(at + 1).map(|placed| &placed.chunk);
-        // "began to", "attempted to", "was waiting to": how far the next verb came.
-        let own_progress = carry.progress;
-        let mut leads = false;
-        if placed.end == placed.first + 1
-            && let Some(progress) = self.lexicon.progress(&word)
-            && (next_is_verb(all, at) || matches!(sense, Sense::Other))
-        {
-            self.progress(progress, carry);
-            leads = true;
-            let swallowed = matches!(sense, Sense::Other | Sense::Act(Act::Follow)) && next_is_verb(all, at);
-            if sense == Sense::Other {
-                carry.to = false;
-            }
-            if swallowed {
-                carry.began = false;
-                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false);
-                carry.began = true;
-                carry.has_verb |= form != Form::Ing || carry.be;
-                return;
-            }
-        }
         // A finite verb behind a finished relative clause is of the clause around it.
         let finite = (matches!(form, Form::Past | Form::Present)) || (form == Form::Ing && carry.be);
         if carry.relative
@@ -894,6 +891,29 @@ impl Parser<'_> {
             carry.subject = Some(outer);
             (carry.has_verb, carry.relative) = (false, false);
         }
+        // "began to", "attempted to", "was waiting to": how far the next verb came.
+        let own_progress = carry.progress;
+        let mut leads = false;
+        if placed.end == placed.first + 1
+            && let Some(progress) = self.lexicon.progress(&word)
+            && (next_is_verb(all, at) || matches!(sense, Sense::Other))
+        {
+            // "before proceeding to turn": not done.
+            let before = carry.joint == Some(Joint::Before) && carry.fresh && form == Form::Ing;
+            self.progress(if before { Progress::Wished } else { progress }, carry);
+            leads = true;
+            let swallowed = matches!(sense, Sense::Other | Sense::Act(Act::Follow)) && next_is_verb(all, at);
+            if sense == Sense::Other {
+                carry.to = false;
+            }
+            if swallowed {
+                carry.began = false;
+                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false);
+                carry.began = true;
+                carry.has_verb |= form != Form::Ing || carry.be;
+                return;
+            }
+        }
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
         let who = self.who_of(sense, form, placed, carry, purpose);
@@ -901,13 +921,15 @@ impl Parser<'_> {
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
+        frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject;
         frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
         frame.person = who.as_ref().and_then(|mention| mention.person);
         // "a van parked on the left began to move": the first verb describes, the second one tells.
         let bare = placed.end == placed.first + 1;
         let describes =
             matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow);
-        let described = form == Form::Past
+        let described = bare
+            && form == Form::Past
             && !carry.be
             && describes
             && !carry.has_verb
@@ -946,7 +968,21 @@ impl Parser<'_> {
             && !matches!(sense, Sense::Yield | Sense::Act(Act::Hold | Act::Stop | Act::Slow))
             && frame.progress == Progress::Real
         {
-            frame.progress = if carry.pushed { Progress::Real } else { Progress::Wished };
+            // "moved forward to pass it": begun. "slowed to turn": not.
+            let going = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|before| {
+                before.who == frame.who
+                    && before.happened()
+                    && matches!(
+                        before.act(),
+                        Some(Act::Follow | Act::SetOff | Act::Drift | Act::Accelerate | Act::Reverse)
+                    )
+            });
+            frame.progress =
+                match (carry.pushed, going && matches!(frame.act(), Some(Act::Pass | Act::Park | Act::LaneChange))) {
+                    (true, _) => Progress::Real,
+                    (_, true) => Progress::Tried,
+                    _ => Progress::Wished,
+                };
         }
         if carry.joint == Some(Joint::Before) && carry.fresh && frame.progress == Progress::Real && form == Form::Ing {
             frame.progress = Progress::Wished;
@@ -1049,9 +1085,18 @@ impl Parser<'_> {
         if carry.after_comma && form == Form::Ing && sense == Sense::Face && carry.described.is_some() {
             return carry.described.clone();
         }
+        // "was struck by a van, traveling east": the van.
+        if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
+            && self.frames[frame].passive
+            && self.frames[frame].who == Some(last.actor)
+        {
+            return carry.last.clone();
+        }
         let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
         // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
-        let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began;
+        // "by crossing the line": who does the rest.
+        let by = carry.preposition == Some("by");
+        let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
         if adjacent && participle && carry.has_verb && self.touches_last(sense, form, placed, carry) {
             return carry.last.clone();
         }
@@ -1067,7 +1112,13 @@ impl Parser<'_> {
         }
         // Things are described by few verbs, and nobody by one that stands apart.
         let between = self.tokens.get(last.end..placed.first).unwrap_or_default();
-        let near = (between.len() <= 2 || form == Form::Past)
+        let place = carry.governed
+            || carry
+                .frame
+                .is_some_and(|frame| matches!(self.frames[frame].sense, Sense::Yield | Sense::See | Sense::Approach));
+        let describes =
+            !matches!(sense, Sense::Push | Sense::Damage | Sense::Contact | Sense::RearEnd | Sense::TakeOver);
+        let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
             && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
         let lively = acts(self.world.actors[last.actor].kind)
             || matches!(

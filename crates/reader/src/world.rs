@@ -25,8 +25,8 @@ pub struct Known {
     pub several: bool,
     /// The headline named it, and the story has not yet.
     pub announced: bool,
-    /// Where it is, seen from the subject vehicle.
-    pub relations: Vec<Relation>,
+    /// Where it is, seen from the subject vehicle, and the sentence that says so.
+    pub relations: Vec<(Relation, usize)>,
     /// Direction first told, with its tokens.
     pub heading: Option<(Compass, usize, usize)>,
     /// Lane first told, with its tokens.
@@ -41,12 +41,23 @@ pub struct Known {
     pub towed_by: Option<Actor>,
 }
 
+impl Known {
+    /// Notes where it is, once.
+    pub fn place(&mut self, relation: Relation, sentence: usize) {
+        if !self.relations.iter().any(|(known, _)| *known == relation) {
+            self.relations.push((relation, sentence));
+        }
+    }
+}
+
 /// Everybody in the story.
 #[derive(Debug, Clone)]
 pub struct World {
     /// The subject vehicle first.
     pub actors: Vec<Known>,
     clock: usize,
+    /// Number of the sentence that is read.
+    pub sentence: usize,
     /// Who the sentence, or the one before, is about.
     pub topic: Actor,
 }
@@ -56,7 +67,7 @@ impl World {
     pub fn new(own: crate::frame::Own<'_>) -> Self {
         let names = own.make.into_iter().map(str::to_owned).collect();
         let subject = Known { kind: own.kind, names, ..Known::default() };
-        Self { actors: vec![subject], clock: 0, topic: SUBJECT }
+        Self { actors: vec![subject], clock: 0, sentence: 0, topic: SUBJECT }
     }
 
     /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
@@ -67,7 +78,11 @@ impl World {
         let known = &mut self.actors[actor];
         known.last = self.clock;
         known.mentions += 1;
-        if actor != SUBJECT && noun.occupant.is_none() {
+        if actor != SUBJECT
+            && let Some(owner) = noun.owner.as_deref().filter(|_| noun.occupant.is_some())
+        {
+            refine(known, owner, tokens);
+        } else if actor != SUBJECT && noun.occupant.is_none() {
             refine(known, noun, tokens);
         } else if noun.subject && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
             known.kind = known.kind.or(noun.kind);
@@ -75,9 +90,8 @@ impl World {
         if let Some(relation) = relation_of(noun)
             && noun.occupant.is_none()
             && actor != SUBJECT
-            && !known.relations.contains(&relation)
         {
-            known.relations.push(relation);
+            known.place(relation, self.sentence);
         }
         if let (Some(compass), true, None) = (noun.compass, noun.occupant.is_none(), known.heading) {
             known.heading = Some((compass, tokens.0, tokens.1));
@@ -184,7 +198,7 @@ impl World {
             }
         }
         if let Some(relation) = relation_of(noun).or(hint) {
-            let there = self.latest(|known| fits(known) && known.relations.contains(&relation));
+            let there = self.latest(|known| fits(known) && known.relations.iter().any(|(place, _)| *place == relation));
             if there.is_some() {
                 return there;
             }
@@ -197,6 +211,7 @@ impl World {
         let found = named.or(exact).or(wide);
         // "The vehicle" of a story that knows no other one.
         if found.is_none()
+            && hint.is_none()
             && kind == Kind::Vehicle
             && noun.names.is_empty()
             && !has(Adjective::Other)
@@ -309,7 +324,14 @@ pub fn same_kind(known: Kind, said: Kind) -> bool {
             one == KindGroup::Truck || matches!(known, Kind::Pickup | Kind::PickupWithTrailer | Kind::Vehicle)
         }
         Kind::PassengerCar => matches!(known, Kind::Vehicle | Kind::PoliceCar),
-        Kind::Trailer => matches!(known, Kind::SemiTrailerTruck | Kind::PickupWithTrailer),
+        Kind::Trailer => matches!(
+            known,
+            Kind::SemiTrailerTruck
+                | Kind::PickupWithTrailer
+                | Kind::HeavyTruck
+                | Kind::BoxTruck
+                | Kind::ConstructionVehicle
+        ),
         Kind::Object | Kind::Debris => one == KindGroup::Object,
         Kind::Pedestrian => one == KindGroup::OnFoot,
         Kind::Scooter => known == Kind::Moped,

@@ -30,8 +30,22 @@ const SETS_OFF_MPS2: f64 = 1.2;
 /// Speed of the ego on its way to a stop, where nobody says it. [m/s]
 const ROLLING_MPS: f64 = 7.0;
 
-/// Goes on behind the place of the contact for so long. [m]
-const BEYOND_M: f64 = 15.0;
+/// Who stood behind the ego before it set off has stood for so long. [s]
+const WAITED_S: f64 = 1.0;
+
+/// How long the ego has stood when somebody who came to a stop behind it sets off. [s]
+const STOOD_LONG_S: f64 = 5.0;
+
+/// The simulators' egos drive no faster: MetaDrive cuts the engine at 80 km/h. [m/s]
+const FASTEST_EGO_MPS: f64 = 80.0 / 3.6;
+
+/// Nobody takes longer to set off. [s]
+const LONGEST_START_S: f64 = 6.0;
+
+/// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
+fn beyond_m(speed_mps: f64) -> f64 {
+    20.0 + 5.0 * speed_mps
+}
 
 /// The speeds of one side until the contact: speed at the start, acts, and what is driven until then. [m/s, m]
 struct Pace {
@@ -48,13 +62,66 @@ fn next(deed: Deed) -> Act {
     Act { id: None, when: None, delay_s: 0.0, deed }
 }
 
+/// How the ego's speed comes to what it is at the contact.
+fn ego_pace(told: &Told) -> Pace {
+    let waits_behind = told.origin == Origin::Behind && told.cp.state == ContactState::SettingOff;
+    pace(&told.sv, ROLLING_MPS, if waits_behind { STOOD_LONG_S } else { STOOD_S })
+}
+
+/// How the partner's does.
+fn partner_pace(told: &Told) -> Pace {
+    let cp = &told.cp;
+    let ego = ego_pace(told);
+    let rolling_mps = if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 };
+    let usual = pace(cp, rolling_mps, STOOD_S);
+    let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
+    match cp.state {
+        // It came to a stop behind the ego before it set off.
+        ContactState::SettingOff if told.origin == Origin::Behind && ego.driven_m > usual.driven_m => {
+            let moving_s = CONTACT_S - first_time(&usual.acts);
+            let braking_s = ROLLING_MPS / STOPPING_MPS2;
+            let from_s = ((CONTACT_S - moving_s - WAITED_S - braking_s) * 10.0).floor() / 10.0;
+            let mut acts = vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None })];
+            acts.extend(usual.acts);
+            let driven_m = ROLLING_MPS * from_s + 0.5 * ROLLING_MPS * braking_s + usual.driven_m;
+            Pace { speed_mps: ROLLING_MPS, acts, driven_m }
+        }
+        // Who is ahead and slower has not come from behind the ego: it has just set off.
+        ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
+            sets_off(cp.speed_mps, (0.8 * ego.driven_m).max(0.2))
+        }
+        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
+            Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 }
+        }
+        _ => usual,
+    }
+}
+
+fn first_time(acts: &[Act]) -> f64 {
+    acts.iter()
+        .find_map(|act| match act.when {
+            Some(Trigger::TimeS(time_s)) => Some(time_s),
+            _ => None,
+        })
+        .unwrap_or(0.0)
+}
+
+/// From a stand to a speed within a distance, or less.
+fn sets_off(speed_mps: f64, within_m: f64) -> Pace {
+    let moving_s =
+        ((2.0 * within_m / speed_mps.max(0.05)).min(speed_mps / SETS_OFF_MPS2) * 10.0).floor().max(2.0) / 10.0;
+    let rate_mps2 = (speed_mps / moving_s).clamp(0.05, 8.0);
+    let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
+    Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m: 0.5 * speed_mps * moving_s }
+}
+
 /// How somebody's speed comes to what it is at the contact.
-fn pace(side: &Side, rolling_mps: f64) -> Pace {
+fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
     match side.state {
         ContactState::Parked => Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 },
         ContactState::Stopped => {
             let braking_s = rolling_mps / STOPPING_MPS2;
-            let from_s = ((CONTACT_S - STOOD_S - braking_s) * 10.0).floor() / 10.0;
+            let from_s = ((CONTACT_S - stood_s - braking_s) * 10.0).floor() / 10.0;
             let driven_m = rolling_mps * from_s + 0.5 * rolling_mps * braking_s;
             let acts = vec![
                 when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }),
@@ -64,7 +131,7 @@ fn pace(side: &Side, rolling_mps: f64) -> Pace {
         }
         ContactState::SettingOff | ContactState::Reversing => {
             // So that it sets off at a step: the rate gives way.
-            let moving_s = ((side.speed_mps / SETS_OFF_MPS2) * 10.0).ceil().max(5.0) / 10.0;
+            let moving_s = ((side.speed_mps / SETS_OFF_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
             let rate_mps2 = (side.speed_mps / moving_s).max(0.05);
             let driven_m = 0.5 * side.speed_mps * moving_s;
             let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2 };
@@ -85,7 +152,8 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         ContactState::Parked => None,
         _ => Some((CONTACT_S - HANDOVER_BEFORE_S).max(0.0)),
     };
-    let target_speed_mps = told.sv.speed_mps.max(if told.sv.state.stands() { ROLLING_MPS } else { 2.0 });
+    let wanted_mps = told.sv.speed_mps.max(if told.sv.state.stands() { ROLLING_MPS } else { 2.0 });
+    let target_speed_mps = wanted_mps.min(FASTEST_EGO_MPS);
     let id: String =
         account.incident.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).take(40).collect();
     ScenarioDraft {
@@ -117,7 +185,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
 
 fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
     let ground = &staging.ground;
-    let pace = pace(&told.sv, ROLLING_MPS);
+    let pace = ego_pace(told);
     let lane = |s_m: f64| Place::Lane {
         road: ground.route[0].clone(),
         lane: ground.lane,
@@ -128,7 +196,7 @@ fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
     if told.sv.state == ContactState::Reversing {
         let back = Vec2::from_heading(staging.sv.heading);
         let start = staging.sv.position + back * pace.driven_m;
-        let to = staging.sv.position - back * BEYOND_M;
+        let to = staging.sv.position - back * beyond_m(told.sv.speed_mps);
         let degrees = staging.sv.heading.to_degrees();
         return ActorPlan {
             speed_mps: 0.0,
@@ -143,7 +211,14 @@ fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
     } else {
         vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }]
     };
-    ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(lane(start_m)) }
+    // Where it begins inside of the junction, it is on no lane of its first road.
+    let start = if start_m > ground.first_m() {
+        let pose = ground.sv_pose(start_m);
+        Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+    } else {
+        lane(start_m)
+    };
+    ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(start) }
 }
 
 fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
@@ -156,7 +231,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         let size = Some(Size { length_m, width_m });
         return (Vec::new(), vec![ObjectSpec { kind: obstacle_kind(thing), at: at(staging.cp), size }]);
     }
-    let pace = pace(cp, ROLLING_MPS.min(if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 }));
+    let pace = partner_pace(told);
     let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
@@ -176,7 +251,8 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
     let gear = if reverse { -1.0 } else { 1.0 };
     let arm_m = recrash_roads::arm_m(cp.kind, size_of(cp).0);
     let motion = |heading: f64| Vec2::from_heading(heading) * gear;
-    let beyond = Pose { position: staging.cp.position + motion(staging.cp.heading) * BEYOND_M, ..staging.cp };
+    let beyond =
+        Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(cp.speed_mps), ..staging.cp };
     let bent = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > 0.01;
     let length = |start: Pose| -> Option<f64> {
         let mut course = Course::begin(arm_m);
@@ -225,7 +301,7 @@ fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Ve
 fn pusher(staging: &Staging) -> Actor {
     let way = Vec2::from_heading(staging.cp.heading);
     let start = staging.cp.position - way * (10.0 * CONTACT_S);
-    let to = staging.cp.position + way * BEYOND_M;
+    let to = staging.cp.position + way * beyond_m(10.0);
     let degrees = staging.cp.heading.to_degrees();
     Actor {
         id: "pusher".to_owned(),

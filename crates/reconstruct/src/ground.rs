@@ -10,7 +10,7 @@ use recrash_roads::{LanePath, RoadNetwork};
 pub(crate) const LANE_M: f64 = 3.4;
 
 /// Length of the ego's road before a junction, and of a street on each side of the contact. [m]
-const APPROACH_M: f64 = 160.0;
+const APPROACH_M: f64 = 320.0;
 
 /// From a junction's centre to where its arms begin. [m]
 const CORNER_M: f64 = 13.0;
@@ -33,6 +33,11 @@ pub(crate) struct Ground {
 impl Ground {
     pub(crate) fn places(&self) -> Vec<f64> {
         self.places.clone()
+    }
+
+    /// Length of the first road of the way. [m]
+    pub(crate) fn first_m(&self) -> f64 {
+        if self.junction { APPROACH_M } else { 2.0 * APPROACH_M }
     }
 
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {

@@ -48,26 +48,26 @@ impl Reconstruction {
 /// # Errors
 /// Why there is none.
 pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
-    let told = told::Told::of(account)?;
     let mut best: Option<Reconstruction> = None;
     let mut refused = 0;
-    for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
-        let draft = came::draft(account, &told, &staging);
-        let Ok(checked) = recrash_roads::check(draft) else {
-            refused += 1;
-            continue;
-        };
-        let scenario = checked.value;
-        let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
-        let facts = facts::facts(&told, &rollout);
-        let missed = |facts: &[Shown]| facts.iter().filter(|fact| !fact.shown).count();
-        let whole = missed(&facts) == 0;
-        if best.as_ref().is_none_or(|best| missed(&facts) < missed(&best.facts)) {
-            best =
-                Some(Reconstruction { draft: scenario.draft().clone(), rollout, facts, assumed: told.assumed.clone() });
-        }
-        if whole {
-            break;
+    let missed = |facts: &[Shown]| facts.iter().filter(|fact| !fact.shown).count();
+    for told in told::Told::of(account)?.by_origin() {
+        for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
+            let draft = came::draft(account, &told, &staging);
+            let Ok(checked) = recrash_roads::check(draft) else {
+                refused += 1;
+                continue;
+            };
+            let scenario = checked.value;
+            let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
+            let facts = facts::facts(&told, &rollout);
+            if best.as_ref().is_none_or(|best| missed(&facts) < missed(&best.facts)) {
+                let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
+                best = Some(Reconstruction { draft, rollout, facts, assumed });
+            }
+            if best.as_ref().is_some_and(Reconstruction::is_true) {
+                return best.ok_or(Untold::NoContact);
+            }
         }
     }
     best.ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })

@@ -16,8 +16,6 @@ use std::fmt;
 pub enum Untold {
     /// Nobody says what happened: no partner, no contact.
     NoAccount,
-    /// Nobody says from where the partner came, and nothing else tells it.
-    OriginUnknown,
     /// The two never touched: others crashed.
     OthersOnly,
     /// The place cannot be drawn yet: a roundabout, a garage, rails.
@@ -35,7 +33,6 @@ impl Untold {
     pub const fn label(self) -> &'static str {
         match self {
             Self::NoAccount => "no account of a contact",
-            Self::OriginUnknown => "where the partner came from is not told",
             Self::OthersOnly => "the subject vehicle was not touched",
             Self::Place => "the place cannot be drawn yet",
             Self::FromAbove => "it came from above",
@@ -120,11 +117,8 @@ impl Told {
         let origin = match origin {
             Some(Origin::Above) => return Err(Untold::FromAbove),
             Some(origin) => origin,
-            None => assumed_origin(crash_type, &sv, &cp).ok_or(Untold::OriginUnknown)?,
+            None => assumed_origin(crash_type, &sv, &cp).unwrap_or(Origin::Behind),
         };
-        if !origin_told {
-            assumed.push(format!("the partner comes from {origin:?}"));
-        }
         let striker = told(&account.striker);
         let mut this = Self {
             crash_type,
@@ -139,8 +133,41 @@ impl Told {
             striker,
             assumed,
         };
-        this.speeds();
+        if this.origin_told {
+            this.speeds();
+        }
         Ok(this)
+    }
+
+    /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
+    pub(crate) fn by_origin(self) -> Vec<Self> {
+        if self.origin_told {
+            return vec![self];
+        }
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        let mut origins = vec![self.origin];
+        for other in [
+            Origin::Behind,
+            Origin::Cross { side: left },
+            Origin::Cross { side: right },
+            Origin::Opposite,
+            Origin::Beside { side: left },
+            Origin::Beside { side: right },
+            Origin::Ahead,
+            Origin::Stall { side: Some(left) },
+            Origin::Stall { side: Some(right) },
+        ] {
+            if !origins.contains(&other) {
+                origins.push(other);
+            }
+        }
+        let with = |origin: Origin| {
+            let mut told = Self { origin, ..self.clone() };
+            told.assumed.push(format!("the partner comes from {origin:?}"));
+            told.speeds();
+            told
+        };
+        origins.into_iter().map(with).collect()
     }
 
     /// Speeds at the contact: as told, or such that who closes on whom does.

@@ -94,11 +94,20 @@ pub(crate) fn zones_off(told: &[ContactZone], seen: ContactZone) -> u32 {
     told.iter().filter_map(|zone| zone.steps_apart(seen)).min().map_or(0, u32::from)
 }
 
-/// Zones to try: the told ones, else all.
+/// Zones to try: the told ones, or all where none is told; then the neighbours of told ones, since a zone is told to a step.
 fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
-    let of = |zones: &[ContactZone]| if zones.is_empty() { ContactZone::ALL[..8].to_vec() } else { zones.to_vec() };
+    let all = || ContactZone::ALL[..8].to_vec();
+    let of = |zones: &[ContactZone]| if zones.is_empty() { all() } else { zones.to_vec() };
+    let near = |zones: &[ContactZone]| -> Vec<ContactZone> {
+        all().into_iter().filter(|zone| !zones.contains(zone) && zones_off(zones, *zone) == 1).collect()
+    };
     let (sv, cp) = (of(&told.sv.zones), of(&told.cp.zones));
-    sv.iter().flat_map(|&a| cp.iter().map(move |&b| (a, b))).collect()
+    let (sv_near, cp_near) = (near(&told.sv.zones), near(&told.cp.zones));
+    let mut pairs = Vec::new();
+    for (first, second) in [(&sv, &cp), (&sv, &cp_near), (&sv_near, &cp), (&sv_near, &cp_near)] {
+        pairs.extend(first.iter().flat_map(|&a| second.iter().map(move |&b| (a, b))));
+    }
+    pairs
 }
 
 const fn sign(side: LeftRight) -> f64 {

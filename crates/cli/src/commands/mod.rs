@@ -14,6 +14,7 @@ mod model;
 mod parity;
 mod prompt;
 mod read;
+mod reconstruct;
 mod records;
 mod run;
 mod schema;
@@ -125,6 +126,8 @@ pub enum Command {
     Import(import::ImportArgs),
     /// Read each incident of crash files into an account: what happened, with the words or the column each fact stands in.
     Read(read::ReadArgs),
+    /// Each incident of crash files as a scenario that shows its own crash, with the recorded driver
+    Reconstruct(reconstruct::ReconstructArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
@@ -194,6 +197,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
         Command::Read(args) => read::run(args, output),
+        Command::Reconstruct(args) => reconstruct::run(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),
         Command::Ledger(args) => ledger::run(args, output),

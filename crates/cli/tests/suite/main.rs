@@ -11,6 +11,7 @@ mod eval;
 mod export;
 mod live;
 mod outputs;
+mod read;
 mod records;
 mod repeatable;
 mod selection;

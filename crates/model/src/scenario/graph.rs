@@ -250,7 +250,7 @@ impl StripKind {
         }
     }
 
-    /// Its usual width: of town streets (nacto2013) and, for stalls, of parking lots (itte2009). [m]
+    /// Its usual width: of town streets (nacto2013); stalls are 18 ft deep, as is usual in parking lots. [m]
     pub const fn usual_width_m(self) -> f64 {
         match self {
             Self::Driving | Self::CentreTurn => 3.3,

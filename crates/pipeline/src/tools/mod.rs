@@ -10,5 +10,6 @@ pub(crate) mod exporting;
 pub(crate) mod importing;
 pub(crate) mod parity;
 pub(crate) mod prompting;
+pub(crate) mod reconstructing;
 #[cfg(feature = "parquet")]
 pub(crate) mod sweep;

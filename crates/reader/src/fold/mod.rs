@@ -54,9 +54,10 @@ impl Reading<'_> {
             return false;
         }
         // "made contact while passing": at the same time.
-        let simultaneous =
-            frame.sentence == at.sentence && frame.joint == Some(crate::chunk::Joint::While) && at.joint != frame.joint;
-        !simultaneous
+        let simultaneous = frame.sentence == at.sentence
+            && frame.joint == Some(crate::chunk::Joint::While)
+            && frame.clause > at.clause;
+        !simultaneous && !(frame.described && frame.sentence == at.sentence)
     }
 
     /// Frames of somebody up to the contact.

@@ -18,13 +18,20 @@ struct Clues<'a> {
 }
 
 impl Clues<'_> {
+    /// Where it is, as told up to the contact.
+    fn relations(&self) -> impl Iterator<Item = Relation> {
+        let contact =
+            self.reading.contacts.first.map_or(usize::MAX, |number| self.reading.story.frames[number].sentence);
+        let known = &self.reading.story.world.actors[self.actor];
+        known.relations.iter().filter(move |(_, sentence)| *sentence <= contact).map(|(relation, _)| *relation)
+    }
+
     fn any(&self, relation: Relation) -> bool {
-        self.reading.story.world.actors[self.actor].relations.contains(&relation)
+        self.relations().any(|known| known == relation)
     }
 
     fn side(&self) -> Option<LeftRight> {
-        let relations = &self.reading.story.world.actors[self.actor].relations;
-        relations.iter().find_map(|relation| match relation {
+        self.relations().find_map(|relation| match relation {
             Relation::Left => Some(LeftRight::Left),
             Relation::Right => Some(LeftRight::Right),
             _ => None,
@@ -63,7 +70,7 @@ pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact
     if kind.is_some_and(|kind| kind.group() == KindGroup::Object) {
         return of_thing(&clues, account);
     }
-    of_road_user(&clues, account).or_else(|| by_columns(reading, account))
+    of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account))
 }
 
 fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
@@ -76,7 +83,10 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             source: clues.has(if side == LeftRight::Left { Relation::Left } else { Relation::Right }),
         });
     }
-    has_zone(&account.sv, |zone| zone.is_front())
+    let forward =
+        told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff));
+    let on_road = forward && zone_side(account).is_none() && !account.sv.zones.iter().any(|zone| zone.value.is_rear());
+    (on_road || has_zone(&account.sv, |zone| zone.is_front()))
         .then(|| Fact::by_rule(Origin::Ahead, "a thing that the front of the subject vehicle touches is ahead of it"))
 }
 
@@ -280,9 +290,21 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     None
 }
 
+/// Who moves over without a side told comes from the side that was touched; an animal in the way is ahead.
+fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
+    let partner = account.partner.as_ref()?;
+    let moved_over = [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass].into_iter().any(|act| partner.did(act));
+    if let (true, Some(side)) = (moved_over || clues.any(Relation::Beside), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
+    }
+    let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
+    (animal && has_zone(&account.sv, |zone| zone.is_front()))
+        .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
+}
+
 /// The relation told first.
 fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
-    clues.reading.story.world.actors[clues.actor].relations.iter().copied().find(|relation| *relation != Relation::Same)
+    clues.relations().find(|relation| *relation != Relation::Same)
 }
 
 fn first_is_side(clues: &Clues<'_>) -> bool {
@@ -383,6 +405,14 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
         _ => {}
     }
     if sv_rear && cp_front && !sv_front {
+        return rule(Origin::Behind);
+    }
+    // Told to touch its rear, and nothing told of the partner's own side or way.
+    let into_rear = sv_rear
+        && partner.zones.is_empty()
+        && account.sv.zones.iter().all(|zone| zone.value.is_rear() && zone.source.is_told());
+    let turns = [Act::Turn, Act::Reverse, Act::LaneChange, Act::Cross].into_iter().any(|act| partner.did(act));
+    if into_rear && !turns && told(&account.sv.state) != Some(ContactState::Reversing) {
         return rule(Origin::Behind);
     }
     if sv_front && cp_rear && !sv_rear {

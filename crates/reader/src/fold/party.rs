@@ -53,7 +53,10 @@ fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<recrash_model::acco
 pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
     let mut all: Vec<ActFact> = Vec::new();
     for (number, frame) in reading.story.frames.iter().enumerate() {
-        let pushed = frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened();
+        let thrown = reading.contacts.earlier.contains(&number)
+            && frame.object == Some(actor)
+            && Some(actor) == reading.contacts.partner;
+        let pushed = thrown || (frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened());
         if frame.who != Some(actor) && !pushed {
             continue;
         }
@@ -76,6 +79,12 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
                     && (last.side == side || side.is_none() || last.side.is_none()) =>
             {
                 last.side = last.side.or(side);
+                // The last word on it is that it was done.
+                let done =
+                    matches!(&fact.source, Source::Words { text, .. } if text.to_lowercase().starts_with("complet"));
+                if done {
+                    last.source = fact.source;
+                }
             }
             _ if in_passing => {}
             _ => all.push(fact),
@@ -112,6 +121,13 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     match act {
         Act::Follow if !goes_on && frame.sense != Sense::Approach && stood().is_some() => Some(Act::SetOff),
         // "passed through the junction" passes nobody.
+        Act::Pass
+            if frame.object.is_some_and(|object| {
+                reading.story.world.actors[object].kind.is_some_and(|kind| kind.group() == KindGroup::Object)
+            }) =>
+        {
+            Some(Act::Follow)
+        }
         Act::Pass if frame.who == Some(SUBJECT) && frame.object.is_none() && frame.side.is_none() => Some(Act::Follow),
         _ => Some(act),
     }
@@ -159,6 +175,7 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
     let contact = reading.contacts.first;
     let sentence = contact.map(|contact| reading.story.frames[contact].sentence);
     let mut moved = false;
+    let mut since = (usize::MAX, 0);
     for (number, frame) in reading.story.frames.iter().enumerate() {
         if frame.who != Some(actor) || !frame.happened() || reading.is_after(number) {
             continue;
@@ -183,6 +200,12 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
             Act::SetOff => ContactState::SettingOff,
             Act::Reverse => ContactState::Reversing,
             Act::Follow | Act::Enter if stands && text.starts_with("continu") => continue,
+            // "was stopped at a light, heading west".
+            Act::Follow
+                if stands && frame.form == crate::lexicon::Form::Ing && since == (frame.sentence, frame.clause) =>
+            {
+                continue;
+            }
             Act::Follow if stands => ContactState::SettingOff,
             Act::Accelerate if state.as_ref().is_some_and(|(state, _)| *state == ContactState::SettingOff) => {
                 ContactState::SettingOff
@@ -190,6 +213,7 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
             Act::Pushed | Act::Fall => continue,
             _ => ContactState::Moving,
         };
+        since = (frame.sentence, frame.clause);
         if next.stands() {
             let stopping = text.starts_with("slowing")
                 || text.starts_with("stopping")
@@ -202,18 +226,11 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
             } else {
                 Standing::FromTheStart
             };
-            if !stands
-                || standing.is_none()
-                || (standing.as_ref().is_some_and(|(how, _)| *how == Standing::Stopping) && act == Act::Hold)
-            {
-                standing = Some((
-                    if standing.as_ref().is_some_and(|(how, _)| *how == Standing::Stopping) {
-                        Standing::CameToStop
-                    } else {
-                        how
-                    },
-                    reading.of(frame),
-                ));
+            let was_stopping = standing.as_ref().is_some_and(|(how, _)| *how == Standing::Stopping);
+            if how == Standing::Stopping || !stands || standing.is_none() {
+                standing = Some((how, reading.of(frame)));
+            } else if was_stopping {
+                standing = Some((Standing::CameToStop, reading.of(frame)));
             }
         } else {
             moved = true;
@@ -263,13 +280,20 @@ fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReason>> {
             let to = (*to).filter(|to| *to != SUBJECT)?;
             (*relation == crate::lexicon::Relation::Behind).then_some(to)
         });
-        let yields_to = if frame.sense == Sense::Yield { frame.object } else { None };
+        let yields_to = match frame.sense {
+            Sense::Yield => frame.object,
+            Sense::Act(Act::Stop | Act::Slow | Act::Hold) => frame.object,
+            _ => None,
+        };
         if let Some(lead) = behind.or(yields_to)
             && reading.story.world.actors[lead].kind.is_some_and(Kind::is_vehicle)
         {
             let ahead = behind.is_some() || stands_still(reading, lead, number);
-            if ahead && !all.iter().any(|known| known.value == StandReason::LeadVehicle) {
-                all.push(Fact { value: StandReason::LeadVehicle, source: reading.of(frame) });
+            let parked = reading.before(lead).any(|(_, frame)| frame.sense == Sense::Parked);
+            let several = reading.story.world.actors[lead].several;
+            let reason = if parked { StandReason::BlockedPath } else { StandReason::LeadVehicle };
+            if ahead && !several && !all.iter().any(|known| known.value == reason) {
+                all.push(Fact { value: reason, source: reading.of(frame) });
             }
         }
     }
@@ -512,7 +536,8 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     let record = reading.record;
     let column = record.sv_movement.known();
     let words = told(&account.sv.state);
-    let rolls = record.sv_speed_mps.is_some_and(|speed| speed > 0.6);
+    let stopping = told(&account.sv.standing) == Some(Standing::Stopping);
+    let rolls = record.sv_speed_mps.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
     let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
     let value = match (words, column) {
         // In the lane, for passengers.

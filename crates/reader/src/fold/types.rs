@@ -87,10 +87,7 @@ pub(crate) fn turning(party: &Party) -> bool {
     };
     !done
         && !later.iter().any(|fact| {
-            matches!(
-                fact.act,
-                Act::Follow | Act::Drift | Act::PullOver | Act::Park | Act::Pass | Act::Reverse | Act::LaneChange
-            )
+            matches!(fact.act, Act::Follow | Act::PullOver | Act::Park | Act::Pass | Act::Reverse | Act::LaneChange)
         })
 }
 
@@ -154,6 +151,19 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
     };
     let (sv_turns, cp_turns) = (turning(&account.sv), turning(partner));
     let rear_end = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);
+    // Words for a touch along the side.
+    let along = reading.contacts.first.is_some_and(|number| {
+        let frame = &reading.story.frames[number];
+        let word = reading.story.tokens[frame.first].text.as_str();
+        ["swip", "side", "scrap", "graz", "brush"].iter().any(|stem| word.starts_with(stem))
+    });
+    if along
+        && matches!(origin, Some(Origin::Behind | Origin::Ahead))
+        && !(rear(&account.sv) && front(partner))
+        && !front_rear(account)
+    {
+        return Some((CrashType::Lateral, "a touch along the side"));
+    }
     let sideways = partner.did(Act::LaneChange) || partner.did(Act::Swerve) || partner.did(Act::Drift);
     match origin {
         Some(Origin::Behind) => {
