@@ -1,5 +1,5 @@
 //! Scenarios in the formats of other tools: OpenSCENARIO XML 1.3 with OpenDRIVE 1.7, Scenic 3, MetaDrive, CommonRoad
-//! 2020a; and our own OpenSCENARIO read back.
+//! 2020a and ScenarioNet; and our own OpenSCENARIO read back.
 //!
 //! Every format is a function of the checked scenario, of its rollout where recorded motion is asked for, and of the
 //! numbers that may move. What each element means is listed in `docs/formats/coverage.md`, and what each tool takes for
@@ -12,6 +12,7 @@ mod import;
 mod metadrive;
 mod opendrive;
 mod openscenario;
+mod scenarionet;
 mod scenic;
 mod xml;
 
@@ -33,13 +34,15 @@ pub enum Format {
     MetaDrive,
     /// CommonRoad 2020a.
     CommonRoad,
+    /// The scenario description of ScenarioNet and MetaDrive's `ScenarioEnv`.
+    ScenarioNet,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::OpenScenario, Self::Scenic, Self::MetaDrive, Self::CommonRoad];
+    pub const ALL: [Self; 5] = [Self::OpenScenario, Self::Scenic, Self::MetaDrive, Self::CommonRoad, Self::ScenarioNet];
     /// Their names, as on the command line and of folders.
-    pub const NAMES: [&'static str; 4] = ["openscenario", "scenic", "metadrive", "commonroad"];
+    pub const NAMES: [&'static str; 5] = ["openscenario", "scenic", "metadrive", "commonroad", "scenarionet"];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -48,6 +51,7 @@ impl Format {
             Self::Scenic => Self::NAMES[1],
             Self::MetaDrive => Self::NAMES[2],
             Self::CommonRoad => Self::NAMES[3],
+            Self::ScenarioNet => Self::NAMES[4],
         }
     }
 }
@@ -78,7 +82,7 @@ pub enum PartnersAs {
 pub struct ExportOptions {
     /// The format.
     pub format: Format,
-    /// How the partners move (OpenSCENARIO only; Scenic and MetaDrive act, CommonRoad replays).
+    /// How the partners move (OpenSCENARIO only; Scenic and MetaDrive act, CommonRoad and ScenarioNet replay).
     pub partners_as: PartnersAs,
     /// A gap below this is a close call. [m]
     pub min_gap_m: f64,
@@ -130,6 +134,7 @@ pub fn export(
         Format::Scenic => Ok(scenic::files(scenario, parameters)),
         Format::MetaDrive => Ok(metadrive::files(scenario)),
         Format::CommonRoad => commonroad::files(scenario, rollout, options),
+        Format::ScenarioNet => scenarionet::files(scenario, rollout),
     }
 }
 
