@@ -117,12 +117,23 @@ pub enum ExportError {
         /// Scenario.
         scenario: String,
     },
+    /// The format has no way to say what happens.
+    #[error("scenario {scenario}: {format} cannot hold it: {why}")]
+    CannotHold {
+        /// Scenario.
+        scenario: String,
+        /// The format.
+        format: &'static str,
+        /// What it cannot hold.
+        why: String,
+    },
 }
 
 /// Exports a scenario. `parameters` are the numbers that may move; without any there is no logical scenario.
 ///
 /// # Errors
-/// [`ExportError::NeedsRollout`] where recorded motion is asked for and there is none.
+/// [`ExportError::NeedsRollout`] where recorded motion is asked for and there is none, [`ExportError::CannotHold`] where the
+/// format cannot say what happens.
 pub fn export(
     scenario: &Scenario,
     rollout: Option<&Rollout>,
@@ -132,7 +143,7 @@ pub fn export(
     match options.format {
         Format::OpenScenario => openscenario::files(scenario, rollout, parameters, options),
         Format::Scenic => Ok(scenic::files(scenario, parameters)),
-        Format::MetaDrive => Ok(metadrive::files(scenario)),
+        Format::MetaDrive => metadrive::files(scenario),
         Format::CommonRoad => commonroad::files(scenario, rollout, options),
         Format::ScenarioNet => scenarionet::files(scenario, rollout),
     }

@@ -1,6 +1,6 @@
 //! How far somebody has come with a plan.
 
-use super::programme::Programme;
+use super::programme::{Programme, When};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 use recrash_roads::Beside;
@@ -185,6 +185,12 @@ impl Progress {
     /// Whether it stands, and goes on standing in this step.
     pub fn stands(&self) -> bool {
         self.speed_mps == 0.0 && (self.bound_mps == 0.0 || self.acceleration_mps2 == 0.0)
+    }
+
+    /// The act that begins next, and what it waits for; `None` where it waits for nobody, or only for its delay.
+    pub(super) fn awaits(&self, programme: &Programme) -> Option<(u8, When)> {
+        let act = programme.acts.get(usize::from(self.next)).filter(|_| self.due.is_none())?;
+        act.when.map(|when| (self.next, when))
     }
 
     /// The acceleration it has chosen along its course; 0 once the speed it aims at is reached. [m/s^2]
