@@ -63,15 +63,15 @@ def unavailable(name: str, why: str) -> None:
     pytest.skip(f"{name}: {why}")
 
 
-def answers(name: str, script: str, *arguments: str) -> list[dict]:
+def answers(name: str, script: str, *arguments: str, timeout_s: int = 600) -> list[dict]:
     """Runs one of the scripts here in an environment; one JSON object per line it prints."""
-    return ask(environment(name) / "python", script, *arguments)
+    return ask(environment(name) / "python", script, *arguments, timeout_s=timeout_s)
 
 
-def ask(python: str | Path, script: str, *arguments: str) -> list[dict]:
+def ask(python: str | Path, script: str, *arguments: str, timeout_s: int = 600) -> list[dict]:
     """The same with a Python of the caller's."""
     command = [str(python), str(HERE / script), *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=timeout_s)
     found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
     assert done.returncode == 0 and found, f"{script}: {done.stderr[-2000:]}"
     return found

@@ -1,6 +1,6 @@
 //! What a narrative says happened, in the terms of the labels: for judging any agent by what it tells.
 
-use recrash_model::account::Account;
+use recrash_model::labelled::LabelledAccount;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{FactValue, Narrative};
 use recrash_model::profile::SystemProfile;
@@ -9,8 +9,8 @@ use recrash_model::profile::SystemProfile;
 ///
 /// A narrative that takes the record's place tells another story: of such a one only what its reason says counts, that the
 /// record describes an excluded kind of collision.
-pub fn account_of(narrative: &Narrative, profile: &SystemProfile) -> Account {
-    let mut account = Account { road: Some(narrative.template.road.into()), ..Account::default() };
+pub fn account_of(narrative: &Narrative, profile: &SystemProfile) -> LabelledAccount {
+    let mut account = LabelledAccount { road: Some(narrative.template.road.into()), ..LabelledAccount::default() };
     if let Some(reason) = narrative.origin.reason() {
         let reason = plain(reason);
         account.collision = profile.excludes.collisions.iter().copied().find(|kind| names_kind(&reason, *kind));
@@ -72,7 +72,7 @@ mod tests {
         }
     }
 
-    fn account(origin: Origin, values: Vec<FactValue>) -> Account {
+    fn account(origin: Origin, values: Vec<FactValue>) -> LabelledAccount {
         let profile = toml::from_str(include_str!("../../../profiles/paper.toml")).unwrap();
         account_of(&narrative(origin, values), &profile)
     }

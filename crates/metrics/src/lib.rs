@@ -5,6 +5,7 @@
 //! - [`findings()`]: failures and odd behaviour against the profile's criteria, one sentence each.
 //! - [`faithfulness()`]: whether the rollout shows what the record tells, from the paths driven alone.
 //! - [`series()`]: time series for plots.
+//! - [`severity_of()`]: how bad the ego's contact is: delta-v by momentum, risk of injury by published curves.
 //!
 //! What this crate does **not** do: it never simulates, never reads a record, and never trusts a scenario's labels when
 //! it judges faithfulness. It takes rollouts of any simulator that gives poses every 0.1 s.
@@ -20,9 +21,11 @@ pub mod measure;
 mod oracle;
 mod polygon;
 mod scene;
+pub mod severity;
 pub mod swept;
 
 pub use faithfulness::{faithfulness, faithfulness_on};
 pub use findings::{findings, findings_of};
 pub use measure::{measure, measure_on, series};
 pub use scene::EgoWay;
+pub use severity::severity_of;

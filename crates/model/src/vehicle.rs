@@ -123,22 +123,23 @@ impl VehicleSpec {
         }
     }
 
-    /// Mass with driver. Cars and light trucks: averages of new ones by class (epa2023); single-unit truck and city bus at a
-    /// middling load, people with what they ride: assumed. [kg]
-    pub const fn mass_kg(kind: PartnerKind) -> f64 {
+    /// Mass of a road user with who is in or on it; `None` for what stands firm. [kg]
+    pub const fn mass_kg(kind: PartnerKind) -> Option<f64> {
         match kind {
-            PartnerKind::PassengerCar => 1650.0,
-            PartnerKind::Suv => 2000.0,
-            PartnerKind::Van => 2150.0,
-            PartnerKind::PickupTruck | PartnerKind::FirstResponder => 2350.0,
-            PartnerKind::HeavyTruck => 12_000.0,
-            PartnerKind::Bus => 14_000.0,
-            PartnerKind::Motorcycle => 300.0,
-            PartnerKind::Cyclist => 95.0,
-            PartnerKind::OtherNonMotorist => 95.0,
-            PartnerKind::Pedestrian => 80.0,
-            PartnerKind::Animal => 30.0,
-            PartnerKind::FixedObject => 1e6,
+            // Mean of new cars and of all new light vehicles in the United States, 2017 to 2022 (iihs2025).
+            PartnerKind::PassengerCar => Some(1500.0),
+            PartnerKind::Suv | PartnerKind::Van => Some(1814.0),
+            // The pickup and the single-unit truck that roadside barriers are tested with (mash2016: 2270P, 10000S).
+            PartnerKind::PickupTruck | PartnerKind::FirstResponder => Some(2270.0),
+            PartnerKind::HeavyTruck => Some(10_000.0),
+            // A city bus of 12 m without passengers; assumed, as are those below.
+            PartnerKind::Bus => Some(13_600.0),
+            PartnerKind::Motorcycle => Some(300.0),
+            PartnerKind::Cyclist => Some(95.0),
+            PartnerKind::OtherNonMotorist => Some(90.0),
+            PartnerKind::Pedestrian => Some(80.0),
+            PartnerKind::Animal => Some(70.0),
+            PartnerKind::FixedObject => None,
         }
     }
 

@@ -39,10 +39,13 @@ pub use reading::records::{TableFormat, read_records, record_outputs, write_reco
 pub use reading::scenarios::{FileRequest, FileRun, read_scenario, simulate_file};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_child::end_all as end_programs;
+pub use recrash_drivers::preventability;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_lab::run_scenario;
+pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
+pub use recrash_reconstruct::Shown as ShownFact;
 pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
 pub use recrash_roads::scenario_schema as schema;
 pub use simulators::external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
@@ -52,7 +55,11 @@ pub use stages::{
     StageReport, StrategyStudy, Summary, run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
+pub use tools::accounts::{Accounts, ToldFact, read_accounts, told_facts, write_accounts};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
+pub use tools::check_driver::{
+    AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,
+};
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{
@@ -65,5 +72,8 @@ pub use tools::parity::{
     ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
+pub use tools::reconstructing::{
+    FactShare, Retold, Standing as RetoldStanding, fact_shares, reconstruct_accounts, write_reconstructions,
+};
 #[cfg(feature = "parquet")]
 pub use tools::sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};

@@ -138,6 +138,17 @@ fn column<'a>(field: Field, records: impl Iterator<Item = &'a CrashRecord>) -> C
 }
 
 impl RecordTable {
+    /// Writes the table as CSV, as [`write_csv`] writes records.
+    ///
+    /// # Errors
+    /// The sink cannot be written.
+    pub fn write_csv(&self, sink: impl Write) -> std::io::Result<()> {
+        let mut writer = csv::Writer::from_writer(sink);
+        self.write_header(&mut writer)?;
+        self.write_rows(&mut writer)?;
+        writer.flush()
+    }
+
     fn write_header<W: Write>(&self, writer: &mut csv::Writer<W>) -> std::io::Result<()> {
         Ok(writer.write_record(self.columns.iter().map(|(name, _)| *name))?)
     }

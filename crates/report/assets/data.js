@@ -85,6 +85,7 @@ function readCase(name) {
     const raw = rawCase(name);
     const drawing = {
       surfaces: raw.surfaces.map(polyline),
+      areas: raw.areas.map(([shape, points]) => ({ shape, points: polyline(points) })),
       lines: raw.lines.map(([kind, points]) => ({ kind, points: polyline(points) })),
     };
     cases.set(name, { id: raw.id, drawing, before: readRun(raw.before), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });

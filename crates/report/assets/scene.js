@@ -1,6 +1,7 @@
 // Drawing one moment of one run, seen from above. The world has y up; the picture has y down.
 
-const NAMES = ['ground', 'asphalt', 'paint', 'centre', 'edge', 'guide', 'contact', 'scene-ego', 'scene-partner', 'scene-traffic', 'scene-ink', 'panel', 'ink', 'sans'];
+const NAMES = ['ground', 'asphalt', 'paint', 'centre', 'edge', 'guide', 'bike', 'parking', 'shoulder', 'median', 'sidewalk', 'crosswalk', 'driveway',
+  'building', 'contact', 'scene-ego', 'scene-partner', 'scene-traffic', 'scene-ink', 'panel', 'ink', 'sans'];
 let colours = {};
 
 function readColours() {
@@ -82,11 +83,19 @@ function drawRoad(pen, drawing, trace, k) {
     // Hides the seams between neighbouring areas.
     pen.stroke();
   }
+  for (const area of drawing.areas) {
+    pen.fillStyle = colours[area.shape];
+    trace(area.points);
+    pen.closePath();
+    pen.fill();
+  }
   const looks = {
     edge: [colours.edge, 0.16, []],
     lane: [colours.paint, 0.14, [3 * k, 4.5 * k]],
     centre: [colours.centre, 0.16, []],
     guide: [colours.guide, 0.05, []],
+    stall: [colours.paint, 0.08, []],
+    stop: [colours.paint, 0.45, []],
   };
   pen.lineCap = 'butt';
   pen.lineJoin = 'round';

@@ -142,10 +142,26 @@ fn drawn(id: &str, drawing: &RoadDrawing, [before, after]: [Option<Value>; 2], t
         crate::LineKind::LaneDivider => "lane",
         crate::LineKind::Centre => "centre",
         crate::LineKind::Guide => "guide",
+        crate::LineKind::Stall => "stall",
+        crate::LineKind::Stop => "stop",
+    };
+    let area = |area: &crate::DrawnArea| {
+        let shape = match area.shape {
+            crate::GroundShape::Bike => "bike",
+            crate::GroundShape::Parking => "parking",
+            crate::GroundShape::Shoulder => "shoulder",
+            crate::GroundShape::Median => "median",
+            crate::GroundShape::Sidewalk => "sidewalk",
+            crate::GroundShape::Crosswalk => "crosswalk",
+            crate::GroundShape::Driveway => "driveway",
+            crate::GroundShape::Building => "building",
+        };
+        json!([shape, polyline(&area.points)])
     };
     json!({
         "id": words::clean(id, 120),
         "surfaces": drawing.surfaces.iter().map(|points| polyline(points)).collect::<Vec<_>>(),
+        "areas": drawing.areas.iter().map(area).collect::<Vec<_>>(),
         "lines": drawing.lines.iter().map(|line| json!([line_kind(line.kind), polyline(&line.points)])).collect::<Vec<_>>(),
         "before": before,
         "after": after,

@@ -20,7 +20,7 @@ mod view;
 mod words;
 
 pub use pairs::{PairView, PairsView, RunTrace, TableView};
-pub use recrash_roads::{LineKind, RoadDrawing, RoadLine};
+pub use recrash_roads::{DrawnArea, GroundShape, LineKind, RoadDrawing, RoadLine};
 pub use thumbnail::Thumbnail;
 pub use view::{CaseContext, CaseRow, CaseView, RunRow, RunView, SuiteView};
 

@@ -27,6 +27,7 @@ pub(crate) fn build(map: &MapSpec) -> RoadNetwork {
             followers: Vec::new(),
             named: Vec::new(),
             lines: Vec::new(),
+            areas: Vec::new(),
         },
         lanes: carriageway.lanes,
         width: carriageway.lane_width_m,

@@ -10,6 +10,8 @@ mod numbers;
 mod obstacles;
 mod places;
 
+pub use actors::arm_m;
+
 use crate::network::RoadNetwork;
 use crate::scenario::{ActorPlacement, Placement, Scenario};
 use recrash_model::geometry::OrientedBox;

@@ -5,7 +5,7 @@
 
 use crate::graph::{Stretch, biarc};
 use crate::lane::{Centreline, LaneId};
-use crate::path::{LanePath, SegmentShape};
+use crate::path::{LanePath, PathSegment, SegmentShape};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 
@@ -111,8 +111,8 @@ impl Course {
     }
 
     /// Adds a leg along a stretch of a path, both ends given for the rear axle; what lies outside of the path is driven along
-    /// its tangent. [m]
-    pub fn follow(&mut self, path: &LanePath, from_m: f64, to_m: f64, reverse: bool, ends: bool) {
+    /// its tangent. A path against its lanes' direction belongs to none of them. [m]
+    pub fn follow(&mut self, path: &LanePath, (from_m, to_m): (f64, f64), against: bool, reverse: bool, ends: bool) {
         if from_m < 0.0 {
             let before = (-from_m).min(to_m - from_m);
             self.straight(path.pose(from_m, 0.0), before);
@@ -122,7 +122,8 @@ impl Course {
             let end = to_m.min(segment.start_m + segment.length_m);
             if end - start > 1e-9 {
                 let shape = segment.shape.part(start - segment.start_m, end - segment.start_m);
-                self.push(shape, end - start, Some((segment.lane, start - segment.start_m)));
+                let lane = (!against).then_some((segment.lane, start - segment.start_m));
+                self.push(shape, end - start, lane);
             }
         }
         if to_m > path.length_m {
@@ -185,6 +186,17 @@ impl Course {
     fn end_leg(&mut self, reverse: bool, ends: bool) {
         let end_m = self.pieces.last().map_or(0.0, |piece| piece.start_m + piece.length_m);
         self.legs.push(CourseLeg { end_m, reverse, ends });
+    }
+
+    /// The line as a path of lanes, to see where it meets others; what is on no lane has one of its own.
+    pub fn as_path(&self) -> LanePath {
+        let segments = self.pieces.iter().map(|piece| PathSegment {
+            lane: piece.lane.unwrap_or(LaneId(u16::MAX)),
+            start_m: piece.start_m,
+            length_m: piece.length_m,
+            shape: piece.shape,
+        });
+        LanePath { roads: Vec::new(), segments: segments.collect(), length_m: self.length_m() }
     }
 
     /// Position of the piece at `s`, looked for from `hint` on.

@@ -1,5 +1,7 @@
 //! A network as areas and lines, to draw on a screen.
 
+mod graph;
+
 use crate::lane::{Centreline, Lane};
 use crate::network::{Road, RoadNetwork, RoadPart};
 use recrash_model::geometry::Vec2;
@@ -12,8 +14,42 @@ use serde::{Deserialize, Serialize};
 pub struct RoadDrawing {
     /// Closed areas of asphalt (the last point joins the first); they may overlap.
     pub surfaces: Vec<Vec<Vec2>>,
+    /// What lies on the asphalt or beside it, in the order of drawing; none on the paper's blocks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub areas: Vec<DrawnArea>,
     /// Lines on the road.
     pub lines: Vec<RoadLine>,
+}
+
+/// A closed area that is not asphalt alone. [m]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DrawnArea {
+    /// What it looks like.
+    pub shape: GroundShape,
+    /// Its corners; the last joins the first.
+    pub points: Vec<Vec2>,
+}
+
+/// What the ground looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GroundShape {
+    /// A bicycle lane.
+    Bike,
+    /// A parking lane, or the stalls of a lot.
+    Parking,
+    /// A paved shoulder.
+    Shoulder,
+    /// Between directions: not to be driven on.
+    Median,
+    /// A sidewalk, or a raised island.
+    Sidewalk,
+    /// A stripe of a crosswalk, or all of one.
+    Crosswalk,
+    /// A piece of private road, across sidewalk and planting.
+    Driveway,
+    /// A building or a wall.
+    Building,
 }
 
 /// One line on the road.
@@ -37,6 +73,10 @@ pub enum LineKind {
     Centre,
     /// Centre line of a lane inside a junction or a roundabout (a faint guide).
     Guide,
+    /// Between stalls (thin white).
+    Stall,
+    /// Where to stop (broad white).
+    Stop,
 }
 
 /// How far a chord may run beside its arc. [m]
@@ -56,22 +96,35 @@ impl RoadDrawing {
 impl Lane {
     /// The line `t` to the right of the centre line as points; arcs are sampled to 0.02 m.
     pub fn polyline(&self, t: f64) -> Vec<Vec2> {
+        self.sampled(t.abs(), |_| t)
+    }
+
+    /// The line a share of its width to the right of the centre line: its right edge is 0.5.
+    pub fn edge(&self, share: f64) -> Vec<Vec2> {
+        self.sampled(share.abs() * self.width_m.max(self.end_width_m), |s| share * self.width_at(s))
+    }
+
+    fn sampled(&self, widest: f64, t: impl Fn(f64) -> f64) -> Vec<Vec2> {
         let pieces = match self.centreline {
             Centreline::Straight { .. } => 1,
             Centreline::Arc { radius, .. } => {
                 // A chord over the angle a runs r (1 - cos(a / 2)) beside its arc.
-                let widest = radius + t.abs();
+                let widest = radius + widest;
                 let angle = 2.0 * math::acos((1.0 - SAGITTA_M / widest).max(-1.0));
                 ((self.length_m / radius / angle).ceil() as usize).clamp(2, 200)
             }
         };
-        (0..=pieces).map(|piece| self.position(self.length_m * piece as f64 / pieces as f64, t)).collect()
+        let s = |piece: usize| self.length_m * piece as f64 / pieces as f64;
+        (0..=pieces).map(|piece| self.position(s(piece), t(s(piece)))).collect()
     }
 }
 
 impl RoadNetwork {
     /// The network as areas and lines.
     pub fn drawing(&self) -> RoadDrawing {
+        if let MapSpec::G(map) = &self.map {
+            return self.draw_graph(map);
+        }
         let mut drawing = RoadDrawing::default();
         let junction = matches!(self.map, MapSpec::X(_) | MapSpec::T(_));
         if junction {
@@ -142,6 +195,10 @@ impl RoadNetwork {
 }
 
 impl RoadDrawing {
+    fn area(&mut self, shape: GroundShape, points: Vec<Vec2>) {
+        self.areas.push(DrawnArea { shape, points });
+    }
+
     fn line(&mut self, kind: LineKind, points: Vec<Vec2>) {
         self.lines.push(RoadLine { kind, points });
     }

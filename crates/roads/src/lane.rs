@@ -1,8 +1,9 @@
 //! Lanes: a straight or circular centre line with a width.
 
+use crate::graph::Stretch;
 use crate::network::RoadId;
 use crate::path::SegmentShape;
-use recrash_model::geometry::Vec2;
+use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 
 /// Position of a lane in [`crate::RoadNetwork::lanes`].
@@ -98,6 +99,12 @@ impl Lane {
             Centreline::Straight { .. } => 0.0,
             Centreline::Arc { radius, turn, .. } => turn / radius,
         }
+    }
+
+    /// Its centre line as a stretch of one curvature.
+    pub fn stretch(&self) -> Stretch {
+        let start = Pose { position: self.position(0.0, 0.0), heading: self.heading(0.0) };
+        Stretch { start, curvature: self.curvature(), length_m: self.length_m }
     }
 
     /// Whether a point lies on the lane, its edges included.

@@ -23,9 +23,9 @@ pub mod simulator;
 pub mod traffic;
 mod ways;
 
-pub use check::check;
+pub use check::{arm_m, check};
 pub use course::{Beside, Course, CourseLeg, CoursePiece, Spot, StopLine};
-pub use drawing::{LineKind, RoadDrawing, RoadLine};
+pub use drawing::{DrawnArea, GroundShape, LineKind, RoadDrawing, RoadLine};
 pub use json_place::{add_lines, locate};
 pub use lane::{Centreline, Lane, LaneId};
 pub use network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};

@@ -1,6 +1,6 @@
 //! The road network of a map: nodes, roads between them, lanes on them; node for node MetaDrive's.
 
-use crate::graph::ReferenceLine;
+use crate::graph::{GroundArea, ReferenceLine};
 use crate::lane::{Lane, LaneId};
 use recrash_model::Diagnostic;
 use recrash_model::geometry::Vec2;
@@ -73,6 +73,8 @@ pub struct RoadNetwork {
     pub named: Vec<NamedRoad>,
     /// The reference line of each road of a network of roads, in the map's order; none on the paper's blocks.
     pub lines: Vec<ReferenceLine>,
+    /// Areas of a network of roads that are no lanes.
+    pub areas: Vec<GroundArea>,
 }
 
 impl RoadNetwork {
@@ -145,8 +147,15 @@ impl RoadNetwork {
         best.and_then(|(_, _, position)| u16::try_from(position).ok().map(LaneId))
     }
 
-    /// Whether a point lies on any lane.
+    /// Whether a point lies where a motor vehicle may be: on a lane or paved strip, or on a paved area.
     pub fn on_road(&self, point: Vec2) -> bool {
-        self.lanes.iter().any(|lane| lane.contains(point))
+        let paved = |lane: &Lane| !matches!(self.road(lane.road).part, RoadPart::Beside(kind) if !kind.is_paved());
+        self.lanes.iter().any(|lane| paved(lane) && lane.contains(point))
+            || self.areas.iter().any(|area| area.kind.is_paved() && area.contains(point))
+    }
+
+    /// The area with a name, such as `main.crosswalks[0]` or `lot+.stalls[3]`.
+    pub fn area(&self, name: &str) -> Option<&GroundArea> {
+        self.areas.iter().find(|area| area.name == name)
     }
 }

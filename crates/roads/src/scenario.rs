@@ -1,6 +1,7 @@
 //! Checked scenarios: everything resolved, so that the simulator cannot fail.
 
 use crate::course::Course;
+use crate::drawing::{LineKind, RoadDrawing, RoadLine};
 use crate::lane::LaneId;
 use crate::network::RoadNetwork;
 use crate::path::{Conflict, LanePath};
@@ -86,6 +87,14 @@ impl Scenario {
     /// Roads.
     pub fn network(&self) -> &RoadNetwork {
         &self.network
+    }
+
+    /// Roads as areas and lines, with the stop lines of signals and signs.
+    pub fn drawing(&self) -> RoadDrawing {
+        let mut drawing = self.network.drawing();
+        let lines = self.network.stop_lines(&self.draft.control).into_iter();
+        drawing.lines.extend(lines.map(|line| RoadLine { kind: LineKind::Stop, points: line.to_vec() }));
+        drawing
     }
 
     /// The ego.

@@ -61,8 +61,8 @@ pub struct Observation<'a> {
 }
 
 impl Observation<'_> {
-    /// Whether an actor is still in the world: background traffic that has driven off the map is not.
+    /// Whether an actor is in the world: background traffic that has driven off the map is not, nor who appears later.
     pub fn is_present(&self, actor: usize) -> bool {
-        self.seen[actor].present
+        self.seen.get(actor).is_none_or(|seen| seen.present)
     }
 }

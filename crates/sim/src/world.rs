@@ -25,6 +25,12 @@ use recrash_roads::{
     ActorPlacement, Footprint, LanePath, Placement, RoadId, Scenario, StopLine, TRAFFIC_SPEED_MPS, TrafficPlacement,
 };
 
+/// What stands firm is taken for this heavy. [kg]
+const FIRM_KG: f64 = 1e6;
+
+/// A course shorter than this leads nowhere. [m]
+const MOVES_M: f64 = 2.0;
+
 /// What is fixed during a run.
 #[derive(Debug, Default)]
 pub(crate) struct Setting {
@@ -311,7 +317,7 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
     setting.chassis.push(Chassis::new(&spec, surface));
     let (length_m, width_m) = (spec.length_m, spec.width_m);
     setting.cast.push(CastMember { role, kind, length_m, width_m, owner: None, part: 0, appears: 0 });
-    setting.masses_kg.push(VehicleSpec::mass_kg(kind));
+    setting.masses_kg.push(VehicleSpec::mass_kg(kind).unwrap_or(FIRM_KG));
     setting.parts_reach_m.push(0.0);
     setting.programme_of.push(None);
     state.movers.push(Mover::Wheels);
@@ -348,15 +354,31 @@ impl Setting {
             _ if actor <= partners => matches!(scenario.draft().partners[actor - 1].policy, Policy::Yielding { .. }),
             _ => false,
         };
+        let size = |cast: &[CastMember], actor: usize| Footprint {
+            length_m: cast[actor].length_m,
+            width_m: cast[actor].width_m,
+        };
         for me in (0..=partners).filter(|&actor| gives_way(actor)) {
             for other in (0..1 + partners).chain(1 + partners + planned..self.cast.len()).filter(|&other| other != me) {
-                let size = |actor: usize| {
-                    let member = &self.cast[actor];
-                    Footprint { length_m: member.length_m, width_m: member.width_m }
-                };
-                let (mine, theirs) = (size(me), size(other));
+                let (mine, theirs) = (size(&self.cast, me), size(&self.cast, other));
                 if let Some(conflict) = path(me).conflict(path(other), mine.width_m, theirs.width_m) {
                     let crossing = Crossing::new((me, path(me), mine), (other, path(other), theirs), conflict);
+                    self.crossings.push(crossing);
+                }
+            }
+            for (position, placement) in scenario.actors().iter().enumerate() {
+                let other = 1 + partners + position;
+                let course = &placement.course;
+                if course.length_m() < MOVES_M {
+                    continue;
+                }
+                let way = course.as_path();
+                let (mine, theirs) = (size(&self.cast, me), size(&self.cast, other));
+                if let Some(conflict) = path(me).conflict(&way, mine.width_m, theirs.width_m) {
+                    let mut crossing = Crossing::new((me, path(me), mine), (other, &way, theirs), conflict);
+                    // Its place on its course is its rear axle's.
+                    crossing.theirs.from -= course.arm_m;
+                    crossing.theirs.to -= course.arm_m;
                     self.crossings.push(crossing);
                 }
             }

@@ -22,7 +22,7 @@ pub(crate) mod staged {
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;
-use recrash_model::account::Account;
+use recrash_model::labelled::LabelledAccount;
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::CrashRecord;
@@ -34,7 +34,7 @@ pub struct Rules;
 
 impl Rules {
     /// What the rules say happened in a record, whether or not it can be retold: for judging them by labels.
-    pub fn account(&self, record: &CrashRecord, profile: &SystemProfile) -> Account {
+    pub fn account(&self, record: &CrashRecord, profile: &SystemProfile) -> LabelledAccount {
         reading::account(record, profile)
     }
 }

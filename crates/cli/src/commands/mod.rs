@@ -3,6 +3,7 @@
 mod bench;
 mod bench_embed;
 mod bench_sim;
+mod check_driver;
 mod doctor;
 mod eval;
 mod export;
@@ -12,6 +13,8 @@ mod ledger;
 mod model;
 mod parity;
 mod prompt;
+mod read;
+mod reconstruct;
 mod records;
 mod run;
 mod schema;
@@ -121,6 +124,10 @@ pub enum Command {
     Export(export::ExportArgs),
     /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
     Import(import::ImportArgs),
+    /// Read each incident of crash files into an account: what happened, with the words or the column each fact stands in.
+    Read(read::ReadArgs),
+    /// Each incident of crash files as a scenario that shows its own crash, with the recorded driver
+    Reconstruct(reconstruct::ReconstructArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
@@ -133,6 +140,8 @@ pub enum Command {
     Model(model::ModelArgs),
     /// Run the same scenarios on both simulators, and tell how far they agree.
     Parity(parity::ParityArgs),
+    /// Try drivers in cut-ins, cut-outs and behind braking leaders: those of UN R157, and an ego.
+    CheckDriver(check_driver::CheckDriverArgs),
     /// Tell what is installed of all that can be used, and how to get the rest.
     Doctor(doctor::DoctorArgs),
     /// Measure speeds on this machine.
@@ -187,12 +196,15 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Report(args) => run::report(args, output),
         Command::Export(args) => export::run(args, output),
         Command::Import(args) => import::run(args, output),
+        Command::Read(args) => read::run(args, output),
+        Command::Reconstruct(args) => reconstruct::run(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),
         Command::Ledger(args) => ledger::run(args, output),
         Command::Fetch(args) => fetch::run(args, output),
         Command::Model(args) => model::run(args, output),
         Command::Parity(args) => parity::run(args, output),
+        Command::CheckDriver(args) => check_driver::run(args, output),
         Command::Doctor(args) => doctor::run(args, output),
         Command::Bench(args) => bench::run(args, output),
         #[cfg(feature = "parquet")]

@@ -6,7 +6,11 @@ use crate::output::{self, Output};
 use crate::screen::{bold, println, red, yellow};
 use crate::table::{Cell, number, table};
 use clap::Args;
-use recrash_pipeline::{FileRequest, FileRun, Options, PipelineError, Stage, simulate_file};
+use recrash_model::preventability::Preventability;
+use recrash_model::severity::{InjuryOutcome, Suffered};
+use recrash_pipeline::{
+    FileRequest, FileRun, Options, PipelineError, Stage, preventability, severity_of, simulate_file,
+};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -104,10 +108,44 @@ pub(super) fn show(result: &FileRun) {
             contact.other_zone.label(),
             contact.relative_speed_mps
         );
+        if let Some(severity) = severity_of(&run.rollout) {
+            println!("  {}", suffered("the ego", &severity.first));
+            println!("  {}", suffered("the partner", &severity.second));
+        }
+        if let Some(prevented) = preventability(&run.rollout) {
+            println!("  {}", in_their_place(&prevented));
+        }
     }
     for finding in &run.findings {
         let mark = if finding.kind.is_failure() { red("FAIL") } else { yellow("odd ") };
         println!("  {mark} {}", finding.sentence);
     }
     println!("state hash {}", run.rollout.state_hash);
+}
+
+/// What a contact does to one of the two, in a line.
+fn suffered(who: &str, side: &Suffered) -> String {
+    let mut line = format!("{who}: delta-v {:.1} m/s", side.delta_v_mps);
+    if let Some(hour) = side.force_clock {
+        line += &format!(", force from {hour} o'clock");
+    }
+    let told = [InjuryOutcome::Mais3, InjuryOutcome::Fatal];
+    for risk in side.risks.iter().filter(|risk| told.contains(&risk.outcome)) {
+        line += &format!("; {} {:.1} % ({})", risk.outcome.label(), 100.0 * risk.probability, risk.curve.source());
+    }
+    line
+}
+
+/// What the reference drivers make of a contact, in a line.
+fn in_their_place(prevented: &Preventability) -> String {
+    let each: Vec<String> = prevented
+        .drivers
+        .iter()
+        .map(|driver| match driver.closing_speed_mps {
+            None => format!("{} avoids it", driver.driver),
+            Some(closing_mps) => format!("{} closes with {closing_mps:.1} m/s", driver.driver),
+        })
+        .collect();
+    let told = if each.is_empty() { String::new() } else { format!(": {}", each.join(", ")) };
+    format!("{}{told}", prevented.bracket().label())
 }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod batch;
+mod check_driver;
 mod common;
 mod contradictions;
 mod edits;
@@ -10,6 +11,7 @@ mod eval;
 mod export;
 mod live;
 mod outputs;
+mod read;
 mod records;
 mod repeatable;
 mod selection;

@@ -16,7 +16,7 @@ const STRAIGHT_RAD: f64 = math::PI / 6.0;
 
 /// Every lane of the network as a lanelet, with the same number plus one.
 pub(super) fn lanelets(network: &RoadNetwork) -> Vec<Element> {
-    let map = DriveMap::new(network);
+    let map = DriveMap::new(network, &[]);
     network.lanes.iter().enumerate().map(|(position, lane)| lanelet(network, &map, lane_id(position), lane)).collect()
 }
 
@@ -35,8 +35,10 @@ fn lanelet(network: &RoadNetwork, map: &DriveMap, id: LaneId, lane: &Lane) -> El
         bound("leftBound", lane, -0.5, solid(index == 0)),
         bound("rightBound", lane, 0.5, solid(index + 1 == count)),
     ]);
-    element = element.children(linked(network, lane, &road.from, false).map(|id| reference("predecessor", id)));
-    element = element.children(linked(network, lane, &road.to, true).map(|id| reference("successor", id)));
+    let before =
+        (network.followers.iter().enumerate()).filter(|(_, next)| next.contains(&id)).map(|(from, _)| lane_id(from));
+    element = element.children(before.map(|id| reference("predecessor", id)));
+    element = element.children(network.followers[usize::from(id.0)].iter().map(|id| reference("successor", *id)));
     let left = match index {
         0 => {
             let other = if drive.forward == lane.road { drive.backward } else { Some(drive.forward) };
@@ -58,27 +60,13 @@ fn lanelet(network: &RoadNetwork, map: &DriveMap, id: LaneId, lane: &Lane) -> El
     element.children(types.into_iter().map(|kind| leaf("laneletType", kind))).child(leaf("userOneWay", "vehicle"))
 }
 
-/// The lanes with the same number that begin (`after`) or end at a node.
-fn linked<'a>(
-    network: &'a RoadNetwork,
-    lane: &'a Lane,
-    node: &'a str,
-    after: bool,
-) -> impl Iterator<Item = LaneId> + 'a {
-    network
-        .roads
-        .iter()
-        .filter(move |other| if after { other.from == node } else { other.to == node })
-        .filter_map(|other| other.lanes.get(usize::from(lane.index)).copied())
-}
-
 /// An edge of a lane, in its direction; `side` is -0.5 on the left and 0.5 on the right.
 fn bound(name: &str, lane: &Lane, side: f64, marking: &str) -> Element {
     let turned = (lane.curvature() * lane.length_m).abs();
     let pieces = (turned / BOUND_STEP_RAD - 1e-9).ceil().max(1.0) as usize;
     let points = (0..=pieces).map(|piece| {
         let s = lane.length_m * piece as f64 / pieces as f64;
-        point(lane.position(s, side * lane.width_m))
+        point(lane.position(s, side * lane.width_at(s)))
     });
     Element::new(name).children(points).child(leaf("lineMarking", marking))
 }
@@ -89,7 +77,7 @@ fn point(at: Vec2) -> Element {
 
 /// The junctions: per road that leads into one, where its lanes go.
 pub(super) fn intersections(network: &RoadNetwork, first_id: usize) -> Vec<Element> {
-    let map = DriveMap::new(network);
+    let map = DriveMap::new(network, &[]);
     let mut next_id = first_id + map.junctions.len();
     map.junctions
         .iter()

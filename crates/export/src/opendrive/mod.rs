@@ -1,17 +1,21 @@
 //! OpenDRIVE 1.7: the roads of the simulator, for others to drive on.
 //!
-//! The two directions of a road become one OpenDRIVE road whose reference line runs between them; the ways through a
-//! junction are one-way connecting roads with all their lanes to the right. A roundabout is four ring roads and, before
-//! each, a junction of the exit, the way on and the entry.
+//! On the paper's blocks the two directions of a road become one OpenDRIVE road whose reference line runs between them; the ways
+//! through a junction are one-way connecting roads with all their lanes to the right. A roundabout is four ring roads and,
+//! before each, a junction of the exit, the way on and the entry. A network of roads has its own reference lines.
 
+mod blocks;
+mod graph;
+mod objects;
 #[cfg(test)]
 mod tests;
 mod write;
 
+use crate::xml::Element;
 use recrash_model::geometry::{Pose, Vec2};
-use recrash_model::math;
-use recrash_model::scenario::MapSpec;
-use recrash_roads::{Centreline, Lane, LaneId, RoadId, RoadNetwork, RoadPart};
+use recrash_model::scenario::{Control, MapSpec};
+use recrash_roads::graph::Stretch;
+use recrash_roads::{LaneId, RoadId, RoadNetwork};
 
 /// Number of the first junction; roads are numbered from 1.
 const FIRST_JUNCTION_ID: u32 = 101;
@@ -21,8 +25,24 @@ const FIRST_JUNCTION_ID: u32 = 101;
 pub(crate) struct DriveMap {
     pub roads: Vec<DriveRoad>,
     pub junctions: Vec<DriveJunction>,
-    /// For each lane of the network: its road's position in `roads` and its OpenDRIVE number.
-    lanes: Vec<(usize, i32)>,
+    /// For each lane of the network where it is.
+    lanes: Vec<LaneOn>,
+    /// Controllers of signals.
+    controllers: Vec<Element>,
+}
+
+/// Where a lane of the network is in OpenDRIVE.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct LaneOn {
+    /// Position in [`DriveMap::roads`].
+    road: usize,
+    /// OpenDRIVE's number of the lane.
+    number: i32,
+    /// Whether it leads against the reference line.
+    against: bool,
+    /// The stretch of the reference line that it lies along: where that begins, and its length. [m]
+    from_m: f64,
+    length_m: f64,
 }
 
 /// An OpenDRIVE road. Its id is its position in the list plus one.
@@ -30,19 +50,62 @@ pub(crate) struct DriveMap {
 pub(crate) struct DriveRoad {
     pub id: u32,
     pub name: String,
-    /// Lanes -1, -2, ... in the direction of the reference line.
+    /// The first road of the network in the direction of the reference line.
     pub forward: RoadId,
-    /// Lanes 1, 2, ... against it.
+    /// On a block the road of the other direction, where there is one.
     pub backward: Option<RoadId>,
     /// The junction it leads through.
     pub junction: Option<u32>,
-    pub start: Pose,
-    /// Curvature of the reference line, left positive. [1/m]
-    pub curvature: f64,
+    /// The reference line.
+    line: Vec<Stretch>,
     /// Length of the reference line. [m]
     pub length_m: f64,
+    /// How far to the left of the reference line the lanes begin, at its beginning and its end. [m]
+    lane_offset_m: Option<[f64; 2]>,
     pub predecessor: Option<Neighbour>,
     pub successor: Option<Neighbour>,
+    /// Lanes 1, 2, ...
+    left: Vec<DriveLane>,
+    /// Lanes -1, -2, ...
+    right: Vec<DriveLane>,
+    /// What is painted along the reference line.
+    middle: Mark,
+    /// Posted speed. [m/s]
+    speed_limit_mps: Option<f64>,
+    /// MetaDrive's names of its nodes.
+    nodes: Option<String>,
+    objects: Vec<Element>,
+    signals: Vec<Element>,
+}
+
+/// A lane of an OpenDRIVE road.
+#[derive(Debug, Clone, PartialEq)]
+struct DriveLane {
+    number: i32,
+    /// OpenDRIVE's name of its type.
+    kind: &'static str,
+    /// From where along the road on, and the polynomial from there.
+    widths: Vec<[f64; 5]>,
+    predecessor: Option<i32>,
+    successor: Option<i32>,
+    /// At its outer edge.
+    mark: Mark,
+}
+
+/// A road mark.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Mark {
+    kind: &'static str,
+    colour: &'static str,
+    lane_change: &'static str,
+}
+
+impl Mark {
+    const NONE: Self = Self { kind: "none", colour: "standard", lane_change: "none" };
+    const SOLID: Self = Self { kind: "solid", colour: "standard", lane_change: "none" };
+    const BROKEN: Self = Self { kind: "broken", colour: "standard", lane_change: "both" };
+    const CENTRE: Self = Self { kind: "solid", colour: "yellow", lane_change: "none" };
+    const KERB: Self = Self { kind: "curb", colour: "standard", lane_change: "none" };
 }
 
 /// What a road's end touches.
@@ -58,8 +121,11 @@ pub(crate) enum Neighbour {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct DriveJunction {
     pub id: u32,
+    name: String,
     /// Positions of its connecting roads.
     pub roads: Vec<usize>,
+    /// Ids of the controllers of its signals.
+    controllers: Vec<u32>,
 }
 
 /// A place as OpenDRIVE and OpenSCENARIO name it.
@@ -74,244 +140,50 @@ pub(crate) struct LanePlace {
 }
 
 impl DriveMap {
-    pub fn new(network: &RoadNetwork) -> Self {
-        let junction_of = junctions(network);
-        let mut roads: Vec<DriveRoad> = Vec::new();
-        let mut lanes = vec![(0, 0); network.lanes.len()];
-        for (position, road) in network.roads.iter().enumerate() {
-            let id = road_id(position);
-            if roads.iter().any(|known| known.backward == Some(id)) {
-                continue;
-            }
-            let backward = if junction_of[position].is_some() {
-                None
-            } else {
-                network.road_between(&opposite(&road.to), &opposite(&road.from))
-            };
-            let index = roads.len();
-            for (number, &lane) in road.lanes.iter().enumerate() {
-                lanes[usize::from(lane.0)] = (index, -lane_number(number));
-            }
-            for (number, &lane) in backward.iter().flat_map(|&back| network.road(back).lanes.iter().enumerate()) {
-                lanes[usize::from(lane.0)] = (index, lane_number(number));
-            }
-            let (start, curvature, length_m) = reference_line(network.lane(road.lanes[0]));
-            roads.push(DriveRoad {
-                id: u32::try_from(index + 1).expect("a map has a few dozen roads"),
-                name: name_of(network, id, junction_of[position].is_some()),
-                forward: id,
-                backward,
-                junction: junction_of[position],
-                start,
-                curvature,
-                length_m,
-                predecessor: None,
-                successor: None,
-            });
+    /// Of a network with its signals and signs.
+    pub fn new(network: &RoadNetwork, control: &[Control]) -> Self {
+        match &network.map {
+            MapSpec::G(map) => graph::drive_map(map, network, control),
+            _ => blocks::drive_map(network),
         }
-        let mut map = Self { roads, junctions: Vec::new(), lanes };
-        map.link(network, &junction_of);
-        map
-    }
-
-    /// Sets predecessors and successors, and lists the junctions.
-    fn link(&mut self, network: &RoadNetwork, junction_of: &[Option<u32>]) {
-        for position in 0..self.roads.len() {
-            let forward = self.roads[position].forward;
-            let ends = network.road(forward);
-            let successor = self.neighbour(network, junction_of, position, &ends.to, true);
-            let predecessor = self.neighbour(network, junction_of, position, &ends.from, false);
-            let road = &mut self.roads[position];
-            road.successor = successor;
-            road.predecessor = predecessor;
-            if let Some(id) = road.junction {
-                match self.junctions.iter_mut().find(|junction| junction.id == id) {
-                    Some(junction) => junction.roads.push(position),
-                    None => self.junctions.push(DriveJunction { id, roads: vec![position] }),
-                }
-            }
-        }
-        self.junctions.sort_by_key(|junction| junction.id);
-    }
-
-    /// What lies at a node of a road, behind (`after`) or before it in its forward direction.
-    fn neighbour(
-        &self,
-        network: &RoadNetwork,
-        junction_of: &[Option<u32>],
-        position: usize,
-        node: &str,
-        after: bool,
-    ) -> Option<Neighbour> {
-        let touching = network
-            .roads
-            .iter()
-            .enumerate()
-            .filter(|(_, road)| if after { road.from == node } else { road.to == node });
-        let mut found = None;
-        for (other, _) in touching {
-            if self.roads[position].junction.is_none()
-                && let Some(junction) = junction_of[other]
-            {
-                return Some(Neighbour::Junction(junction));
-            }
-            if junction_of[other].is_none() {
-                found = Some(other);
-            }
-        }
-        let id = road_id(found?);
-        let drive = self.roads.iter().find(|road| road.forward == id || road.backward == Some(id))?;
-        // Behind us we meet the beginning of a road driven forward, and the end of one driven against its line.
-        Some(Neighbour::Road { id: drive.id, at_start: (drive.forward == id) == after })
     }
 
     /// A lane's road and number.
     pub fn lane(&self, lane: LaneId) -> (&DriveRoad, i32) {
-        let (road, number) = self.lanes[usize::from(lane.0)];
-        (&self.roads[road], number)
+        let on = self.lanes[usize::from(lane.0)];
+        (&self.roads[on.road], on.number)
     }
 
     /// The place at (s, t) of a lane.
     pub fn place(&self, network: &RoadNetwork, lane: LaneId, s: f64, t: f64) -> LanePlace {
-        let (road, number) = self.lane(lane);
+        let on = self.lanes[usize::from(lane.0)];
+        let road = &self.roads[on.road];
         let share = s / network.lane(lane).length_m;
-        let (along, offset) = if number < 0 { (share, -t) } else { (1.0 - share, t) };
-        LanePlace { road: road.id, lane: number, s: along * road.length_m, offset }
+        let (along, offset) = if on.against { (1.0 - share, t) } else { (share, -t) };
+        LanePlace { road: road.id, lane: on.number, s: (on.from_m + along * on.length_m).max(0.0), offset }
     }
 }
 
-/// The reference line of a road whose leftmost lane is `lane`: that lane's left edge.
-fn reference_line(lane: &Lane) -> (Pose, f64, f64) {
-    let edge = -0.5 * lane.width_m;
-    let start = Pose { position: lane.position(0.0, edge), heading: lane.heading(0.0) };
-    match lane.centreline {
-        Centreline::Straight { .. } => (start, 0.0, lane.length_m),
-        Centreline::Arc { radius, turn, .. } => {
-            let at_edge = radius + turn * edge;
-            (start, turn / at_edge, lane.length_m * at_edge / radius)
-        }
-    }
-}
-
-/// For each road of the network the junction it leads through: connecting roads that share a node share a junction.
-fn junctions(network: &RoadNetwork) -> Vec<Option<u32>> {
-    let connects: Vec<bool> = network
-        .roads
-        .iter()
-        .map(|road| match road.part {
-            RoadPart::Inner => !matches!(network.map, MapSpec::C(_)),
-            // Of the ring, what lies between an exit and the next entry is part of a junction.
-            RoadPart::Ring => {
-                network.roads.iter().filter(|other| other.from == road.from).count() > 1
-                    && network.roads.iter().filter(|other| other.to == road.to).count() > 1
+impl DriveRoad {
+    /// Place and direction of its reference line. [m]
+    fn pose(&self, s: f64) -> Pose {
+        let mut left = s;
+        for (number, stretch) in self.line.iter().enumerate() {
+            if left <= stretch.length_m || number + 1 == self.line.len() {
+                return stretch.pose(left);
             }
-            RoadPart::Approach | RoadPart::Departure | RoadPart::ArmOut | RoadPart::ArmIn => false,
-            RoadPart::Open | RoadPart::Beside(_) => false,
-        })
-        .collect();
-    let mut junction_of = vec![None; network.roads.len()];
-    let mut next = FIRST_JUNCTION_ID;
-    for first in 0..network.roads.len() {
-        if !connects[first] || junction_of[first].is_some() {
-            continue;
+            left -= stretch.length_m;
         }
-        junction_of[first] = Some(next);
-        // Spread to every connecting road that shares a node, until nothing changes.
-        loop {
-            let joined = (0..network.roads.len()).find(|&candidate| {
-                connects[candidate]
-                    && junction_of[candidate].is_none()
-                    && (0..network.roads.len()).any(|member| {
-                        let (a, b) = (&network.roads[candidate], &network.roads[member]);
-                        junction_of[member] == Some(next) && (a.from == b.from || a.to == b.to)
-                    })
-            });
-            match joined {
-                Some(candidate) => junction_of[candidate] = Some(next),
-                None => break,
-            }
-        }
-        next += 1;
+        Pose { position: Vec2::default(), heading: 0.0 }
     }
-    junction_of
 }
 
-fn road_id(position: usize) -> RoadId {
-    RoadId(u16::try_from(position).expect("a map has a few dozen roads"))
+/// OpenDRIVE's id of the road at a position.
+fn id_at(position: usize) -> u32 {
+    u32::try_from(position + 1).expect("a map has at most some thousand roads")
 }
 
 /// 1 for the leftmost lane.
 fn lane_number(index: usize) -> i32 {
-    i32::try_from(index + 1).expect("a road has at most four lanes")
-}
-
-/// The node on the other side of the road.
-fn opposite(node: &str) -> String {
-    node.strip_prefix('-').map_or_else(|| format!("-{node}"), str::to_owned)
-}
-
-/// What a person would call a road.
-fn name_of(network: &RoadNetwork, id: RoadId, connecting: bool) -> String {
-    let road = network.road(id);
-    match (road.part, connecting) {
-        (RoadPart::Approach | RoadPart::Departure, _) => {
-            let stretch = if road.from == ">" { "entrance" } else { "approach" };
-            stretch.to_owned()
-        }
-        (RoadPart::ArmOut | RoadPart::ArmIn, _) => match network.map {
-            MapSpec::S(_) => "straight".to_owned(),
-            MapSpec::C(_) => "tail".to_owned(),
-            _ => format!("{} arm", arm(&road.from)),
-        },
-        (RoadPart::Inner, false) => "curve".to_owned(),
-        (RoadPart::Inner, true) if matches!(network.map, MapSpec::O(_)) => {
-            if is_ring_node(&road.from) {
-                format!("exit to the {} arm", arm(&road.to))
-            } else {
-                format!("entry from the {} arm", arm(&road.from))
-            }
-        }
-        (RoadPart::Inner, true) => format!("{} arm to {} arm", arm(&road.from), arm(&road.to)),
-        (RoadPart::Ring, false) => format!("ring behind the {} entry", ring_entry(&road.from)),
-        (RoadPart::Open, _) => road.from.clone(),
-        (RoadPart::Beside(kind), _) => format!("{} {}", road.from, kind.name()),
-        (RoadPart::Ring, true) => format!("ring before the {} entry", ring_entry(&road.to)),
-    }
-}
-
-/// Nodes of the ring are `1O{i}_0_` and `1O{i}_1_`, `i` being the number of the entry before them.
-fn is_ring_node(node: &str) -> bool {
-    node.starts_with("1O") && (node.ends_with("_0_") || node.ends_with("_1_"))
-}
-
-fn ring_entry(node: &str) -> &'static str {
-    match node.as_bytes().get(2) {
-        Some(b'0') => "ego's",
-        Some(b'1') => "right",
-        Some(b'2') => "far",
-        _ => "left",
-    }
-}
-
-/// The arm a node lies on, seen from the ego.
-fn arm(node: &str) -> &'static str {
-    let node = node.trim_start_matches('-');
-    match node.as_bytes().get(2) {
-        _ if node.starts_with('>') => "ego's",
-        Some(b'0') => "right",
-        Some(b'1') => "far",
-        _ => "left",
-    }
-}
-
-/// A point of a road's reference line, for the file's bounding box.
-fn on_reference_line(road: &DriveRoad, s: f64) -> Vec2 {
-    let heading = road.start.heading;
-    if road.curvature == 0.0 {
-        return road.start.position + Vec2::from_heading(heading) * s;
-    }
-    let radius = 1.0 / road.curvature;
-    let turned = heading + s * road.curvature;
-    road.start.position
-        + Vec2::new(math::sin(turned) - math::sin(heading), math::cos(heading) - math::cos(turned)) * radius
+    i32::try_from(index + 1).expect("a road has few lanes")
 }

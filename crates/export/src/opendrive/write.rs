@@ -1,27 +1,35 @@
 //! The OpenDRIVE document.
 
-use super::{DriveJunction, DriveMap, DriveRoad, Neighbour, on_reference_line};
+use super::{DriveJunction, DriveLane, DriveMap, DriveRoad, Mark, Neighbour};
 use crate::xml::{Element, rounded};
+use recrash_model::math;
 use recrash_model::scenario::MapSpec;
-use recrash_roads::{RoadId, RoadNetwork};
+use recrash_roads::RoadNetwork;
 
 impl DriveMap {
     /// The root element; `name` is the map's.
     pub fn document(&self, network: &RoadNetwork, name: &str) -> Element {
         Element::new("OpenDRIVE")
             .child(self.header(network, name))
-            .children(self.roads.iter().map(|road| self.road(network, road)))
-            .children(self.junctions.iter().map(|junction| self.junction(network, junction)))
+            .children(self.roads.iter().map(|road| road_element(network, road)))
+            .children(self.controllers.iter().cloned())
+            .children(self.junctions.iter().map(|junction| self.junction(junction)))
     }
 
     fn header(&self, network: &RoadNetwork, name: &str) -> Element {
-        let carriageway = network.map.carriageway();
-        let margin = f64::from(carriageway.lanes) * carriageway.lane_width_m;
+        let margin = match &network.map {
+            MapSpec::G(_) => self.roads.iter().map(widest_side_m).fold(0.0, f64::max),
+            _ => {
+                let carriageway = network.map.carriageway();
+                f64::from(carriageway.lanes) * carriageway.lane_width_m
+            }
+        };
         let (mut west, mut east) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut south, mut north) = (f64::INFINITY, f64::NEG_INFINITY);
         for road in &self.roads {
-            for quarter in 0..=4 {
-                let point = on_reference_line(road, road.length_m * f64::from(quarter) / 4.0);
+            let parts = 4 * road.line.len();
+            for part in 0..=parts {
+                let point = road.pose(road.length_m * part as f64 / parts as f64).position;
                 (west, east) = (west.min(point.x - margin), east.max(point.x + margin));
                 (south, north) = (south.min(point.y - margin), north.max(point.y + margin));
             }
@@ -38,118 +46,14 @@ impl DriveMap {
             .with("vendor", "recrash")
     }
 
-    fn road(&self, network: &RoadNetwork, road: &DriveRoad) -> Element {
-        let nodes = network.road(road.forward);
-        let mut element = Element::new("road")
-            .with("name", &road.name)
-            .with_number("length", rounded(road.length_m))
-            .with("id", road.id.to_string())
-            .with("junction", road.junction.map_or_else(|| "-1".to_owned(), |id| id.to_string()))
-            .with("rule", "RHT");
-        let ends = [("predecessor", road.predecessor), ("successor", road.successor)];
-        if ends.iter().any(|(_, neighbour)| neighbour.is_some()) {
-            element = element
-                .child(Element::new("link").children(
-                    ends.into_iter().filter_map(|(end, neighbour)| Some(neighbour_element(end, neighbour?))),
-                ));
-        }
-        element
-            .child(Element::new("type").with("s", "0").with("type", road_type(&network.map)))
-            .child(plan_view(road))
-            .child(Element::new("lanes").child(self.lane_section(network, road)))
-            .child(
-                Element::new("userData")
-                    .with("code", "metadrive")
-                    .with("value", format!("{} {}", nodes.from, nodes.to)),
-            )
-    }
-
-    fn lane_section(&self, network: &RoadNetwork, road: &DriveRoad) -> Element {
-        let mut section = Element::new("laneSection").with("s", "0");
-        if let Some(backward) = road.backward {
-            let count = network.road(backward).lanes.len();
-            // OpenDRIVE lists lanes from left to right.
-            let lanes = (0..count).rev().map(|index| self.lane_element(network, road, backward, index));
-            section = section.child(Element::new("left").children(lanes));
-        }
-        let middle = match (road.junction, road.backward) {
-            (Some(_), _) => road_mark("none", "standard", "none"),
-            (None, Some(_)) => road_mark("solid", "yellow", "none"),
-            (None, None) => road_mark("solid", "standard", "none"),
-        };
-        section = section.child(
-            Element::new("center").child(Element::new("lane").with("id", "0").with("type", "none").child(middle)),
-        );
-        let count = network.road(road.forward).lanes.len();
-        let lanes = (0..count).map(|index| self.lane_element(network, road, road.forward, index));
-        section.child(Element::new("right").children(lanes))
-    }
-
-    fn lane_element(&self, network: &RoadNetwork, road: &DriveRoad, direction: RoadId, index: usize) -> Element {
-        let lanes = &network.road(direction).lanes;
-        let (_, number) = self.lane(lanes[index]);
-        let mut lane =
-            Element::new("lane").with("id", number.to_string()).with("type", "driving").with("level", "false");
-        let link: Vec<Element> = [("predecessor", false), ("successor", true)]
-            .into_iter()
-            .filter_map(|(end, after)| {
-                let linked = self.linked_lane(network, road, direction, index, after)?;
-                Some(Element::new(end).with("id", linked.to_string()))
-            })
-            .collect();
-        if !link.is_empty() {
-            lane = lane.child(Element::new("link").children(link));
-        }
-        let outermost = index + 1 == lanes.len();
-        let mark = match (road.junction, outermost) {
-            (Some(_), _) => road_mark("none", "standard", "none"),
-            (None, true) => road_mark("solid", "standard", "none"),
-            (None, false) => road_mark("broken", "standard", "both"),
-        };
-        lane.child(
-            Element::new("width")
-                .with("sOffset", "0")
-                .with_number("a", network.lane(lanes[index]).width_m)
-                .with("b", "0")
-                .with("c", "0")
-                .with("d", "0"),
-        )
-        .child(mark)
-    }
-
-    /// The lane that continues a lane beyond a road's end (`after`: the end of the reference line), where that is one.
-    fn linked_lane(
-        &self,
-        network: &RoadNetwork,
-        road: &DriveRoad,
-        direction: RoadId,
-        index: usize,
-        after: bool,
-    ) -> Option<i32> {
-        let neighbour = if after { road.successor } else { road.predecessor };
-        let Some(Neighbour::Road { id, .. }) = neighbour else {
-            return None;
-        };
-        let this = network.road(direction);
-        let driven_on = (direction == road.forward) == after;
-        let other = network.roads.iter().enumerate().find(|(position, candidate)| {
-            let meets = if driven_on { candidate.from == this.to } else { candidate.to == this.from };
-            let lane = network.roads[*position].lanes[0];
-            meets && self.lane(lane).0.id == id
-        })?;
-        other.1.lanes.get(index).map(|&lane| self.lane(lane).1)
-    }
-
-    fn junction(&self, network: &RoadNetwork, junction: &DriveJunction) -> Element {
+    fn junction(&self, junction: &DriveJunction) -> Element {
         let connections = junction.roads.iter().enumerate().map(|(number, &position)| {
             let road = &self.roads[position];
             let Some(Neighbour::Road { id: incoming, .. }) = road.predecessor else {
                 unreachable!("a connecting road comes from a road");
             };
-            let lanes = &network.road(road.forward).lanes;
-            let links = (0..lanes.len()).filter_map(|index| {
-                let from = self.linked_lane(network, road, road.forward, index, false)?;
-                let (_, to) = self.lane(lanes[index]);
+            let links = road.right.iter().filter_map(|lane| {
+                let (from, to) = (lane.predecessor?, lane.number);
                 Some(Element::new("laneLink").with("from", from.to_string()).with("to", to.to_string()))
             });
             Element::new("connection")
@@ -159,31 +63,113 @@ impl DriveMap {
                 .with("contactPoint", "start")
                 .children(links)
         });
-        let name = if self.junctions.len() == 1 {
-            "junction".to_owned()
-        } else {
-            let entry = junction.roads.iter().map(|&position| self.roads[position].name.as_str());
-            entry.clone().find(|name| name.starts_with("entry")).unwrap_or("junction").to_owned()
-        };
-        Element::new("junction").with("name", name).with("id", junction.id.to_string()).children(connections)
+        let controllers = junction.controllers.iter().map(|id| Element::new("controller").with("id", id.to_string()));
+        Element::new("junction")
+            .with("name", &junction.name)
+            .with("id", junction.id.to_string())
+            .children(connections)
+            .children(controllers)
     }
 }
 
-fn plan_view(road: &DriveRoad) -> Element {
-    let shape = if road.curvature == 0.0 {
-        Element::new("line")
-    } else {
-        Element::new("arc").with_number("curvature", rounded(road.curvature))
+/// The widest that one side of a road is. [m]
+fn widest_side_m(road: &DriveRoad) -> f64 {
+    let width = |lanes: &[DriveLane]| -> f64 {
+        lanes.iter().map(|lane| lane.widths.iter().map(|width| width[1]).fold(0.0, f64::max)).sum()
     };
-    Element::new("planView").child(
-        Element::new("geometry")
-            .with("s", "0")
-            .with_number("x", rounded(road.start.position.x))
-            .with_number("y", rounded(road.start.position.y))
-            .with_number("hdg", rounded(road.start.heading))
-            .with_number("length", rounded(road.length_m))
-            .child(shape),
-    )
+    width(&road.left).max(width(&road.right))
+}
+
+fn road_element(network: &RoadNetwork, road: &DriveRoad) -> Element {
+    let mut element = Element::new("road")
+        .with("name", &road.name)
+        .with_number("length", rounded(road.length_m))
+        .with("id", road.id.to_string())
+        .with("junction", road.junction.map_or_else(|| "-1".to_owned(), |id| id.to_string()))
+        .with("rule", "RHT");
+    let ends = [("predecessor", road.predecessor), ("successor", road.successor)];
+    if ends.iter().any(|(_, neighbour)| neighbour.is_some()) {
+        let links = ends.into_iter().filter_map(|(end, neighbour)| Some(neighbour_element(end, neighbour?)));
+        element = element.child(Element::new("link").children(links));
+    }
+    let mut kind = Element::new("type").with("s", "0").with("type", road_type(&network.map));
+    if let Some(limit) = road.speed_limit_mps {
+        kind = kind.child(Element::new("speed").with_number("max", limit).with("unit", "m/s"));
+    }
+    let mut lanes = Element::new("lanes");
+    if let Some([from, to]) = road.lane_offset_m {
+        lanes = lanes.child(polynomial("laneOffset", "s", [0.0, from, (to - from) / road.length_m, 0.0, 0.0]));
+    }
+    element = element.child(kind).child(plan_view(road)).child(lanes.child(lane_section(road)));
+    for (name, list) in [("objects", &road.objects), ("signals", &road.signals)] {
+        if !list.is_empty() {
+            element = element.child(Element::new(name).children(list.iter().cloned()));
+        }
+    }
+    match &road.nodes {
+        Some(nodes) => element.child(Element::new("userData").with("code", "metadrive").with("value", nodes)),
+        None => element,
+    }
+}
+
+fn lane_section(road: &DriveRoad) -> Element {
+    let mut section = Element::new("laneSection").with("s", "0");
+    if !road.left.is_empty() {
+        // OpenDRIVE lists lanes from left to right.
+        section = section.child(Element::new("left").children(road.left.iter().rev().map(lane_element)));
+    }
+    let centre = Element::new("lane").with("id", "0").with("type", "none").child(road_mark(road.middle));
+    section = section.child(Element::new("center").child(centre));
+    if road.right.is_empty() {
+        return section;
+    }
+    section.child(Element::new("right").children(road.right.iter().map(lane_element)))
+}
+
+fn lane_element(lane: &DriveLane) -> Element {
+    let mut element =
+        Element::new("lane").with("id", lane.number.to_string()).with("type", lane.kind).with("level", "false");
+    let link: Vec<Element> = [("predecessor", lane.predecessor), ("successor", lane.successor)]
+        .into_iter()
+        .filter_map(|(end, linked)| Some(Element::new(end).with("id", linked?.to_string())))
+        .collect();
+    if !link.is_empty() {
+        element = element.child(Element::new("link").children(link));
+    }
+    element.children(lane.widths.iter().map(|width| polynomial("width", "sOffset", *width))).child(road_mark(lane.mark))
+}
+
+/// A cubic polynomial from a place on.
+fn polynomial(name: &str, place: &str, [from, a, b, c, d]: [f64; 5]) -> Element {
+    Element::new(name)
+        .with_number(place, rounded(from))
+        .with_number("a", a)
+        .with_number("b", b)
+        .with_number("c", c)
+        .with_number("d", d)
+}
+
+fn plan_view(road: &DriveRoad) -> Element {
+    let mut s = 0.0;
+    let mut view = Element::new("planView");
+    for stretch in &road.line {
+        let shape = if stretch.curvature == 0.0 {
+            Element::new("line")
+        } else {
+            Element::new("arc").with_number("curvature", rounded(stretch.curvature))
+        };
+        view = view.child(
+            Element::new("geometry")
+                .with_number("s", rounded(s))
+                .with_number("x", rounded(stretch.start.position.x))
+                .with_number("y", rounded(stretch.start.position.y))
+                .with_number("hdg", rounded(math::wrap_angle(stretch.start.heading)))
+                .with_number("length", rounded(stretch.length_m))
+                .child(shape),
+        );
+        s += stretch.length_m;
+    }
+    view
 }
 
 fn neighbour_element(end: &str, neighbour: Neighbour) -> Element {
@@ -196,14 +182,14 @@ fn neighbour_element(end: &str, neighbour: Neighbour) -> Element {
     }
 }
 
-fn road_mark(kind: &str, color: &str, lane_change: &str) -> Element {
+fn road_mark(mark: Mark) -> Element {
     Element::new("roadMark")
         .with("sOffset", "0")
-        .with("type", kind)
+        .with("type", mark.kind)
         .with("weight", "standard")
-        .with("color", color)
+        .with("color", mark.colour)
         .with("width", "0.15")
-        .with("laneChange", lane_change)
+        .with("laneChange", mark.lane_change)
 }
 
 fn road_type(map: &MapSpec) -> &'static str {

@@ -49,7 +49,7 @@ pub(crate) fn files(
             rollout.actors.iter().filter(|actor| actor.role == Role::Partner).collect()
         }
     };
-    let map = DriveMap::new(scenario.network());
+    let map = DriveMap::new(scenario.network(), &scenario.draft().control);
     let names = Declarations::new(draft, parameters);
     let context = Context { scenario, map, names, parameters, tracks, rollout, options };
     let comment = crate::comment(draft);
@@ -112,7 +112,7 @@ fn header(context: &Context<'_>, description: &str) -> Element {
 /// The root of the scenario's document, with partners that act.
 pub(crate) fn scenario_element(scenario: &Scenario, parameters: &[Parameter], options: &ExportOptions) -> Element {
     let draft = scenario.draft();
-    let map = DriveMap::new(scenario.network());
+    let map = DriveMap::new(scenario.network(), &scenario.draft().control);
     let names = Declarations::new(draft, parameters);
     let context = Context { scenario, map, names, parameters, tracks: Vec::new(), rollout: None, options };
     document(&context, &crate::title(draft), &format!("{}.xodr", draft.id))

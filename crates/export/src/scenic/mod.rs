@@ -45,7 +45,9 @@ impl Context<'_> {
 pub(crate) fn files(scenario: &Scenario, parameters: &[Parameter]) -> Vec<ExportFile> {
     let draft = scenario.draft();
     let id = &draft.id;
-    let map = DriveMap::new(scenario.network()).document(scenario.network(), id).document(&crate::comment(draft));
+    let map = DriveMap::new(scenario.network(), &scenario.draft().control)
+        .document(scenario.network(), id)
+        .document(&crate::comment(draft));
     let context = Context { scenario, names: Declarations::new(draft, parameters), parameters };
     vec![
         ExportFile { name: format!("{id}.xodr"), content: map },

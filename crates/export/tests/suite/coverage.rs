@@ -63,7 +63,14 @@ fn openscenario() {
 
 #[test]
 fn opendrive() {
-    assert_eq!(written(&["openscenario"], ".xodr"), listed("OpenDRIVE 1.7"));
+    let mut found = written(&["openscenario"], ".xodr");
+    for json in [include_str!("../networks/town.json"), include_str!("../networks/ramps.json")] {
+        let scenario = recrash_roads::check(draft(json)).expect("a network passes the check").value;
+        let files = export(&scenario, None, &[], &ExportOptions::new(Format::OpenScenario)).expect("exported");
+        let map = files.iter().find(|file| file.name.ends_with(".xodr")).expect("a map");
+        found.extend(elements(std::str::from_utf8(&map.content).expect("text")));
+    }
+    assert_eq!(found, listed("OpenDRIVE 1.7"));
 }
 
 #[test]

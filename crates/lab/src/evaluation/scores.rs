@@ -1,6 +1,6 @@
 //! Right or wrong, field by field, and how sure a share of so many can be. Definitions: `docs/models/evaluation.md`.
 
-use recrash_model::account::Account;
+use recrash_model::labelled::LabelledAccount;
 use recrash_model::scenario::Approach;
 use recrash_model::zones::ContactZone;
 use serde::{Deserialize, Serialize};
@@ -58,7 +58,7 @@ impl Field {
     }
 
     /// What an account says of this field, in the words of the labels; `unknown` where it says nothing.
-    pub fn text(self, account: &Account) -> String {
+    pub fn text(self, account: &LabelledAccount) -> String {
         let zones = |zones: &[ContactZone]| {
             let names: Vec<String> = zones.iter().map(|zone| word(Some(zone))).collect();
             if names.is_empty() { word::<()>(None) } else { names.join(";") }
@@ -80,7 +80,7 @@ impl Field {
     }
 
     /// Whether what is said agrees with the label; `None` where the label says nothing.
-    pub fn agrees(self, label: &Account, said: &Account) -> Option<bool> {
+    pub fn agrees(self, label: &LabelledAccount, said: &LabelledAccount) -> Option<bool> {
         fn same<T: PartialEq>(label: Option<T>, said: Option<T>) -> Option<bool> {
             label.map(|label| said == Some(label))
         }
@@ -184,11 +184,11 @@ mod tests {
 
     #[test]
     fn what_the_label_does_not_know_counts_neither_way_and_what_the_reader_does_not_know_is_wrong() {
-        let label = Account { approach: Some(Approach::Same), ..Account::default() };
-        let ring = Account { approach: Some(Approach::Ring), ..Account::default() };
+        let label = LabelledAccount { approach: Some(Approach::Same), ..LabelledAccount::default() };
+        let ring = LabelledAccount { approach: Some(Approach::Ring), ..LabelledAccount::default() };
         assert_eq!(Field::Approach.agrees(&label, &ring), Some(true));
-        assert_eq!(Field::Approach.agrees(&label, &Account::default()), Some(false));
-        assert_eq!(Field::Approach.agrees(&Account::default(), &label), None);
+        assert_eq!(Field::Approach.agrees(&label, &LabelledAccount::default()), Some(false));
+        assert_eq!(Field::Approach.agrees(&LabelledAccount::default(), &label), None);
         let score = FieldScore::of(Field::Approach, &[Some(true), Some(false), None]);
         assert_eq!((score.right, score.scored, score.unknown), (1, 2, 1));
     }

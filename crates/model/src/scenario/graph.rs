@@ -61,7 +61,7 @@ pub struct RoadSpec {
     pub start: RoadStart,
     /// The reference line, piece by piece, 1 to 64.
     pub line: Vec<LinePiece>,
-    /// Strips to the right of the reference line, from it outwards; lanes here lead along the line.
+    /// Strips to the right of the reference line, from it outwards, at most 12; lanes here lead along the line.
     #[serde(default)]
     pub right: Vec<Strip>,
     /// Strips to the left, from the line outwards; lanes here lead against the line.
@@ -86,13 +86,17 @@ pub enum RoadStart {
     /// At a place in the plane.
     At {
         /// [m]
+        #[schemars(range(min = -2000.0, max = 2000.0))]
         x_m: f64,
         /// [m]
+        #[schemars(range(min = -2000.0, max = 2000.0))]
         y_m: f64,
         /// Anticlockwise from +x. [deg]
+        #[schemars(range(min = -360.0, max = 360.0))]
         heading_deg: f64,
     },
-    /// Where another road's reference line ends, going on the same way. Driving lanes of one number follow each other.
+    /// Where another road's reference line ends, going on the same way. Driving lanes of one number follow each other: they
+    /// must meet there.
     After {
         /// That road.
         road: String,
@@ -102,6 +106,7 @@ pub enum RoadStart {
         /// The junction.
         junction: String,
         /// Seen from the junction's centre, anticlockwise from +x. [deg]
+        #[schemars(range(min = -360.0, max = 360.0))]
         bearing_deg: f64,
         /// From the junction's centre, 4 to 100. [m]
         #[schemars(range(min = 4.0, max = 100.0))]
@@ -149,18 +154,20 @@ pub enum LinePiece {
         /// 1 to 500. [m]
         #[schemars(range(min = 1.0, max = 500.0))]
         length_m: f64,
-        /// Radius at its beginning; straight where not given. [m]
+        /// Radius at its beginning, 4 to 10 000; straight where not given. [m]
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 4.0, max = 10000.0))]
         from_radius_m: Option<f64>,
-        /// Radius at its end; straight where not given. [m]
+        /// Radius at its end, 4 to 10 000; straight where not given. [m]
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 4.0, max = 10000.0))]
         to_radius_m: Option<f64>,
         /// Which way it bends.
         to: Side,
     },
     /// A smooth line through points, in the frame of the end of the piece before: x along the line there, y to its left.
     Points {
-        /// 1 to 64 points after the beginning. [m]
+        /// 1 to 64 points after the beginning, each coordinate within 500. [m]
         points: Vec<[f64; 2]>,
     },
 }
@@ -175,12 +182,13 @@ pub struct Strip {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 20.0))]
     pub width_m: Option<f64>,
-    /// Width at the road's end, where it differs; it changes evenly. [m]
+    /// Width at the road's end, where it differs; it changes in an S, half of it on half of the way. [m]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 20.0))]
     pub end_width_m: Option<f64>,
     /// Driving lanes: the turns it may take at the junction it leads into. By its place among the lanes where none is given:
-    /// everybody straight on, the leftmost also left, the rightmost also right.
+    /// everybody straight on, the leftmost also left, the rightmost also right; where nothing lies straight on, the left
+    /// half turns left and the right half right.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub turns: Vec<Turn>,
     /// Stalls: angle between the road and whoever is parked in them, 90 is across. [deg]
@@ -242,7 +250,7 @@ impl StripKind {
         }
     }
 
-    /// Its usual width: of town streets (nacto2013) and, for stalls, of parking lots (itte2009). [m]
+    /// Its usual width: of town streets (nacto2013); stalls are 18 ft deep, as is usual in parking lots. [m]
     pub const fn usual_width_m(self) -> f64 {
         match self {
             Self::Driving | Self::CentreTurn => 3.3,
@@ -311,9 +319,11 @@ pub struct JunctionSpec {
     pub id: String,
     /// Centre. [m]
     #[serde(default)]
+    #[schemars(range(min = -2000.0, max = 2000.0))]
     pub x_m: f64,
     /// Centre. [m]
     #[serde(default)]
+    #[schemars(range(min = -2000.0, max = 2000.0))]
     pub y_m: f64,
     /// Roads that end at it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

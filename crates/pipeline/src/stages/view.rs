@@ -103,7 +103,7 @@ pub(super) fn case(suite: &Suite, case: &Case) -> CaseView {
     CaseView {
         scenario_id: id.clone(),
         narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
-        drawing: case.first.as_ref().map(|ran| ran.scenario.network().drawing()).unwrap_or_default(),
+        drawing: case.first.as_ref().map(|ran| ran.scenario.drawing()).unwrap_or_default(),
         before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
         after: moved.map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
         triage: case.triage.clone(),

@@ -14,7 +14,7 @@ use crate::profiles::load_profile;
 use crate::reading::fetching::cached;
 use labels::read_labels;
 use recrash_agents::{Brief, Paraphrase, Rules, account_of};
-use recrash_model::account::Account;
+use recrash_model::labelled::LabelledAccount;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{CrashRecord, RecordRef};
 use recrash_model::{Diagnostic, Location, Seed, Severity};
@@ -138,14 +138,14 @@ pub fn evaluate(request: &EvaluationRequest) -> Result<Evaluation, PipelineError
 fn compare(
     request: &EvaluationRequest,
     found: &[(&Label, &CrashRecord)],
-    accounts: &[Account],
+    accounts: &[LabelledAccount],
     missing: Vec<RecordRef>,
     unread: Vec<(RecordRef, String)>,
 ) -> Evaluation {
     let pairs = || found.iter().map(|(label, _)| *label).zip(accounts);
     let mut halves = Vec::new();
     for half in [Half::HeldOut, Half::Dev] {
-        let of_half: Vec<(&Label, &Account)> = pairs().filter(|(label, _)| label.half == half).collect();
+        let of_half: Vec<(&Label, &LabelledAccount)> = pairs().filter(|(label, _)| label.half == half).collect();
         if of_half.is_empty() {
             continue;
         }
@@ -186,7 +186,7 @@ fn model_accounts(
     profile: &SystemProfile,
     found: &[(&Label, &CrashRecord)],
     unread: &mut Vec<(RecordRef, String)>,
-) -> Result<Vec<Account>, PipelineError> {
+) -> Result<Vec<LabelledAccount>, PipelineError> {
     let store = Store::create(&request.out, write_file_whole)?;
     let cast = Cast { paraphrase: request.agent.clone(), ..Cast::default() };
     let (models, _) = Models::open(&store, &cast, &request.models)?;
@@ -195,7 +195,7 @@ fn model_accounts(
     for (label, record) in found {
         let mut fail = |why: String| {
             unread.push((label.record.clone(), why));
-            Account::default()
+            LabelledAccount::default()
         };
         let Some(template) = record.template() else {
             accounts.push(fail("its columns make no template, which the role needs".into()));
@@ -210,7 +210,7 @@ fn model_accounts(
                 Ok(why) => fail(why),
                 Err(PipelineError::AnswerPending) => {
                     waiting = true;
-                    Account::default()
+                    LabelledAccount::default()
                 }
                 Err(error) => return Err(error),
             },

@@ -1,6 +1,8 @@
 //! What is no stage of a suite: each file is one command's work.
 
+pub(crate) mod accounts;
 pub(crate) mod bench_sim;
+pub(crate) mod check_driver;
 pub(crate) mod doctor;
 pub(crate) mod embed_bench;
 pub(crate) mod evaluation;
@@ -8,5 +10,6 @@ pub(crate) mod exporting;
 pub(crate) mod importing;
 pub(crate) mod parity;
 pub(crate) mod prompting;
+pub(crate) mod reconstructing;
 #[cfg(feature = "parquet")]
 pub(crate) mod sweep;

@@ -175,7 +175,7 @@ pub fn crossing_drawing() -> RoadDrawing {
         junction.extend(corner);
     }
     surfaces.push(junction);
-    RoadDrawing { surfaces, lines }
+    RoadDrawing { surfaces, areas: Vec::new(), lines }
 }
 
 /// The straight road.
@@ -183,6 +183,7 @@ pub fn straight_drawing() -> RoadDrawing {
     let (low, high, end) = (-0.5 * LANE, 3.5 * LANE, 3.0 * APPROACH);
     let across = |y: f64| vec![Vec2::new(0.0, y), Vec2::new(end, y)];
     RoadDrawing {
+        areas: Vec::new(),
         surfaces: vec![vec![Vec2::new(0.0, low), Vec2::new(end, low), Vec2::new(end, high), Vec2::new(0.0, high)]],
         lines: vec![
             line(LineKind::Edge, across(low)),
@@ -206,5 +207,5 @@ pub fn roundabout_drawing() -> RoadDrawing {
     surfaces.push(ring);
     lines.push(line(LineKind::Edge, circle(RING - LANE)));
     lines.push(line(LineKind::LaneDivider, circle(RING)));
-    RoadDrawing { surfaces, lines }
+    RoadDrawing { surfaces, areas: Vec::new(), lines }
 }

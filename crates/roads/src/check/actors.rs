@@ -399,7 +399,7 @@ pub(super) fn placement(
                     remarks.error("scenario.way", format!("{at}.lanes.until_m"), message, "allowed: farther along");
                     return None;
                 }
-                course.follow(&way, from_m, to_m, *reverse, until_m.is_some());
+                course.follow(&way, (from_m, to_m), *against, *reverse, until_m.is_some());
             }
             Leg::Curve { to, reverse } => {
                 let to = match network.place(to) {
@@ -432,7 +432,7 @@ pub(super) fn placement(
 }
 
 /// From the rear axle forward to the centre; who walks turns about its middle. [m]
-pub(crate) fn arm_m(kind: PartnerKind, length_m: f64) -> f64 {
+pub fn arm_m(kind: PartnerKind, length_m: f64) -> f64 {
     let spec = VehicleSpec::of(kind);
     if VehicleSpec::is_nimble(kind) || kind == PartnerKind::FixedObject {
         0.0

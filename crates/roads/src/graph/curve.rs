@@ -38,6 +38,21 @@ impl Stretch {
         }
     }
 
+    /// (s, t) of a point; t is to the right, an arc is continued as a circle. [m]
+    pub fn local(&self, point: Vec2) -> (f64, f64) {
+        let forward = Vec2::from_heading(self.start.heading);
+        let d = point - self.start.position;
+        if self.curvature == 0.0 {
+            return (d.dot(forward), -forward.cross(d));
+        }
+        let radius = 1.0 / self.curvature;
+        let turned = Vec2::from_heading(self.start.heading + 0.5 * self.curvature * self.length_m);
+        // Seen from the circle's centre, the arc's middle and the point.
+        let (middle, out) = (-turned.left() * radius.signum(), d - forward.left() * radius);
+        let angle = math::atan2(middle.cross(out), middle.dot(out)) * radius.signum();
+        (0.5 * self.length_m + angle * radius.abs(), radius.signum() * (out.length() - radius.abs()))
+    }
+
     /// Where it ends.
     pub fn end(&self) -> Pose {
         self.pose(self.length_m)
@@ -267,6 +282,17 @@ mod tests {
     fn end_error(stretches: &[Stretch], to: Pose) -> f64 {
         let end = stretches.last().unwrap().end();
         end.position.distance(to.position).max(math::wrap_angle(end.heading - to.heading).abs())
+    }
+
+    #[test]
+    fn a_point_is_found_where_it_was_put() {
+        for curvature in [0.0, 0.02, -0.05] {
+            let stretch = Stretch { start: at(3.0, -2.0, 40.0), curvature, length_m: 30.0 };
+            for (s, t) in [(0.0, 0.0), (12.0, 3.0), (29.0, -4.0), (33.0, 1.0), (-2.0, 1.0)] {
+                let (found_s, found_t) = stretch.local(beside(stretch.pose(s), t).position);
+                assert!((found_s - s).abs() < 1e-9 && (found_t - t).abs() < 1e-9, "{curvature} {s} {t}");
+            }
+        }
     }
 
     #[test]

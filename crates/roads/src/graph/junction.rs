@@ -1,5 +1,6 @@
 //! Junctions: connections from every lane that leads in to the arms that its turns lead to.
 
+use super::areas::{self, Mouth};
 use super::curve;
 use super::strips::{self, LEFT, RIGHT, StripPiece};
 use super::{Builder, problem};
@@ -48,6 +49,9 @@ impl Builder<'_> {
         if self.arms_overlap(position, &arms) {
             return;
         }
+        let mut mouths: Vec<Mouth> = arms.iter().map(|arm| self.mouth(arm)).collect();
+        mouths.sort_by(|a, b| a.pose.heading.total_cmp(&b.pose.heading));
+        self.mouths.push(mouths);
         for from in 0..arms.len() {
             let ways: Vec<Option<Way>> = (0..arms.len()).map(|to| self.way(position, &arms, from, to)).collect();
             self.connect_driving(position, &arms, from, &ways);
@@ -71,20 +75,30 @@ impl Builder<'_> {
         arms
     }
 
+    /// How wide an arm is where it begins.
+    fn mouth(&self, arm: &Arm) -> Mouth {
+        let (spec, line) = (&self.map.roads[arm.road], &self.network.lines[arm.road]);
+        let (s, u) = if arm.begins { (0.0, 0.0) } else { (line.length_m, 1.0) };
+        let sides = if arm.begins { [RIGHT, LEFT] } else { [LEFT, RIGHT] };
+        let strips = sides.map(|side| strips::side_of(spec, side));
+        Mouth {
+            pose: Pose { heading: math::wrap_angle(arm.mouth.heading), ..arm.mouth },
+            paved: sides.map(|side| areas::paved_edge(spec, line, side, s)),
+            whole: strips.map(|strips| strips::inner_edge_m(strips, strips.len(), u)),
+            sidewalk: strips.map(|strips| strips.last().is_some_and(|strip| strip.kind == StripKind::Sidewalk)),
+        }
+    }
+
     /// Says which arms overlap.
     fn arms_overlap(&mut self, position: usize, arms: &[Arm]) -> bool {
-        let mouth = |arm: &Arm| {
-            let spec = &self.map.roads[arm.road];
-            let u = if arm.begins { 0.0 } else { 1.0 };
-            let width =
-                |side: f64| strips::inner_edge_m(strips::side_of(spec, side), strips::side_of(spec, side).len(), u);
-            let (right, left) = if arm.begins { (width(RIGHT), width(LEFT)) } else { (width(LEFT), width(RIGHT)) };
-            let middle = curve::straight(curve::beside(arm.mouth, 0.5 * (right - left)), MOUTH_M).pose(0.5 * MOUTH_M);
+        let outline = |arm: &Arm| {
+            let Mouth { pose, whole: [right, left], .. } = self.mouth(arm);
+            let middle = curve::straight(curve::beside(pose, 0.5 * (right - left)), MOUTH_M).pose(0.5 * MOUTH_M);
             OrientedBox::new(middle, MOUTH_M, right + left)
         };
-        let boxes: Vec<OrientedBox> = arms.iter().map(mouth).collect();
+        let boxes: Vec<OrientedBox> = arms.iter().map(outline).collect();
         let mut found = false;
-        for (a, b) in (0..arms.len()).flat_map(|a| (0..a).map(move |b| (b, a))) {
+        for (a, b) in (0..arms.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
             if boxes[a].overlaps(&boxes[b]) {
                 found = true;
                 let name = |arm: &Arm| self.map.roads[arm.road].id.clone();

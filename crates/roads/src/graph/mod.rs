@@ -3,21 +3,25 @@
 //! Every centre line is a chain of lines and arcs. A road of several stretches becomes several [`Road`]s one behind the
 //! other, and a connection across a junction a chain of roads with one lane each.
 
+mod areas;
 mod curve;
 mod junction;
 mod place;
 mod strips;
 
+pub(crate) use areas::points;
+pub use areas::{GroundArea, GroundKind};
 pub use curve::Stretch;
 pub(crate) use curve::biarc;
 pub(crate) use place::undirected;
-pub use strips::ReferenceLine;
+pub(crate) use strips::{LEFT, RIGHT, side_of};
+pub use strips::{ReferenceLine, inner_edge_m};
 
 use crate::lane::{Lane, LaneId};
 use crate::network::{NamedRoad, Road, RoadId, RoadNetwork, RoadPart};
 use recrash_model::Diagnostic;
 use recrash_model::scenario::{GraphMap, MapSpec, RoadSpec, StripKind};
-use strips::{LEFT, Parts, RIGHT, StripPiece};
+use strips::{Parts, StripPiece};
 
 /// The most lanes a network may have: a lane of each stretch counts.
 const MOST_LANES: usize = 6000;
@@ -36,8 +40,9 @@ pub(crate) fn build(map: &GraphMap) -> Result<RoadNetwork, Vec<Diagnostic>> {
         followers: Vec::new(),
         named: Vec::new(),
         lines,
+        areas: Vec::new(),
     };
-    let mut builder = Builder { map, network, problems };
+    let mut builder = Builder { map, network, problems, mouths: Vec::new() };
     for (position, spec) in map.roads.iter().enumerate() {
         builder.road(position, spec);
     }
@@ -47,7 +52,11 @@ pub(crate) fn build(map: &GraphMap) -> Result<RoadNetwork, Vec<Diagnostic>> {
             builder.junction(position);
         }
     }
-    if builder.problems.is_empty() { Ok(builder.network) } else { Err(builder.problems) }
+    if !builder.problems.is_empty() {
+        return Err(builder.problems);
+    }
+    builder.network.areas = areas::areas(map, &builder.network, &builder.mouths);
+    Ok(builder.network)
 }
 
 /// A problem with a map.
@@ -59,6 +68,8 @@ struct Builder<'a> {
     map: &'a GraphMap,
     network: RoadNetwork,
     problems: Vec<Diagnostic>,
+    /// Where the arms of each junction begin, anticlockwise.
+    mouths: Vec<Vec<areas::Mouth>>,
 }
 
 impl Builder<'_> {

@@ -56,6 +56,36 @@ impl ReferenceLine {
         Pose::default()
     }
 
+    /// (s, t) of a point, t to the right: on the stretch it is nearest to. [m]
+    pub fn local(&self, point: Vec2) -> (f64, f64) {
+        let mut begins_m = 0.0;
+        let mut best = (f64::INFINITY, 0.0, 0.0);
+        for stretch in &self.stretches {
+            let (s, t) = stretch.local(point);
+            let on = s.clamp(0.0, stretch.length_m);
+            let apart = stretch.pose(on).position.distance(point);
+            if apart < best.0 - 1e-9 {
+                best = (apart, begins_m + on, t);
+            }
+            begins_m += stretch.length_m;
+        }
+        (best.1, best.2)
+    }
+
+    /// The part between two places. [m]
+    pub fn part(&self, from_m: f64, to_m: f64) -> Vec<Stretch> {
+        let mut begins_m = 0.0;
+        let mut parts = Vec::new();
+        for stretch in &self.stretches {
+            let (from, to) = ((from_m - begins_m).max(0.0), (to_m - begins_m).min(stretch.length_m));
+            if to - from > 1e-9 {
+                parts.push(stretch.part(from, to));
+            }
+            begins_m += stretch.length_m;
+        }
+        parts
+    }
+
     /// The same line elsewhere: its beginning at a pose. [m]
     pub(crate) fn moved_to(&self, start: Pose) -> Self {
         let Some(first) = self.stretches.first() else { return self.clone() };
@@ -82,7 +112,7 @@ pub(crate) fn width_m(strip: &Strip, u: f64) -> f64 {
 
 /// How far the inner edge of a strip is from the reference line at a share of the road's length; that of the strip after
 /// the last is the side's width. [m]
-pub(crate) fn inner_edge_m(strips: &[Strip], index: usize, u: f64) -> f64 {
+pub fn inner_edge_m(strips: &[Strip], index: usize, u: f64) -> f64 {
     strips[..index].iter().map(|strip| width_m(strip, u)).sum()
 }
 

@@ -2,7 +2,15 @@
 
 use std::collections::BTreeSet;
 
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 15] = [
+    include_str!("../../src/check/graph.rs"),
+    include_str!("../../src/graph/curve.rs"),
+    include_str!("../../src/graph/junction.rs"),
+    include_str!("../../src/graph/mod.rs"),
+    include_str!("../../src/graph/place.rs"),
+    include_str!("../../src/graph/strips.rs"),
+    include_str!("../../src/check/actors.rs"),
+    include_str!("../../src/check/control.rs"),
     include_str!("../../src/check.rs"),
     include_str!("../../src/check/motion.rs"),
     include_str!("../../src/check/numbers.rs"),

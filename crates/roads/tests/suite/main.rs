@@ -8,6 +8,8 @@ mod docs;
 mod drawing;
 mod fuzz_corpus;
 mod graph;
+mod graph_areas;
+mod graph_check;
 mod metadrive_lanes;
 mod networks;
 mod read;

@@ -4,8 +4,8 @@ use super::super::actors::Actor;
 use super::order::{Met, first};
 use super::zones::zones;
 use super::{Relation, movement, only, read_sentences, reading_of, road, side_from_zones};
-use recrash_model::account::{Account, RoadGroup};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::labelled::{LabelledAccount, RoadGroup};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::Side;
 use recrash_model::profile::SystemProfile;
@@ -15,7 +15,7 @@ use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
 /// Reads a record.
-pub fn account(record: &CrashRecord, profile: &SystemProfile) -> Account {
+pub fn account(record: &CrashRecord, profile: &SystemProfile) -> LabelledAccount {
     let sentences = read_sentences(record);
     let reading = reading_of(record, &sentences);
     let relation = reading.relation.as_ref().map(|(relation, _)| *relation);
@@ -48,7 +48,7 @@ pub fn account(record: &CrashRecord, profile: &SystemProfile) -> Account {
         }
     }
     let sv_movement = movement::movement(&sentences, Actor::Sv, record.sv_movement.known(), relation);
-    let mut account = Account {
+    let mut account = LabelledAccount {
         road: road::road(record, &sentences, relation, sv_movement),
         sv_movement,
         cp_movement: movement::movement(&sentences, Actor::Cp, record.cp_movement.known(), relation),
@@ -86,7 +86,7 @@ fn told_approach(record: &CrashRecord, relation: Option<Relation>) -> Option<App
 }
 
 /// What kind of collision, movements and contact areas make likely where nobody says from where the partner came.
-fn likely_approach(record: &CrashRecord, account: &Account) -> Option<Approach> {
+fn likely_approach(record: &CrashRecord, account: &LabelledAccount) -> Option<Approach> {
     use Movement::{
         Backing, ChangingLanes, EnteringTraffic, LaneDeparture, Merging, Parked, Passing, Stopped, Straight,
     };

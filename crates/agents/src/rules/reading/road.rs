@@ -2,7 +2,7 @@
 
 use super::super::pattern::Pattern;
 use super::{MEETING, Relation, Sentence};
-use recrash_model::account::RoadGroup;
+use recrash_model::labelled::RoadGroup;
 use recrash_model::record::CrashRecord;
 use recrash_model::template::{Movement, RoadType};
 

@@ -3,10 +3,10 @@
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, STEP_S, Termination};
-use recrash_model::scenario::ObstacleKind;
+use recrash_model::scenario::{Aspect, MissionStop, ObstacleKind};
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::Scenario;
+use recrash_roads::{Scenario, StopLine};
 use recrash_sim::{CastMember, Controls, Observation};
 use serde::{Deserialize, Serialize};
 
@@ -87,6 +87,24 @@ pub(crate) struct Step<'a> {
     time_s: f64,
     ego: Ego,
     actors: Vec<Seen<'a>>,
+    /// Signals and signs on the ego's route, in the scenario's order of control.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    signals: Vec<Shown>,
+    /// Stops of its task that lie ahead.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    stops: Vec<MissionStop>,
+    /// Its recorded driver still drives: the answer is not used yet.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    recorded: bool,
+}
+
+/// What stands at a stop line.
+#[derive(Debug, Serialize)]
+struct Shown {
+    /// `green`, `yellow`, `red`, `flashing_red` or `dark`; `sign` of a stop or yield sign.
+    shows: &'static str,
+    /// Along the route, of the ego's centre when its front is at the line. [m]
+    route_s_m: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -207,6 +225,9 @@ impl<'a> Step<'a> {
             step: observation.step,
             time_s: observation.time_s,
             ego: Ego { x, y, heading, speed, vx, vy, route_s_m, route_t_m },
+            signals: observation.lines.iter().map(|line| shown(line, observation.signals)).collect(),
+            stops: observation.stops.to_vec(),
+            recorded: observation.recorded,
             actors: present
                 .map(|(id, (_, state))| {
                     let ActorState { x, y, heading, vx, vy, .. } = *state;
@@ -215,4 +236,16 @@ impl<'a> Step<'a> {
                 .collect(),
         }
     }
+}
+
+fn shown(line: &StopLine, signals: &[Option<Aspect>]) -> Shown {
+    let shows = match signals.get(line.control).copied().flatten() {
+        None => "sign",
+        Some(Aspect::Green) => "green",
+        Some(Aspect::Yellow) => "yellow",
+        Some(Aspect::Red) => "red",
+        Some(Aspect::FlashingRed) => "flashing_red",
+        Some(Aspect::Dark) => "dark",
+    };
+    Shown { shows, route_s_m: line.at_m }
 }

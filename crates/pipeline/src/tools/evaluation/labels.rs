@@ -1,7 +1,7 @@
 //! The labels: read, and checked row by row.
 
 use crate::error::PipelineError;
-use recrash_model::account::Account;
+use recrash_model::labelled::LabelledAccount;
 use recrash_model::record::RecordRef;
 use recrash_model::{Diagnostic, Location, Severity};
 use serde::de::DeserializeOwned;
@@ -64,7 +64,7 @@ pub struct Label {
     /// Who reported it.
     pub entity: String,
     /// What a person who read it says; absent where a careful reader cannot tell.
-    pub account: Account,
+    pub account: LabelledAccount,
 }
 
 /// Reads a label file.
@@ -137,7 +137,7 @@ impl Rows<'_> {
             self.problem(row, Some("report"), format!("{record} is labelled twice"));
         }
         let collision = cell("collision");
-        let account = Account {
+        let account = LabelledAccount {
             road: self.value(row, "road", &cell("road")),
             sv_movement: self.value(row, "sv_movement", &cell("sv_movement")),
             cp_movement: self.value(row, "cp_movement", &cell("cp_movement")),

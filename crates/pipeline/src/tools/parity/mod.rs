@@ -268,7 +268,7 @@ fn page(
         PairView {
             title: pair.name.clone(),
             remark: pair.remark(),
-            drawing: named.scenario.network().drawing(),
+            drawing: named.scenario.drawing(),
             first: view(&ours[position]),
             second: theirs[position].as_ref().ok().map(view),
         }

@@ -1,5 +1,5 @@
-//! Accounts: what a reader (a person who labels, the rules, a language model) says happened in one record, in the terms
-//! of the labels in `eval/labels.csv`.
+//! What a labelled or scored account says of one record: in the terms of the labels in `eval/labels.csv`. What suites are
+//! built from is [`crate::account::Account`].
 
 use crate::metrics::CollisionKind;
 use crate::narrative::FirstMover;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// What happened in one record, as far as it can be told. `sv` is the subject vehicle, `cp` the crash partner.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Account {
+pub struct LabelledAccount {
     /// Where it happened.
     pub road: Option<RoadGroup>,
     /// Movement of the subject vehicle just before the conflict.

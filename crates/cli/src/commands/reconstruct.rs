@@ -1,0 +1,199 @@
+//! `recrash reconstruct`: each incident of crash files as a scenario that shows its own crash.
+
+use crate::options::SourceArgs;
+use crate::output::{self, Output, title};
+use crate::screen::println;
+use crate::table::{Cell, number, table};
+use clap::Args;
+use recrash_model::account::{Account, CrashType, told};
+use recrash_pipeline::{
+    Accounts, Options, PipelineError, Retold, RetoldStanding, fact_shares, read_accounts, reconstruct_accounts,
+    record_outputs, write_reconstructions,
+};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  recrash reconstruct                                      the built-in sample
+  recrash reconstruct archive.csv current.csv              how many crashes can be shown as they are told, by type
+  recrash reconstruct archive.csv --to-dir scenes          the scenarios, a file an incident
+  recrash reconstruct archive.csv --report 30270-7733      one: each told fact, and what the rollout shows
+  recrash simulate scenes/incident-X.json --ego recorded   the crash as it is told
+  recrash simulate scenes/incident-X.json --ego idm        another driver in its place, from the handover on
+
+The ego is the recorded driver. Checked are: contact, kind of partner, zones of both within a step, state of both at the
+contact, the ego's impact speed, turns of both, and from where the partner comes. Not yet checked: who was first, lanes,
+signals, others, doors, and why somebody stood. docs/models/reconstruction.md says how each is checked.";
+
+/// Options of `reconstruct`.
+#[derive(Debug, Clone, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct ReconstructArgs {
+    /// SGO crash files (CSV), as with --records. [default: the built-in sample]
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Where crash records come from.
+    #[command(flatten)]
+    pub source: SourceArgs,
+    /// Show the reconstruction of the incident that this report is of, fact by fact.
+    #[arg(long, value_name = "ID")]
+    pub report: Option<String>,
+    /// Write the scenarios that show every checked fact into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub to_dir: Option<PathBuf>,
+}
+
+impl ReconstructArgs {
+    fn options(&self) -> Options {
+        let mut source = self.source.clone();
+        source.records.extend(self.files.iter().cloned());
+        source.over(Options::default())
+    }
+}
+
+/// Reconstructs crash files and says how much of them is shown.
+///
+/// # Errors
+/// A file cannot be read or written, or the report is in none of them.
+pub fn run(args: &ReconstructArgs, output: Output) -> Result<(), PipelineError> {
+    let options = args.options();
+    let mut read = read_accounts(&options)?;
+    if let Some(id) = &args.report {
+        read.accounts.retain(|account| account.reports.iter().any(|report| report.report_id == *id));
+        if read.accounts.is_empty() {
+            let message = format!("no readable narrative of a report {id} in {} reports", read.reports);
+            return Err(PipelineError::bad_input(message));
+        }
+    }
+    let retold = reconstruct_accounts(&read.accounts, &*output.progress());
+    let mut outputs = record_outputs(&options, None);
+    let files = match &args.to_dir {
+        Some(folder) => write_reconstructions(&retold, folder, &mut outputs)?,
+        None => Vec::new(),
+    };
+    if output.json {
+        output::json(&json(&read, &retold));
+        return Ok(());
+    }
+    if output.quiet {
+        return Ok(());
+    }
+    output::remark_list(&read.diagnostics, "told by --json");
+    if args.report.is_some() {
+        one(&read, &retold);
+    } else {
+        types(&read, &retold);
+        reasons(&retold);
+        facts(&retold);
+    }
+    if let Some(folder) = &args.to_dir {
+        println!("{} scenarios in {}", files.len(), folder.display());
+    }
+    Ok(())
+}
+
+fn json(read: &Accounts, retold: &[Retold]) -> serde_json::Value {
+    let of = |each: &Retold| {
+        let account = &read.accounts[each.account];
+        let facts: Vec<serde_json::Value> = each.result.as_ref().map_or_else(
+            |_| Vec::new(),
+            |made| {
+                let fact = |fact: &recrash_pipeline::ShownFact| {
+                    serde_json::json!({ "fact": fact.kind.label(), "shown": fact.shown, "sentence": fact.sentence })
+                };
+                made.facts.iter().map(fact).collect()
+            },
+        );
+        serde_json::json!({
+            "incident": account.incident,
+            "report": account.report.to_string(),
+            "crash_type": told(&account.crash_type),
+            "standing": each.standing(),
+            "reason": each.reason(),
+            "facts": facts,
+            "assumed": each.result.as_ref().map_or(&[][..], |made| &made.assumed),
+        })
+    };
+    serde_json::json!({
+        "incidents": read.incidents.len(),
+        "accounts": read.accounts.len(),
+        "reconstructions": retold.iter().map(of).collect::<Vec<_>>(),
+        "facts": fact_shares(retold),
+    })
+}
+
+/// Prints, by crash type, how many crashes are shown as they are told.
+fn types(read: &Accounts, retold: &[Retold]) {
+    title("Crashes shown as they are told");
+    let mut table = table(&["type", "incidents", "staged", "every checked fact shown", "share"]);
+    let kind_of = |each: &&Retold| told(&read.accounts[each.account].crash_type);
+    let mut row = |label: &str, of: &[&Retold]| {
+        let staged = of.iter().filter(|each| each.result.is_ok()).count();
+        let shown = of.iter().filter(|each| each.standing() == RetoldStanding::Shown).count();
+        let share = format!("{:.1} %", 100.0 * shown as f64 / of.len().max(1) as f64);
+        let cells = vec![Cell::new(label), number(of.len()), number(staged), number(shown), number(share)];
+        table.add_row(cells);
+    };
+    for kind in CrashType::ALL.into_iter().map(Some).chain([None]) {
+        let of: Vec<&Retold> = retold.iter().filter(|each| kind_of(each) == kind).collect();
+        if !of.is_empty() {
+            row(kind.map_or("not told", CrashType::label), &of);
+        }
+    }
+    row("all", &retold.iter().collect::<Vec<_>>());
+    println!("{table}");
+    println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
+}
+
+/// Prints why crashes are not told.
+fn reasons(retold: &[Retold]) {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for reason in retold.iter().filter_map(Retold::reason) {
+        *counts.entry(reason).or_default() += 1;
+    }
+    if counts.is_empty() {
+        return;
+    }
+    title("Why the others are not");
+    let mut ordered: Vec<(String, usize)> = counts.into_iter().collect();
+    ordered.sort_by_key(|(reason, count)| (std::cmp::Reverse(*count), reason.clone()));
+    let mut table = table(&["reason", "incidents"]);
+    for (reason, count) in ordered {
+        table.add_row(vec![Cell::new(reason), number(count)]);
+    }
+    println!("{table}");
+}
+
+/// Prints the share of told facts that are shown.
+fn facts(retold: &[Retold]) {
+    title("Told facts, over everything that was staged");
+    let mut table = table(&["fact", "told", "shown"]);
+    for share in fact_shares(retold) {
+        table.add_row(vec![Cell::new(share.fact), number(share.told), number(share.shown)]);
+    }
+    println!("{table}");
+}
+
+/// Prints one reconstruction.
+fn one(read: &Accounts, retold: &[Retold]) {
+    for each in retold {
+        let account: &Account = &read.accounts[each.account];
+        let kind = told(&account.crash_type).map_or("not told", CrashType::label);
+        title(&format!("Incident {}, report {}, {kind}", account.incident, account.report));
+        match &each.result {
+            Ok(made) => {
+                let mut table = table(&["fact", "shown", "told, and what the rollout shows"]);
+                for fact in &made.facts {
+                    let shown = if fact.shown { "yes" } else { "no" };
+                    table.add_row(vec![Cell::new(fact.kind.label()), Cell::new(shown), Cell::new(&fact.sentence)]);
+                }
+                println!("{table}");
+                for assumed in &made.assumed {
+                    println!("assumed: {assumed}");
+                }
+            }
+            Err(reason) => println!("{reason}"),
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Severity of a contact: plane impact of two boxes by momentum, and the risk of injury by published curves.
+//!
+//! Formulas, masses, sources and where they are valid: `docs/models/severity.md`.
+
+mod injury;
+
+use crate::contact::contact_geometry;
+use injury::Struck;
+use recrash_model::geometry::{OrientedBox, Vec2};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::rollout::{ActorState, ActorTrack, Rollout};
+use recrash_model::severity::{Severity, Suffered};
+use recrash_model::vehicle::VehicleSpec;
+
+/// One of the two at the time of contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Party {
+    /// Kind, which gives its mass.
+    pub kind: PartnerKind,
+    /// Its box.
+    pub outline: OrientedBox,
+    /// Velocity of its centre over ground. [m/s]
+    pub velocity: Vec2,
+}
+
+impl Party {
+    fn of(track: &ActorTrack, state: &ActorState) -> Self {
+        let outline = OrientedBox::new(state.pose(), track.length_m, track.width_m);
+        Self { kind: track.kind, outline, velocity: state.velocity() }
+    }
+}
+
+/// What the collision does at the place where the two touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// Speed apart over speed together, across the plane of contact: 0 for none that is given back, 1 for all.
+    pub restitution: f64,
+    /// Greatest impulse along the plane of contact over that across it: 0 for smooth sides.
+    pub friction: f64,
+}
+
+impl Default for Impact {
+    /// No restitution, as in the reconstructions that the curves for occupants are fitted to (niehoff2006); friction assumed.
+    fn default() -> Self {
+        Self { restitution: 0.0, friction: 0.5 }
+    }
+}
+
+/// Severity of the ego's first contact with a road user; `None` where there is none.
+pub fn severity_of(rollout: &Rollout) -> Option<Severity> {
+    let (actor, _, ego, other) = rollout.first_ego_contact()?;
+    let (first, second) = (rollout.actors.first()?, rollout.actors.get(actor)?);
+    Some(severity(&Party::of(first, &ego), &Party::of(second, &other), Impact::default()))
+}
+
+/// Severity of a contact.
+pub fn severity(first: &Party, second: &Party, impact: Impact) -> Severity {
+    let relative = first.velocity - second.velocity;
+    let normal = contact_normal(&first.outline, &second.outline, relative);
+    let geometry = contact_geometry(&first.outline, first.velocity, &second.outline, second.velocity);
+    let impulse = impulse(first, second, normal, geometry.point, impact);
+    let pair = injury::Pair {
+        closing_speed_mps: relative.length(),
+        struck: [
+            Struck { kind: first.kind, zone: geometry.ego_zone, speed_mps: first.velocity.length() },
+            Struck { kind: second.kind, zone: geometry.other_zone, speed_mps: second.velocity.length() },
+        ],
+    };
+    Severity {
+        closing_speed_mps: pair.closing_speed_mps,
+        normal_speed_mps: relative.dot(normal).max(0.0),
+        overlap: overlap(&first.outline, &second.outline, normal.left()),
+        first: suffered(first, -impulse, &pair, 0),
+        second: suffered(second, impulse, &pair, 1),
+    }
+}
+
+fn suffered(party: &Party, impulse: Vec2, pair: &injury::Pair, side: usize) -> Suffered {
+    let mass_kg = VehicleSpec::mass_kg(party.kind);
+    let delta_v_mps = mass_kg.map_or(0.0, |mass_kg| impulse.length() / mass_kg);
+    let force_clock = (impulse.length() > 0.0).then(|| clock(&party.outline, -impulse));
+    Suffered {
+        impact_speed_mps: party.velocity.length(),
+        mass_kg,
+        delta_v_mps,
+        force_clock,
+        risks: injury::risks(pair, side, delta_v_mps, force_clock),
+    }
+}
+
+/// The hour to which a direction points, seen from the box.
+fn clock(outline: &OrientedBox, direction: Vec2) -> u8 {
+    let clockwise = math::atan2(-direction.dot(outline.axis.left()), direction.dot(outline.axis));
+    let hours = (clockwise * 6.0 / math::PI).round().rem_euclid(12.0);
+    if hours < 0.5 { 12 } else { hours as u8 }
+}
+
+/// Normal of the plane in which two boxes touch, from the first to the second: of the four sides' directions, the one on which
+/// their shadows came to overlap last. Boxes that do not come nearer on any touch where they overlap least.
+fn contact_normal(first: &OrientedBox, second: &OrientedBox, relative: Vec2) -> Vec2 {
+    let apart = second.centre - first.centre;
+    let directions = [first.axis, first.axis.left(), second.axis, second.axis.left()]
+        .map(|direction| if apart.dot(direction) < 0.0 { -direction } else { direction });
+    let depth = |direction: Vec2| reach(first, direction) + reach(second, direction) - apart.dot(direction);
+    let least = |measure: &dyn Fn(Vec2) -> f64, among: &dyn Fn(Vec2) -> bool| {
+        let candidates = directions.into_iter().filter(|&direction| among(direction));
+        candidates.min_by(|&a, &b| measure(a).total_cmp(&measure(b)))
+    };
+    let since = |direction: Vec2| depth(direction) / relative.dot(direction);
+    let came_last = least(&since, &|direction| relative.dot(direction) > 1e-6);
+    came_last.or_else(|| least(&depth, &|_| true)).unwrap_or(first.axis)
+}
+
+/// Half of a box's shadow in a direction. [m]
+fn reach(outline: &OrientedBox, direction: Vec2) -> f64 {
+    outline.half_length * outline.axis.dot(direction).abs()
+        + outline.half_width * outline.axis.left().dot(direction).abs()
+}
+
+/// Share of the narrower shadow in a direction that both cover.
+fn overlap(first: &OrientedBox, second: &OrientedBox, direction: Vec2) -> f64 {
+    let (own, others) = (reach(first, direction), reach(second, direction));
+    let shared = own + others - (second.centre - first.centre).dot(direction).abs();
+    (shared / (2.0 * own.min(others))).clamp(0.0, 1.0)
+}
+
+/// Impulse on the second one: plane impact with one coefficient each across and along the plane of contact (brach1983). Neither
+/// turns before. [kg m/s]
+fn impulse(first: &Party, second: &Party, normal: Vec2, point: Vec2, impact: Impact) -> Vec2 {
+    let along = normal.left();
+    // What a unit impulse across and along changes of the relative velocity at the point, across, along and crosswise. [1/kg]
+    let [mut across_across, mut along_along, mut across_along] = [0.0; 3];
+    for party in [first, second] {
+        let Some(mass_kg) = VehicleSpec::mass_kg(party.kind) else { continue };
+        let (length, width) = (2.0 * party.outline.half_length, 2.0 * party.outline.half_width);
+        let inertia = mass_kg * (math::sq(length) + math::sq(width)) / 12.0;
+        let arm = point - party.outline.centre;
+        let (turn_across, turn_along) = (arm.cross(normal), arm.cross(along));
+        across_across += 1.0 / mass_kg + math::sq(turn_across) / inertia;
+        along_along += 1.0 / mass_kg + math::sq(turn_along) / inertia;
+        across_along += turn_across * turn_along / inertia;
+    }
+    let relative = first.velocity - second.velocity;
+    let closing = relative.dot(normal);
+    if closing <= 0.0 || across_across == 0.0 {
+        return Vec2::default();
+    }
+    let (wanted_across, wanted_along) = ((1.0 + impact.restitution) * closing, relative.dot(along));
+    let determinant = across_across * along_along - math::sq(across_along);
+    // The two stick together along the plane, unless that takes more than friction gives.
+    let sticking_across = (wanted_across * along_along - wanted_along * across_along) / determinant;
+    let sticking_along = (wanted_along * across_across - wanted_across * across_along) / determinant;
+    if sticking_along.abs() <= impact.friction * sticking_across {
+        return normal * sticking_across + along * sticking_along;
+    }
+    let friction = impact.friction * sticking_along.signum();
+    (normal + along * friction) * (wanted_across / (across_across + friction * across_along))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,150 @@
+//! Which contact of the story is the crash, and with whom.
+
+use crate::frame::{Frame, Story};
+use crate::lexicon::Sense;
+use crate::world::{Actor, SUBJECT, same_kind};
+use recrash_model::account::{Act, KindGroup};
+use recrash_model::record::CrashRecord;
+
+/// The contacts of a story.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Contacts {
+    /// Frame of the contact of the subject vehicle with its partner.
+    pub first: Option<usize>,
+    /// The partner.
+    pub partner: Option<Actor>,
+    /// Contacts of two others before it, by frame.
+    pub earlier: Vec<usize>,
+    /// The subject vehicle was not touched.
+    pub others_only: bool,
+}
+
+impl Contacts {
+    /// Looks through a story.
+    pub fn find(story: &Story, _record: &CrashRecord) -> Self {
+        let frames = &story.frames;
+        let touching: Vec<(usize, Actor)> = frames
+            .iter()
+            .enumerate()
+            .filter(|(_, frame)| frame.is_contact())
+            .filter_map(|(number, frame)| with_whom(story, frame, number).map(|partner| (number, partner)))
+            .collect();
+        let mut contacts = Self::default();
+        if let Some(&(first, partner)) = touching.first() {
+            // A headline that tells the contact is told again, in full, by the story.
+            let early = story.standing.iter().position(|standing| !standing).unwrap_or(0);
+            let again = touching.iter().find(|(number, other)| {
+                let frame = &frames[*number];
+                frames[first].sentence == early
+                    && frame.sentence > early
+                    && (*other == partner || story.world.actors[*other].mentions > 1)
+                    && alike(story, partner, *other)
+            });
+            let (first, partner) = again.copied().unwrap_or((first, partner));
+            contacts.first = Some(first);
+            contacts.partner = Some(partner);
+            contacts.earlier = (0..frames.len())
+                .filter(|&number| between_others(&frames[number]) && comes_first(story, number, first, &touching))
+                .collect();
+            return contacts;
+        }
+        let others = (0..frames.len()).find(|&number| between_others(&frames[number]));
+        contacts.partner = announced(story).or_else(|| only_other(story));
+        if let (Some(number), Some(who)) = (others, others.and_then(|number| frames[number].who)) {
+            let headline = frames
+                .iter()
+                .any(|frame| frame.sense == Sense::Headline && frame.who == Some(SUBJECT) && frame.object.is_some());
+            if !headline {
+                contacts.others_only = true;
+                contacts.partner = Some(who);
+                contacts.first = Some(number);
+            }
+        }
+        if contacts.first.is_none() {
+            let headline = frames.iter().position(|frame| frame.sense == Sense::Headline);
+            // Without a contact of its own, the last thing the partner does is next to it.
+            contacts.first = contacts.partner.and_then(|partner| {
+                frames.iter().rposition(|frame| {
+                    frame.who == Some(partner)
+                        && frame.act().is_some_and(|act| act != Act::Leave)
+                        && Some(frame.sentence) != headline
+                })
+            });
+        }
+        contacts
+    }
+
+    /// Whether somebody touched the partner, or the partner it, before the crash.
+    pub fn touched_partner(&self, story: &Story, actor: Actor) -> bool {
+        self.earlier.iter().any(|&number| {
+            let frame = &story.frames[number];
+            let pair = [frame.who, frame.object];
+            pair.contains(&Some(actor)) && pair.contains(&self.partner)
+        })
+    }
+}
+
+fn alike(story: &Story, one: Actor, other: Actor) -> bool {
+    match (story.world.actors[one].kind, story.world.actors[other].kind) {
+        (Some(one), Some(other)) => same_kind(one, other) || same_kind(other, one),
+        _ => true,
+    }
+}
+
+/// Who touches the subject vehicle in this frame, or is touched by it.
+fn with_whom(story: &Story, frame: &Frame, number: usize) -> Option<Actor> {
+    match (frame.who, frame.object) {
+        (Some(SUBJECT), Some(other)) | (Some(other), Some(SUBJECT)) if other != SUBJECT => Some(other),
+        (Some(SUBJECT), Some(SUBJECT)) => None,
+        (Some(SUBJECT), None) | (None, Some(SUBJECT)) => near(story, number),
+        // "The van made contact": with whom, if not with the subject vehicle.
+        (Some(other), None) if frame.sense != Sense::ReverseContact => {
+            let kind = story.world.actors[other].kind;
+            kind.is_none_or(|kind| kind.group() != KindGroup::Object).then_some(other)
+        }
+        (None, None) if frame.sense == Sense::ContactMade => near(story, number),
+        _ => None,
+    }
+}
+
+fn between_others(frame: &Frame) -> bool {
+    let pair = [frame.who, frame.object];
+    frame.is_contact()
+        && !pair.contains(&Some(SUBJECT))
+        && frame.who.is_some()
+        && frame.object.is_some()
+        && frame.who != frame.object
+}
+
+/// Whether a contact of two others came before the crash: told before it, told as the first, or followed by the crash told
+/// again.
+fn comes_first(story: &Story, number: usize, crash: usize, touching: &[(usize, Actor)]) -> bool {
+    let frame = &story.frames[number];
+    let says_first = story.tokens[frame.first.saturating_sub(2)..frame.end].iter().any(|token| token.text == "first");
+    number < crash || says_first || touching.iter().any(|(touch, _)| *touch > number)
+}
+
+/// Who was named last before this frame, or announced.
+fn near(story: &Story, number: usize) -> Option<Actor> {
+    let named = story.frames[..number].iter().rev().find_map(|frame| {
+        [frame.who, frame.object].into_iter().flatten().find(|&actor| actor != SUBJECT && lively(story, actor))
+    });
+    named.or_else(|| announced(story)).or_else(|| only_other(story))
+}
+
+fn lively(story: &Story, actor: Actor) -> bool {
+    story.world.actors[actor].kind.is_none_or(|kind| kind.group() != KindGroup::Object)
+}
+
+/// Whom the headline names.
+fn announced(story: &Story) -> Option<Actor> {
+    let headline = story.frames.iter().find(|frame| frame.sense == Sense::Headline)?;
+    [headline.object, headline.who].into_iter().flatten().find(|&actor| actor != SUBJECT)
+}
+
+/// The one other road user of the story.
+fn only_other(story: &Story) -> Option<Actor> {
+    let mut others = (1..story.world.actors.len())
+        .filter(|&actor| lively(story, actor) && story.world.actors[actor].towed_by.is_none());
+    others.next()
+}

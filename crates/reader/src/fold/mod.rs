@@ -1,0 +1,335 @@
+//! The account, folded from the event frames and held against the columns.
+
+mod contact;
+mod origin;
+mod party;
+mod place;
+mod types;
+
+use crate::chunk::Piece;
+use crate::frame::{Frame, Own, Story, story};
+use crate::lexicon::{Lexicon, Sense};
+use crate::world::{Actor, SUBJECT};
+use contact::Contacts;
+use recrash_model::account::{
+    ACCOUNT_FORMAT, Account, Act, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker,
+};
+use recrash_model::incident::Incident;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::record::{Coded, CrashRecord, Engagement, Severity};
+use recrash_model::zones::ContactZone;
+
+/// Everything the fold looks at.
+pub(crate) struct Reading<'a> {
+    pub text: &'a str,
+    pub record: &'a CrashRecord,
+    pub story: Story,
+    pub contacts: Contacts,
+}
+
+impl Reading<'_> {
+    /// Words of the narrative, by tokens.
+    pub fn words(&self, first: usize, end: usize) -> Source {
+        let tokens = &self.story.tokens;
+        let (start, end) = (tokens[first].start, tokens[end.max(first + 1) - 1].end);
+        Source::Words { start, end, text: self.text[start..end].to_owned() }
+    }
+
+    /// The words of a frame.
+    pub fn of(&self, frame: &Frame) -> Source {
+        self.words(frame.first, frame.end)
+    }
+
+    /// A fact of these tokens.
+    pub fn told<T>(&self, value: T, first: usize, end: usize) -> Fact<T> {
+        Fact { value, source: self.words(first, end) }
+    }
+
+    /// Whether a frame comes after the contact.
+    pub fn is_after(&self, number: usize) -> bool {
+        let frame = &self.story.frames[number];
+        let Some(contact) = self.contacts.first else { return false };
+        let at = &self.story.frames[contact];
+        if number <= contact || frame.looks_back || frame.aside && frame.sentence == at.sentence {
+            return false;
+        }
+        // "made contact while passing": at the same time.
+        let simultaneous = frame.sentence == at.sentence
+            && frame.joint == Some(crate::chunk::Joint::While)
+            && frame.clause > at.clause;
+        !simultaneous && !(frame.described && frame.sentence == at.sentence)
+    }
+
+    /// Frames of somebody up to the contact.
+    pub fn before(&self, actor: Actor) -> impl Iterator<Item = (usize, &Frame)> {
+        self.story
+            .frames
+            .iter()
+            .enumerate()
+            .filter(move |(number, frame)| frame.who == Some(actor) && !self.is_after(*number))
+    }
+
+    /// Whether somebody did this before the contact.
+    pub fn did(&self, actor: Actor, act: Act) -> bool {
+        self.before(actor).any(|(_, frame)| frame.happened() && frame.act() == Some(act))
+    }
+
+    /// The tokens that belong to a frame: up to the next frame of somebody else, or the end of the sentence.
+    pub fn window(&self, number: usize) -> (usize, usize) {
+        let frames = &self.story.frames;
+        let frame = &frames[number];
+        let sentence = self.story.sentences[frame.sentence];
+        let next = frames[number + 1..]
+            .iter()
+            .find(|next| {
+                next.sentence == frame.sentence
+                    && !next.aside
+                    && next.who.is_some()
+                    && next.who != frame.who
+                    && next.first > frame.first
+            })
+            .map_or(sentence.end, |next| next.first);
+        (frame.first, next.max(frame.end).min(sentence.end))
+    }
+}
+
+/// The account of an incident; `None` where no narrative of it can be read.
+pub fn account(incident: &Incident) -> Option<Account> {
+    let report = incident.spoken()?;
+    let record = &report.record;
+    let text = record.narrative.as_str();
+    let make = own_make(record);
+    let story = story(text, Own { kind: own_kind(record), make: make.as_deref() });
+    let contacts = Contacts::find(&story, record);
+    let reading = Reading { text, record, story, contacts };
+    let mut account = Account {
+        format: ACCOUNT_FORMAT.to_owned(),
+        incident: incident.id.clone(),
+        report: record.id.clone(),
+        reports: incident.references(),
+        text_hash: report.text_hash.clone(),
+        words: words_of(&reading.story),
+        crash_type: None,
+        role: None,
+        striker: None,
+        scenario: None,
+        matrix: None,
+        first_contact: None,
+        place: place::place(&reading),
+        sv: party::party(&reading, SUBJECT),
+        partner: reading.contacts.partner.map(|actor| party::party(&reading, actor)),
+        came_from: None,
+        order: None,
+        driver: driver(&reading),
+        others: others(&reading),
+        door: door(&reading),
+        injury: injury(&reading),
+        damage: None,
+        partner_left: left(&reading),
+        contradictions: Vec::new(),
+    };
+    party::columns(&reading, &mut account);
+    account.came_from = origin::came_from(&reading, &account);
+    party::movements(&reading, &mut account);
+    account.striker = types::striker(&reading, &account);
+    account.crash_type = types::crash_type(&reading, &account);
+    account.role = types::role(&reading, &account);
+    account.order = types::order(&account);
+    account.first_contact = types::first_contact(&reading, &account);
+    account.scenario = types::scenario(&account);
+    account.matrix = types::matrix(&account);
+    account.contradictions.extend(contradictions(&account, record));
+    Some(account)
+}
+
+/// Kind of the subject vehicle, by its make, where that makes trucks only.
+fn own_kind(record: &CrashRecord) -> Option<Kind> {
+    let vehicle = record.vehicle.to_lowercase();
+    let truck = ["peterbilt", "freightliner", "kenworth", "international", "mack", "navistar", "volvo vnl"];
+    if truck.iter().any(|make| vehicle.contains(make)) {
+        return Some(Kind::SemiTrailerTruck);
+    }
+    let shuttle = ["navya", "olli", "easymile", "e-palette", "autonom"];
+    shuttle.iter().any(|make| vehicle.contains(make)).then_some(Kind::Bus)
+}
+
+/// The first word of the company's name, where the vehicle is called by it: "the Volvo".
+fn own_make(record: &CrashRecord) -> Option<String> {
+    let name: String = record.entity.chars().take_while(|c| c.is_alphanumeric()).collect();
+    let name = name.to_lowercase();
+    record.vehicle.to_lowercase().contains(&name).then_some(name).filter(|name| !name.is_empty())
+}
+
+fn words_of(story: &Story) -> u32 {
+    let told = story.sentences.iter().zip(&story.standing).filter(|(_, standing)| !**standing);
+    told.map(|(sentence, _)| (sentence.end - sentence.first) as u32).sum()
+}
+
+/// Who drove at the contact.
+fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
+    let lexicon = Lexicon::get();
+    let story = &reading.story;
+    let took_over = story.frames.iter().enumerate().find(|(number, frame)| {
+        frame.sense == Sense::TakeOver
+            && frame.happened()
+            && frame.who.is_none_or(|who| who == SUBJECT)
+            && !reading.is_after(*number)
+    });
+    let mut system = None;
+    let mut human = None;
+    for sentence in &story.sentences {
+        let words = &story.tokens[sentence.first..sentence.end];
+        let at_impact = words
+            .iter()
+            .take(7)
+            .any(|token| matches!(token.text.as_str(), "impact" | "collision" | "contact" | "incident" | "crash"))
+            && words.first().is_some_and(|token| token.text == "at");
+        let in_time_before =
+            words.iter().any(|token| matches!(token.text.as_str(), "30" | "seconds" | "prior" | "within"));
+        let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
+        let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
+        if at_impact && let Some((value, at, length)) = said_human.or(said_system) {
+            let value = if value == Driver::Human && took_over.is_some() { Driver::HumanTookOver } else { value };
+            return Some(reading.told(value, at, at + length));
+        }
+        if !in_time_before {
+            human = human.or(said_human.filter(|_| {
+                !words.iter().any(|token| {
+                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition" | "into")
+                })
+            }));
+            system = system.or(said_system);
+        }
+    }
+    if let Some((_, frame)) = took_over {
+        return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
+    }
+    if let Some((value, at, length)) = human.or(system) {
+        return Some(reading.told(value, at, at + length));
+    }
+    match reading.record.engagement {
+        Coded::Known(Engagement::Ads | Engagement::Adas) => {
+            Some(Fact::of_column(Driver::System, "Automation System Engaged?"))
+        }
+        Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
+        _ => None,
+    }
+}
+
+/// Everybody else who is in the story up to the contact.
+fn others(reading: &Reading<'_>) -> Vec<Other> {
+    let story = &reading.story;
+    let mut all = Vec::new();
+    for (actor, known) in story.world.actors.iter().enumerate().skip(1) {
+        let (Some(kind), false) =
+            (known.kind, Some(actor) == reading.contacts.partner || known.announced || known.towed_by.is_some())
+        else {
+            continue;
+        };
+        let acts = party::acts(reading, actor);
+        let lively = kind.group() != KindGroup::Object || !acts.is_empty();
+        let (first, end) = known.kind_tokens.unwrap_or((0, 1));
+        if !lively || known.mentions == 0 || kind == Kind::Curb {
+            continue;
+        }
+        all.push(Other {
+            kind: reading.told(kind, first, end),
+            place: origin::place_of(reading, actor),
+            several: known.several,
+            acts,
+            touched_partner: reading.contacts.touched_partner(story, actor),
+        });
+    }
+    all
+}
+
+/// Whether a door took part.
+fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
+    let frames = &reading.story.frames;
+    let open = |piece: &Option<Piece>| piece.as_ref().is_some_and(|piece| piece.door && piece.open);
+    let opened = frames
+        .iter()
+        .enumerate()
+        .find(|(number, frame)| frame.act() == Some(Act::OpenDoor) && frame.happened() && !reading.is_after(*number));
+    let (_, frame) = opened.or_else(|| {
+        frames.iter().enumerate().find(|(_, frame)| frame.is_contact() && (open(&frame.with) || open(&frame.on)))
+    })?;
+    let owner = match frame.act() {
+        Some(Act::OpenDoor) => frame.who,
+        _ if open(&frame.with) => frame.who,
+        _ => frame.object,
+    }?;
+    let value = if owner == SUBJECT { Striker::Sv } else { Striker::Cp };
+    Some(Fact { value, source: reading.of(frame) })
+}
+
+fn injury(reading: &Reading<'_>) -> Option<Fact<bool>> {
+    match reading.record.severity {
+        Coded::Known(Severity::None) => Some(Fact::of_column(false, "Highest Injury Severity Alleged")),
+        Coded::Known(_) => Some(Fact::of_column(true, "Highest Injury Severity Alleged")),
+        _ => None,
+    }
+}
+
+fn left(reading: &Reading<'_>) -> Option<Fact<bool>> {
+    let partner = reading.contacts.partner?;
+    let frame = reading
+        .story
+        .frames
+        .iter()
+        .find(|frame| frame.who == Some(partner) && frame.act() == Some(Act::Leave) && frame.happened())?;
+    Some(Fact { value: true, source: reading.of(frame) })
+}
+
+/// Where the words and the columns cannot both be true.
+fn contradictions(account: &Account, record: &CrashRecord) -> Vec<Contradiction> {
+    let mut all = Vec::new();
+    let mut add =
+        |about: &str, kept: String, against: String| all.push(Contradiction { about: about.to_owned(), kept, against });
+    let zones = [
+        ("sv.zones", Some(&account.sv), &record.sv_zones, "SV Contact Area"),
+        ("partner.zones", account.partner.as_ref(), &record.cp_zones, "CP Contact Area"),
+    ];
+    for (about, party, column, name) in zones {
+        let told: Vec<_> = party
+            .into_iter()
+            .flat_map(|party| &party.zones)
+            .filter(|zone| zone.source.is_told())
+            .map(|zone| zone.value)
+            .collect();
+        let near = told.iter().any(|zone| column.iter().any(|other| steps(*zone, *other) <= 1));
+        if !told.is_empty() && !column.is_empty() && !near {
+            add(about, format!("{told:?} in words"), format!("{column:?} in {name}"));
+        }
+    }
+    if let (Some(state), Some(speed)) = (&account.sv.state, record.sv_speed_mps)
+        && state.source.is_told()
+        && state.value.stands()
+        && speed > 0.9
+    {
+        add("sv.state", format!("{:?} in words", state.value), format!("{speed:.1} m/s in SV Precrash Speed"));
+    }
+    if let (Some(kind), Coded::Known(column)) =
+        (account.partner.as_ref().and_then(|partner| partner.kind.as_ref()), &record.partner)
+        && kind.source.is_told()
+        && kind.value.partner_kind().is_some_and(|told| told != *column && !alike(told, *column))
+    {
+        add("partner.kind", format!("{:?} in words", kind.value), format!("{column:?} in Crash With"));
+    }
+    all
+}
+
+fn alike(one: PartnerKind, other: PartnerKind) -> bool {
+    use PartnerKind as P;
+    let car = |kind| matches!(kind, P::PassengerCar | P::Suv | P::Van | P::PickupTruck | P::FirstResponder);
+    let big = |kind| matches!(kind, P::HeavyTruck | P::Bus | P::PickupTruck | P::Van);
+    (car(one) && car(other))
+        || (big(one) && big(other))
+        || (one == P::Cyclist && other == P::OtherNonMotorist)
+        || (one == P::OtherNonMotorist)
+}
+
+/// Steps between two zones around the box; 8 where there is no such way.
+pub(crate) fn steps(one: ContactZone, other: ContactZone) -> u8 {
+    one.steps_apart(other).unwrap_or(8)
+}

@@ -1,0 +1,437 @@
+//! From where the partner and the others come, seen from the subject vehicle before any turn.
+
+use super::Reading;
+use super::party::has_zone;
+use crate::chunk::Spot;
+use crate::lexicon::{Relation, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{
+    Account, Act, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
+};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone as Z;
+
+/// What is known of where somebody comes from.
+struct Clues<'a> {
+    reading: &'a Reading<'a>,
+    actor: Actor,
+}
+
+impl Clues<'_> {
+    /// Where it is, as told up to the contact.
+    fn relations(&self) -> impl Iterator<Item = Relation> {
+        let contact =
+            self.reading.contacts.first.map_or(usize::MAX, |number| self.reading.story.frames[number].sentence);
+        let known = &self.reading.story.world.actors[self.actor];
+        known.relations.iter().filter(move |(_, sentence)| *sentence <= contact).map(|(relation, _)| *relation)
+    }
+
+    fn any(&self, relation: Relation) -> bool {
+        self.relations().any(|known| known == relation)
+    }
+
+    fn side(&self) -> Option<LeftRight> {
+        self.relations().find_map(|relation| match relation {
+            Relation::Left => Some(LeftRight::Left),
+            Relation::Right => Some(LeftRight::Right),
+            _ => None,
+        })
+    }
+
+    /// Tokens of a frame in which this relation, or any, is told.
+    fn source(&self, wanted: impl Fn(&crate::frame::Frame) -> bool) -> Source {
+        let reading = self.reading;
+        let frame = reading.story.frames.iter().find(|frame| frame.who == Some(self.actor) && wanted(frame));
+        match frame {
+            Some(frame) => {
+                let number = reading.story.frames.iter().position(|other| std::ptr::eq(other, frame)).unwrap_or(0);
+                let (first, end) = reading.window(number);
+                reading.words(first, end)
+            }
+            None => {
+                let sentence = reading.contacts.first.map_or(0, |number| reading.story.frames[number].sentence);
+                let sentence = reading.story.sentences[sentence];
+                reading.words(sentence.first, sentence.end)
+            }
+        }
+    }
+
+    fn has(&self, relation: Relation) -> Source {
+        self.source(|frame| frame.relations.iter().any(|(known, _)| *known == relation))
+    }
+}
+
+/// From where the partner came.
+pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> {
+    let partner = account.partner.as_ref()?;
+    let Some(actor) = reading.contacts.partner else { return by_columns(reading, account) };
+    let kind = partner.kind.as_ref().map(|kind| kind.value);
+    let clues = Clues { reading, actor };
+    if kind.is_some_and(|kind| kind.group() == KindGroup::Object) {
+        return of_thing(&clues, account);
+    }
+    of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account))
+}
+
+fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
+    if clues.reading.did(clues.actor, Act::Fall) && told(&account.partner.as_ref()?.kind) == Some(Kind::TreeBranch) {
+        return Some(Fact { value: Origin::Above, source: clues.source(|frame| frame.act() == Some(Act::Fall)) });
+    }
+    if let Some(side) = clues.side() {
+        return Some(Fact {
+            value: Origin::Beside { side },
+            source: clues.has(if side == LeftRight::Left { Relation::Left } else { Relation::Right }),
+        });
+    }
+    let forward =
+        told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff));
+    let on_road = forward && zone_side(account).is_none() && !account.sv.zones.iter().any(|zone| zone.value.is_rear());
+    (on_road || has_zone(&account.sv, |zone| zone.is_front()))
+        .then(|| Fact::by_rule(Origin::Ahead, "a thing that the front of the subject vehicle touches is ahead of it"))
+}
+
+fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let side = clues.side();
+    let frames = || reading.before(actor).filter(|(_, frame)| frame.happened());
+    let did = |act: Act| frames().any(|(_, frame)| frame.act() == Some(act));
+    let told_as = |value: Origin, source: Source| Some(Fact { value, source });
+    let sv_stands = told(&account.sv.state).is_some_and(ContactState::stands);
+    let parked = frames().any(|(_, frame)| frame.sense == Sense::Parked)
+        || told(&account.partner.as_ref()?.state) == Some(ContactState::Parked);
+    // Out of a stall, a driveway, a lot.
+    if let Some((number, frame)) = frames().find(|(_, frame)| frame.out_of.is_some()) {
+        let (first, end) = reading.window(number);
+        let source = reading.words(first, end);
+        match frame.out_of {
+            Some(Spot::Stall) => return told_as(Origin::Stall { side }, source),
+            Some(Spot::Driveway | Spot::SideStreet) => return told_as(Origin::Driveway { side }, source),
+            Some(Spot::Curb) => return told_as(Origin::Parked { side }, source),
+            Some(Spot::Sidewalk) => return told_as(Origin::Sidewalk { side }, source),
+            None => {}
+        }
+    }
+    let stall = in_stall(reading, actor);
+    if let (true, true, Some(source)) = (
+        parked,
+        did(Act::Turn) || did(Act::PullOut) || did(Act::SetOff) || did(Act::Reverse) || did(Act::Follow),
+        stall,
+    ) {
+        return told_as(Origin::Stall { side }, source);
+    }
+    // It was ahead in one lane, and the subject vehicle left that lane.
+    if let (Some(Relation::Ahead), Some(change)) =
+        (first_relation(clues), account.sv.acts.iter().find(|fact| fact.act == Act::LaneChange && !fact.after_contact))
+        && let Some(moved) = change.side
+        && (did(Act::Swerve) || did(Act::LaneChange) || did(Act::Turn))
+    {
+        return told_as(Origin::Beside { side: moved.other() }, change.source.clone());
+    }
+    let ahead = clues.any(Relation::Ahead);
+    let behind = clues.any(Relation::Behind);
+    if did(Act::Reverse) && !behind {
+        if ahead || lead_of_subject(reading, actor) {
+            return told_as(Origin::Ahead, clues.source(|frame| frame.act() == Some(Act::Reverse)));
+        }
+        if clues.any(Relation::Opposite) {
+            // In the opposing lane, which is on the left.
+            return told_as(
+                side.or(Some(LeftRight::Left)).map_or(Origin::Opposite, |side| Origin::Beside { side }),
+                clues.has(Relation::Opposite),
+            );
+        }
+        if let Some(side) = side {
+            return told_as(Origin::Beside { side }, clues.source(|frame| frame.act() == Some(Act::Reverse)));
+        }
+        if has_zone(&account.sv, |zone| zone.is_front()) {
+            return Some(Fact::by_rule(Origin::Ahead, "who goes backwards into the front was ahead"));
+        }
+    }
+    if parked && did(Act::OpenDoor) {
+        return told_as(
+            Origin::Parked { side: side.or_else(|| zone_side(account)) },
+            clues.source(|frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor)),
+        );
+    }
+    let leaves_curb =
+        did(Act::PullOut) && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
+    if leaves_curb && (parked || !behind_first(clues)) {
+        let source = clues.source(|frame| frame.act() == Some(Act::PullOut));
+        return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
+    }
+    let heading = account.partner.as_ref()?.heading.as_ref();
+    // After a turn that is done, its new direction counts.
+    let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
+    let turn =
+        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
+    let first = first_relation(clues);
+    // Beside it, before it passes or changes lanes.
+    let beside = |side: LeftRight| {
+        let relation = if side == LeftRight::Left { Relation::Left } else { Relation::Right };
+        told_as(Origin::Beside { side }, clues.has(relation))
+    };
+    let moved_over = did(Act::LaneChange) || did(Act::Swerve) || did(Act::Drift);
+    if let Some(side) = lane_side(account).filter(|_| behind && moved_over) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
+    }
+    if behind && !matches!(first, Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Beside)) {
+        return told_as(Origin::Behind, clues.has(Relation::Behind));
+    }
+    if first == Some(Relation::Beside)
+        && let Some(side) = lane_side(account).or_else(|| zone_side(account))
+    {
+        return told_as(Origin::Beside { side }, clues.has(Relation::Beside));
+    }
+    let crossing = did(Act::Cross)
+        || frames().any(|(_, frame)| {
+            matches!(frame.sense, Sense::Act(Act::Enter | Act::RunRed | Act::RunStop))
+                && frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
+        })
+        || frames().any(|(_, frame)| {
+            frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
+                && matches!(frame.sense, Sense::Approach)
+                && !did(Act::Pass)
+        });
+    if let Some(eighths) = turn {
+        let source = Source::Rule { name: "directions of both".to_owned() };
+        let opposite_side = clues.any(Relation::Opposite) || account.partner.as_ref()?.did(Act::WrongWay);
+        match eighths {
+            2 => return told_as(Origin::Cross { side: LeftRight::Left }, heading?.source.clone()),
+            6 => return told_as(Origin::Cross { side: LeftRight::Right }, heading?.source.clone()),
+            3..=5 if !did(Act::Pass) || opposite_side || eighths == 4 => {
+                return told_as(Origin::Opposite, heading?.source.clone());
+            }
+            0 | 1 | 7 => {
+                if ahead {
+                    if let Some(side) = side.or_else(|| lane_side(account)) {
+                        return beside(side);
+                    }
+                    return told_as(Origin::Ahead, clues.has(Relation::Ahead));
+                }
+                if let Some(side) = side.filter(|_| !did(Act::Pass) || first_is_side(clues)) {
+                    return beside(side);
+                }
+                if let Some(side) = lane_side(account).filter(|_| did(Act::Pass)) {
+                    return Some(Fact { value: Origin::Beside { side }, source });
+                }
+                if did(Act::Pass) {
+                    return told_as(Origin::Behind, clues.source(|frame| frame.act() == Some(Act::Pass)));
+                }
+                if let Some(side) = lane_side(account) {
+                    return Some(Fact { value: Origin::Beside { side }, source });
+                }
+                if let Some(side) = changed_from(account) {
+                    return told_as(
+                        Origin::Beside { side },
+                        clues.source(|frame| frame.act() == Some(Act::LaneChange)),
+                    );
+                }
+                if sv_stands || has_zone(&account.sv, |zone| zone.is_rear()) {
+                    return Some(Fact { value: Origin::Behind, source });
+                }
+            }
+            _ => {}
+        }
+    }
+    if clues.any(Relation::Opposite) && !did(Act::Pass) {
+        return told_as(Origin::Opposite, clues.has(Relation::Opposite));
+    }
+    if crossing && let Some(side) = side {
+        return told_as(
+            Origin::Cross { side },
+            clues.has(if side == LeftRight::Left { Relation::Left } else { Relation::Right }),
+        );
+    }
+    if ahead && side.is_none() {
+        return told_as(Origin::Ahead, clues.has(Relation::Ahead));
+    }
+    if let Some(side) = side.filter(|_| first_is_side(clues) || !did(Act::Pass)) {
+        let kind = told(&account.partner.as_ref()?.kind);
+        if kind.is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal)) {
+            return told_as(
+                Origin::Cross { side },
+                clues.has(if side == LeftRight::Left { Relation::Left } else { Relation::Right }),
+            );
+        }
+        return beside(side);
+    }
+    if clues.any(Relation::Opposite) {
+        return told_as(Origin::Opposite, clues.has(Relation::Opposite));
+    }
+    if did(Act::Pass) && passes_subject(reading, actor) {
+        return told_as(Origin::Behind, clues.source(|frame| frame.act() == Some(Act::Pass)));
+    }
+    if let Some(side) = lane_side(account).or_else(|| changed_from(account)) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
+    }
+    // Both turn the same way, side by side.
+    if reading.did(SUBJECT, Act::Turn)
+        && did(Act::Turn)
+        && let Some(side) = zone_side(account)
+    {
+        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched, where both turn"));
+    }
+    if told(&account.sv.state) == Some(ContactState::Reversing)
+        && let Some(side) = zone_side(account)
+    {
+        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched, where it goes backwards"));
+    }
+    // Who turns and is met by one of whom no direction is told: the side that was touched tells it.
+    let turning =
+        super::types::turning(&account.sv) && !super::types::turning(account.partner.as_ref()?) && !did(Act::Pass);
+    if let (true, Some(side)) = (turning && !has_zone(&account.sv, |zone| zone.is_rear()), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));
+    }
+    let rear_ended = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);
+    if rear_ended {
+        let by_subject = reading.contacts.first.is_some_and(|number| reading.story.frames[number].who == Some(SUBJECT));
+        return Some(Fact::by_rule(if by_subject { Origin::Ahead } else { Origin::Behind }, "front on rear"));
+    }
+    None
+}
+
+/// Who moves over without a side told comes from the side that was touched; an animal in the way is ahead.
+fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
+    let partner = account.partner.as_ref()?;
+    let moved_over = [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass].into_iter().any(|act| partner.did(act));
+    if let (true, Some(side)) = (moved_over || clues.any(Relation::Beside), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
+    }
+    let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
+    (animal && has_zone(&account.sv, |zone| zone.is_front()))
+        .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
+}
+
+/// The relation told first.
+fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
+    clues.relations().find(|relation| *relation != Relation::Same)
+}
+
+fn first_is_side(clues: &Clues<'_>) -> bool {
+    matches!(first_relation(clues), Some(Relation::Left | Relation::Right))
+}
+
+fn behind_first(clues: &Clues<'_>) -> bool {
+    first_relation(clues) == Some(Relation::Behind)
+}
+
+fn passes_subject(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading
+        .before(actor)
+        .any(|(_, frame)| frame.act() == Some(Act::Pass) && frame.object.is_none_or(|object| object == SUBJECT))
+}
+
+/// The subject vehicle stood behind it, or followed it.
+fn lead_of_subject(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading.before(SUBJECT).any(|(_, frame)| {
+        frame.relations.contains(&(Relation::Behind, Some(actor)))
+            || (frame.sense == Sense::Yield && frame.object == Some(actor))
+    })
+}
+
+/// The words that place somebody in a stall.
+fn in_stall(reading: &Reading<'_>, actor: Actor) -> Option<Source> {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).find_map(|(number, frame)| {
+        let (first, end) = reading.window(number);
+        let at = (first..end).find(|&at| {
+            matches!(tokens[at].text.as_str(), "stall" | "stalls" | "space" | "spot" | "carport" | "spaces")
+        })?;
+        (frame.sense == Sense::Parked || frame.act() == Some(Act::Hold) || frame.sense == Sense::Face)
+            .then(|| reading.words(frame.first, at + 1))
+    })
+}
+
+/// Which side of the subject vehicle was touched.
+fn zone_side(account: &Account) -> Option<LeftRight> {
+    let left = has_zone(&account.sv, |zone| matches!(zone, Z::FrontLeft | Z::Left | Z::RearLeft));
+    let right = has_zone(&account.sv, |zone| matches!(zone, Z::FrontRight | Z::Right | Z::RearRight));
+    match (left, right) {
+        (true, false) => Some(LeftRight::Left),
+        (false, true) => Some(LeftRight::Right),
+        _ => None,
+    }
+}
+
+/// On which side the partner's lane lies.
+fn lane_side(account: &Account) -> Option<LeftRight> {
+    let place = |lane: LaneWord| match lane {
+        LaneWord::LeftTurn => Some(0),
+        LaneWord::Left => Some(1),
+        LaneWord::Center => Some(2),
+        LaneWord::Right => Some(3),
+        LaneWord::RightTurn | LaneWord::Bus => Some(4),
+        LaneWord::Bike | LaneWord::Curb | LaneWord::Shoulder => Some(5),
+        LaneWord::Opposing => None,
+    };
+    let own = place(account.sv.lane.as_ref()?.value)?;
+    let other = place(account.partner.as_ref()?.lane.as_ref()?.value)?;
+    match other - own {
+        0 => None,
+        difference if difference < 0 => Some(LeftRight::Left),
+        _ => Some(LeftRight::Right),
+    }
+}
+
+/// The side from which the partner changed lanes towards the subject vehicle.
+fn changed_from(account: &Account) -> Option<LeftRight> {
+    let partner = account.partner.as_ref()?;
+    let change = partner
+        .acts
+        .iter()
+        .find(|fact| matches!(fact.act, Act::LaneChange | Act::Swerve | Act::Drift) && !fact.after_contact)?;
+    let from = change.side?.other();
+    // Whoever moves over towards it touches it on that side.
+    (zone_side(account) == Some(from)).then_some(from)
+}
+
+/// Where the words say nothing: by zones and movement columns, which tell front on rear and little else.
+fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> {
+    let partner = account.partner.as_ref()?;
+    let sv_rear = has_zone(&account.sv, |zone| zone.is_rear());
+    let sv_front = has_zone(&account.sv, |zone| zone.is_front());
+    let cp_front = has_zone(partner, |zone| zone.is_front());
+    let cp_rear = has_zone(partner, |zone| zone.is_rear());
+    let rule = |value: Origin| Some(Fact::by_rule(value, "zones of both and the movement columns"));
+    if told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Object) {
+        return None;
+    }
+    match reading.record.cp_movement.known() {
+        Some(Movement::Backing) if sv_front => return rule(Origin::Ahead),
+        Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay) if sv_front && cp_front => {
+            return rule(Origin::Opposite);
+        }
+        Some(Movement::Passing) => return rule(Origin::Behind),
+        _ => {}
+    }
+    if sv_rear && cp_front && !sv_front {
+        return rule(Origin::Behind);
+    }
+    // Told to touch its rear, and nothing told of the partner's own side or way.
+    let into_rear = sv_rear
+        && partner.zones.is_empty()
+        && account.sv.zones.iter().all(|zone| zone.value.is_rear() && zone.source.is_told());
+    let turns = [Act::Turn, Act::Reverse, Act::LaneChange, Act::Cross].into_iter().any(|act| partner.did(act));
+    if into_rear && !turns && told(&account.sv.state) != Some(ContactState::Reversing) {
+        return rule(Origin::Behind);
+    }
+    if sv_front && cp_rear && !sv_rear {
+        return rule(Origin::Ahead);
+    }
+    None
+}
+
+/// Where somebody else is.
+pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
+    let clues = Clues { reading, actor };
+    let relation = first_relation(&clues)?;
+    let value = match relation {
+        Relation::Behind => Origin::Behind,
+        Relation::Ahead => Origin::Ahead,
+        Relation::Left => Origin::Beside { side: LeftRight::Left },
+        Relation::Right => Origin::Beside { side: LeftRight::Right },
+        Relation::Opposite => Origin::Opposite,
+        Relation::Same | Relation::Beside => return None,
+    };
+    Some(Fact { value, source: clues.has(relation) })
+}

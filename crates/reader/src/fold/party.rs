@@ -1,0 +1,709 @@
+//! One side: kind, acts, state at the contact, reasons to stand, lane, direction, zones, speeds, signals.
+
+use super::Reading;
+use crate::frame::{Frame, sided, zone_of};
+use crate::lexicon::{Lexicon, Progress, Sense};
+use crate::token::TokenKind;
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, Control, ControlDevice, Fact, Kind, KindGroup, LaneWord, LeftRight, Obeyed,
+    Party, SignalState, Source, Speed, SpeedMeaning, StandReason, Standing, told,
+};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::record::{Coded, MPS_PER_MPH};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// What the words tell of one side.
+pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
+    let known = &reading.story.world.actors[actor];
+    let (state, standing) = state(reading, actor);
+    let kind = match (known.kind, known.kind_tokens) {
+        (Some(kind), Some((first, end))) => Some(reading.told(kind, first, end)),
+        (Some(kind), None) => Some(Fact::of_column(kind, "Make")),
+        _ => None,
+    };
+    let mut party = Party {
+        kind,
+        movement: None,
+        state,
+        standing,
+        reasons: Vec::new(),
+        acts: acts(reading, actor),
+        heading: known.heading.map(|(compass, first, end)| reading.told(compass, first, end)),
+        heading_after: after(reading, actor),
+        lane: known.lane.map(|(lane, first, end)| reading.told(lane, first, end)),
+        speeds: speeds(reading, actor),
+        zones: zones(reading, actor),
+        controls: controls(reading, actor),
+    };
+    if told(&party.state).is_some_and(ContactState::stands) || (party.state.is_none() && actor == SUBJECT) {
+        party.reasons = reasons(reading, actor);
+    }
+    party
+}
+
+fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<recrash_model::account::Compass>> {
+    let (_, frame) =
+        reading.before(actor).find(|(_, frame)| frame.onto && frame.heading.is_some() && frame.happened())?;
+    frame.heading.map(|(compass, first, end)| reading.told(compass, first, end))
+}
+
+/// What somebody did, in order; the same act told twice in a row once.
+pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
+    let mut all: Vec<ActFact> = Vec::new();
+    for (number, frame) in reading.story.frames.iter().enumerate() {
+        let thrown = reading.contacts.earlier.contains(&number)
+            && frame.object == Some(actor)
+            && Some(actor) == reading.contacts.partner;
+        let pushed = thrown || (frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened());
+        if frame.who != Some(actor) && !pushed {
+            continue;
+        }
+        let Some(act) = act_of(reading, number, frame, pushed) else { continue };
+        let side = if sided(act) { frame.side.or_else(|| to_lane(reading, actor, frame, act)) } else { None };
+        let after_contact = reading.is_after(number);
+        let fact = ActFact {
+            act,
+            side,
+            step: number as u32,
+            after_contact,
+            begun: frame.progress == Progress::Tried,
+            source: reading.of(frame),
+        };
+        let in_passing = frame.aside && all.iter().any(|known| known.act == act);
+        match all.last_mut() {
+            Some(last)
+                if last.act == act
+                    && last.after_contact == after_contact
+                    && (last.side == side || side.is_none() || last.side.is_none()) =>
+            {
+                last.side = last.side.or(side);
+                // The last word on it is that it was done.
+                let done =
+                    matches!(&fact.source, Source::Words { text, .. } if text.to_lowercase().starts_with("complet"));
+                if done {
+                    last.source = fact.source;
+                }
+            }
+            _ if in_passing => {}
+            _ => all.push(fact),
+        }
+    }
+    all
+}
+
+fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> Option<Act> {
+    if pushed {
+        return Some(Act::Pushed);
+    }
+    if frame.negated {
+        return not_done(reading, number, frame);
+    }
+    if frame.progress == Progress::Wished {
+        return None;
+    }
+    let act = frame.act()?;
+    let headline =
+        reading.story.frames.iter().any(|other| other.sentence == frame.sentence && other.sense == Sense::Headline);
+    if headline && act == Act::Follow {
+        return None;
+    }
+    // Who goes on from a standstill sets off.
+    let stood = || {
+        let before = reading.before(frame.who?).take_while(|(other, _)| *other < number);
+        let last =
+            before.filter(|(_, frame)| frame.happened() && !frame.aside).filter_map(|(_, frame)| frame.act()).last()?;
+        matches!(last, Act::Hold | Act::Stop).then_some(())
+    };
+    let keeps = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
+    let goes_on = keeps.starts_with("continu") || keeps.starts_with("remain");
+    match act {
+        Act::Follow if !goes_on && frame.sense != Sense::Approach && stood().is_some() => Some(Act::SetOff),
+        // "passed through the junction" passes nobody.
+        Act::Pass
+            if frame.object.is_some_and(|object| {
+                reading.story.world.actors[object].kind.is_some_and(|kind| kind.group() == KindGroup::Object)
+            }) =>
+        {
+            Some(Act::Follow)
+        }
+        Act::Pass if frame.who == Some(SUBJECT) && frame.object.is_none() && frame.side.is_none() => Some(Act::Follow),
+        _ => Some(act),
+    }
+}
+
+/// What somebody did who did not stop or yield where it should.
+fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> Option<Act> {
+    let stops = matches!(frame.act(), Some(Act::Stop | Act::Slow)) || frame.sense == Sense::Yield;
+    if !stops || frame.aside {
+        return None;
+    }
+    let (first, end) = reading.window(number);
+    let named = Lexicon::get().features(&reading.story.tokens[first..end]);
+    use recrash_model::account::RoadFeature as F;
+    if named.iter().any(|(feature, ..)| *feature == F::StopSign) {
+        Some(Act::RunStop)
+    } else if named.iter().any(|(feature, ..)| *feature == F::Signal) {
+        Some(Act::RunRed)
+    } else if frame.sense == Sense::Yield {
+        Some(Act::FailToYield)
+    } else {
+        None
+    }
+}
+
+/// The side of a lane change that is told by lanes: from the left lane into the centre.
+fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
+    if !matches!(act, Act::LaneChange | Act::Drift) {
+        return None;
+    }
+    let own = reading.story.world.actors[actor].lane.map(|(lane, ..)| lane);
+    let into = frame.lane.map(|(lane, ..)| lane);
+    match (own, into) {
+        (Some(LaneWord::Left), Some(LaneWord::Center)) => Some(LeftRight::Right),
+        (Some(LaneWord::Right), Some(LaneWord::Center)) => Some(LeftRight::Left),
+        (_, Some(LaneWord::Opposing)) => Some(LeftRight::Left),
+        _ => None,
+    }
+}
+
+/// State at the contact, and how long it had stood.
+fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Option<Fact<Standing>>) {
+    let mut state: Option<(ContactState, Source)> = None;
+    let mut standing: Option<(Standing, Source)> = None;
+    let contact = reading.contacts.first;
+    let sentence = contact.map(|contact| reading.story.frames[contact].sentence);
+    let mut moved = false;
+    let mut since = (usize::MAX, 0);
+    for (number, frame) in reading.story.frames.iter().enumerate() {
+        if frame.who != Some(actor) || !frame.happened() || reading.is_after(number) {
+            continue;
+        }
+        let Some(act) = frame.act().filter(|act| *act != Act::OpenDoor && *act != Act::Leave) else { continue };
+        if frame.aside && Some(frame.sentence) != sentence && state.is_some() {
+            continue;
+        }
+        let headline =
+            reading.story.frames.iter().any(|other| other.sentence == frame.sentence && other.sense == Sense::Headline);
+        if headline && act == Act::Follow {
+            continue;
+        }
+        let stands = state.as_ref().is_some_and(|(state, _)| state.stands());
+        let parked = frame.sense == Sense::Parked
+            || state.as_ref().is_some_and(|(state, _)| *state == ContactState::Parked && act == Act::Hold);
+        let text = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
+        let next = match act {
+            Act::Hold | Act::Stop if parked => ContactState::Parked,
+            Act::Hold | Act::Stop => ContactState::Stopped,
+            Act::Park if text.starts_with("parked") => ContactState::Parked,
+            Act::SetOff => ContactState::SettingOff,
+            Act::Reverse => ContactState::Reversing,
+            Act::Follow | Act::Enter if stands && text.starts_with("continu") => continue,
+            // "was stopped at a light, heading west".
+            Act::Follow
+                if stands && frame.form == crate::lexicon::Form::Ing && since == (frame.sentence, frame.clause) =>
+            {
+                continue;
+            }
+            Act::Follow if stands => ContactState::SettingOff,
+            Act::Accelerate if state.as_ref().is_some_and(|(state, _)| *state == ContactState::SettingOff) => {
+                ContactState::SettingOff
+            }
+            Act::Pushed | Act::Fall => continue,
+            _ => ContactState::Moving,
+        };
+        since = (frame.sentence, frame.clause);
+        if next.stands() {
+            let stopping = text.starts_with("slowing")
+                || text.starts_with("stopping")
+                || text.starts_with("coming to")
+                || text.starts_with("braking");
+            let how = if stopping {
+                Standing::Stopping
+            } else if moved || act == Act::Stop {
+                Standing::CameToStop
+            } else {
+                Standing::FromTheStart
+            };
+            let was_stopping = standing.as_ref().is_some_and(|(how, _)| *how == Standing::Stopping);
+            if how == Standing::Stopping || !stands || standing.is_none() {
+                standing = Some((how, reading.of(frame)));
+            } else if was_stopping {
+                standing = Some((Standing::CameToStop, reading.of(frame)));
+            }
+        } else {
+            moved = true;
+            standing = None;
+        }
+        state = Some((next, reading.of(frame)));
+    }
+    let state = state.map(|(value, source)| Fact { value, source });
+    (state, standing.map(|(value, source)| Fact { value, source }))
+}
+
+/// Why somebody stood: named with the last thing that made it stand.
+fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReason>> {
+    let lexicon = Lexicon::get();
+    let stands = |frame: &Frame| {
+        matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Slow | Act::PullOver))
+            || matches!(frame.sense, Sense::Yield | Sense::Parked)
+    };
+    let mut all: Vec<Fact<StandReason>> = Vec::new();
+    let mut since = 0;
+    for (number, frame) in reading.before(actor) {
+        let moves = frame.happened()
+            && matches!(
+                frame.act(),
+                Some(Act::SetOff | Act::Enter | Act::Turn | Act::Reverse | Act::LaneChange | Act::Follow | Act::Pass)
+            );
+        if moves && !frame.aside && number > since && !all.is_empty() {
+            all.clear();
+        }
+        let waits = stands(frame) || (frame.progress == Progress::Wished && !all.is_empty());
+        if !waits || frame.negated {
+            continue;
+        }
+        since = number;
+        let (first, end) = reading.window(number);
+        let tokens = &reading.story.tokens;
+        // A reason may stand before: "due to a queue, it stopped".
+        let sentence = reading.story.sentences[frame.sentence];
+        let begins = if all.is_empty() && !frame.aside { lead_in(reading, number).unwrap_or(first) } else { first };
+        let end = end.min(sentence.end);
+        for (reason, at, length) in lexicon.reasons(&tokens[begins..end]) {
+            if !all.iter().any(|known| known.value == reason) {
+                all.push(reading.told(reason, begins + at, begins + at + length));
+            }
+        }
+        let behind = frame.relations.iter().find_map(|(relation, to)| {
+            let to = (*to).filter(|to| *to != SUBJECT)?;
+            (*relation == crate::lexicon::Relation::Behind).then_some(to)
+        });
+        let yields_to = match frame.sense {
+            Sense::Yield => frame.object,
+            Sense::Act(Act::Stop | Act::Slow | Act::Hold) => frame.object,
+            _ => None,
+        };
+        if let Some(lead) = behind.or(yields_to)
+            && reading.story.world.actors[lead].kind.is_some_and(Kind::is_vehicle)
+        {
+            let ahead = behind.is_some() || stands_still(reading, lead, number);
+            let parked = reading.before(lead).any(|(_, frame)| frame.sense == Sense::Parked);
+            let several = reading.story.world.actors[lead].several;
+            let reason = if parked { StandReason::BlockedPath } else { StandReason::LeadVehicle };
+            if ahead && !several && !all.iter().any(|known| known.value == reason) {
+                all.push(Fact { value: reason, source: reading.of(frame) });
+            }
+        }
+    }
+    all.sort_by_key(|reason| rank(reason.value));
+    all.truncate(2);
+    all
+}
+
+fn stands_still(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
+    reading
+        .story
+        .frames
+        .iter()
+        .skip(number)
+        .take(3)
+        .any(|frame| frame.who == Some(actor) && matches!(frame.act(), Some(Act::Hold | Act::Stop)))
+}
+
+/// Where the clause of a frame begins, where a reason leads it in.
+fn lead_in(reading: &Reading<'_>, number: usize) -> Option<usize> {
+    let frame = &reading.story.frames[number];
+    let sentence = reading.story.sentences[frame.sentence];
+    let before =
+        reading.story.frames[..number].iter().rev().find(|other| other.sentence == frame.sentence && !other.aside);
+    Some(before.map_or(sentence.first, |before| before.end)).filter(|first| *first < frame.first)
+}
+
+/// Which of several reasons says most.
+fn rank(reason: StandReason) -> u8 {
+    match reason {
+        StandReason::PickupDropoff => 0,
+        StandReason::BlockedJunction => 1,
+        StandReason::Animal => 2,
+        StandReason::EmergencyVehicle => 3,
+        StandReason::Barrier => 4,
+        StandReason::Queue => 5,
+        StandReason::Pedestrian => 6,
+        StandReason::RedLight => 7,
+        StandReason::LeadVehicle => 8,
+        StandReason::BlockedPath => 9,
+        StandReason::Yield => 10,
+        StandReason::StopSign => 11,
+        StandReason::Parked => 12,
+    }
+}
+
+/// Zones of the contact that is the crash.
+fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
+    let Some(first) = reading.contacts.first else { return Vec::new() };
+    let partner = reading.contacts.partner;
+    let mut all: Vec<Fact<ContactZone>> = Vec::new();
+    for (number, frame) in reading.story.frames.iter().enumerate().skip(first) {
+        let pair = [frame.who, frame.object];
+        let ours =
+            frame.is_contact() && pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None));
+        let same = number == first || (all.is_empty() && ours);
+        if !same {
+            continue;
+        }
+        let piece = if frame.who == Some(actor) {
+            frame.with.as_ref()
+        } else if frame.object == Some(actor) || frame.object.is_none() || frame.who.is_none() {
+            frame.on.as_ref()
+        } else {
+            None
+        };
+        let behind_run = frame.sense == crate::lexicon::Sense::RearEnd;
+        let zone = piece.and_then(zone_of).or_else(|| {
+            let struck = frame.object == Some(actor)
+                || (frame.object.is_none() && frame.who.is_some() && frame.who != Some(actor));
+            match (behind_run, struck) {
+                (true, true) => Some(ContactZone::Rear),
+                (true, false) => Some(ContactZone::Front),
+                _ => None,
+            }
+        });
+        let from_behind = frame.is_contact()
+            && frame.relations.iter().any(|(relation, _)| *relation == crate::lexicon::Relation::Behind);
+        let zone = zone.or_else(|| (from_behind && frame.object == Some(actor)).then_some(ContactZone::Rear));
+        if let Some(zone) = zone {
+            all.push(Fact { value: zone, source: reading.of(frame) });
+        }
+    }
+    all
+}
+
+/// Signals and signs in front of somebody.
+fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
+    let mut all: Vec<Fact<Control>> = Vec::new();
+    let tokens = &reading.story.tokens;
+    let mut turned_green = None;
+    for (number, frame) in reading.story.frames.iter().enumerate() {
+        let changes = match frame.sense {
+            Sense::LightGreen => Some(SignalState::TurnedGreen),
+            Sense::LightRed => Some(SignalState::TurnedRed),
+            Sense::LightYellow => Some(SignalState::Yellow),
+            _ => None,
+        };
+        if let Some(state) = changes.filter(|_| !reading.is_after(number)) {
+            turned_green = Some((state, frame.first, frame.end));
+            if let Some(control) = all.iter_mut().find(|control| control.value.device == ControlDevice::Signal) {
+                control.value.state = Some(state);
+            }
+        }
+        if frame.who != Some(actor) || reading.is_after(number) || frame.aside {
+            continue;
+        }
+        let (first, end) = reading.window(number);
+        let ran = frame.act().filter(|_| frame.happened());
+        let passed = not_done(reading, number, frame);
+        let ran = if frame.negated { passed } else { ran };
+        for at in first..end {
+            let words: Vec<&str> = tokens[at..end.min(at + 4)].iter().map(|token| token.text.as_str()).collect();
+            let found = match words.as_slice() {
+                ["red", "light" | "signal" | "traffic", ..] | ["red", "left" | "right", "turn", ..] => {
+                    Some((ControlDevice::Signal, Some(SignalState::Red), 2))
+                }
+                ["green", "light" | "signal" | "traffic" | "arrow", ..] => {
+                    Some((ControlDevice::Signal, Some(SignalState::Green), 2))
+                }
+                ["yellow", "light" | "signal", ..] => Some((ControlDevice::Signal, Some(SignalState::Yellow), 2)),
+                ["traffic", "light" | "signal", ..] => Some((ControlDevice::Signal, None, 2)),
+                ["stop", "sign" | "signs", ..] => Some((ControlDevice::StopSign, None, 2)),
+                ["four" | "4" | "three" | "3" | "all", "way", "stop", ..] => Some((ControlDevice::StopSign, None, 3)),
+                ["yield", "sign", ..] => Some((ControlDevice::YieldSign, None, 2)),
+                _ => None,
+            };
+            let Some((device, state, length)) = found else { continue };
+            let broken = match device {
+                ControlDevice::Signal => ran == Some(Act::RunRed),
+                _ => ran == Some(Act::RunStop),
+            };
+            let obeyed = if broken {
+                Some(Obeyed::No)
+            } else if ran.is_some_and(|act| matches!(act, Act::Stop | Act::Hold)) && state != Some(SignalState::Green) {
+                Some(Obeyed::Yes)
+            } else {
+                None
+            };
+            match all.iter_mut().find(|control| control.value.device == device) {
+                Some(known) => {
+                    known.value.state = known.value.state.or(state);
+                    known.value.obeyed = if broken { Some(Obeyed::No) } else { known.value.obeyed.or(obeyed) };
+                }
+                None => all.push(reading.told(Control { device, state, obeyed }, at, at + length)),
+            }
+        }
+    }
+    if let (Some((state, first, end)), true) =
+        (turned_green, actor == SUBJECT && all.iter().all(|control| control.value.device != ControlDevice::Signal))
+    {
+        all.push(reading.told(Control { device: ControlDevice::Signal, state: Some(state), obeyed: None }, first, end));
+    }
+    all
+}
+
+/// Speeds that the words tell of somebody.
+fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
+    let tokens = &reading.story.tokens;
+    let mut all = Vec::new();
+    for (at, token) in tokens.iter().enumerate() {
+        let joined = token.text.strip_suffix("mph").and_then(|number| number.parse::<f64>().ok());
+        let unit = tokens.get(at + 1).map_or("", |next| next.text.as_str());
+        let apart = token
+            .text
+            .parse::<f64>()
+            .ok()
+            .filter(|_| token.kind == TokenKind::Number && matches!(unit, "mph" | "miles"));
+        let Some(mph) = joined.or(apart).filter(|mph| *mph < 200.0) else { continue };
+        let last_frame = reading
+            .story
+            .frames
+            .iter()
+            .enumerate()
+            .rev()
+            .find(|(_, frame)| frame.first < at && !frame.aside && frame.who.is_some());
+        let Some((number, frame)) = last_frame else { continue };
+        let sentence = reading.story.sentences[frame.sentence];
+        if frame.who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || reading.is_after(number) {
+            continue;
+        }
+        let near: Vec<&str> =
+            tokens[at.saturating_sub(4)..tokens.len().min(at + 5)].iter().map(|token| token.text.as_str()).collect();
+        let limit = near.iter().any(|word| matches!(*word, "zone" | "limit" | "posted"));
+        let meaning = if limit {
+            SpeedMeaning::Posted
+        } else if frame.is_contact() {
+            SpeedMeaning::Impact
+        } else {
+            SpeedMeaning::Approach
+        };
+        all.push(reading.told(Speed { mps: mph * MPS_PER_MPH, meaning }, at, at + 2));
+    }
+    all
+}
+
+/// What only the columns tell, and the column speed; words win.
+pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
+    let record = reading.record;
+    if let Some(mps) = record.sv_speed_mps {
+        let speed = Speed { mps, meaning: SpeedMeaning::Impact };
+        account.sv.speeds.push(Fact::of_column(speed, "SV Precrash Speed (MPH)"));
+    }
+    sv_state(reading, account);
+    if account.sv.zones.is_empty() {
+        account.sv.zones = record.sv_zones.iter().map(|zone| Fact::of_column(*zone, "SV Contact Area")).collect();
+    }
+    let partner_told = account.partner.is_some()
+        || !matches!(record.partner, Coded::Blank | Coded::Unknown)
+        || !record.cp_zones.is_empty();
+    if !partner_told {
+        return;
+    }
+    let partner = account.partner.get_or_insert_with(Party::default);
+    if partner.zones.is_empty() {
+        partner.zones = record.cp_zones.iter().map(|zone| Fact::of_column(*zone, "CP Contact Area")).collect();
+    }
+    let column = match record.partner {
+        Coded::Known(kind) => Some(kind_of(kind)),
+        _ => None,
+    };
+    let vague = partner.kind.as_ref().is_none_or(|kind| kind.value == Kind::Vehicle);
+    if let (true, Some(kind)) = (vague, column) {
+        partner.kind = Some(Fact::of_column(kind, "Crash With"));
+    }
+    if partner.state.is_none() {
+        let state = match record.cp_movement.known() {
+            Some(Movement::Stopped) => Some(ContactState::Stopped),
+            Some(Movement::Parked) => Some(ContactState::Parked),
+            Some(Movement::Backing) => Some(ContactState::Reversing),
+            Some(_) => Some(ContactState::Moving),
+            None => None,
+        };
+        partner.state = state.map(|state| Fact::of_column(state, "CP Pre-Crash Movement"));
+    }
+}
+
+/// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.
+fn sv_state(reading: &Reading<'_>, account: &mut Account) {
+    let record = reading.record;
+    let column = record.sv_movement.known();
+    let words = told(&account.sv.state);
+    let stopping = told(&account.sv.standing) == Some(Standing::Stopping);
+    let rolls = record.sv_speed_mps.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
+    let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
+    let value = match (words, column) {
+        // In the lane, for passengers.
+        (Some(ContactState::Parked), Some(Movement::Stopped))
+            if account.sv.reasons.iter().any(|reason| reason.value == StandReason::PickupDropoff) =>
+        {
+            Some(ContactState::Stopped)
+        }
+        (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
+        (None, Some(Movement::Parked)) => Some(ContactState::Parked),
+        (None, Some(Movement::Stopped)) => Some(ContactState::Stopped),
+        (None, Some(Movement::Backing)) => Some(ContactState::Reversing),
+        (None, _) if zero => Some(ContactState::Stopped),
+        (None, Some(_)) => Some(ContactState::Moving),
+        // Slowing in words, standing in numbers: it had come to stand.
+        // Told to come to a stop, and still rolling in numbers.
+        (Some(ContactState::Stopped), _)
+            if rolls && !account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact) =>
+        {
+            Some(ContactState::Moving)
+        }
+        // It moved into something.
+        (Some(ContactState::Stopped), Some(movement))
+            if rolls && moves_at_contact(reading) && movement != Movement::Stopped =>
+        {
+            Some(ContactState::Moving)
+        }
+        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
+            if zero && !moves_at_contact(reading) =>
+        {
+            Some(ContactState::Stopped)
+        }
+        _ => None,
+    };
+    if let Some(value) = value {
+        let name = if zero { "SV Precrash Speed (MPH)" } else { "SV Pre-Crash Movement" };
+        account.sv.state = Some(Fact::of_column(value, name));
+        if value.stands() {
+            account.sv.standing.get_or_insert_with(|| {
+                let how = if words == Some(ContactState::Moving) { Standing::Stopping } else { Standing::FromTheStart };
+                Fact::of_column(how, name)
+            });
+            if account.sv.reasons.is_empty() {
+                account.sv.reasons = reasons(reading, SUBJECT);
+            }
+        }
+    }
+    if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
+        account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
+    }
+}
+
+/// Whether the words of the contact's own clause say that the subject vehicle moved into something.
+fn moves_at_contact(reading: &Reading<'_>) -> bool {
+    reading.contacts.first.is_some_and(|number| reading.story.frames[number].who == Some(SUBJECT))
+}
+
+fn kind_of(kind: PartnerKind) -> Kind {
+    match kind {
+        PartnerKind::PassengerCar => Kind::PassengerCar,
+        PartnerKind::Suv => Kind::Suv,
+        PartnerKind::Van => Kind::Van,
+        PartnerKind::PickupTruck => Kind::Pickup,
+        PartnerKind::HeavyTruck => Kind::HeavyTruck,
+        PartnerKind::Bus => Kind::Bus,
+        PartnerKind::Motorcycle => Kind::Motorcycle,
+        PartnerKind::Cyclist => Kind::Bicycle,
+        PartnerKind::Pedestrian => Kind::Pedestrian,
+        PartnerKind::OtherNonMotorist => Kind::ScooterRider,
+        PartnerKind::FirstResponder => Kind::FirstResponder,
+        PartnerKind::Animal => Kind::Animal,
+        PartnerKind::FixedObject => Kind::Object,
+    }
+}
+
+/// Movement of both sides just before the conflict.
+pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
+    account.sv.movement = movement(&account.sv, reading.record.sv_movement.known(), "SV Pre-Crash Movement");
+    if let Some(partner) = &mut account.partner {
+        let group = partner.kind.as_ref().map(|kind| kind.value.group());
+        partner.movement = if group == Some(KindGroup::Object) {
+            None
+        } else {
+            let column = reading.record.cp_movement.known();
+            let mut movement = movement(partner, column, "CP Pre-Crash Movement");
+            if let Some(fact) = &mut movement {
+                let crosses = group == Some(KindGroup::OnFoot)
+                    && partner.acts.iter().any(|fact| fact.act == Act::Cross && !fact.after_contact);
+                let oncoming = account
+                    .came_from
+                    .as_ref()
+                    .is_some_and(|from| from.value == recrash_model::account::Origin::Opposite);
+                if crosses {
+                    fact.value = Movement::NmCrossing;
+                } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
+                    fact.value = Movement::Straight;
+                }
+            }
+            movement
+        };
+    }
+}
+
+fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<Movement>> {
+    if let Some(state) = &party.state {
+        let value = match state.value {
+            ContactState::Stopped => Some(Movement::Stopped),
+            ContactState::Parked => Some(Movement::Parked),
+            ContactState::Reversing => Some(Movement::Backing),
+            _ => None,
+        };
+        if let Some(value) = value {
+            return Some(Fact { value, source: state.source.clone() });
+        }
+    }
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let mut best: Option<(u8, Movement, &Source)> = None;
+    for fact in before() {
+        // Who drives on has done with its turn.
+        if fact.act == Act::Follow
+            && best.as_ref().is_some_and(|(_, known, _)| matches!(known, Movement::LeftTurn | Movement::RightTurn))
+        {
+            best = None;
+        }
+        let Some((weight, value)) = weight(fact, column) else { continue };
+        // The last of those that say as much.
+        if best.as_ref().is_none_or(|(known, ..)| weight >= *known) {
+            best = Some((weight, value, &fact.source));
+        }
+    }
+    match (best, column) {
+        (Some((0, ..)) | None, Some(column)) if column != Movement::Stopped && column != Movement::Parked => {
+            Some(Fact::of_column(column, name))
+        }
+        (Some((_, value, source)), _) => Some(Fact { value, source: source.clone() }),
+        (None, Some(column)) => Some(Fact::of_column(column, name)),
+        _ => None,
+    }
+}
+
+/// What an act says of the movement, and how much.
+fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
+    Some(match (fact.act, fact.side) {
+        (Act::Turn, Some(LeftRight::Left)) => (3, Movement::LeftTurn),
+        (Act::Turn, Some(LeftRight::Right)) => (3, Movement::RightTurn),
+        (Act::Turn, None) => match column {
+            Some(Movement::LeftTurn) => (3, Movement::LeftTurn),
+            Some(Movement::RightTurn) => (3, Movement::RightTurn),
+            _ => return None,
+        },
+        (Act::UTurn, _) => (4, Movement::UTurn),
+        (Act::Reverse, _) => (4, Movement::Backing),
+        (Act::LaneChange, _) => (3, Movement::ChangingLanes),
+        (Act::Pass, _) => (2, Movement::Passing),
+        (Act::PullOut, _) => (3, Movement::EnteringTraffic),
+        (Act::Park, _) => (3, Movement::ParkingManeuver),
+        (Act::PullOver, _) => (1, Movement::ParkingManeuver),
+        (Act::WrongWay, _) => (2, Movement::WrongWay),
+        (Act::Follow | Act::Slow | Act::SetOff | Act::Enter | Act::Accelerate | Act::RunRed | Act::RunStop, _) => {
+            (0, Movement::Straight)
+        }
+        _ => return None,
+    })
+}
+
+/// Whether one of the zones of a side is wanted.
+pub(crate) fn has_zone(party: &Party, wanted: impl Fn(ContactZone) -> bool) -> bool {
+    party.zones.iter().any(|zone| wanted(zone.value))
+}

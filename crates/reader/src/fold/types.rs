@@ -1,0 +1,605 @@
+//! What kind of crash it is: type, role, striker, order, first contact, scenario, matrix cell. Each by a rule over the facts
+//! (`docs/models/crash-types.md`).
+
+use super::Reading;
+use super::party::has_zone;
+use crate::lexicon::Sense;
+use crate::world::SUBJECT;
+use recrash_model::account::{
+    Account, Act, ContactState, CrashType, Fact, FirstContact, Kind, KindGroup, LeftRight, MatrixCell, MatrixEvent,
+    MatrixObject, Origin, Party, PrecrashScenario, Role, Striker, told,
+};
+use recrash_model::narrative::FirstMover;
+use recrash_model::template::Movement;
+
+fn group(account: &Account) -> Option<KindGroup> {
+    account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group)
+}
+
+fn sv_state(account: &Account) -> Option<ContactState> {
+    told(&account.sv.state)
+}
+
+fn cp_state(account: &Account) -> Option<ContactState> {
+    account.partner.as_ref().and_then(|partner| told(&partner.state))
+}
+
+/// Who moved into whom.
+pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<Striker>> {
+    account.partner.as_ref()?;
+    let rule = |value, name: &str| Some(Fact::by_rule(value, name));
+    if group(account) == Some(KindGroup::Object) {
+        let flies = account
+            .partner
+            .as_ref()
+            .is_some_and(|partner| partner.did(Act::Fall) || partner.did(Act::Roll) || partner.did(Act::Pushed));
+        let sv_stands = sv_state(account).is_some_and(ContactState::stands);
+        return match (flies, sv_stands) {
+            (true, true) => rule(Striker::Cp, "a thing that moves into one that stands"),
+            (true, false) => rule(Striker::Both, "a thing that moves into one that moves"),
+            _ => rule(Striker::Sv, "things do not move"),
+        };
+    }
+    if let Some(door) = &account.door {
+        let first = reading.contacts.first.map(|number| &reading.story.frames[number]);
+        let by_subject = first.is_some_and(|frame| frame.who == Some(SUBJECT));
+        if door.value == Striker::Sv && by_subject {
+            return Some(Fact { value: Striker::Sv, source: door.source.clone() });
+        }
+    }
+    let (sv, cp) = (sv_state(account), cp_state(account));
+    let sv_stands = sv.is_some_and(ContactState::stands);
+    let cp_stands = cp.is_some_and(ContactState::stands)
+        && !account.partner.as_ref().is_some_and(|partner| partner.did(Act::OpenDoor));
+    if sv_stands && !cp_stands {
+        return rule(Striker::Cp, "one stood");
+    }
+    if cp_stands && !sv_stands {
+        return rule(Striker::Sv, "one stood");
+    }
+    let number = reading.contacts.first?;
+    let frame = &reading.story.frames[number];
+    let value = match (frame.who, frame.object) {
+        (Some(SUBJECT), Some(_)) => {
+            // "The rear of the subject vehicle made contact with the front of the car": who moved forward into whom.
+            let rear = has_zone(&account.sv, |zone| zone.is_rear());
+            if rear && sv != Some(ContactState::Reversing) { Striker::Cp } else { Striker::Sv }
+        }
+        (Some(who), _) if who != SUBJECT => Striker::Cp,
+        (None, Some(SUBJECT)) => Striker::Cp,
+        (None, Some(_)) => Striker::Sv,
+        _ => return None,
+    };
+    Some(Fact { value, source: reading.of(frame) })
+}
+
+/// Whether a turn of this side is under way at the contact: told last but for slowing and stopping.
+pub(crate) fn turning(party: &Party) -> bool {
+    let before: Vec<_> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
+    let Some(last) = before.iter().rposition(|fact| matches!(fact.act, Act::Turn | Act::UTurn)) else { return false };
+    let later = &before[last + 1..];
+    let done = match &before[last].source {
+        recrash_model::account::Source::Words { text, .. } => {
+            let text = text.to_lowercase();
+            text.starts_with("completed") || text.starts_with("had ") || text.starts_with("finished")
+        }
+        _ => false,
+    };
+    !done
+        && !later.iter().any(|fact| {
+            matches!(fact.act, Act::Follow | Act::PullOver | Act::Park | Act::Pass | Act::Reverse | Act::LaneChange)
+        })
+}
+
+/// The crash type: the first whose rule fits.
+pub(crate) fn crash_type(reading: &Reading<'_>, account: &Account) -> Option<Fact<CrashType>> {
+    let (value, name) = type_of(reading, account)?;
+    Some(Fact::by_rule(value, name))
+}
+
+fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
+    let partner = account.partner.as_ref()?;
+    if partner.did(Act::Pushed)
+        || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
+        || separate(reading)
+    {
+        return Some((CrashType::Secondary, "another contact threw the partner at it"));
+    }
+    match group(account) {
+        Some(KindGroup::OnFoot) => return Some((CrashType::Pedestrian, "kind of the partner")),
+        Some(KindGroup::Cyclist) => return Some((CrashType::Cyclist, "kind of the partner")),
+        Some(KindGroup::Motorcycle) => return Some((CrashType::Motorcycle, "kind of the partner")),
+        Some(KindGroup::Animal | KindGroup::Other) => return Some((CrashType::Other, "kind of the partner")),
+        Some(KindGroup::Object) => {
+            let thrown = matches!(told(&partner.kind), Some(Kind::LooseWheel | Kind::Cargo));
+            return Some(if thrown {
+                (CrashType::Other, "a thing that came off a vehicle")
+            } else {
+                (CrashType::SingleVehicle, "a thing")
+            });
+        }
+        _ => {}
+    }
+    if reading.contacts.others_only {
+        return Some((CrashType::Other, "the subject vehicle was not touched"));
+    }
+    if account.door.is_some() {
+        return Some((CrashType::Other, "a door"));
+    }
+    let sv = sv_state(account);
+    let cp = cp_state(account);
+    let sv_moves = sv.is_some_and(|state| !state.stands());
+    if cp == Some(ContactState::Parked)
+        && sv_moves
+        && sv != Some(ContactState::Reversing)
+        && !partner.did(Act::PullOut)
+        && !double_parked(reading)
+    {
+        return Some((CrashType::SingleVehicle, "an unoccupied parked vehicle"));
+    }
+    if cp == Some(ContactState::Reversing)
+        || sv == Some(ContactState::Reversing)
+        || told(&partner.movement) == Some(Movement::Backing)
+    {
+        return Some((CrashType::Backing, "one went backwards"));
+    }
+    let origin = told(&account.came_from);
+    let front = |party: &Party| has_zone(party, |zone| zone.is_front());
+    let rear = |party: &Party| has_zone(party, |zone| zone.is_rear());
+    let flank = |party: &Party| {
+        !party.zones.is_empty() && party.zones.iter().all(|zone| !zone.value.is_front() && !zone.value.is_rear())
+    };
+    let (sv_turns, cp_turns) = (turning(&account.sv), turning(partner));
+    let rear_end = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);
+    // Words for a touch along the side.
+    let along = reading.contacts.first.is_some_and(|number| {
+        let frame = &reading.story.frames[number];
+        let word = reading.story.tokens[frame.first].text.as_str();
+        ["swip", "side", "scrap", "graz", "brush"].iter().any(|stem| word.starts_with(stem))
+    });
+    if along
+        && matches!(origin, Some(Origin::Behind | Origin::Ahead))
+        && !(rear(&account.sv) && front(partner))
+        && !front_rear(account)
+    {
+        return Some((CrashType::Lateral, "a touch along the side"));
+    }
+    let sideways = partner.did(Act::LaneChange) || partner.did(Act::Swerve) || partner.did(Act::Drift);
+    match origin {
+        Some(Origin::Behind) => {
+            if rear_end
+                || (rear(&account.sv) && front(partner))
+                || (rear(&account.sv) && partner.zones.is_empty() && !partner.did(Act::Pass))
+            {
+                let passing = completed_pass(partner) && !square(account);
+                return Some(if passing {
+                    (CrashType::Lateral, "it passed")
+                } else {
+                    (CrashType::FrontToRear, "front on rear, one way")
+                });
+            }
+            if sv_turns && !sv.is_some_and(ContactState::stands) && (flank(&account.sv) || front(&account.sv)) {
+                return Some((CrashType::Intersection, "one turned across the other"));
+            }
+            if account.sv.zones.is_empty() && partner.zones.is_empty() && !partner.did(Act::Pass) && !sideways {
+                return Some((CrashType::FrontToRear, "from behind"));
+            }
+            if cp_turns && turned_across(account) {
+                return Some((CrashType::Intersection, "one turned across the other"));
+            }
+            Some((CrashType::Lateral, "one way, side by side"))
+        }
+        Some(Origin::Ahead) => {
+            if cp_turns && !front_rear(account) {
+                return Some((CrashType::Intersection, "one turned across the other"));
+            }
+            if rear_end
+                || front_rear(account)
+                || (front(&account.sv) && partner.zones.is_empty())
+                || (front(&account.sv) && !sideways && !account.sv.did(Act::Pass))
+            {
+                return Some((CrashType::FrontToRear, "front on rear, one way"));
+            }
+            Some((CrashType::Lateral, "one way, side by side"))
+        }
+        Some(Origin::Opposite) => {
+            let across = (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
+                || (cp_turns && turn_side(partner) == Some(LeftRight::Left) && !sv_turns)
+                || told(&partner.movement) == Some(Movement::UTurn);
+            Some(if across {
+                (CrashType::Intersection, "one turned across the other")
+            } else {
+                (CrashType::HeadOn, "from opposite directions")
+            })
+        }
+        Some(Origin::Cross { .. }) => Some((CrashType::Intersection, "crossing paths")),
+        Some(Origin::Stall { .. } | Origin::Driveway { .. }) => {
+            Some((CrashType::Intersection, "out of a stall or a driveway"))
+        }
+        Some(Origin::Parked { .. }) => Some((CrashType::Lateral, "from the kerb beside it")),
+        Some(Origin::Sidewalk { .. }) => Some((CrashType::Intersection, "crossing paths")),
+        Some(Origin::Beside { .. }) => {
+            let both_turned = account.sv.did(Act::Turn) && partner.did(Act::Turn);
+            let one_turns = sv_turns != cp_turns && !both_turned;
+            if one_turns && !(sv_turns && sv.is_some_and(ContactState::stands)) {
+                return Some((CrashType::Intersection, "one turned across the other"));
+            }
+            if rear(&account.sv) && front(partner) && square(account) && !sideways {
+                return Some((CrashType::FrontToRear, "front on rear, one way"));
+            }
+            Some((CrashType::Lateral, "one way, side by side"))
+        }
+        Some(Origin::Above) | None => by_columns(reading, account),
+    }
+}
+
+fn turn_side(party: &Party) -> Option<LeftRight> {
+    party.acts.iter().rev().filter(|fact| !fact.after_contact).find_map(|fact| match fact.act {
+        Act::Turn => fact.side,
+        Act::UTurn => Some(LeftRight::Left),
+        _ => None,
+    })
+}
+
+/// The plain rear on the plain front.
+fn square(account: &Account) -> bool {
+    use recrash_model::zones::ContactZone as Z;
+    let Some(partner) = &account.partner else { return false };
+    has_zone(&account.sv, |zone| zone == Z::Rear) && has_zone(partner, |zone| zone == Z::Front)
+        || has_zone(&account.sv, |zone| zone == Z::Rear)
+}
+
+fn front_rear(account: &Account) -> bool {
+    let Some(partner) = &account.partner else { return false };
+    has_zone(&account.sv, |zone| zone.is_front()) && has_zone(partner, |zone| zone.is_rear())
+}
+
+/// It was past the rear: what touched was not its front.
+fn completed_pass(partner: &Party) -> bool {
+    partner.did(Act::Pass)
+        && partner.acts.iter().any(|fact| fact.act == Act::Pass && !fact.begun && !fact.after_contact)
+}
+
+fn turned_across(account: &Account) -> bool {
+    has_zone(&account.sv, |zone| zone.is_front())
+}
+
+fn double_parked(reading: &Reading<'_>) -> bool {
+    reading.story.tokens.windows(2).any(|pair| pair[0].text == "double" && pair[1].text == "parked")
+}
+
+/// "was involved in a separate collision".
+fn separate(reading: &Reading<'_>) -> bool {
+    let tokens = &reading.story.tokens;
+    tokens.windows(2).any(|pair| {
+        matches!(pair[0].text.as_str(), "separate" | "previous" | "another")
+            && matches!(pair[1].text.as_str(), "collision" | "crash")
+    })
+}
+
+/// Where nobody tells from where the partner came: by zones and movement columns.
+fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
+    let partner = account.partner.as_ref()?;
+    let rule = "zones and movement columns";
+    let cp = told(&partner.movement).or_else(|| reading.record.cp_movement.known());
+    let sv = told(&account.sv.movement).or_else(|| reading.record.sv_movement.known());
+    let turn = |movement| matches!(movement, Some(Movement::LeftTurn | Movement::RightTurn | Movement::UTurn));
+    if matches!(
+        cp,
+        Some(
+            Movement::ChangingLanes
+                | Movement::Passing
+                | Movement::Merging
+                | Movement::LaneDeparture
+                | Movement::EnteringTraffic
+                | Movement::ParkingManeuver
+        )
+    ) {
+        return Some((CrashType::Lateral, rule));
+    }
+    if matches!(cp, Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay)) {
+        return Some((CrashType::HeadOn, rule));
+    }
+    if turn(cp) || turn(sv) {
+        return Some((CrashType::Intersection, rule));
+    }
+    if matches!(sv, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing)) {
+        return Some((CrashType::Lateral, rule));
+    }
+    let sides = |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front() || zone.is_rear());
+    if sides(&account.sv)
+        && has_zone(partner, |zone| zone.is_front())
+        && reading.record.road.known() == Some(recrash_model::template::RoadType::Intersection)
+    {
+        return Some((CrashType::Intersection, rule));
+    }
+    if account.sv.zones.is_empty() && partner.zones.is_empty() {
+        return None;
+    }
+    if has_zone(&account.sv, |zone| zone.is_front())
+        && has_zone(partner, |zone| !zone.is_front() && !zone.is_rear())
+        && reading.record.road.known() == Some(recrash_model::template::RoadType::Intersection)
+    {
+        return Some((CrashType::Intersection, rule));
+    }
+    Some((CrashType::Lateral, rule))
+}
+
+/// Whose move brought it about.
+pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role>> {
+    let partner = account.partner.as_ref()?;
+    let rule = |value, name: &str| Some(Fact::by_rule(value, name));
+    let sv = sv_state(account)?;
+    if told(&account.door) == Some(Striker::Sv) {
+        return rule(Role::Initiator, "its door was opened");
+    }
+    let sv_turns = turning(&account.sv);
+    let striker = told(&account.striker);
+    if told(&account.crash_type) == Some(CrashType::Secondary) {
+        return rule(Role::Responder, "a crash ahead or behind came to it");
+    }
+    if sv.stands() {
+        if sv_turns && matches!(told(&account.crash_type), Some(CrashType::Intersection)) {
+            return rule(Role::Both, "it stood across another's way in a turn");
+        }
+        return rule(Role::Responder, "it stood");
+    }
+    if group(account) == Some(KindGroup::Object) {
+        let appears = partner.did(Act::Fall)
+            || partner.did(Act::Roll)
+            || matches!(told(&partner.kind), Some(Kind::Debris | Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo));
+        return if appears {
+            rule(Role::Responder, "something came into its way")
+        } else {
+            rule(Role::Initiator, "it moved into a thing")
+        };
+    }
+    let broke = [Act::RunRed, Act::RunStop, Act::FailToYield, Act::WrongWay].into_iter().any(|act| partner.did(act));
+    if broke && !account.sv.did(Act::RunRed) {
+        return rule(Role::Responder, "the other broke a rule");
+    }
+    if sv == ContactState::Reversing {
+        let both = cp_state(account) == Some(ContactState::Reversing);
+        return if both { rule(Role::Responder, "it backed away") } else { rule(Role::Initiator, "it went backwards") };
+    }
+    let cp_stands = cp_state(account).is_some_and(ContactState::stands) && !partner.did(Act::OpenDoor);
+    if cp_stands {
+        return rule(Role::Initiator, "it moved into one that stood");
+    }
+    let sv_changes = account.sv.did(Act::LaneChange) || account.sv.did(Act::UTurn) || account.sv.did(Act::PullOut);
+    let sv_drifts = account.sv.did(Act::Drift) || account.sv.did(Act::Swerve);
+    let cp_moves = [
+        Act::LaneChange,
+        Act::Turn,
+        Act::UTurn,
+        Act::Swerve,
+        Act::Drift,
+        Act::PullOut,
+        Act::Reverse,
+        Act::Pass,
+        Act::OpenDoor,
+    ]
+    .into_iter()
+    .any(|act| partner.did(act));
+    if matches!(striker, Some(Striker::Sv)) && told(&account.crash_type) != Some(CrashType::Other) {
+        return if cp_moves {
+            rule(Role::Both, "both moved")
+        } else {
+            rule(Role::Initiator, "it moved into the other")
+        };
+    }
+    let crossing = matches!(
+        told(&account.came_from),
+        Some(Origin::Opposite | Origin::Cross { .. } | Origin::Beside { .. } | Origin::Driveway { .. })
+    );
+    if sv_turns && crossing && told(&account.crash_type) == Some(CrashType::Intersection) {
+        let both_turn = turning(partner) || partner.did(Act::LaneChange);
+        let straight_from_turn_lane = matches!(told(&account.came_from), Some(Origin::Beside { .. }));
+        return if both_turn || straight_from_turn_lane {
+            rule(Role::Responder, "the other came across")
+        } else {
+            rule(Role::Both, "it turned across another's way")
+        };
+    }
+    if sv_changes && !matches!(told(&account.crash_type), Some(CrashType::Intersection)) {
+        return rule(Role::Both, "it changed lanes");
+    }
+    if sv_drifts && striker == Some(Striker::Both) {
+        return rule(Role::Both, "both moved over");
+    }
+    let _ = reading;
+    rule(Role::Responder, "the other moved into it")
+}
+
+/// Who was at the place of the conflict first.
+pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
+    let partner = account.partner.as_ref()?;
+    let rule = |value, name: &str| Some(Fact::by_rule(value, name));
+    let sv_stands = sv_state(account)?.stands();
+    let cp_stands = cp_state(account).is_some_and(ContactState::stands);
+    if group(account) == Some(KindGroup::Object) {
+        return rule(FirstMover::Cp, "things stand");
+    }
+    match (sv_stands, cp_stands) {
+        (true, false) => return rule(FirstMover::Sv, "who stands is there first"),
+        (false, true) => return rule(FirstMover::Cp, "who stands is there first"),
+        _ => {}
+    }
+    match told(&account.crash_type)? {
+        CrashType::FrontToRear | CrashType::Secondary => {
+            let lead = has_zone(&account.sv, |zone| zone.is_rear()) && told(&account.came_from) != Some(Origin::Ahead);
+            return rule(if lead { FirstMover::Sv } else { FirstMover::Cp }, "who is ahead is there first");
+        }
+        CrashType::Backing | CrashType::HeadOn => return rule(FirstMover::Both, "they meet"),
+        _ => {}
+    }
+    // Whose front touches comes later than whose flank is touched.
+    let front = |party: &Party| has_zone(party, |zone| zone.is_front()) && !has_zone(party, |zone| !zone.is_front());
+    let flank = |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front());
+    if partner.zones.is_empty() && !account.sv.zones.is_empty() {
+        let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
+        return rule(value, "whose flank is touched is there first");
+    }
+    match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {
+        (_, true, true, _) => rule(FirstMover::Sv, "whose flank is touched is there first"),
+        (true, _, _, true) => rule(FirstMover::Cp, "whose flank is touched is there first"),
+        _ => rule(FirstMover::Both, "at about the same time"),
+    }
+}
+
+/// First harmful contact.
+pub(crate) fn first_contact(reading: &Reading<'_>, account: &Account) -> Option<Fact<FirstContact>> {
+    account.partner.as_ref()?;
+    let rule = |value, name: &str| Some(Fact::by_rule(value, name));
+    if reading.contacts.others_only {
+        return rule(FirstContact::OthersOnly, "contacts of the story");
+    }
+    if told(&account.crash_type) == Some(CrashType::Secondary) {
+        return rule(FirstContact::PartnerAndOther, "contacts of the story");
+    }
+    if group(account) == Some(KindGroup::Object) {
+        return rule(FirstContact::Object, "kind of the partner");
+    }
+    rule(FirstContact::SvAndPartner, "contacts of the story")
+}
+
+/// Whether the subject vehicle made a manoeuvre before.
+fn manoeuvre(account: &Account) -> bool {
+    [Act::Turn, Act::UTurn, Act::LaneChange, Act::Pass, Act::Reverse, Act::PullOut, Act::Park, Act::PullOver]
+        .into_iter()
+        .any(|act| account.sv.did(act))
+}
+
+/// NHTSA's pre-crash scenario.
+pub(crate) fn scenario(account: &Account) -> Option<Fact<PrecrashScenario>> {
+    use PrecrashScenario as S;
+    let partner = account.partner.as_ref()?;
+    let moved = manoeuvre(account);
+    let either = |with: S, without: S| if moved { with } else { without };
+    let signal =
+        account.place.features.iter().any(|feature| feature.value == recrash_model::account::RoadFeature::Signal);
+    let ran = |act: Act| partner.did(act) || account.sv.did(act);
+    let lead = if matches!(told(&account.came_from), Some(Origin::Ahead)) { partner } else { &account.sv };
+    let value = match told(&account.crash_type)? {
+        _ if ran(Act::RunRed) => S::RunningRedLight,
+        _ if ran(Act::RunStop) => S::RunningStopSign,
+        CrashType::Pedestrian => either(S::PedestrianWithManeuver, S::Pedestrian),
+        CrashType::Cyclist => either(S::CyclistWithManeuver, S::Cyclist),
+        CrashType::SingleVehicle => either(S::ObjectWithManeuver, S::Object),
+        CrashType::Backing => S::Backing,
+        CrashType::FrontToRear | CrashType::Secondary | CrashType::Motorcycle => {
+            let following = if matches!(told(&account.came_from), Some(Origin::Ahead)) { &account.sv } else { partner };
+            if told(&account.crash_type) == Some(CrashType::Motorcycle)
+                && !matches!(told(&account.came_from), Some(Origin::Behind | Origin::Ahead))
+            {
+                S::Other
+            } else if following.did(Act::LaneChange) || following.did(Act::Pass) {
+                S::FollowingWithManeuver
+            } else {
+                match told(&lead.state) {
+                    Some(state) if state.stands() => S::LeadStopped,
+                    Some(ContactState::SettingOff) => S::LeadAccelerating,
+                    _ if lead.did(Act::Slow) || lead.did(Act::Stop) => S::LeadDecelerating,
+                    _ => S::LeadSlower,
+                }
+            }
+        }
+        CrashType::HeadOn => {
+            if moved || partner.did(Act::Pass) || partner.did(Act::LaneChange) {
+                S::OppositeWithManeuver
+            } else {
+                S::Opposite
+            }
+        }
+        CrashType::Intersection => {
+            let turn = turn_side(&account.sv).or_else(|| turn_side(partner));
+            match (told(&account.came_from), turn) {
+                (Some(Origin::Opposite), Some(LeftRight::Left)) => {
+                    if signal {
+                        S::LeftTurnOppositeSignal
+                    } else {
+                        S::LeftTurnOpposite
+                    }
+                }
+                (Some(Origin::Beside { .. } | Origin::Behind | Origin::Ahead), Some(_)) => S::TurningSameDirection,
+                (_, Some(LeftRight::Right)) if signal => S::RightTurnSignal,
+                (_, Some(_)) => S::TurningCrossing,
+                _ => S::StraightCrossing,
+            }
+        }
+        CrashType::Lateral => {
+            let both = |act: Act| partner.did(act) || account.sv.did(act);
+            if both(Act::Park) || both(Act::PullOut) {
+                S::ParkingSameDirection
+            } else if both(Act::LaneChange) || both(Act::Pass) {
+                S::ChangingLanesSameDirection
+            } else if turning(&account.sv) || turning(partner) {
+                S::TurningSameDirection
+            } else {
+                S::DriftingSameDirection
+            }
+        }
+        CrashType::Other => match group(account) {
+            Some(KindGroup::Animal) => either(S::AnimalWithManeuver, S::Animal),
+            _ => S::Other,
+        },
+    };
+    Some(Fact::by_rule(value, "crash type, acts and control"))
+}
+
+/// Cell of the matrix of EU 2022/1426; what comes from behind has none.
+pub(crate) fn matrix(account: &Account) -> Option<Fact<MatrixCell>> {
+    use {MatrixEvent as E, MatrixObject as O};
+    let partner = account.partner.as_ref()?;
+    let kind = told(&partner.kind)?;
+    let origin = told(&account.came_from);
+    let crosswalk =
+        account.place.features.iter().any(|feature| feature.value == recrash_model::account::RoadFeature::Crosswalk);
+    let crossing = if crosswalk { E::CrossingInCrosswalk } else { E::CrossingOutsideCrosswalk };
+    let cell = match kind.group() {
+        KindGroup::OnFoot => match origin {
+            Some(Origin::Cross { .. }) | None => (O::Pedestrian, crossing),
+            Some(Origin::Sidewalk { .. }) => (O::Pedestrian, E::AlongRoad),
+            _ => return None,
+        },
+        KindGroup::Cyclist => match origin {
+            Some(Origin::Cross { .. } | Origin::Sidewalk { .. }) => (O::Cyclist, crossing),
+            Some(Origin::Ahead) => (O::Cyclist, E::RidingInLane),
+            Some(Origin::Beside { .. }) => (O::Cyclist, E::RidingBeside),
+            _ => return None,
+        },
+        KindGroup::Animal => (O::Animal, E::MovingIntoLane),
+        KindGroup::Object => {
+            let moves = partner.did(Act::Fall) || partner.did(Act::Roll);
+            if kind == Kind::Debris || kind == Kind::Object {
+                (O::Debris, E::StaticInLane)
+            } else {
+                (O::OtherObject, if moves { E::MovingIntoLane } else { E::StaticInLane })
+            }
+        }
+        _ => {
+            let event = match origin? {
+                Origin::Behind | Origin::Above => return None,
+                Origin::Ahead => match told(&partner.state) {
+                    Some(state) if state.stands() => E::LeadStopped,
+                    Some(ContactState::SettingOff) => E::LeadAccelerating,
+                    _ if partner.did(Act::Turn) => E::Turning,
+                    _ => E::LeadDecelerating,
+                },
+                Origin::Opposite if partner.did(Act::Turn) => E::Turning,
+                Origin::Opposite => E::EncroachingOpposing,
+                Origin::Beside { .. } if partner.did(Act::LaneChange) => E::CuttingIn,
+                Origin::Beside { .. } if partner.did(Act::Turn) => E::Turning,
+                Origin::Beside { .. } => E::EncroachingAdjacent,
+                Origin::Cross { .. } if partner.did(Act::Turn) => E::Turning,
+                Origin::Cross { .. }
+                | Origin::Stall { .. }
+                | Origin::Driveway { .. }
+                | Origin::Parked { .. }
+                | Origin::Sidewalk { .. } => E::EnteringRoadway,
+            };
+            (O::Vehicle, event)
+        }
+    };
+    Some(Fact::by_rule(MatrixCell { object: cell.0, event: cell.1 }, "kind, origin and acts"))
+}

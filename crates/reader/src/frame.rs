@@ -1,0 +1,1260 @@
+//! Event frames: who did what, to whom, where, in which order; folded from the chunks of one sentence after the other.
+
+use crate::chunk::{Chunk, Joint, Noun, Piece, Placed, Spot, chunks};
+use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Part, Progress, Relation, Sense};
+use crate::token::{Sentence, Token};
+use crate::world::{Actor, SUBJECT, World};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
+
+/// One event.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Who; `None` where nobody is named.
+    pub who: Option<Actor>,
+    /// The part of it that is named.
+    pub with: Option<Piece>,
+    /// What.
+    pub sense: Sense,
+    /// Form of the verb.
+    pub form: Form,
+    /// To whom.
+    pub object: Option<Actor>,
+    /// The part of whom that is named.
+    pub on: Option<Piece>,
+    /// To which side.
+    pub side: Option<LeftRight>,
+    /// Where, seen from whom.
+    pub relations: Vec<(Relation, Option<Actor>)>,
+    /// A direction that belongs to it.
+    pub heading: Option<(Compass, usize, usize)>,
+    /// The direction is that of the road it goes into.
+    pub onto: bool,
+    /// Its lane.
+    pub lane: Option<(LaneWord, usize, usize)>,
+    /// Out of where.
+    pub out_of: Option<Spot>,
+    /// It did not happen.
+    pub negated: bool,
+    /// How far it came.
+    pub progress: Progress,
+    /// The words say that it stood: "was stopped", or an adjective.
+    pub state: bool,
+    /// Told of a noun in passing, not in a clause of its own.
+    pub aside: bool,
+    /// Its clause begins with this.
+    pub joint: Option<Joint>,
+    /// The second in a row "and": told of a person in the vehicle.
+    pub person: Option<Occupant>,
+    /// It is told of a noun by a relative clause or a participle.
+    pub described: bool,
+    /// The words behind a passive "by".
+    pub passive: bool,
+    /// Number of the clause in its sentence.
+    pub clause: u32,
+    /// Number of the sentence.
+    pub sentence: usize,
+    /// The sentence looks back: "prior to the collision".
+    pub looks_back: bool,
+    /// First token.
+    pub first: usize,
+    /// Token behind the last.
+    pub end: usize,
+}
+
+impl Frame {
+    /// The act of the account that it is, where it is one.
+    pub fn act(&self) -> Option<Act> {
+        match self.sense {
+            Sense::Act(act) | Sense::Sided(act, _) => Some(act),
+            Sense::Parked => Some(Act::Hold),
+            Sense::Approach => Some(Act::Follow),
+            Sense::ReverseContact => Some(Act::Reverse),
+            Sense::OpenDoorInto => Some(Act::OpenDoor),
+            Sense::Yield => None,
+            _ => None,
+        }
+    }
+
+    /// Whether it touches somebody.
+    pub fn is_contact(&self) -> bool {
+        matches!(
+            self.sense,
+            Sense::Contact | Sense::ContactMade | Sense::RearEnd | Sense::ReverseContact | Sense::OpenDoorInto
+        ) && !self.negated
+            && self.progress == Progress::Real
+    }
+
+    /// Whether it happened, or was begun.
+    pub fn happened(&self) -> bool {
+        !self.negated && self.progress != Progress::Wished
+    }
+}
+
+/// The story of one narrative.
+#[derive(Debug, Clone)]
+pub struct Story {
+    /// Tokens of the narrative.
+    pub tokens: Vec<Token>,
+    /// Its sentences.
+    pub sentences: Vec<Sentence>,
+    /// Whether a sentence is a standing phrase.
+    pub standing: Vec<bool>,
+    /// Events, in the order of the words.
+    pub frames: Vec<Frame>,
+    /// Who is in it.
+    pub world: World,
+}
+
+/// What is known of the subject vehicle beforehand.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Own<'a> {
+    /// Its kind.
+    pub kind: Option<Kind>,
+    /// The make by which the company that reports calls it.
+    pub make: Option<&'a str>,
+}
+
+/// Most tokens of a narrative that are read; the longest published one has a third of it.
+const MOST_TOKENS: usize = 6_000;
+
+/// Reads a narrative. `own`: kind of the subject vehicle, where it is known.
+pub fn story(text: &str, own: Own<'_>) -> Story {
+    let mut tokens = crate::token::tokens(text);
+    tokens.truncate(MOST_TOKENS);
+    let sentences = crate::token::sentences(&tokens);
+    let lexicon = Lexicon::get();
+    let mut standing = Vec::new();
+    let mut parser =
+        Parser { tokens: &tokens, lexicon, world: World::new(own), frames: Vec::new(), sentence: 0, looks_back: false };
+    for (number, sentence) in sentences.iter().enumerate() {
+        let words = &tokens[sentence.first..sentence.end];
+        let drop = lexicon.is_standing(words) && !tells_contact(words);
+        standing.push(drop);
+        if drop {
+            continue;
+        }
+        (parser.sentence, parser.world.sentence) = (number, number);
+        parser.looks_back = looks_back(words);
+        parser.read(*sentence);
+    }
+    let (mut frames, world) = (parser.frames, parser.world);
+    for frame in &mut frames {
+        // Nobody touches itself.
+        if frame.is_contact() && frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
+            frame.who = None;
+        }
+    }
+    Story { tokens, sentences, standing, frames, world }
+}
+
+/// A sentence with a standing phrase in it may tell the crash all the same.
+fn tells_contact(words: &[Token]) -> bool {
+    let tells = |phrase: &str| {
+        let phrase: Vec<String> = phrase.split(' ').map(str::to_owned).collect();
+        crate::lexicon::find(&phrase, words).is_some()
+    };
+    tells("made contact") || tells("struck") || tells("collided") || tells("rear ended") || tells("collision involving")
+}
+
+fn looks_back(words: &[Token]) -> bool {
+    let text: Vec<&str> = words.iter().take(8).map(|token| token.text.as_str()).collect();
+    let of_crash = text
+        .iter()
+        .any(|word| matches!(*word, "collision" | "incident" | "impact" | "crash" | "event" | "contact" | "accident"));
+    matches!(
+        text.as_slice(),
+        ["prior" | "before" | "immediately" | "just" | "leading" | "moments" | "shortly" | "seconds", ..]
+    ) && of_crash
+        && text.iter().any(|word| matches!(*word, "prior" | "before" | "up"))
+}
+
+struct Parser<'a> {
+    tokens: &'a [Token],
+    lexicon: &'static Lexicon,
+    world: World,
+    frames: Vec<Frame>,
+    sentence: usize,
+    looks_back: bool,
+}
+
+/// What is carried from chunk to chunk.
+#[derive(Default)]
+struct Carry {
+    /// Who the clause is about.
+    subject: Option<Mention>,
+    /// It has its verb.
+    has_verb: bool,
+    /// Who the sentence is about.
+    main: Option<Mention>,
+    /// Noun named last.
+    last: Option<Mention>,
+    /// The noun named last stands behind a preposition or a relation.
+    governed: bool,
+    /// Frame that takes what follows.
+    frame: Option<usize>,
+    /// Preposition or relation that waits for its noun.
+    preposition: Option<&'static str>,
+    relation: Option<Relation>,
+    be: bool,
+    negated: bool,
+    progress: Option<Progress>,
+    to: bool,
+    joint: Option<Joint>,
+    relative: bool,
+    /// Who the clause around a relative clause is about, where it still waits for its verb.
+    outer: Option<Mention>,
+    after_comma: bool,
+    /// Who began, tried or wished what the next verb tells.
+    lead_who: Option<Mention>,
+    /// Number of the clause.
+    clause: u32,
+    /// "and" stands between the last verb and the next.
+    row: bool,
+    /// Who the relative clause before the comma was about.
+    described: Option<Mention>,
+    /// The first of two subjects joined by "and".
+    also: Option<Mention>,
+    /// Frames whose subject is named later: "While stopped, the van ..."
+    pending: Vec<usize>,
+    /// Tokens of the last progress word.
+    began: bool,
+    /// The clause begins here, and nothing but small words stood in it.
+    fresh: bool,
+    pushed: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Mention {
+    actor: Actor,
+    piece: Option<Piece>,
+    person: Option<Occupant>,
+    /// Token behind it.
+    end: usize,
+}
+
+impl Parser<'_> {
+    fn read(&mut self, sentence: Sentence) {
+        let all = chunks(self.tokens, sentence.first, sentence.end);
+        let mut carry = Carry { fresh: true, ..Carry::default() };
+        for at in 0..all.len() {
+            self.step(&all, at, &mut carry);
+        }
+        if let Some(main) = &carry.main {
+            self.world.topic = main.actor;
+            if !acts(self.world.actors[main.actor].kind) && main.actor != SUBJECT {
+                self.world.topic = SUBJECT;
+            }
+        }
+    }
+
+    fn step(&mut self, all: &[Placed], at: usize, carry: &mut Carry) {
+        let placed = &all[at];
+        let next = all.get(at + 1).map(|placed| &placed.chunk);
+        match &placed.chunk {
+            Chunk::Noun(noun) => {
+                let hint = relation_behind(all, at, &self.world);
+                let actor = self.world.resolve(noun, (placed.first, placed.end), hint);
+                self.attribute(
+                    noun.owner.as_deref().filter(|_| noun.occupant.is_some()).unwrap_or(noun),
+                    actor,
+                    placed,
+                    carry,
+                );
+                // "in a queue of westbound traffic": the direction is also that of who stands in it.
+                if let (Some(compass), true, Some("of" | "in" | "behind")) =
+                    (noun.compass, noun.several, carry.preposition)
+                {
+                    self.compass(compass, placed, carry);
+                    carry.preposition = Some("of");
+                }
+                let person = noun.occupant.map(|(who, _)| who);
+                self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
+            }
+            Chunk::Piece(piece) => {
+                let actor = match &piece.owner {
+                    Some(owner) => {
+                        let actor = self.world.resolve(owner, (placed.first, placed.end), None);
+                        self.attribute(owner, actor, placed, carry);
+                        Some(actor)
+                    }
+                    None if piece.its => Some(self.its(carry)),
+                    None => None,
+                };
+                match actor {
+                    Some(actor) => {
+                        self.mention(
+                            Mention { actor, piece: Some(piece.clone()), person: None, end: placed.end },
+                            placed,
+                            carry,
+                            next,
+                        );
+                    }
+                    None => self.loose_piece(piece, placed, carry),
+                }
+            }
+            Chunk::Pronoun => {
+                let actor = self.its(carry);
+                self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
+            }
+            Chunk::Relative => {
+                if let Some(last) = carry.last.clone() {
+                    if !carry.relative {
+                        carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
+                    }
+                    carry.subject = Some(last);
+                    carry.frame = None;
+                    carry.has_verb = false;
+                    carry.relative = true;
+                    carry.fresh = false;
+                    carry.governed = false;
+                    (carry.be, carry.to, carry.progress) = (false, false, None);
+                }
+            }
+            Chunk::Verb(sense, form) => self.verb(*sense, *form, all, at, carry),
+            Chunk::Be => carry.be = true,
+            Chunk::Not => carry.negated = true,
+            Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
+            Chunk::Compass(compass) => self.compass(*compass, placed, carry),
+            Chunk::Side(side) => self.side(*side, carry),
+            Chunk::Lane(lane) => self.lane(*lane, placed, carry),
+            Chunk::Spot(spot) => self.spot(*spot, carry),
+            Chunk::Preposition(word) => {
+                // "out of" goes out.
+                let out = *word == "of" && carry.preposition == Some("out");
+                carry.preposition = if out { Some("out") } else { Some(word) };
+                carry.relation = None;
+                if *word == "to" {
+                    carry.to = true;
+                }
+            }
+            Chunk::Joint(joint) => self.joint(*joint, carry, &all[at + 1..]),
+            Chunk::Comma => {
+                carry.after_comma = true;
+                (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
+                carry.progress = None;
+                carry.described = carry.subject.clone().filter(|_| carry.relative);
+                if carry.relative && carry.has_verb {
+                    // A relative clause ends at its comma.
+                    carry.relative = false;
+                    carry.subject = carry.main.clone();
+                    carry.has_verb = carry.pending.is_empty() && carry.main.is_some();
+                }
+                return;
+            }
+            Chunk::Word => {
+                let word = self.tokens[placed.first].text.as_str();
+                if let Some(progress) = self.lexicon.progress(word) {
+                    self.progress(progress, carry);
+                }
+                return;
+            }
+        }
+        carry.after_comma = false;
+    }
+
+    fn progress(&mut self, progress: Progress, carry: &mut Carry) {
+        carry.progress = Some(progress);
+        carry.began = true;
+    }
+
+    /// Who is meant by `it` and `its`.
+    fn its(&self, carry: &Carry) -> Actor {
+        let of_sentence = carry.main.as_ref().or(carry.subject.as_ref()).map(|mention| mention.actor);
+        match of_sentence {
+            Some(actor) if actor == SUBJECT || acts(self.world.actors[actor].kind) => actor,
+            _ => self.world.pronoun(),
+        }
+    }
+
+    /// What the adjectives of a noun say of it.
+    fn attribute(&mut self, noun: &Noun, actor: Actor, placed: &Placed, carry: &Carry) {
+        for adjective in &noun.adjectives {
+            let sense = match adjective {
+                Adjective::Stopped => Sense::Act(Act::Hold),
+                Adjective::Parked => Sense::Parked,
+                _ => continue,
+            };
+            let mut frame = self.frame(Some(actor), sense, Form::Past, placed, carry);
+            (frame.aside, frame.state, frame.negated, frame.progress) = (true, true, false, Progress::Real);
+            self.frames.push(frame);
+        }
+    }
+
+    fn frame(&self, who: Option<Actor>, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> Frame {
+        Frame {
+            who,
+            with: None,
+            sense,
+            form,
+            object: None,
+            on: None,
+            side: match sense {
+                Sense::Sided(_, side) => Some(side),
+                _ => None,
+            },
+            relations: Vec::new(),
+            heading: None,
+            onto: false,
+            lane: None,
+            out_of: None,
+            negated: carry.negated,
+            progress: carry.progress.unwrap_or(Progress::Real),
+            state: false,
+            aside: false,
+            joint: carry.joint,
+            person: None,
+            described: carry.relative,
+            passive: false,
+            clause: carry.clause,
+            sentence: self.sentence,
+            looks_back: self.looks_back,
+            first: placed.first,
+            end: placed.end,
+        }
+    }
+
+    fn mention(&mut self, mention: Mention, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
+        let actor = mention.actor;
+        let governed = carry.preposition.is_some() || carry.relation.is_some();
+        if let Some(relation) = carry.relation.take() {
+            self.relate(relation, Some(actor), carry);
+            carry.last = Some(mention);
+            carry.governed = true;
+            carry.preposition = None;
+            return;
+        }
+        if let Some(preposition) = carry.preposition.take() {
+            self.object_of(preposition, &mention, placed, carry);
+            carry.last = Some(mention);
+            carry.governed = true;
+            carry.to = false;
+            return;
+        }
+        let has_object =
+            |frames: &[Frame], frame: usize| frames[frame].object.is_some() || !transitive(frames[frame].sense);
+        let open = carry.frame.filter(|&frame| !has_object(&self.frames, frame) && !carry.fresh);
+        match open {
+            // The object of the verb before.
+            Some(frame) if !carry.after_comma => {
+                let taken = &mut self.frames[frame];
+                taken.object = Some(actor);
+                taken.on.clone_from(&mention.piece);
+                taken.end = placed.end;
+                carry.last = Some(mention);
+                carry.governed = false;
+                match taken.sense {
+                    Sense::Act(Act::Follow) => {
+                        let who = taken.who;
+                        self.follows(who, actor);
+                    }
+                    Sense::Push => carry.pushed = true,
+                    Sense::Headline if actor != SUBJECT => self.world.actors[actor].announced = true,
+                    Sense::Tow => {
+                        if let Some(tower) = taken.who {
+                            self.world.tow(tower, actor);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            _ => {
+                // A new subject.
+                let list = carry.has_verb && !carry.after_comma && !carry.fresh && !governed;
+                if list && !matches!(next, Some(Chunk::Verb(..) | Chunk::Be | Chunk::Relation(_) | Chunk::Relative)) {
+                    carry.last = Some(mention);
+                    carry.governed = true;
+                    return;
+                }
+                // "While stopped at a light, a man began to cross": of somebody new it is not told.
+                let new = self.world.actors[actor].mentions == 1 && actor != SUBJECT && carry.main.is_none();
+                for pending in std::mem::take(&mut carry.pending) {
+                    let dangles = new
+                        && self.frames[pending].state
+                        && matches!(self.frames[pending].sense, Sense::Act(Act::Hold) | Sense::Parked);
+                    self.frames[pending].who = Some(if dangles { self.world.topic } else { actor });
+                }
+                if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
+                    carry.main = Some(mention.clone());
+                }
+                if carry.also.as_ref().is_some_and(|also| carry.subject.as_ref() != Some(also) || also.actor == actor) {
+                    carry.also = None;
+                }
+                self.world.actors[actor].acted = true;
+                carry.subject = Some(mention.clone());
+                carry.last = Some(mention);
+                carry.has_verb = false;
+                carry.relative = false;
+                carry.governed = false;
+                (carry.be, carry.to, carry.progress, carry.negated) = (false, false, None, false);
+                carry.frame = None;
+            }
+        }
+        carry.fresh = false;
+    }
+
+    /// A part whose owner is not said: "made contact with the rear bumper".
+    fn loose_piece(&mut self, piece: &Piece, placed: &Placed, carry: &mut Carry) {
+        let Some(frame) = carry.frame else {
+            return;
+        };
+        let touches =
+            matches!(self.frames[frame].sense, Sense::Contact | Sense::ContactMade | Sense::Damage | Sense::RearEnd);
+        if touches && self.frames[frame].on.is_none() {
+            self.frames[frame].on = Some(piece.clone());
+            self.frames[frame].end = placed.end;
+        }
+        (carry.preposition, carry.relation) = (None, None);
+    }
+
+    /// A noun behind a preposition.
+    fn object_of(&mut self, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
+        let Some(frame) = carry.frame else { return };
+        let actor = mention.actor;
+        let sense = self.frames[frame].sense;
+        match preposition {
+            "by" if sense == Sense::Tow => {
+                if let Some(towed) = self.frames[frame].who {
+                    self.world.tow(actor, towed);
+                    if self.world.actors[towed].announced {
+                        self.world.actors[actor].announced = true;
+                    }
+                    self.frames[frame].object = Some(towed);
+                    self.frames[frame].who = Some(actor);
+                }
+            }
+            "by" => {
+                let taken = &mut self.frames[frame];
+                let passive = taken.form == Form::Past
+                    && matches!(
+                        taken.sense,
+                        Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
+                    )
+                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass)) && taken.passive;
+                if passive {
+                    if !matches!(taken.sense, Sense::ContactMade) && taken.object.is_none() {
+                        taken.object = taken.who;
+                        taken.on = taken.with.take();
+                    }
+                    taken.who = Some(actor);
+                    taken.with.clone_from(&mention.piece);
+                    (taken.passive, taken.end) = (true, placed.end);
+                    if let (Sense::Act(Act::Follow), Some(followed)) = (taken.sense, taken.object) {
+                        self.follows(Some(actor), followed);
+                    }
+                    if carry.relative || carry.subject.is_some() {
+                        carry.governed = true;
+                    }
+                }
+            }
+            "into" | "onto" | "with" | "against" | "between" | "and" | "upon" | "on" | "at" | "to" => {
+                if sense == Sense::Push && preposition != "with" {
+                    // Pushed into somebody: who was pushed touches them.
+                    let pushed = self.frames[frame].object;
+                    let placed_frame = Placed { chunk: Chunk::Word, first: self.frames[frame].first, end: placed.end };
+                    let mut contact = self.frame(pushed, Sense::Contact, Form::Past, &placed_frame, carry);
+                    contact.object = Some(actor);
+                    contact.on.clone_from(&mention.piece);
+                    contact.progress = Progress::Real;
+                    self.frames.push(contact);
+                    return;
+                }
+                let taken = &mut self.frames[frame];
+                let contact = matches!(
+                    taken.sense,
+                    Sense::Contact | Sense::ContactMade | Sense::ReverseContact | Sense::OpenDoorInto | Sense::RearEnd
+                );
+                if matches!(taken.sense, Sense::ContactMade) && taken.who.is_none() && preposition == "between" {
+                    taken.who = Some(actor);
+                    taken.with.clone_from(&mention.piece);
+                } else if (contact || taken.sense == Sense::Headline)
+                    && taken.object.is_none()
+                    && taken.who != Some(actor)
+                {
+                    taken.object = Some(actor);
+                    taken.on.clone_from(&mention.piece);
+                    taken.end = placed.end;
+                    if taken.sense == Sense::Headline && actor != SUBJECT {
+                        self.world.actors[actor].announced = true;
+                    }
+                } else if taken.sense == Sense::Yield && taken.object.is_none() {
+                    taken.object = Some(actor);
+                } else if contact && taken.object == Some(actor) && taken.on.is_none() {
+                    taken.on.clone_from(&mention.piece);
+                    taken.end = placed.end;
+                } else if matches!(
+                    taken.act(),
+                    Some(
+                        Act::Swerve
+                            | Act::Drift
+                            | Act::Turn
+                            | Act::LaneChange
+                            | Act::Reverse
+                            | Act::Roll
+                            | Act::Fall
+                            | Act::Slow
+                    )
+                ) && taken.object.is_none()
+                {
+                    taken.object = Some(actor);
+                }
+            }
+            "for"
+                if matches!(sense, Sense::Act(Act::Stop | Act::Hold))
+                    && self.frames[frame].who == Some(SUBJECT)
+                    && self.world.actors[actor].kind.is_some_and(Kind::is_vehicle)
+                    && !self.world.actors[actor].several =>
+            {
+                self.note(actor, Relation::Ahead);
+                self.frames[frame].object.get_or_insert(actor);
+            }
+            "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
+                let taken = &mut self.frames[frame];
+                if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
+                    taken.object = Some(actor);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Where somebody is: of the frame, or of the noun before.
+    fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &Carry) {
+        let mut who = None;
+        if let Some(frame) = carry.frame {
+            // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
+            let of_object = carry.last.is_some() && carry.governed_object(&self.frames[frame]);
+            if of_object {
+                who = carry.last.as_ref().map(|last| last.actor);
+            } else {
+                self.frames[frame].relations.push((relation, to));
+                who = self.frames[frame].who;
+            }
+        } else if let Some(subject) = &carry.subject {
+            who = Some(subject.actor);
+        }
+        let Some(who) = who else { return };
+        match to {
+            Some(SUBJECT) | None if who != SUBJECT => self.note(who, relation),
+            Some(other) if who == SUBJECT && other != SUBJECT => {
+                let turned = match relation {
+                    Relation::Behind => Relation::Ahead,
+                    Relation::Ahead => Relation::Behind,
+                    Relation::Left => Relation::Right,
+                    Relation::Right => Relation::Left,
+                    same => same,
+                };
+                self.note(other, turned);
+            }
+            _ => {}
+        }
+    }
+
+    fn follows(&mut self, who: Option<Actor>, whom: Actor) {
+        match who {
+            Some(SUBJECT) if whom != SUBJECT => self.note(whom, Relation::Ahead),
+            Some(who) if whom == SUBJECT && who != SUBJECT => self.note(who, Relation::Behind),
+            _ => {}
+        }
+    }
+
+    fn note(&mut self, actor: Actor, relation: Relation) {
+        self.world.actors[actor].place(relation, self.sentence);
+    }
+
+    fn relation(&mut self, relation: Relation, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
+        let governs = match next {
+            Some(Chunk::Noun(_) | Chunk::Pronoun) => true,
+            Some(Chunk::Piece(piece)) => piece.owner.is_some() || piece.its,
+            _ => false,
+        };
+        // "behind [XXX]", "next to the mall": places.
+        let last = self.tokens[placed.end - 1].text.as_str();
+        let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
+            || (last == "behind" && placed.end == placed.first + 1);
+        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) {
+            return;
+        }
+        // "to the left" is a side of what is done there, or a place.
+        let side = match relation {
+            Relation::Left => Some(LeftRight::Left),
+            Relation::Right => Some(LeftRight::Right),
+            _ => None,
+        };
+        // "pulled out of a driveway on the right", "merged from a ramp on the right": a place, and no side.
+        let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in");
+        let stays = |act: Option<Act>| match act {
+            Some(Act::Park | Act::PullOver) => governs,
+            Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn) => {
+                located || (act == Some(Act::PullOut) && governs)
+            }
+            _ => false,
+        };
+        if let (Some(side), Some(frame)) = (side, carry.frame)
+            && self.frames[frame].act().is_some_and(sided)
+            && !stays(self.frames[frame].act())
+            && self.frames[frame].sense != Sense::Parked
+            && self.frames[frame].side.is_none()
+        {
+            self.frames[frame].side = Some(side);
+            self.frames[frame].end = placed.end;
+            if governs {
+                carry.relation = None;
+                carry.preposition = Some("around");
+            }
+            return;
+        }
+        if governs {
+            carry.relation = Some(relation);
+            carry.preposition = None;
+        } else {
+            self.relate(relation, None, carry);
+        }
+    }
+
+    /// "on the left side of the roadway".
+    fn of_road(&self, at: usize) -> bool {
+        self.tokens.get(at..(at + 3).min(self.tokens.len())).unwrap_or_default().iter().any(|token| {
+            matches!(token.text.as_str(), "road" | "roadway" | "street" | "alley" | "driveway" | "lane" | "highway")
+        })
+    }
+
+    fn compass(&mut self, compass: Compass, placed: &Placed, carry: &mut Carry) {
+        let stands = (compass, placed.first, placed.end);
+        let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
+        let from = carry.preposition == Some("from");
+        carry.preposition = None;
+        // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
+        match carry.frame {
+            Some(frame) => {
+                let taken = &mut self.frames[frame];
+                if let (true, Some(who)) = (from, taken.who) {
+                    self.world.actors[who].heading.get_or_insert(stands);
+                    return;
+                }
+                let turns =
+                    matches!(taken.act(), Some(Act::Turn | Act::UTurn | Act::PullOut | Act::Enter | Act::LaneChange));
+                if taken.heading.is_none() {
+                    taken.heading = Some(stands);
+                    taken.onto = onto || (turns && taken.act() != Some(Act::Enter));
+                }
+                let (who, onto) = (taken.who, taken.onto);
+                if let (Some(who), false) = (who, onto) {
+                    self.world.actors[who].heading.get_or_insert(stands);
+                }
+            }
+            None => {
+                if let Some(subject) = &carry.subject {
+                    self.world.actors[subject.actor].heading.get_or_insert(stands);
+                }
+            }
+        }
+    }
+
+    fn side(&mut self, side: LeftRight, carry: &Carry) {
+        if let Some(frame) = carry.frame
+            && self.frames[frame].act().is_some_and(sided)
+            && self.frames[frame].side.is_none()
+        {
+            self.frames[frame].side = Some(side);
+        }
+    }
+
+    fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {
+        let into = matches!(carry.preposition, Some("into" | "onto" | "to")) || carry.to;
+        let from = carry.preposition == Some("from");
+        (carry.preposition, carry.to) = (None, false);
+        let stands = (lane, placed.first, placed.end);
+        let Some(frame) = carry.frame else {
+            if let Some(subject) = &carry.subject {
+                self.world.actors[subject.actor].lane.get_or_insert(stands);
+            }
+            return;
+        };
+        let side = match lane {
+            LaneWord::Left | LaneWord::LeftTurn => Some(LeftRight::Left),
+            LaneWord::Right | LaneWord::RightTurn => Some(LeftRight::Right),
+            _ => None,
+        };
+        let taken = &mut self.frames[frame];
+        let moves = matches!(taken.act(), Some(Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter));
+        if moves && taken.side.is_none() && side.is_some() && !from {
+            taken.side = side;
+            return;
+        }
+        if moves && from && taken.side.is_none() && side.is_some() {
+            taken.side = side.map(LeftRight::other);
+        }
+        taken.lane.get_or_insert(stands);
+        let who = taken.who;
+        if let Some(who) = who.filter(|_| !into || from) {
+            self.world.actors[who].lane.get_or_insert(stands);
+        }
+    }
+
+    fn spot(&mut self, spot: Spot, carry: &mut Carry) {
+        let word = carry.preposition.take();
+        carry.to = false;
+        let Some(frame) = carry.frame else { return };
+        let taken = &mut self.frames[frame];
+        let moves = matches!(
+            taken.act(),
+            Some(
+                Act::Reverse
+                    | Act::PullOut
+                    | Act::Enter
+                    | Act::Follow
+                    | Act::SetOff
+                    | Act::Turn
+                    | Act::Drift
+                    | Act::Cross
+                    | Act::Swerve
+                    | Act::Accelerate
+            )
+        ) || taken.sense == Sense::Approach;
+        let says_out = (taken.first..taken.end).any(|at| self.tokens[at].text == "out");
+        let leaves = match word {
+            Some("out") => moves || taken.sense == Sense::Other,
+            Some("from") => moves,
+            Some("of") => moves && says_out,
+            Some("into" | "onto" | "to" | "in" | "at" | "on" | "near" | "through" | "towards" | "toward") => false,
+            _ => matches!(taken.act(), Some(Act::PullOut | Act::Reverse)),
+        };
+        if leaves && taken.happened() {
+            taken.out_of.get_or_insert(spot);
+        }
+    }
+
+    fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
+        let next = behind.first().map(|placed| &placed.chunk);
+        // "between the van and a parked car": the second of a pair, and no new clause.
+        let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
+        let ends = behind.get(1).is_none_or(|placed| matches!(placed.chunk, Chunk::Comma | Chunk::Joint(_)));
+        if joint == Joint::And && noun && ends && carry.has_verb {
+            carry.preposition = Some("and");
+            return;
+        }
+        // "the van and the bus": nouns in a row.
+        let nouns = joint == Joint::And
+            && matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)))
+            && !carry.has_verb
+            && !carry.after_comma
+            && carry.subject.is_some();
+        if nouns {
+            carry.also = carry.subject.clone();
+            return;
+        }
+        carry.also = None;
+        carry.clause += 1;
+        (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
+        if joint != Joint::And {
+            carry.joint = Some(joint);
+            (carry.progress, carry.negated) = (None, false);
+        }
+        if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
+            carry.negated = false;
+            carry.row = true;
+            if carry.relative {
+                // "a van that was behind it and struck it" goes on with the van.
+                carry.has_verb = true;
+            }
+            if !matches!(next, Some(Chunk::Verb(_, Form::Base))) {
+                carry.progress = None;
+            }
+            return;
+        }
+        (carry.progress, carry.negated) = (None, false);
+        carry.relative = false;
+        carry.fresh = true;
+        carry.frame = None;
+        carry.governed = false;
+        if joint != Joint::And && !matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_) | Chunk::Pronoun)) {
+            // "while stopped", "before turning": of whom the clause is about, or of who is named next.
+            carry.has_verb = carry.subject.is_some();
+        }
+    }
+
+    fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
+        let placed = &all[at];
+        let word = self.tokens[placed.first].text.clone();
+        let next = all.get(at + 1).map(|placed| &placed.chunk);
+        // A finite verb behind a finished relative clause is of the clause around it.
+        let finite = (matches!(form, Form::Past | Form::Present)) || (form == Form::Ing && carry.be);
+        if carry.relative
+            && carry.has_verb
+            && finite
+            && !carry.be
+            && form != Form::Ing
+            && !carry.after_comma
+            && !matches!(all.get(at.wrapping_sub(1)).map(|placed| &placed.chunk), Some(Chunk::Joint(_)))
+            && let Some(outer) = carry.outer.take()
+        {
+            carry.subject = Some(outer);
+            (carry.has_verb, carry.relative) = (false, false);
+        }
+        // "began to", "attempted to", "was waiting to": how far the next verb came.
+        let own_progress = carry.progress;
+        let mut leads = false;
+        if placed.end == placed.first + 1
+            && let Some(progress) = self.lexicon.progress(&word)
+            && (next_is_verb(all, at) || matches!(sense, Sense::Other))
+        {
+            // "before proceeding to turn": not done.
+            let before = carry.joint == Some(Joint::Before) && carry.fresh && form == Form::Ing;
+            self.progress(if before { Progress::Wished } else { progress }, carry);
+            leads = true;
+            let swallowed = matches!(sense, Sense::Other | Sense::Act(Act::Follow)) && next_is_verb(all, at);
+            if sense == Sense::Other {
+                carry.to = false;
+            }
+            if swallowed {
+                carry.began = false;
+                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false);
+                carry.began = true;
+                carry.has_verb |= form != Form::Ing || carry.be;
+                return;
+            }
+        }
+        let to = std::mem::take(&mut carry.to) && form == Form::Base;
+        let purpose = to && !carry.began;
+        let who = self.who_of(sense, form, placed, carry, purpose);
+        let mut frame = self.frame(who.as_ref().map(|mention| mention.actor), sense, form, placed, carry);
+        if leads {
+            frame.progress = own_progress.unwrap_or(Progress::Real);
+        }
+        frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject;
+        frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
+        frame.person = who.as_ref().and_then(|mention| mention.person);
+        // "a van parked on the left began to move": the first verb describes, the second one tells.
+        let bare = placed.end == placed.first + 1;
+        let describes =
+            matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow);
+        let described = bare
+            && form == Form::Past
+            && !carry.be
+            && describes
+            && !carry.has_verb
+            && carry.last_is(carry.subject.as_ref())
+            && another_finite(all, at);
+        let be = std::mem::take(&mut carry.be);
+        if be && form == Form::Past && matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold)) {
+            frame.state = true;
+            frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
+        }
+        if described && matches!(sense, Sense::Act(Act::Stop | Act::Park)) {
+            frame.state = true;
+            frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
+        }
+        let participle = bare
+            && !be
+            && form == Form::Past
+            && (carry.governed || carry.joint.is_some_and(|joint| joint != Joint::And))
+            && who.is_some()
+            && carry.last_is(who.as_ref());
+        if participle && matches!(sense, Sense::Act(Act::Stop | Act::Park)) && (carry.fresh || carry.governed) {
+            frame.state = true;
+            frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
+        }
+        if bare
+            && carry.fresh
+            && form == Form::Past
+            && !be
+            && matches!(sense, Sense::Act(Act::Stop | Act::Park))
+            && carry.joint == Some(Joint::While)
+        {
+            frame.state = true;
+            frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
+        }
+        if purpose
+            && !matches!(sense, Sense::Yield | Sense::Act(Act::Hold | Act::Stop | Act::Slow))
+            && frame.progress == Progress::Real
+        {
+            // "moved forward to pass it": begun. "slowed to turn": not.
+            let going = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|before| {
+                before.who == frame.who
+                    && before.happened()
+                    && matches!(
+                        before.act(),
+                        Some(Act::Follow | Act::SetOff | Act::Drift | Act::Accelerate | Act::Reverse)
+                    )
+            });
+            frame.progress =
+                match (carry.pushed, going && matches!(frame.act(), Some(Act::Pass | Act::Park | Act::LaneChange))) {
+                    (true, _) => Progress::Real,
+                    (_, true) => Progress::Tried,
+                    _ => Progress::Wished,
+                };
+        }
+        if carry.joint == Some(Joint::Before) && carry.fresh && frame.progress == Progress::Real && form == Form::Ing {
+            frame.progress = Progress::Wished;
+        }
+        frame.passive = be && form == Form::Past && matches!(next_preposition(all, at), Some("by"));
+        if be && form == Form::Past && matches!(sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact) {
+            // "was struck", with or without a "by" behind it.
+            frame.object = frame.who.take();
+            frame.on = frame.with.take();
+            frame.passive = true;
+        }
+        if matches!(sense, Sense::Push) && carry.pushed {
+            carry.pushed = false;
+        }
+        if frame.side.is_none() && frame.act().is_some_and(sided) {
+            frame.side = self.side_in(placed);
+        }
+        if frame.act() == Some(Act::PullOut) {
+            frame.out_of = self.spot_in(placed);
+        }
+        let unnamed = frame.who.is_none()
+            && !frame.passive
+            && !matches!(sense, Sense::ContactMade | Sense::LightGreen | Sense::LightRed | Sense::LightYellow);
+        if let (Some(also), false) = (&carry.also, frame.passive) {
+            let mut twin = frame.clone();
+            (twin.who, twin.with) = (Some(also.actor), also.piece.clone());
+            self.frames.push(twin);
+        }
+        self.frames.push(frame);
+        let number = self.frames.len() - 1;
+        if unnamed {
+            carry.pending.push(number);
+        }
+        carry.frame = Some(number);
+        carry.has_verb |= (finite && !described) || carry.be || unnamed;
+        carry.fresh = false;
+        carry.governed = false;
+        carry.preposition = None;
+        carry.relation = None;
+        let row = carry.progress.is_some() && matches!(next, Some(Chunk::Joint(Joint::And)));
+        if !(leads || row) {
+            carry.progress = None;
+        }
+        carry.began = leads;
+        carry.lead_who = None;
+        carry.row = false;
+        carry.negated = false;
+    }
+
+    /// The side that the words of a verb name: "moved into the left lane".
+    fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
+        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
+            "left" | "leftmost" => Some(LeftRight::Left),
+            "right" | "rightmost" => Some(LeftRight::Right),
+            _ => None,
+        })
+    }
+
+    /// The place that the words of a verb name: "exited its parking stall".
+    fn spot_in(&self, placed: &Placed) -> Option<Spot> {
+        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
+            "stall" | "space" | "spot" | "carport" => Some(Spot::Stall),
+            "driveway" | "lot" | "garage" | "alley" => Some(Spot::Driveway),
+            "curb" => Some(Spot::Curb),
+            _ => None,
+        })
+    }
+
+    /// Of whom a verb is told.
+    fn who_of(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry, purpose: bool) -> Option<Mention> {
+        if carry.pushed && purpose {
+            return carry.last.clone();
+        }
+        if carry.began && carry.lead_who.is_some() {
+            return carry.lead_who.clone();
+        }
+        // "a van braking too late and striking": the second participle is of who does the first.
+        if let (true, Form::Ing, Some(before)) =
+            (carry.row && !carry.be, form, carry.frame.map(|frame| &self.frames[frame]))
+            && before.form == Form::Ing
+            && let Some(actor) = before.who
+        {
+            return Some(Mention { actor, piece: None, person: None, end: before.end });
+        }
+        if carry.subject.is_none()
+            && form == Form::Ing
+            && !carry.be
+            && carry.governed
+            && !carry.fresh
+            && !carry.after_comma
+        {
+            let near = carry
+                .last
+                .as_ref()
+                .filter(|last| placed.first <= last.end + 1 && acts(self.world.actors[last.actor].kind));
+            if near.is_some() {
+                return near.cloned();
+            }
+        }
+        if carry.after_comma && form == Form::Ing && sense == Sense::Face && carry.described.is_some() {
+            return carry.described.clone();
+        }
+        // "was struck by a van, traveling east": the van.
+        if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
+            && self.frames[frame].passive
+            && self.frames[frame].who == Some(last.actor)
+        {
+            return carry.last.clone();
+        }
+        let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
+        // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
+        // "by crossing the line": who does the rest.
+        let by = carry.preposition == Some("by");
+        let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
+        if adjacent && participle && carry.has_verb && self.touches_last(sense, form, placed, carry) {
+            return carry.last.clone();
+        }
+        carry.subject.clone()
+    }
+
+    /// Whether the noun named last stands right before.
+    fn touches_last(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> bool {
+        let Some(last) = &carry.last else { return false };
+        // The subject of the clause takes its own verbs; only objects are described by participles.
+        if carry.subject.as_ref() == Some(last) {
+            return false;
+        }
+        // Things are described by few verbs, and nobody by one that stands apart.
+        let between = self.tokens.get(last.end..placed.first).unwrap_or_default();
+        let place = carry.governed
+            || carry
+                .frame
+                .is_some_and(|frame| matches!(self.frames[frame].sense, Sense::Yield | Sense::See | Sense::Approach));
+        let describes =
+            !matches!(sense, Sense::Push | Sense::Damage | Sense::Contact | Sense::RearEnd | Sense::TakeOver);
+        let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
+            && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
+        let lively = acts(self.world.actors[last.actor].kind)
+            || matches!(
+                sense,
+                Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked
+            );
+        if !near || !lively {
+            return false;
+        }
+        carry.frame.is_some_and(|frame| {
+            let frame = &self.frames[frame];
+            frame.object == Some(last.actor)
+                || frame.relations.iter().any(|(_, actor)| *actor == Some(last.actor))
+                || carry.governed
+        })
+    }
+}
+
+impl Carry {
+    fn last_is(&self, who: Option<&Mention>) -> bool {
+        self.last.as_ref() == who
+    }
+
+    /// Whether the noun named last is the object of this frame, and not who does it.
+    fn governed_object(&self, frame: &Frame) -> bool {
+        let Some(last) = &self.last else { return false };
+        frame.object == Some(last.actor)
+            && frame.who != Some(last.actor)
+            && !matches!(
+                frame.sense,
+                Sense::Contact
+                    | Sense::ContactMade
+                    | Sense::Approach
+                    | Sense::RearEnd
+                    | Sense::Act(Act::Pass | Act::Follow)
+            )
+    }
+}
+
+fn acts(kind: Option<Kind>) -> bool {
+    kind.is_none_or(|kind| kind.group() != KindGroup::Object)
+}
+
+/// Whether the verb takes an object.
+fn transitive(sense: Sense) -> bool {
+    matches!(
+        sense,
+        Sense::Contact
+            | Sense::ContactMade
+            | Sense::RearEnd
+            | Sense::ReverseContact
+            | Sense::OpenDoorInto
+            | Sense::Headline
+            | Sense::Approach
+            | Sense::Push
+            | Sense::See
+            | Sense::Damage
+            | Sense::Yield
+            | Sense::ExitVehicle
+            | Sense::Other
+            | Sense::Tow
+            | Sense::Act(Act::Pass | Act::Follow | Act::LaneChange | Act::OpenDoor | Act::Cross | Act::Slow)
+    )
+}
+
+/// Whether an act goes to a side.
+pub fn sided(act: Act) -> bool {
+    matches!(
+        act,
+        Act::Turn
+            | Act::UTurn
+            | Act::LaneChange
+            | Act::Drift
+            | Act::Swerve
+            | Act::Pass
+            | Act::PullOver
+            | Act::PullOut
+            | Act::Park
+    )
+}
+
+fn next_is_verb(all: &[Placed], at: usize) -> bool {
+    for placed in all[at + 1..].iter().take(3) {
+        match &placed.chunk {
+            Chunk::Verb(_, Form::Ing | Form::Base) => return true,
+            Chunk::Preposition("to") | Chunk::Word | Chunk::Be => {}
+            _ => return false,
+        }
+    }
+    false
+}
+
+/// Whether a finite verb stands behind in the same clause.
+fn another_finite(all: &[Placed], at: usize) -> bool {
+    for placed in &all[at + 1..] {
+        match &placed.chunk {
+            Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be => return true,
+            Chunk::Joint(_) | Chunk::Comma | Chunk::Relative => return false,
+            _ => {}
+        }
+    }
+    false
+}
+
+fn next_preposition(all: &[Placed], at: usize) -> Option<&'static str> {
+    all[at + 1..].iter().take(4).find_map(|placed| match placed.chunk {
+        Chunk::Preposition(word) => Some(word),
+        _ => None,
+    })
+}
+
+/// Where the words behind a noun say that it is, seen from the subject vehicle.
+fn relation_behind(all: &[Placed], at: usize, _world: &World) -> Option<Relation> {
+    match (all.get(at + 1).map(|p| &p.chunk)?, all.get(at + 2).map(|p| &p.chunk)) {
+        (Chunk::Relation(relation), Some(Chunk::Noun(noun))) if noun.subject => Some(*relation),
+        _ => None,
+    }
+}
+
+/// The zone that the words of a part name.
+pub fn zone_of(piece: &Piece) -> Option<recrash_model::zones::ContactZone> {
+    use recrash_model::zones::ContactZone as Z;
+    let has = |part: Part| piece.parts.contains(&part);
+    let (front, rear) = (has(Part::Front), has(Part::Rear));
+    let (left, right) = (has(Part::Left), has(Part::Right));
+    Some(match (front && !rear, rear && !front, left && !right, right && !left) {
+        (true, _, true, _) => Z::FrontLeft,
+        (true, _, _, true) => Z::FrontRight,
+        (_, true, true, _) => Z::RearLeft,
+        (_, true, _, true) => Z::RearRight,
+        (true, ..) => Z::Front,
+        (_, true, ..) => Z::Rear,
+        (_, _, true, _) => Z::Left,
+        (_, _, _, true) => Z::Right,
+        _ if has(Part::Top) => Z::Top,
+        _ if has(Part::Bottom) => Z::Bottom,
+        _ => return None,
+    })
+}

@@ -1,0 +1,185 @@
+//! Words of a narrative, and its sentences.
+
+/// What a token is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TokenKind {
+    /// A word, or a number with a unit.
+    Word,
+    /// A number.
+    Number,
+    /// A masked name: `[XXX]`.
+    Name,
+    /// One punctuation mark.
+    Mark,
+}
+
+/// A token and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Token {
+    /// First byte. [byte]
+    pub start: usize,
+    /// Byte behind it. [byte]
+    pub end: usize,
+    /// The word in small letters.
+    pub text: String,
+    /// What it is.
+    pub kind: TokenKind,
+    /// It begins with a capital letter.
+    pub capital: bool,
+}
+
+/// A sentence: a range of tokens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sentence {
+    /// First token.
+    pub first: usize,
+    /// Token behind the last.
+    pub end: usize,
+}
+
+/// Words with a full stop that ends no sentence.
+const ABBREVIATIONS: [&str; 26] = [
+    "st", "ave", "blvd", "dr", "no", "mr", "ms", "mrs", "vs", "approx", "rd", "hwy", "ln", "pl", "ct", "ste", "jr",
+    "sr", "e.g", "i.e", "al", "pony", "apt", "ft", "mt", "pkwy",
+];
+
+/// Splits a narrative into tokens. Hyphens part words; `'s` is a token of its own.
+pub fn tokens(text: &str) -> Vec<Token> {
+    let mut all = Vec::new();
+    let mut chars = text.char_indices().peekable();
+    while let Some((start, c)) = chars.next() {
+        if c == '[' {
+            // A masked name, or a withheld part: both end at the next bracket, if that is near.
+            let rest = &text[start..];
+            let length = rest.char_indices().take(120).find(|(_, c)| *c == ']').map(|(at, _)| at + 1);
+            if let Some(length) = length {
+                let end = start + length;
+                let name = length <= 8;
+                let kind = if name { TokenKind::Name } else { TokenKind::Mark };
+                let text = if name { "[xxx]" } else { "." }.to_owned();
+                all.push(Token { start, end, text, kind, capital: name });
+                while chars.peek().is_some_and(|(at, _)| *at < end) {
+                    chars.next();
+                }
+                continue;
+            }
+        }
+        if c.is_alphanumeric() || c == '#' {
+            let mut end = start + c.len_utf8();
+            while let Some(&(at, next)) = chars.peek() {
+                let inside = next.is_alphanumeric() || (next == '.' && decimal(text, at));
+                if !inside {
+                    break;
+                }
+                end = at + next.len_utf8();
+                chars.next();
+            }
+            let word = &text[start..end];
+            let number = word.trim_start_matches('#').chars().all(|c| c.is_ascii_digit() || c == '.');
+            let kind = if number && word != "#" { TokenKind::Number } else { TokenKind::Word };
+            all.push(Token { start, end, text: word.to_lowercase(), kind, capital: c.is_uppercase() });
+            continue;
+        }
+        let end = start + c.len_utf8();
+        match c {
+            '\'' | '\u{2019}' | '\u{60}' | '\u{b4}' => {
+                let follows = chars.peek().map(|(_, next)| *next);
+                let touches = all.last().is_some_and(|last: &Token| last.end == start && last.kind != TokenKind::Mark);
+                if touches && follows == Some('s') {
+                    chars.next();
+                    let text = "'s".to_owned();
+                    all.push(Token { start, end: end + 1, text, kind: TokenKind::Word, capital: false });
+                } else if touches && all.last().is_some_and(|last| last.text.ends_with('s')) {
+                    all.push(Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false });
+                }
+            }
+            '.' | ',' | ';' | ':' | '(' | ')' | '!' | '?' | '\n' => {
+                let text = if c == '\n' { "\u{b6}".to_owned() } else { c.to_string() };
+                all.push(Token { start, end, text, kind: TokenKind::Mark, capital: false });
+            }
+            _ => {}
+        }
+    }
+    all
+}
+
+/// Whether the full stop at this byte stands between digits, or inside a name such as `Pony.ai`.
+fn decimal(text: &str, at: usize) -> bool {
+    let before = text[..at].chars().next_back();
+    let after = text[at + 1..].chars().next();
+    match (before, after) {
+        (Some(before), Some(after)) => {
+            (before.is_ascii_digit() && after.is_ascii_digit()) || text[..at].to_lowercase().ends_with("pony")
+        }
+        _ => false,
+    }
+}
+
+/// The sentences of a narrative.
+pub fn sentences(tokens: &[Token]) -> Vec<Sentence> {
+    let mut all = Vec::new();
+    let mut first = 0;
+    for (at, token) in tokens.iter().enumerate() {
+        if token.kind != TokenKind::Mark || !ends_sentence(tokens, at) {
+            continue;
+        }
+        if at > first {
+            all.push(Sentence { first, end: at });
+        }
+        first = at + 1;
+    }
+    if first < tokens.len() {
+        all.push(Sentence { first, end: tokens.len() });
+    }
+    all
+}
+
+fn ends_sentence(tokens: &[Token], at: usize) -> bool {
+    let token = &tokens[at];
+    match token.text.as_str() {
+        ";" | "!" | "?" => true,
+        "." => {
+            if token.end - token.start > 1 {
+                return true;
+            }
+            let Some(before) = at.checked_sub(1).map(|at| &tokens[at]) else { return true };
+            let Some(after) = tokens.get(at + 1) else { return true };
+            let initial = before.text.chars().count() == 1 && before.capital && before.kind == TokenKind::Word;
+            let abbreviated = ABBREVIATIONS.contains(&before.text.as_str());
+            let begins = after.capital || after.kind != TokenKind::Word || after.text == "\u{b6}";
+            let apart = after.start > token.end;
+            if initial || abbreviated {
+                // `St. The van ...` ends one all the same.
+                return abbreviated
+                    && matches!(after.text.as_str(), "the" | "a" | "an" | "as" | "while" | "when" | "at")
+                    && after.capital;
+            }
+            begins || apart
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn split(text: &str) -> Vec<String> {
+        let tokens = tokens(text);
+        sentences(&tokens)
+            .iter()
+            .map(|s| tokens[s.first..s.end].iter().map(|t| t.text.clone()).collect::<Vec<_>>().join(" "))
+            .collect()
+    }
+
+    #[test]
+    fn sentences_end_where_they_end() {
+        let found = split(
+            "The van ran at 2.5 mph on E. Elm St. near [XXX].The car's rear-end was hit. See [REDACTED, MAY CONTAIN X] It left.",
+        );
+        assert_eq!(
+            found,
+            ["the van ran at 2.5 mph on e . elm st . near [xxx]", "the car 's rear end was hit", "see", "it left"]
+        );
+    }
+}

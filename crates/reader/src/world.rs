@@ -1,0 +1,351 @@
+//! Who is in the story, and who is meant by a noun.
+
+use crate::chunk::{Article, Noun};
+use crate::lexicon::{Adjective, Occupant, Relation};
+use recrash_model::account::{Compass, Kind, KindGroup, LaneWord};
+
+/// Somebody or something in the story, by its place in [`World::actors`].
+pub type Actor = usize;
+
+/// The subject vehicle.
+pub const SUBJECT: Actor = 0;
+
+/// What is known of somebody.
+#[derive(Debug, Clone, Default)]
+pub struct Known {
+    /// Kind.
+    pub kind: Option<Kind>,
+    /// Tokens of the noun that told the kind.
+    pub kind_tokens: Option<(usize, usize)>,
+    /// Makes and colours.
+    pub names: Vec<String>,
+    /// The number of "Vehicle 2".
+    pub number: Option<u8>,
+    /// More than one.
+    pub several: bool,
+    /// The headline named it, and the story has not yet.
+    pub announced: bool,
+    /// Where it is, seen from the subject vehicle, and the sentence that says so.
+    pub relations: Vec<(Relation, usize)>,
+    /// Direction first told, with its tokens.
+    pub heading: Option<(Compass, usize, usize)>,
+    /// Lane first told, with its tokens.
+    pub lane: Option<(LaneWord, usize, usize)>,
+    /// When it was named last.
+    pub last: usize,
+    /// How often it was named.
+    pub mentions: usize,
+    /// A clause was about it.
+    pub acted: bool,
+    /// Who tows it.
+    pub towed_by: Option<Actor>,
+}
+
+impl Known {
+    /// Notes where it is, once.
+    pub fn place(&mut self, relation: Relation, sentence: usize) {
+        if !self.relations.iter().any(|(known, _)| *known == relation) {
+            self.relations.push((relation, sentence));
+        }
+    }
+}
+
+/// Everybody in the story.
+#[derive(Debug, Clone)]
+pub struct World {
+    /// The subject vehicle first.
+    pub actors: Vec<Known>,
+    clock: usize,
+    /// Number of the sentence that is read.
+    pub sentence: usize,
+    /// Who the sentence, or the one before, is about.
+    pub topic: Actor,
+}
+
+impl World {
+    /// A world with the subject vehicle in it.
+    pub fn new(own: crate::frame::Own<'_>) -> Self {
+        let names = own.make.into_iter().map(str::to_owned).collect();
+        let subject = Known { kind: own.kind, names, ..Known::default() };
+        Self { actors: vec![subject], clock: 0, sentence: 0, topic: SUBJECT }
+    }
+
+    /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
+    pub fn resolve(&mut self, noun: &Noun, tokens: (usize, usize), hint: Option<Relation>) -> Actor {
+        let actor = self.find(noun, hint).unwrap_or_else(|| self.add(noun));
+        let actor = self.actors[actor].towed_by.unwrap_or(actor);
+        self.clock += 1;
+        let known = &mut self.actors[actor];
+        known.last = self.clock;
+        known.mentions += 1;
+        if actor != SUBJECT
+            && let Some(owner) = noun.owner.as_deref().filter(|_| noun.occupant.is_some())
+        {
+            refine(known, owner, tokens);
+        } else if actor != SUBJECT && noun.occupant.is_none() {
+            refine(known, noun, tokens);
+        } else if noun.subject && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
+            known.kind = known.kind.or(noun.kind);
+        }
+        if let Some(relation) = relation_of(noun)
+            && noun.occupant.is_none()
+            && actor != SUBJECT
+        {
+            known.place(relation, self.sentence);
+        }
+        if let (Some(compass), true, None) = (noun.compass, noun.occupant.is_none(), known.heading) {
+            known.heading = Some((compass, tokens.0, tokens.1));
+        }
+        actor
+    }
+
+    /// Somebody who is not named, such as who touched the subject vehicle in "contact was made".
+    pub fn unnamed(&mut self) -> Actor {
+        match self.latest(|known| known.kind.is_some_and(acts)) {
+            Some(actor) => actor,
+            None => {
+                self.actors.push(Known { announced: true, ..Known::default() });
+                self.actors.len() - 1
+            }
+        }
+    }
+
+    /// One tows the other: from here on they are one.
+    pub fn tow(&mut self, tower: Actor, towed: Actor) {
+        if tower == towed || towed == SUBJECT || self.actors[tower].towed_by.is_some() {
+            return;
+        }
+        self.actors[towed].towed_by = Some(tower);
+        let kind = match self.actors[tower].kind {
+            Some(Kind::HeavyTruck | Kind::SemiTrailerTruck) => Kind::SemiTrailerTruck,
+            Some(kind) if !kind.is_vehicle() => kind,
+            Some(Kind::TowTruck) => Kind::TowTruck,
+            _ => Kind::PickupWithTrailer,
+        };
+        let trailer = self.actors[towed].kind == Some(Kind::Trailer);
+        if tower != SUBJECT && trailer {
+            self.actors[tower].kind = Some(kind);
+        }
+    }
+
+    /// Who is meant by `it`.
+    pub fn pronoun(&self) -> Actor {
+        self.topic
+    }
+
+    fn latest(&self, wanted: impl Fn(&Known) -> bool) -> Option<Actor> {
+        (1..self.actors.len())
+            .filter(|&actor| wanted(&self.actors[actor]))
+            .max_by_key(|&actor| (self.actors[actor].acted, self.actors[actor].last))
+    }
+
+    fn find(&mut self, noun: &Noun, hint: Option<Relation>) -> Option<Actor> {
+        if let Some((who, plain)) = noun.occupant {
+            return Some(self.occupant(noun, who, plain));
+        }
+        if noun.subject {
+            return Some(SUBJECT);
+        }
+        if let Some(number) = noun.number {
+            let known = self.latest(|known| known.number == Some(number));
+            if known.is_some() {
+                return known;
+            }
+        }
+        let by_own_make = noun.article == Article::Definite
+            && noun.names.iter().any(|name| self.actors[SUBJECT].names.contains(name));
+        if by_own_make && !self.actors[1..].iter().any(|known| known.names.iter().any(|name| noun.names.contains(name)))
+        {
+            return Some(SUBJECT);
+        }
+        let kind = noun.kind?;
+        if noun.article == Article::None
+            && !noun.several
+            && matches!(kind, Kind::Bus)
+            && self.actors[SUBJECT].kind == Some(kind)
+        {
+            return Some(SUBJECT);
+        }
+        let has = |adjective: Adjective| noun.adjectives.contains(&adjective);
+        let fits = |known: &Known| {
+            (known.kind.is_none() || known.kind.is_some_and(|known| same_kind(known, kind)))
+                && (noun.number.is_none() || known.number.is_none() || noun.number == known.number)
+                && !contradicts(&known.names, &noun.names)
+        };
+        if has(Adjective::Another) {
+            // A second one of a kind; the announced one only where nobody of the kind was met.
+            let met = self.latest(|known| fits(known) && !known.announced).is_some();
+            return if met { None } else { self.latest(|known| known.announced && fits(known)) };
+        }
+        if noun.article == Article::Indefinite
+            || (noun.article == Article::None && noun.names.is_empty() && !noun.several)
+        {
+            return self.latest(|known| {
+                known.announced
+                    && fits(known)
+                    && known.several == noun.several
+                    && known.kind.is_none_or(|known| introduces(known, kind))
+            });
+        }
+        if noun.several && noun.article == Article::None {
+            return self.latest(|known| known.several && fits(known));
+        }
+        if has(Adjective::First) {
+            let first =
+                (1..self.actors.len()).find(|&actor| fits(&self.actors[actor]) && self.actors[actor].mentions > 0);
+            if first.is_some() {
+                return first;
+            }
+        }
+        if let Some(relation) = relation_of(noun).or(hint) {
+            let there = self.latest(|known| fits(known) && known.relations.iter().any(|(place, _)| *place == relation));
+            if there.is_some() {
+                return there;
+            }
+        }
+        let named = self.latest(|known| {
+            !noun.names.is_empty() && known.names.iter().any(|name| noun.names.contains(name)) && fits(known)
+        });
+        let exact = self.latest(|known| known.kind == Some(kind) && fits(known) && known.several == noun.several);
+        let wide = self.latest(|known| fits(known) && known.several == noun.several);
+        let found = named.or(exact).or(wide);
+        // "The vehicle" of a story that knows no other one.
+        if found.is_none()
+            && hint.is_none()
+            && kind == Kind::Vehicle
+            && noun.names.is_empty()
+            && !has(Adjective::Other)
+            && noun.article == Article::Definite
+        {
+            return Some(SUBJECT);
+        }
+        if found.is_none()
+            && noun.article == Article::Definite
+            && !has(Adjective::Other)
+            && self.actors[SUBJECT].kind.is_some_and(|own| own == kind || same_kind(own, kind))
+            && kind.group() == KindGroup::Truck
+        {
+            return Some(SUBJECT);
+        }
+        if let (Some(found), Kind::Vehicle, true) = (found, kind, noun.names.is_empty())
+            && !has(Adjective::Other)
+            && noun.adjectives.is_empty()
+            && noun.article == Article::Definite
+            && self.actors[found].kind != Some(Kind::Vehicle)
+            && self.topic == SUBJECT
+            && self.actors[SUBJECT].last > self.actors[found].last
+        {
+            return Some(SUBJECT);
+        }
+        found
+    }
+
+    fn occupant(&mut self, noun: &Noun, who: Occupant, plain: bool) -> Actor {
+        if let Some(owner) = &noun.owner {
+            let owner = (**owner).clone();
+            return self.find(&owner, None).unwrap_or_else(|| self.add(&owner));
+        }
+        match who {
+            Occupant::Driver if plain => self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT),
+            _ => SUBJECT,
+        }
+    }
+
+    fn add(&mut self, noun: &Noun) -> Actor {
+        self.actors.push(Known { several: noun.several, ..Known::default() });
+        self.actors.len() - 1
+    }
+}
+
+/// Whether somebody of this kind does things.
+fn acts(kind: Kind) -> bool {
+    !matches!(kind.group(), KindGroup::Object)
+}
+
+fn refine(known: &mut Known, noun: &Noun, tokens: (usize, usize)) {
+    let finer = match (known.kind, noun.kind) {
+        (None, Some(_)) => true,
+        (Some(Kind::Vehicle), Some(kind)) => kind != Kind::Vehicle,
+        (Some(Kind::HeavyTruck), Some(kind)) => {
+            kind.group() == KindGroup::Truck && kind != Kind::HeavyTruck && kind != Kind::Trailer
+        }
+        (Some(Kind::Pickup), Some(Kind::PickupWithTrailer)) => true,
+        (Some(Kind::Bicycle), Some(Kind::EBike)) => true,
+        (Some(Kind::PassengerCar), Some(Kind::PoliceCar)) => true,
+        _ => false,
+    };
+    if finer {
+        known.kind = noun.kind;
+        known.kind_tokens = Some(tokens);
+    }
+    for name in &noun.names {
+        if !known.names.contains(name) {
+            known.names.push(name.clone());
+        }
+    }
+    known.number = known.number.or(noun.number);
+    known.several |= noun.several;
+    let real = noun.kind.is_some();
+    known.announced &= !real;
+}
+
+fn relation_of(noun: &Noun) -> Option<Relation> {
+    noun.adjectives.iter().find_map(|adjective| match adjective {
+        Adjective::Oncoming => Some(Relation::Opposite),
+        Adjective::Following => Some(Relation::Behind),
+        Adjective::Lead => Some(Relation::Ahead),
+        _ => None,
+    })
+}
+
+fn contradicts(known: &[String], said: &[String]) -> bool {
+    !known.is_empty() && !said.is_empty() && !known.iter().any(|name| said.contains(name))
+}
+
+/// Whether "a" noun of the second kind can bring on somebody who was announced as the first.
+fn introduces(announced: Kind, said: Kind) -> bool {
+    let generic = matches!(announced, Kind::Vehicle | Kind::HeavyTruck | Kind::FirstResponder | Kind::PassengerCar)
+        || announced.group() == KindGroup::Object;
+    announced == said
+        || said == Kind::Vehicle
+        || (same_kind(announced, said)
+            && (generic || !matches!(said, Kind::HeavyTruck | Kind::PassengerCar | Kind::Object)))
+}
+
+/// Whether a noun of the second kind can mean somebody known by the first.
+pub fn same_kind(known: Kind, said: Kind) -> bool {
+    if known == said {
+        return true;
+    }
+    let (one, other) = (known.group(), said.group());
+    match said {
+        Kind::Vehicle => known.is_vehicle() || matches!(one, KindGroup::Motorcycle),
+        Kind::HeavyTruck => {
+            one == KindGroup::Truck || matches!(known, Kind::Pickup | Kind::PickupWithTrailer | Kind::Vehicle)
+        }
+        Kind::PassengerCar => matches!(known, Kind::Vehicle | Kind::PoliceCar),
+        Kind::Trailer => matches!(
+            known,
+            Kind::SemiTrailerTruck
+                | Kind::PickupWithTrailer
+                | Kind::HeavyTruck
+                | Kind::BoxTruck
+                | Kind::ConstructionVehicle
+        ),
+        Kind::Object | Kind::Debris => one == KindGroup::Object,
+        Kind::Pedestrian => one == KindGroup::OnFoot,
+        Kind::Scooter => known == Kind::Moped,
+        Kind::Pickup if known == Kind::PickupWithTrailer => true,
+        _ if known == Kind::Vehicle => said.is_vehicle(),
+        _ if known == Kind::HeavyTruck => other == KindGroup::Truck,
+        Kind::Pickup => known == Kind::PickupWithTrailer,
+        Kind::Minivan | Kind::Van => matches!(known, Kind::Van | Kind::Minivan),
+        Kind::SemiTrailerTruck => known == Kind::Trailer,
+        Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck => {
+            matches!(known, Kind::FirstResponder | Kind::PassengerCar | Kind::Suv)
+        }
+        Kind::FirstResponder => matches!(known, Kind::PoliceCar | Kind::Ambulance | Kind::FireTruck),
+        Kind::Bus | Kind::SchoolBus => matches!(known, Kind::Bus | Kind::SchoolBus),
+        _ => one == other && matches!(one, KindGroup::Motorcycle | KindGroup::Cyclist),
+    }
+}

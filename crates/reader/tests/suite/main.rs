@@ -1,0 +1,7 @@
+//! Tests of the crate as its users see it, in one binary: a file a subject.
+
+mod any_text;
+mod common;
+mod incidents;
+mod scores;
+mod stories;

@@ -1,0 +1,50 @@
+//! The reader on mini narratives of our own: `stories.toml`, a case a behaviour.
+
+use crate::common::{self, account_of, facts};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+#[derive(Deserialize)]
+struct File {
+    story: Vec<Story>,
+}
+
+#[derive(Deserialize)]
+struct Story {
+    name: String,
+    text: String,
+    expect: BTreeMap<String, String>,
+}
+
+#[test]
+fn every_story_is_read_as_told() {
+    let file: File = toml::from_str(include_str!("stories.toml")).unwrap();
+    assert!(file.story.len() >= 80, "{} stories", file.story.len());
+    let mut wrong = Vec::new();
+    for story in &file.story {
+        let account = account_of(&story.text).unwrap_or_else(|| panic!("{}: no account", story.name));
+        let facts = facts(&account);
+        for (name, expected) in &story.expect {
+            let said = facts.get(name.as_str()).cloned().unwrap_or_default();
+            if !expected.split('|').any(|value| value == said) {
+                wrong.push(format!("{}: {name} is \"{said}\", not \"{expected}\"", story.name));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} of them:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn every_told_fact_stands_in_the_narrative() {
+    let file: File = toml::from_str(include_str!("stories.toml")).unwrap();
+    for story in &file.story {
+        let account = account_of(&story.text).unwrap();
+        let json = serde_json::to_value(&account).unwrap();
+        common::each_source(&json, &mut |words| {
+            let (start, end) = (words["start"].as_u64().unwrap() as usize, words["end"].as_u64().unwrap() as usize);
+            assert_eq!(&story.text[start..end], words["text"].as_str().unwrap(), "{}", story.name);
+        });
+        let back: recrash_model::account::Account = serde_json::from_value(json).unwrap();
+        assert_eq!(back, account);
+    }
+}

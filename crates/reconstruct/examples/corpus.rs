@@ -1,0 +1,121 @@
+//! How much of a corpus is told: `cargo run --release -p recrash-reconstruct --example corpus -- FILE... [--list]`.
+
+use rayon::prelude::*;
+use recrash_model::account::{Account, told};
+use recrash_model::profile::SystemProfile;
+use recrash_reconstruct::{FactKind, reconstruct};
+use recrash_records::{SourceText, ingest};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+
+/// Rules are written looking at this half only: SHA-256 of the report id is even.
+fn is_developed(account: &Account) -> bool {
+    Sha256::digest(account.report.report_id.as_bytes())[31] % 2 == 0
+}
+
+fn main() {
+    let (flags, paths): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|arg| arg.starts_with("--"));
+    let bytes: Vec<Vec<u8>> = paths.iter().map(|path| std::fs::read(path).expect("a crash file")).collect();
+    let sources: Vec<SourceText<'_>> =
+        paths.iter().zip(&bytes).map(|(name, bytes)| SourceText { name, bytes }).collect();
+    let mut profile: SystemProfile = toml::from_str(include_str!("../../../profiles/paper.toml")).expect("a profile");
+    profile.records.dedupe = recrash_model::profile::Dedupe::None;
+    let set = ingest(&sources, &profile).expect("crash files").value;
+    let begun = std::time::Instant::now();
+    let incidents = recrash_reader::incidents(&set.records);
+    let accounts: Vec<Account> = incidents.par_iter().filter_map(recrash_reader::account).collect();
+    let read = begun.elapsed();
+    let results: Vec<_> = accounts.par_iter().map(|account| (account, reconstruct(account))).collect();
+    println!(
+        "{} incidents, {} accounts in {read:?}, staged in {:?}",
+        incidents.len(),
+        accounts.len(),
+        begun.elapsed() - read
+    );
+    let list = flags.iter().any(|flag| flag == "--list");
+    let mut by_type: BTreeMap<String, [usize; 3]> = BTreeMap::new();
+    let mut reasons: BTreeMap<&'static str, usize> = BTreeMap::new();
+    let mut facts: BTreeMap<FactKind, [usize; 2]> = BTreeMap::new();
+    for (account, result) in &results {
+        let kind = told(&account.crash_type).map_or("none".to_owned(), |kind| format!("{kind:?}"));
+        let row = by_type.entry(kind.clone()).or_default();
+        row[0] += 1;
+        match result {
+            Ok(made) => {
+                row[1] += 1;
+                row[2] += usize::from(made.is_true());
+                for fact in &made.facts {
+                    let count = facts.entry(fact.kind).or_default();
+                    count[0] += 1;
+                    count[1] += usize::from(fact.shown);
+                }
+                if !made.is_true() && list && is_developed(account) {
+                    let missed: Vec<String> = made
+                        .facts
+                        .iter()
+                        .filter(|fact| !fact.shown)
+                        .map(|fact| format!("{}: {}", fact.kind.label(), fact.sentence))
+                        .collect();
+                    println!("{} {kind}: {}", account.report, missed.join("; "));
+                }
+            }
+            Err(reason) => {
+                *reasons.entry(reason.label()).or_default() += 1;
+                if list && is_developed(account) {
+                    println!("{} {kind}: {reason}", account.report);
+                }
+            }
+        }
+    }
+    for wanted in flags.iter().filter_map(|flag| flag.strip_prefix("--show=")) {
+        for (account, result) in results.iter().filter(|(account, _)| account.report.report_id == wanted) {
+            if !is_developed(account) {
+                continue;
+            }
+            let side = |party: &recrash_model::account::Party| {
+                format!("{:?} {:?} {:?} {:?}", party.kind, party.state, party.movement, party.speeds)
+            };
+            println!("{wanted}: sv {}", side(&account.sv));
+            println!("  cp {}", account.partner.as_ref().map_or_else(String::new, side));
+            println!("  came {:?} place {:?}", account.came_from, account.place.kind);
+            if let Ok(made) = result {
+                for track in &made.rollout.actors {
+                    let states: Vec<String> = track
+                        .states
+                        .iter()
+                        .step_by(10)
+                        .map(|s| format!("({:.1} {:.1} {:.0})", s.x, s.y, s.speed() * 10.0))
+                        .collect();
+                    println!("  {}: {}", track.id, states.join(" "));
+                }
+                println!("  {:?}", made.assumed);
+            }
+        }
+    }
+    println!("type: accounts, staged, all told facts shown");
+    let mut sum = [0; 3];
+    for (kind, row) in &by_type {
+        println!(
+            "  {kind:<14} {:>5} {:>5} {:>5}  {:.0} %",
+            row[0],
+            row[1],
+            row[2],
+            100.0 * row[2] as f64 / row[0] as f64
+        );
+        for (total, part) in sum.iter_mut().zip(row) {
+            *total += part;
+        }
+    }
+    println!(
+        "  {:<14} {:>5} {:>5} {:>5}  {:.0} %",
+        "all",
+        sum[0],
+        sum[1],
+        sum[2],
+        100.0 * sum[2] as f64 / sum[0] as f64
+    );
+    println!("not staged: {reasons:?}");
+    for (kind, [told, shown]) in &facts {
+        println!("  {:<20} told {told:>5}, shown {shown:>5}", kind.label());
+    }
+}

@@ -1,0 +1,333 @@
+//! How both came to where they touch: courses and speeds, told backwards from the contact.
+
+use crate::told::{Side, Told, Turning};
+use crate::touch::{Staging, size_of};
+use recrash_model::account::{Account, ContactState, Origin};
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::scenario::{
+    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, ObjectSpec, ObstacleKind, Place,
+    SCENARIO_FORMAT, ScenarioDraft, Size, Source, Trigger,
+};
+use recrash_roads::Course;
+
+/// When they touch. [s]
+pub(crate) const CONTACT_S: f64 = 9.0;
+
+/// The system under test takes over this long before the contact, or before the ego began to stop. [s]
+const HANDOVER_BEFORE_S: f64 = 5.0;
+
+/// Deceleration of who comes to a stop before it is hit. [m/s^2]
+const STOPPING_MPS2: f64 = 2.0;
+
+/// How long who was stopped has stood when it is hit. [s]
+const STOOD_S: f64 = 2.0;
+
+/// Acceleration of who sets off. [m/s^2]
+const SETS_OFF_MPS2: f64 = 1.2;
+
+/// Speed of the ego on its way to a stop, where nobody says it. [m/s]
+const ROLLING_MPS: f64 = 7.0;
+
+/// Who stood behind the ego before it set off has stood for so long. [s]
+const WAITED_S: f64 = 1.0;
+
+/// How long the ego has stood when somebody who came to a stop behind it sets off. [s]
+const STOOD_LONG_S: f64 = 5.0;
+
+/// The simulators' egos drive no faster: MetaDrive cuts the engine at 80 km/h. [m/s]
+const FASTEST_EGO_MPS: f64 = 80.0 / 3.6;
+
+/// Nobody takes longer to set off. [s]
+const LONGEST_START_S: f64 = 6.0;
+
+/// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
+fn beyond_m(speed_mps: f64) -> f64 {
+    20.0 + 5.0 * speed_mps
+}
+
+/// The speeds of one side until the contact: speed at the start, acts, and what is driven until then. [m/s, m]
+struct Pace {
+    speed_mps: f64,
+    acts: Vec<Act>,
+    driven_m: f64,
+}
+
+fn when(time_s: f64, deed: Deed) -> Act {
+    Act { id: None, when: Some(Trigger::TimeS(time_s)), delay_s: 0.0, deed }
+}
+
+fn next(deed: Deed) -> Act {
+    Act { id: None, when: None, delay_s: 0.0, deed }
+}
+
+/// How the ego's speed comes to what it is at the contact.
+fn ego_pace(told: &Told) -> Pace {
+    let waits_behind = told.origin == Origin::Behind && told.cp.state == ContactState::SettingOff;
+    pace(&told.sv, ROLLING_MPS, if waits_behind { STOOD_LONG_S } else { STOOD_S })
+}
+
+/// How the partner's does.
+fn partner_pace(told: &Told) -> Pace {
+    let cp = &told.cp;
+    let ego = ego_pace(told);
+    let rolling_mps = if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 };
+    let usual = pace(cp, rolling_mps, STOOD_S);
+    let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
+    match cp.state {
+        // It came to a stop behind the ego before it set off.
+        ContactState::SettingOff if told.origin == Origin::Behind && ego.driven_m > usual.driven_m => {
+            let moving_s = CONTACT_S - first_time(&usual.acts);
+            let braking_s = ROLLING_MPS / STOPPING_MPS2;
+            let from_s = ((CONTACT_S - moving_s - WAITED_S - braking_s) * 10.0).floor() / 10.0;
+            let mut acts = vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None })];
+            acts.extend(usual.acts);
+            let driven_m = ROLLING_MPS * from_s + 0.5 * ROLLING_MPS * braking_s + usual.driven_m;
+            Pace { speed_mps: ROLLING_MPS, acts, driven_m }
+        }
+        // Who is ahead and slower has not come from behind the ego: it has just set off.
+        ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
+            sets_off(cp.speed_mps, (0.8 * ego.driven_m).max(0.2))
+        }
+        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
+            Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 }
+        }
+        _ => usual,
+    }
+}
+
+fn first_time(acts: &[Act]) -> f64 {
+    acts.iter()
+        .find_map(|act| match act.when {
+            Some(Trigger::TimeS(time_s)) => Some(time_s),
+            _ => None,
+        })
+        .unwrap_or(0.0)
+}
+
+/// From a stand to a speed within a distance, or less.
+fn sets_off(speed_mps: f64, within_m: f64) -> Pace {
+    let moving_s =
+        ((2.0 * within_m / speed_mps.max(0.05)).min(speed_mps / SETS_OFF_MPS2) * 10.0).floor().max(2.0) / 10.0;
+    let rate_mps2 = (speed_mps / moving_s).clamp(0.05, 8.0);
+    let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
+    Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m: 0.5 * speed_mps * moving_s }
+}
+
+/// How somebody's speed comes to what it is at the contact.
+fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
+    match side.state {
+        ContactState::Parked => Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 },
+        ContactState::Stopped => {
+            let braking_s = rolling_mps / STOPPING_MPS2;
+            let from_s = ((CONTACT_S - stood_s - braking_s) * 10.0).floor() / 10.0;
+            let driven_m = rolling_mps * from_s + 0.5 * rolling_mps * braking_s;
+            let acts = vec![
+                when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }),
+                next(Deed::Hold { for_s: None }),
+            ];
+            Pace { speed_mps: rolling_mps, acts, driven_m }
+        }
+        ContactState::SettingOff | ContactState::Reversing => {
+            // So that it sets off at a step: the rate gives way.
+            let moving_s = ((side.speed_mps / SETS_OFF_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
+            let rate_mps2 = (side.speed_mps / moving_s).max(0.05);
+            let driven_m = 0.5 * side.speed_mps * moving_s;
+            let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2 };
+            Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m }
+        }
+        ContactState::Moving => {
+            Pace { speed_mps: side.speed_mps, acts: Vec::new(), driven_m: side.speed_mps * CONTACT_S }
+        }
+    }
+}
+
+/// The scenario of a staging.
+pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> ScenarioDraft {
+    let ground = &staging.ground;
+    let recorded = ego_plan(told, staging);
+    let (actors, objects) = partner(told, staging);
+    let handover_s = match told.sv.state {
+        ContactState::Parked => None,
+        _ => Some((CONTACT_S - HANDOVER_BEFORE_S).max(0.0)),
+    };
+    let wanted_mps = told.sv.speed_mps.max(if told.sv.state.stands() { ROLLING_MPS } else { 2.0 });
+    let target_speed_mps = wanted_mps.min(FASTEST_EGO_MPS);
+    let id: String =
+        account.incident.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).take(40).collect();
+    ScenarioDraft {
+        format: SCENARIO_FORMAT.to_owned(),
+        id: format!("incident-{id}"),
+        source: Source {
+            records: account.reports.clone(),
+            origin: Some(recrash_model::narrative::Origin::Own),
+            author: Author::Rules,
+            ..Source::default()
+        },
+        map: MapSpec::G(ground.map.clone()),
+        ego: EgoSpec {
+            kind: told.sv.kind,
+            size: told.sv.size,
+            lane: ground.lane,
+            target_speed_mps,
+            route: ground.route.clone(),
+            recorded: Some(recorded),
+            handover_s,
+            ..EgoSpec::default()
+        },
+        actors,
+        objects,
+        duration_s: 14.0,
+        ..ScenarioDraft::default()
+    }
+}
+
+fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
+    let ground = &staging.ground;
+    let pace = ego_pace(told);
+    let lane = |s_m: f64| Place::Lane {
+        road: ground.route[0].clone(),
+        lane: ground.lane,
+        along: Along::FromStart(s_m),
+        t_m: 0.0,
+        heading_deg: 0.0,
+    };
+    if told.sv.state == ContactState::Reversing {
+        let back = Vec2::from_heading(staging.sv.heading);
+        let start = staging.sv.position + back * pace.driven_m;
+        let to = staging.sv.position - back * beyond_m(told.sv.speed_mps);
+        let degrees = staging.sv.heading.to_degrees();
+        return ActorPlan {
+            speed_mps: 0.0,
+            course: vec![Leg::Curve { to: Place::at(to.x, to.y, degrees), reverse: true }],
+            acts: pace.acts,
+            ..ActorPlan::standing(Place::at(start.x, start.y, degrees))
+        };
+    }
+    let start_m = staging.sv_s_m - pace.driven_m;
+    let course = if pace.driven_m == 0.0 {
+        Vec::new()
+    } else {
+        vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }]
+    };
+    // Where it begins inside of the junction, it is on no lane of its first road.
+    let start = if start_m > ground.first_m() {
+        let pose = ground.sv_pose(start_m);
+        Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+    } else {
+        lane(start_m)
+    };
+    ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(start) }
+}
+
+fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
+    let cp = &told.cp;
+    let at = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
+    let (length_m, width_m) = size_of(cp);
+    if let Some(thing) = told.thing
+        && cp.state.stands()
+    {
+        let size = Some(Size { length_m, width_m });
+        return (Vec::new(), vec![ObjectSpec { kind: obstacle_kind(thing), at: at(staging.cp), size }]);
+    }
+    let pace = partner_pace(told);
+    let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
+    if pace.driven_m == 0.0 {
+        return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
+    }
+    let plan = course_to(told, staging, pace, at);
+    let mut actors = vec![actor(plan)];
+    if told.pushed && cp.state.stands() {
+        actors.push(pusher(staging));
+    }
+    (actors, Vec::new())
+}
+
+/// The line by which the partner comes to the contact, as long as its pace needs.
+fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> ActorPlan {
+    let cp = &told.cp;
+    let reverse = cp.state == ContactState::Reversing;
+    let gear = if reverse { -1.0 } else { 1.0 };
+    let arm_m = recrash_roads::arm_m(cp.kind, size_of(cp).0);
+    let motion = |heading: f64| Vec2::from_heading(heading) * gear;
+    let beyond =
+        Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(cp.speed_mps), ..staging.cp };
+    let bent = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > 0.01;
+    let length = |start: Pose| -> Option<f64> {
+        let mut course = Course::begin(arm_m);
+        course.curve(start, staging.cp, reverse).then(|| course.length_m())
+    };
+    let start_at = |back_m: f64| start(told, staging, back_m, motion);
+    // As far back as makes the line as long as what is driven.
+    let mut back_m = pace.driven_m;
+    for _ in 0..30 {
+        let Some(found) = length(start_at(back_m)) else { break };
+        back_m += pace.driven_m - found;
+        back_m = back_m.max(0.1);
+    }
+    let mut begin = start_at(back_m);
+    let fits = length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02);
+    if !fits || (!bent && !matches!(told.origin, Origin::Beside { .. })) {
+        // Straight on.
+        begin = Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
+    }
+    let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
+    ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) }
+}
+
+/// Where the partner begins, this far back: on a line with the contact or in the lane it comes from, headed as it came.
+fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Vec2) -> Pose {
+    let came = staging.cp_came;
+    let way = motion(came);
+    let turn = math::wrap_angle(staging.cp.heading - came);
+    let mut position = staging.cp.position - way * back_m;
+    if told.cp.turning != Turning::No && turn.abs() > 0.1 {
+        // An arc of a usual radius before the contact: beside the line of the contact, by what the arc gains.
+        let radius = 8.0_f64.min(back_m / turn.abs());
+        let (gain, along) = (radius * (1.0 - math::cos(turn)), radius * math::sin(turn.abs()));
+        position = staging.cp.position
+            - way * (along + (back_m - radius * turn.abs()).max(0.0))
+            - way.left() * (gain * turn.signum());
+    } else if let Origin::Beside { side } = told.origin {
+        let right = if side == recrash_model::account::LeftRight::Left { -1.0 } else { 1.0 };
+        let lane_y = staging.sv.position.y - right * crate::ground::LANE_M;
+        position.y = lane_y;
+    }
+    Pose { position, heading: came }
+}
+
+/// Who throws the partner at the ego: from behind it.
+fn pusher(staging: &Staging) -> Actor {
+    let way = Vec2::from_heading(staging.cp.heading);
+    let start = staging.cp.position - way * (10.0 * CONTACT_S);
+    let to = staging.cp.position + way * beyond_m(10.0);
+    let degrees = staging.cp.heading.to_degrees();
+    Actor {
+        id: "pusher".to_owned(),
+        kind: PartnerKind::PassengerCar,
+        size: None,
+        parts: Vec::new(),
+        plan: ActorPlan {
+            speed_mps: 10.0,
+            course: vec![Leg::Curve { to: Place::at(to.x, to.y, degrees), reverse: false }],
+            ..ActorPlan::standing(Place::at(start.x, start.y, degrees))
+        },
+    }
+}
+
+fn obstacle_kind(kind: recrash_model::account::Kind) -> ObstacleKind {
+    use recrash_model::account::Kind;
+    match kind {
+        Kind::Wall => ObstacleKind::Wall,
+        Kind::Pole => ObstacleKind::Pole,
+        Kind::Curb => ObstacleKind::Kerb,
+        Kind::Gate => ObstacleKind::Gate,
+        Kind::Chain => ObstacleKind::Chain,
+        Kind::Barrier => ObstacleKind::Barrier,
+        Kind::Cone => ObstacleKind::Cone,
+        Kind::Sign => ObstacleKind::Warning,
+        Kind::Pothole => ObstacleKind::Pothole,
+        _ => ObstacleKind::Debris,
+    }
+}

@@ -1,0 +1,74 @@
+//! From an account to a scenario that shows the crash as it is told, with the recorded driver in the ego's seat; and every
+//! told fact held against what the rollout shows.
+//!
+//! The crash is staged backwards: first how the two touch ([`mod@touch`]: headings, zones, who closes on whom), then how each
+//! of them came there ([`mod@came`]), then the road around it ([`mod@ground`]). What the account leaves open is chosen, and
+//! named as assumed. A rollout decides: who is drawn and does not show a told fact is not told. Rules and numbers:
+//! `docs/models/reconstruction.md`.
+
+mod came;
+mod facts;
+mod ground;
+mod told;
+mod touch;
+
+pub use facts::{FactKind, Shown};
+pub use told::Untold;
+
+use recrash_model::account::Account;
+use recrash_model::rollout::Rollout;
+use recrash_model::scenario::ScenarioDraft;
+use recrash_sim::Ego;
+
+/// Stagings that are tried for one account, at most.
+const MOST_TRIES: usize = 24;
+
+/// A crash, reconstructed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reconstruction {
+    /// The scenario, with the recorded driver.
+    pub draft: ScenarioDraft,
+    /// What it shows.
+    pub rollout: Rollout,
+    /// Every told fact, and whether it is shown.
+    pub facts: Vec<Shown>,
+    /// What nobody told, and was chosen.
+    pub assumed: Vec<String>,
+}
+
+impl Reconstruction {
+    /// Whether every told fact is shown.
+    pub fn is_true(&self) -> bool {
+        self.facts.iter().all(|fact| fact.shown)
+    }
+}
+
+/// Stages an account: the first staging that shows every told fact, else the one that shows most.
+///
+/// # Errors
+/// Why there is none.
+pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
+    let mut best: Option<Reconstruction> = None;
+    let mut refused = 0;
+    let missed = |facts: &[Shown]| facts.iter().filter(|fact| !fact.shown).count();
+    for told in told::Told::of(account)?.by_origin() {
+        for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
+            let draft = came::draft(account, &told, &staging);
+            let Ok(checked) = recrash_roads::check(draft) else {
+                refused += 1;
+                continue;
+            };
+            let scenario = checked.value;
+            let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
+            let facts = facts::facts(&told, &rollout);
+            if best.as_ref().is_none_or(|best| missed(&facts) < missed(&best.facts)) {
+                let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
+                best = Some(Reconstruction { draft, rollout, facts, assumed });
+            }
+            if best.as_ref().is_some_and(Reconstruction::is_true) {
+                return best.ok_or(Untold::NoContact);
+            }
+        }
+    }
+    best.ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })
+}

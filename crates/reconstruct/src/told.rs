@@ -1,0 +1,318 @@
+//! What an account tells, in the terms of a staging; and what has to be assumed.
+
+use recrash_model::account::{
+    Account, Act, ContactState, CrashType, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind, SpeedMeaning, Striker,
+    told,
+};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::narrative::FirstMover;
+use recrash_model::scenario::Size;
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+use std::fmt;
+
+/// Why an account cannot be staged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Untold {
+    /// Nobody says what happened: no partner, no contact.
+    NoAccount,
+    /// The two never touched: others crashed.
+    OthersOnly,
+    /// The place cannot be drawn yet: a roundabout, a garage, rails.
+    Place,
+    /// It came from above.
+    FromAbove,
+    /// No way of touching fits the told zones, states and directions.
+    NoContact,
+    /// What fits has no room on the road that is told.
+    NoRoom,
+}
+
+impl Untold {
+    /// For tables.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::NoAccount => "no account of a contact",
+            Self::OthersOnly => "the subject vehicle was not touched",
+            Self::Place => "the place cannot be drawn yet",
+            Self::FromAbove => "it came from above",
+            Self::NoContact => "no contact fits the told zones and directions",
+            Self::NoRoom => "no room on the told road",
+        }
+    }
+}
+
+impl fmt::Display for Untold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.label())
+    }
+}
+
+impl std::error::Error for Untold {}
+
+/// How somebody turns before the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Turning {
+    No,
+    Left,
+    Right,
+    Round,
+}
+
+/// One side of the crash.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Side {
+    pub(crate) kind: PartnerKind,
+    pub(crate) size: Option<Size>,
+    pub(crate) state: ContactState,
+    /// Whether the state is told.
+    pub(crate) state_told: bool,
+    pub(crate) movement: Option<Movement>,
+    pub(crate) turning: Turning,
+    pub(crate) zones: Vec<ContactZone>,
+    /// Speed at the contact, where told. [m/s]
+    pub(crate) impact_mps: Option<f64>,
+    /// Speed at the contact that is staged. [m/s]
+    pub(crate) speed_mps: f64,
+    pub(crate) ran_red: bool,
+    pub(crate) ran_stop: bool,
+}
+
+/// An account, in the terms of a staging.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Told {
+    pub(crate) crash_type: CrashType,
+    pub(crate) place: PlaceKind,
+    pub(crate) sv: Side,
+    pub(crate) cp: Side,
+    /// The partner is a thing that stands or lies.
+    pub(crate) thing: Option<Kind>,
+    pub(crate) origin: Origin,
+    pub(crate) origin_told: bool,
+    pub(crate) order: Option<FirstMover>,
+    /// Somebody threw the partner at the subject vehicle.
+    pub(crate) pushed: bool,
+    pub(crate) striker: Option<Striker>,
+    pub(crate) assumed: Vec<String>,
+}
+
+impl Told {
+    pub(crate) fn of(account: &Account) -> Result<Self, Untold> {
+        let partner = account.partner.as_ref().ok_or(Untold::NoAccount)?;
+        let crash_type = told(&account.crash_type).ok_or(Untold::NoAccount)?;
+        if let Some(recrash_model::account::FirstContact::OthersOnly) = told(&account.first_contact) {
+            return Err(Untold::OthersOnly);
+        }
+        let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
+        if matches!(place, PlaceKind::Circle) {
+            return Err(Untold::Place);
+        }
+        let mut assumed = Vec::new();
+        let kind = told(&partner.kind);
+        let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
+        let sv = side(&account.sv, None, &mut assumed, "ego");
+        let cp = side(partner, kind, &mut assumed, "partner");
+        let origin = told(&account.came_from);
+        let origin_told = origin.is_some();
+        let origin = match origin {
+            Some(Origin::Above) => return Err(Untold::FromAbove),
+            Some(origin) => origin,
+            None => assumed_origin(crash_type, &sv, &cp).unwrap_or(Origin::Behind),
+        };
+        let striker = told(&account.striker);
+        let mut this = Self {
+            crash_type,
+            place,
+            sv,
+            cp,
+            thing,
+            origin,
+            origin_told,
+            order: told(&account.order),
+            pushed: partner.did(Act::Pushed),
+            striker,
+            assumed,
+        };
+        if this.origin_told {
+            this.speeds();
+        }
+        Ok(this)
+    }
+
+    /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
+    pub(crate) fn by_origin(self) -> Vec<Self> {
+        if self.origin_told {
+            return vec![self];
+        }
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        let mut origins = vec![self.origin];
+        for other in [
+            Origin::Behind,
+            Origin::Cross { side: left },
+            Origin::Cross { side: right },
+            Origin::Opposite,
+            Origin::Beside { side: left },
+            Origin::Beside { side: right },
+            Origin::Ahead,
+            Origin::Stall { side: Some(left) },
+            Origin::Stall { side: Some(right) },
+        ] {
+            if !origins.contains(&other) {
+                origins.push(other);
+            }
+        }
+        let with = |origin: Origin| {
+            let mut told = Self { origin, ..self.clone() };
+            told.assumed.push(format!("the partner comes from {origin:?}"));
+            told.speeds();
+            told
+        };
+        origins.into_iter().map(with).collect()
+    }
+
+    /// Speeds at the contact: as told, or such that who closes on whom does.
+    fn speeds(&mut self) {
+        let usual = |side: &Side| match side.state {
+            ContactState::Stopped | ContactState::Parked => 0.0,
+            ContactState::SettingOff => 1.5,
+            ContactState::Reversing => 1.2,
+            ContactState::Moving => match side.kind {
+                PartnerKind::Pedestrian => 1.4,
+                PartnerKind::Animal => 4.0,
+                PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
+                _ => 6.0,
+            },
+        };
+        let slow = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
+        let fit = |speed: f64| if slow { speed.min(3.0) } else { speed };
+        self.sv.speed_mps = match (self.sv.impact_mps, self.sv.state.stands()) {
+            (_, true) => 0.0,
+            (Some(told), false) => told.max(0.4),
+            (None, false) => fit(usual(&self.sv)),
+        };
+        self.cp.speed_mps = match (self.cp.impact_mps, self.cp.state.stands()) {
+            (_, true) => 0.0,
+            (Some(told), false) => told.max(0.4),
+            (None, false) => fit(usual(&self.cp)),
+        };
+        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving {
+            let sv = self.sv.speed_mps;
+            match self.origin {
+                Origin::Behind | Origin::Beside { .. } if self.sv.state != ContactState::Reversing => {
+                    self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
+                }
+                Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
+                _ => {}
+            }
+        }
+        if self.sv.impact_mps.is_none() && !self.sv.state.stands() {
+            self.assumed.push(format!("the ego's speed at the contact: {:.1} m/s", self.sv.speed_mps));
+        }
+        if self.cp.impact_mps.is_none() && !self.cp.state.stands() {
+            self.assumed.push(format!("the partner's speed at the contact: {:.1} m/s", self.cp.speed_mps));
+        }
+    }
+}
+
+fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
+    let kind = kind.or_else(|| told(&party.kind));
+    let partner_kind = kind.and_then(Kind::partner_kind);
+    if partner_kind.is_none() && who == "partner" {
+        assumed.push("the partner is a passenger car".to_owned());
+    }
+    let movement = told(&party.movement);
+    let impact_mps =
+        party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact).map(|speed| speed.value.mps);
+    let state = told(&party.state);
+    let state_told = state.is_some();
+    let state = state.unwrap_or_else(|| match movement {
+        Some(Movement::Stopped) => ContactState::Stopped,
+        Some(Movement::Parked) => ContactState::Parked,
+        Some(Movement::Backing) => ContactState::Reversing,
+        _ if impact_mps == Some(0.0) => ContactState::Stopped,
+        _ if kind.is_some_and(|kind| kind.group() == KindGroup::Object) => ContactState::Stopped,
+        _ => ContactState::Moving,
+    });
+    if !state_told {
+        assumed.push(format!("the {who} is {state:?} at the contact"));
+    }
+    let turned = |side: LeftRight| {
+        party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)
+    };
+    let turning = match movement {
+        Some(Movement::LeftTurn) => Turning::Left,
+        Some(Movement::RightTurn) => Turning::Right,
+        Some(Movement::UTurn) => Turning::Round,
+        None if turned(LeftRight::Left) => Turning::Left,
+        None if turned(LeftRight::Right) => Turning::Right,
+        _ => Turning::No,
+    };
+    Side {
+        kind: partner_kind.unwrap_or_default(),
+        size: kind.and_then(size_of),
+        state,
+        state_told,
+        movement,
+        turning,
+        zones: party
+            .zone_values()
+            .into_iter()
+            .filter(|z| !matches!(z, ContactZone::Top | ContactZone::Bottom))
+            .collect(),
+        impact_mps,
+        speed_mps: 0.0,
+        ran_red: party.did(Act::RunRed),
+        ran_stop: party.did(Act::RunStop),
+    }
+}
+
+/// Sizes of kinds that are longer or shorter than the group they belong to; usual ones, assumed. [m]
+fn size_of(kind: Kind) -> Option<Size> {
+    let size = |length_m: f64, width_m: f64| Some(Size { length_m, width_m });
+    match kind {
+        Kind::SemiTrailerTruck => size(16.0, 2.6),
+        Kind::BoxTruck | Kind::FoodTruck => size(7.5, 2.4),
+        Kind::Ambulance => size(6.8, 2.3),
+        Kind::FireTruck => size(10.0, 2.5),
+        Kind::Tram => size(22.0, 2.6),
+        Kind::Forklift => size(3.0, 1.2),
+        Kind::Trailer => size(5.0, 2.2),
+        Kind::DeliveryRobot | Kind::Cart | Kind::Scooter => size(0.8, 0.6),
+        Kind::Wall | Kind::Curb => size(6.0, 0.3),
+        Kind::Gate | Kind::Chain | Kind::Barrier => size(0.2, 4.0),
+        Kind::Pole | Kind::Sign | Kind::Cone => size(0.3, 0.3),
+        Kind::Debris | Kind::LooseWheel | Kind::TreeBranch | Kind::Cargo | Kind::Object | Kind::Pothole => {
+            size(0.6, 0.6)
+        }
+        _ => None,
+    }
+}
+
+/// From where a partner comes of whom nobody says it, where the type leaves no choice.
+fn assumed_origin(crash_type: CrashType, sv: &Side, cp: &Side) -> Option<Origin> {
+    let rear = |side: &Side| side.zones.iter().any(|zone| zone.is_rear());
+    let front = |side: &Side| side.zones.iter().any(|zone| zone.is_front());
+    match crash_type {
+        CrashType::FrontToRear if rear(sv) => Some(Origin::Behind),
+        CrashType::FrontToRear if front(sv) => Some(Origin::Ahead),
+        CrashType::SingleVehicle => Some(Origin::Ahead),
+        CrashType::Backing if cp.state == ContactState::Reversing => {
+            Some(if rear(sv) && !front(sv) { Origin::Behind } else { Origin::Ahead })
+        }
+        CrashType::Backing => Some(Origin::Behind),
+        CrashType::HeadOn => Some(Origin::Opposite),
+        CrashType::Secondary if rear(sv) => Some(Origin::Behind),
+        CrashType::Lateral => {
+            let on = |zones: &[ContactZone]| sv.zones.iter().any(|zone| zones.contains(zone));
+            use ContactZone as Z;
+            if on(&[Z::Left, Z::FrontLeft, Z::RearLeft]) {
+                Some(Origin::Beside { side: LeftRight::Left })
+            } else if on(&[Z::Right, Z::FrontRight, Z::RearRight]) {
+                Some(Origin::Beside { side: LeftRight::Right })
+            } else {
+                None
+            }
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,259 @@
+//! How two touch: headings, speeds and the zones that meet, searched for what fits what is told.
+//!
+//! Everything is seen from the road that the ego came along: x ahead, y to its left.
+
+use crate::ground::{Ground, ground_for};
+use crate::told::{Side, Told, Turning};
+use recrash_metrics::contact::contact_geometry;
+use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::vehicle::VehicleSpec;
+use recrash_model::zones::ContactZone;
+
+/// A way of touching.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Staging {
+    /// The road.
+    pub(crate) ground: Ground,
+    /// Along the ego's way, where its centre is at the contact. [m]
+    pub(crate) sv_s_m: f64,
+    /// The ego at the contact.
+    pub(crate) sv: Pose,
+    /// The partner at the contact.
+    pub(crate) cp: Pose,
+    /// Heading of the partner some seconds before, of who does not reverse the way it moves. [rad]
+    pub(crate) cp_came: f64,
+    /// How well it fits: zone steps off on both sides, then the order of trial.
+    cost: (u32, usize),
+}
+
+/// Points of a box's outline, by zone, where it may be touched: shares of half of its length and width.
+fn points(zone: ContactZone) -> &'static [(f64, f64)] {
+    match zone {
+        ContactZone::Front => &[(1.0, 0.0), (1.0, 0.3), (1.0, -0.3)],
+        ContactZone::FrontLeft => &[(1.0, 1.0), (1.0, 0.75), (0.75, 1.0)],
+        ContactZone::Left => &[(0.0, 1.0), (0.35, 1.0), (-0.35, 1.0)],
+        ContactZone::RearLeft => &[(-1.0, 1.0), (-1.0, 0.75), (-0.75, 1.0)],
+        ContactZone::Rear => &[(-1.0, 0.0), (-1.0, 0.3), (-1.0, -0.3)],
+        ContactZone::RearRight => &[(-1.0, -1.0), (-1.0, -0.75), (-0.75, -1.0)],
+        ContactZone::Right => &[(0.0, -1.0), (0.35, -1.0), (-0.35, -1.0)],
+        ContactZone::FrontRight => &[(1.0, -1.0), (1.0, -0.75), (0.75, -1.0)],
+        ContactZone::Top | ContactZone::Bottom => &[],
+    }
+}
+
+/// Length and width of one side's box. [m]
+pub(crate) fn size_of(side: &Side) -> (f64, f64) {
+    let spec = VehicleSpec::of(side.kind);
+    side.size.map_or((spec.length_m, spec.width_m), |size| (size.length_m, size.width_m))
+}
+
+/// Ways of touching, the best first.
+pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
+    let ground = ground_for(told);
+    let mut found: Vec<Staging> = Vec::new();
+    let mut trial = 0;
+    for sv_s_m in ground.places() {
+        let sv = ground.sv_pose(sv_s_m);
+        for (came, heading) in headings(told, sv.heading) {
+            for (sv_zone, cp_zone) in zone_pairs(told) {
+                for &sv_point in points(sv_zone) {
+                    for &cp_point in points(cp_zone) {
+                        trial += 1;
+                        let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
+                            continue;
+                        };
+                        let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
+                        let cost = (off, trial);
+                        found.push(Staging { ground: ground.clone(), sv_s_m, sv, cp, cp_came: came, cost });
+                    }
+                }
+            }
+        }
+    }
+    found.sort_by_key(|staging| staging.cost);
+    // Of those that are almost the same, one.
+    let mut kept: Vec<Staging> = Vec::new();
+    for staging in found {
+        let like = |other: &Staging| {
+            other.cp.position.distance(staging.cp.position) < 0.25
+                && math::wrap_angle(other.cp.heading - staging.cp.heading).abs() < 0.04
+                && (other.sv_s_m - staging.sv_s_m).abs() < 0.5
+        };
+        if kept.len() < 64 && !kept.iter().any(like) {
+            kept.push(staging);
+        }
+    }
+    kept
+}
+
+/// Steps around the box from the nearest told zone; none where none is told.
+pub(crate) fn zones_off(told: &[ContactZone], seen: ContactZone) -> u32 {
+    told.iter().filter_map(|zone| zone.steps_apart(seen)).min().map_or(0, u32::from)
+}
+
+/// Zones to try: the told ones, or all where none is told; then the neighbours of told ones, since a zone is told to a step.
+fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
+    let all = || ContactZone::ALL[..8].to_vec();
+    let of = |zones: &[ContactZone]| if zones.is_empty() { all() } else { zones.to_vec() };
+    let near = |zones: &[ContactZone]| -> Vec<ContactZone> {
+        all().into_iter().filter(|zone| !zones.contains(zone) && zones_off(zones, *zone) == 1).collect()
+    };
+    let (sv, cp) = (of(&told.sv.zones), of(&told.cp.zones));
+    let (sv_near, cp_near) = (near(&told.sv.zones), near(&told.cp.zones));
+    let mut pairs = Vec::new();
+    for (first, second) in [(&sv, &cp), (&sv, &cp_near), (&sv_near, &cp), (&sv_near, &cp_near)] {
+        pairs.extend(first.iter().flat_map(|&a| second.iter().map(move |&b| (a, b))));
+    }
+    pairs
+}
+
+const fn sign(side: LeftRight) -> f64 {
+    match side {
+        LeftRight::Left => 1.0,
+        LeftRight::Right => -1.0,
+    }
+}
+
+/// Headings of the partner to try: as it came, and at the contact. Of who reverses, the way it faces. [rad]
+fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
+    let degrees = |deg: f64| deg * math::PI / 180.0;
+    let reverses = told.cp.state == ContactState::Reversing;
+    let unknown = |side: Option<LeftRight>| match side {
+        Some(side) => vec![sign(side)],
+        None => {
+            let left = told
+                .sv
+                .zones
+                .iter()
+                .any(|z| matches!(z, ContactZone::Left | ContactZone::FrontLeft | ContactZone::RearLeft));
+            if left { vec![1.0, -1.0] } else { vec![-1.0, 1.0] }
+        }
+    };
+    let aside: &[f64] = &[0.0, 4.0, -4.0, 8.0, -8.0, 14.0, -14.0, 22.0, -22.0];
+    let mut list: Vec<(f64, f64)> = Vec::new();
+    let turned = |came: f64, list: &mut Vec<(f64, f64)>| match told.cp.turning {
+        Turning::No => {
+            for off in [0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0] {
+                list.push((came, came + degrees(off)));
+            }
+        }
+        Turning::Left | Turning::Round => {
+            for off in [40.0, 60.0, 25.0, 75.0, 90.0, 12.0, 120.0] {
+                list.push((came, came + degrees(off)));
+            }
+        }
+        Turning::Right => {
+            for off in [40.0, 60.0, 25.0, 75.0, 90.0, 12.0] {
+                list.push((came, came - degrees(off)));
+            }
+        }
+    };
+    match told.origin {
+        Origin::Behind | Origin::Ahead | Origin::Beside { .. } => {
+            let base = if told.cp.turning == Turning::No { sv_heading } else { 0.0 };
+            if told.cp.turning == Turning::No {
+                list.extend(aside.iter().map(|off| (base, base + degrees(*off))));
+            } else {
+                turned(0.0, &mut list);
+            }
+            if reverses {
+                list.extend([90.0, -90.0, 60.0, -60.0, 30.0, -30.0].map(|off| (base, base + degrees(off))));
+            }
+        }
+        Origin::Opposite => {
+            if told.cp.turning == Turning::No {
+                list.extend(aside.iter().map(|off| (math::PI, math::PI + degrees(*off))));
+            } else {
+                turned(math::PI, &mut list);
+            }
+        }
+        // From the left it moves to the right.
+        Origin::Cross { side } => turned(-sign(side) * math::FRAC_PI_2, &mut list),
+        Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => {
+            for from in unknown(side) {
+                let moves = -from * math::FRAC_PI_2;
+                for off in [0.0, 20.0, 40.0, 60.0, -20.0, -40.0] {
+                    let toward = moves + from * degrees(off);
+                    list.push((
+                        if reverses { toward + math::PI } else { moves },
+                        if reverses { toward + math::PI } else { toward },
+                    ));
+                }
+            }
+        }
+        Origin::Parked { side } => {
+            for from in unknown(side) {
+                for off in [10.0, 18.0, 28.0, 5.0, 40.0] {
+                    list.push((0.0, -from * degrees(off)));
+                }
+            }
+            if reverses {
+                list.extend(aside.iter().map(|off| (0.0, degrees(*off))));
+            }
+        }
+        Origin::Above => {}
+    }
+    if matches!(told.cp.kind, PartnerKind::FixedObject) {
+        list.extend([0.0, 90.0, 45.0].map(|off| (sv_heading, sv_heading + degrees(off))));
+    }
+    list.into_iter().map(|(came, at)| (math::wrap_angle(came), math::wrap_angle(at))).collect()
+}
+
+/// Velocity at the contact. [m/s]
+fn velocity(side: &Side, heading: f64) -> Vec2 {
+    let backwards = if side.state == ContactState::Reversing { -1.0 } else { 1.0 };
+    Vec2::from_heading(heading) * (backwards * side.speed_mps)
+}
+
+/// Places the partner so that the two points meet, and takes it back to where the boxes just touch; the zones that then
+/// meet. `None` where they do not close on each other there.
+fn touch(
+    told: &Told,
+    sv: Pose,
+    heading: f64,
+    sv_point: (f64, f64),
+    cp_point: (f64, f64),
+) -> Option<(Pose, ContactZone, ContactZone)> {
+    let (sv_length, sv_width) = size_of(&told.sv);
+    let (cp_length, cp_width) = size_of(&told.cp);
+    let own = OrientedBox::new(sv, sv_length, sv_width);
+    let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
+    let axis = Vec2::from_heading(heading);
+    let centre = met - axis * (cp_point.0 * 0.5 * cp_length) - axis.left() * (cp_point.1 * 0.5 * cp_width);
+    let closing = velocity(&told.cp, heading) - velocity(&told.sv, sv.heading);
+    let speed = closing.length();
+    if speed < 0.05 {
+        return None;
+    }
+    let way = closing * (1.0 / speed);
+    let at = |back_m: f64| OrientedBox::new(Pose { position: centre - way * back_m, heading }, cp_length, cp_width);
+    // Apart some way back, together here or a little later.
+    let (mut inside, mut outside) = (-0.05, None);
+    if !at(inside).overlaps(&own) {
+        return None;
+    }
+    for step in 1..=24 {
+        let back_m = -0.05 + 0.1 * f64::from(step);
+        if !at(back_m).overlaps(&own) {
+            outside = Some(back_m);
+            break;
+        }
+        inside = back_m;
+    }
+    let mut outside = outside?;
+    for _ in 0..30 {
+        let middle = 0.5 * (inside + outside);
+        if at(middle).overlaps(&own) { inside = middle } else { outside = middle }
+    }
+    // They stay apart on the way there.
+    if (1..=12).any(|step| at(outside + 0.25 * f64::from(step)).overlaps(&own)) {
+        return None;
+    }
+    let touching = at(inside - 0.01);
+    let geometry = contact_geometry(&own, velocity(&told.sv, sv.heading), &touching, velocity(&told.cp, heading));
+    let cp = Pose { position: at(inside).centre, heading };
+    Some((cp, geometry.ego_zone, geometry.other_zone))
+}
