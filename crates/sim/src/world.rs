@@ -49,6 +49,8 @@ pub(crate) struct Setting {
     /// Plans of acts, and for each actor which is its own.
     pub(crate) programmes: Vec<Programme>,
     pub(crate) programme_of: Vec<Option<u16>>,
+    /// Whose plan goes on after a touch.
+    pub(crate) outlasts_a_touch: Vec<bool>,
     /// The step at which the ego's seat takes over from its recorded driver.
     pub(crate) handover: u32,
     pub(crate) after_contact_s: f64,
@@ -320,6 +322,7 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
     setting.masses_kg.push(VehicleSpec::mass_kg(kind).unwrap_or(FIRM_KG));
     setting.parts_reach_m.push(0.0);
     setting.programme_of.push(None);
+    setting.outlasts_a_touch.push(false);
     state.movers.push(Mover::Wheels);
     state.loose.push(Loose::default());
     state.bodies.push(VehicleState::new(pose, speed_mps));
@@ -336,7 +339,6 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
         half_width: 0.5 * spec.width_m,
         present: true,
         on_lane: true,
-        plan_s_m: None,
     });
 }
 
@@ -396,6 +398,7 @@ impl Setting {
         self.crossings.clear();
         self.programmes.clear();
         self.programme_of.clear();
+        self.outlasts_a_touch.clear();
         self.handover = 0;
         self.after_contact_s = 0.0;
         self.parts.clear();
@@ -457,6 +460,7 @@ fn follow_plan(setting: &mut Setting, state: &mut State, actor: usize, programme
     state.bodies[actor].carry(pose, velocity, yaw_rate);
     state.seen[actor].present = progress.present;
     setting.cast[actor].appears = programme.appears;
+    setting.outlasts_a_touch[actor] = programme.outlasts_a_touch(actor as u16);
     setting.programme_of[actor] = u16::try_from(setting.programmes.len()).ok();
     setting.programmes.push(programme);
     state.progress.push(progress);
@@ -509,7 +513,7 @@ impl State {
                 Mover::Plan => {
                     let Some(number) = setting.programme_of[actor].map(usize::from) else { continue };
                     let (programme, progress) = (&setting.programmes[number], &mut self.progress[number]);
-                    if progress.stands() {
+                    if !progress.present || progress.stands() {
                         continue;
                     }
                     programme.advance(progress, PHYSICS_STEP_S);

@@ -61,6 +61,8 @@ struct Member<'a> {
     size_m: (f64, f64),
     track: ReplayTrack,
     parts: Vec<(Attached, PartState, PartTrack)>,
+    /// Has touched somebody.
+    hit: bool,
 }
 
 impl Member<'_> {
@@ -96,7 +98,7 @@ impl Member<'_> {
     /// One physics step: its end, in steps.
     fn advance(&mut self, moves: bool, end: f64) {
         let before = self.pose().0;
-        if moves && !self.progress.stands() {
+        if moves && self.progress.present && !self.progress.stands() {
             self.programme.advance(&mut self.progress, STEP_S / SUBSTEPS as f64);
         }
         let after = self.pose().0;
@@ -125,7 +127,7 @@ pub fn replay(scenario: &Scenario, handover: u32) -> Replay {
             (attached, PartState::resting(part, facing), track)
         };
         let parts = placement.parts.iter().map(attach).collect();
-        Member { number, name, programme, progress, size_m, track, parts }
+        Member { number, name, programme, progress, size_m, track, parts, hit: false }
     };
     let mut members = Vec::with_capacity(1 + draft.actors.len());
     if let (Some(placement), Some(plan)) = (scenario.recorded(), &draft.ego.recorded) {
@@ -183,15 +185,24 @@ fn run(members: &mut [Member<'_>], scenario: &Scenario, handover: u32, steps: u3
                 let acceleration_mps2 = member.progress.acceleration_mps2();
                 let outline = member.outline();
                 let present = member.progress.present;
-                all[member.number] = Glimpse { outline, velocity, acceleration_mps2, hit: false, present, begun };
+                let hit = member.hit;
+                all[member.number] = Glimpse { outline, velocity, acceleration_mps2, hit, present, begun };
             }
         }
         let sight = Sight { step, all: &all, signals: &signals };
+        let waited_for = members.iter().filter_map(waits_for_ego).max();
         for member in members.iter_mut() {
             if member.number == 0 && step >= handover {
-                continue;
+                if !matters(member, waited_for) {
+                    continue;
+                }
+                // Doors are opened by riders, whoever drives; but what waits for how it is driven is not known.
+                if !is_timed(member) {
+                    return Some((step, "an act of the recorded ego waits for how the ego is driven".to_owned()));
+                }
             }
-            let asks = |member: &Member<'_>| asks_for(member, |actor| unknown(step, actor));
+            let driven = member.number == 0 && step >= handover;
+            let asks = |member: &Member<'_>| if driven { None } else { asks_for(member, |actor| unknown(step, actor)) };
             if let Some(why) = asks(member) {
                 return Some((step, why));
             }
@@ -227,14 +238,21 @@ fn advance(members: &mut [Member<'_>], handover: u32, step: u32) -> Option<Strin
         for member in members.iter_mut() {
             member.advance(member.number != 0 || step < handover, f64::from(step) + substep as f64 / SUBSTEPS as f64);
         }
-        let others: Vec<&Member<'_>> =
-            members.iter().filter(|member| member.number != 0 && member.progress.present).collect();
-        for (position, first) in others.iter().enumerate() {
-            let mine = first.bodies();
-            let meets =
-                |second: &&&Member<'_>| second.bodies().iter().any(|their| mine.iter().any(|own| own.overlaps(their)));
-            if let Some(second) = others[position + 1..].iter().find(meets) {
-                return Some(format!("{} and {} push each other", first.name, second.name));
+        for first in 0..members.len() {
+            let mine = members[first].bodies();
+            for second in first + 1..members.len() {
+                let (a, b) = (&members[first], &members[second]);
+                if a.number == 0 || b.number == 0 || !a.progress.present || !b.progress.present {
+                    continue;
+                }
+                if !b.bodies().iter().any(|theirs| mine.iter().any(|own| own.overlaps(theirs))) {
+                    continue;
+                }
+                let goes_on = |member: &Member<'_>| member.programme.outlasts_a_touch(member.number as u16);
+                if !goes_on(a) || !goes_on(b) {
+                    return Some(format!("{} and {} push each other", a.name, b.name));
+                }
+                (members[first].hit, members[second].hit) = (true, true);
             }
         }
     }
@@ -263,4 +281,30 @@ fn asks_for(member: &Member<'_>, unknown: impl Fn(u16) -> bool) -> Option<String
         }
         _ => None,
     }
+}
+
+/// The last act of the recorded ego that somebody still waits for.
+fn waits_for_ego(member: &Member<'_>) -> Option<u8> {
+    let rest = member.programme.acts.iter().skip(usize::from(member.progress.next));
+    let waits = rest.filter_map(|planned| match planned.when {
+        Some(When::Act { actor: 0, act }) => Some(act),
+        _ => None,
+    });
+    waits.max()
+}
+
+/// Whether anybody sees that the recorded ego's next act begins, when somebody else drives.
+fn matters(ego: &Member<'_>, waited_for: Option<u8>) -> bool {
+    let next = ego.progress.next;
+    let rest = ego.programme.acts.iter().skip(usize::from(next));
+    let left = usize::from(next) < ego.programme.acts.len();
+    left && (waited_for.is_some_and(|act| act >= next)
+        || rest.into_iter().any(|act| matches!(act.deed, Deed::Part { .. })))
+}
+
+/// Whether its next act begins without a look at how it moves.
+fn is_timed(ego: &Member<'_>) -> bool {
+    let act = ego.programme.acts.get(usize::from(ego.progress.next));
+    ego.progress.due.is_some()
+        || act.is_some_and(|act| matches!(act.when, Some(When::Step(_) | When::Signal { .. } | When::Act { .. })))
 }
