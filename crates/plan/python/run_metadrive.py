@@ -542,14 +542,11 @@ class World:
             near = self.near_pairs()
             for substep in range(1, SUBSTEPS + 1):
                 # Bullet's bodies are a tick ahead of the places MetaDrive shows: what touches now is shown after the step.
+                self.carry(substep / SUBSTEPS)
                 touching = self.touching(physics, near, touched)
                 self.engine.step_physics_world()
-<<<<<<< HEAD
-                self.note(touching, touched, actions, self.step * Law.step_s + substep * 0.02)
-=======
                 self.carry(substep / SUBSTEPS)
-                self.touch(physics, near, touched, actions, self.step * Law.step_s + substep * 0.02)
->>>>>>> wt-second
+                self.note(touching, touched, actions, self.step * Law.step_s + substep * 0.02)
             for thing, _ in self.obstacles:
                 # One that was hit keeps its place but gets a velocity, which the IDM would believe.
                 thing.body.setLinearVelocity(LVector3(0, 0, 0))
@@ -586,14 +583,9 @@ class World:
                 continue
             x, y = first.vehicle.position
             reach = first.radius + 0.1 * first.vehicle.speed + 1.0
-<<<<<<< HEAD
-            for b, second in enumerate(self.actors[a + 1 :], a + 1):
-                if second.gone:
-=======
             for b in range(a + 1, count):
                 second = self.actors[b]
                 if second.away:
->>>>>>> wt-second
                     continue
                 u, v = second.vehicle.position
                 if math.hypot(u - x, v - y) < reach + second.radius + 0.1 * second.vehicle.speed:
@@ -606,24 +598,17 @@ class World:
 
     def touching(self, physics, near, touched):
         """Pairs that touch for the first time, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
-        things = [actor.vehicle for actor in self.actors] + [thing for thing, _ in self.obstacles]
-        fresh = ((a, b, things[a].body, things[b].body) for a, b in near if (a, b) not in touched)
-        return [(a, b) for a, b, mine, theirs in fresh if physics.contactTestPair(mine, theirs).getNumContacts() > 0]
+        things = [[actor.vehicle] + actor.parts for actor in self.actors] + [[thing] for thing, _ in self.obstacles]
+
+        def touch(a, b):
+            pairs = ((mine.body, theirs.body) for mine in things[a] for theirs in things[b])
+            return any(physics.contactTestPair(mine, theirs).getNumContacts() > 0 for mine, theirs in pairs)
+
+        return [(a, b) for a, b in near if (a, b) not in touched and touch(a, b)]
 
     def note(self, touching, touched, actions, time):
         count = len(self.actors)
-<<<<<<< HEAD
         for a, b in touching:
-=======
-        for a, b in near:
-            if (a, b) in touched:
-                continue
-            mine = [self.actors[a].vehicle] + self.actors[a].parts
-            theirs = [self.obstacles[b - count][0]] if b >= count else [self.actors[b].vehicle] + self.actors[b].parts
-            pairs = ((one.body, other.body) for one in mine for other in theirs)
-            if not any(physics.contactTestPair(one, other).getNumContacts() for one, other in pairs):
-                continue
->>>>>>> wt-second
             touched.add((a, b))
             if a != 0 and b < count and isinstance(self.actors[b], PlannedActor) != isinstance(self.actors[a], PlannedActor):
                 raise Refused("at %.2f s somebody with a plan is pushed" % time)
