@@ -6,7 +6,7 @@ use crate::ego::Ego;
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
-use crate::movement::{Attached, Loose, Mover, PartState};
+use crate::movement::{Loose, Mover};
 use crate::recorder::CastMember;
 use crate::reference::{Attention, Reference};
 use crate::run::Seat;
@@ -15,10 +15,10 @@ use crate::script::Script;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, Event, Role, SUBSTEPS, Termination};
-use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy, ScenarioDraft};
+use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy};
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
-use recrash_plan::acts::{self, Glimpse, Programme, Who};
+use recrash_plan::acts::{self, Attached, Glimpse, Names, PartState, Programme, ego_stop_lines};
 use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
 use recrash_plan::{Crossing, Plan, Way};
 use recrash_roads::{
@@ -425,7 +425,7 @@ fn plan(setting: &mut Setting, state: &mut State, scenario: &Scenario, seat: Sea
     setting.after_contact_s = draft.after_contact_s;
     setting.control.extend(draft.control.iter().map(|control| control.device.clone()));
     setting.stops.extend_from_slice(&draft.ego.stops);
-    setting.ego_lines.extend(stop_lines(scenario));
+    setting.ego_lines.extend(ego_stop_lines(scenario));
     state.signals.resize(setting.control.len(), None);
     let names = Names(draft);
     if let (Some(placement), Some(recorded)) = (scenario.recorded(), &draft.ego.recorded) {
@@ -489,46 +489,6 @@ fn attach(setting: &mut Setting, state: &mut State, owner: usize, parts: &[Part]
         setting.parts_reach_m[owner] = setting.parts_reach_m[owner].max(attached.reach_m());
         setting.parts.push(attached);
         state.parts.push(PartState::resting(part, heading));
-    }
-}
-
-/// Where the ego's path passes stop lines.
-fn stop_lines(scenario: &Scenario) -> impl Iterator<Item = StopLine> + '_ {
-    let (path, half_length_m) = (&scenario.ego().path, 0.5 * VehicleSpec::of(scenario.ego().kind).length_m);
-    scenario.control().iter().enumerate().flat_map(move |(control, placed)| {
-        placed.lines.iter().filter_map(move |&(lane, line_m)| {
-            let segment = path.segments.iter().find(|segment| segment.lane == lane)?;
-            Some(StopLine { at_m: segment.start_m + line_m - half_length_m, control })
-        })
-    })
-}
-
-/// What names mean in a draft.
-struct Names<'a>(&'a ScenarioDraft);
-
-impl Who for Names<'_> {
-    fn actor(&self, id: &str) -> Option<u16> {
-        if id == recrash_model::rollout::EGO_ID {
-            return Some(0);
-        }
-        let partners = self.0.partners.iter().map(|partner| &partner.id);
-        let position = partners.chain(self.0.actors.iter().map(|actor| &actor.id)).position(|other| other == id)?;
-        u16::try_from(position + 1).ok()
-    }
-
-    fn act(&self, actor: &str, act: &str) -> Option<u8> {
-        let plan = if actor == recrash_model::rollout::EGO_ID {
-            self.0.ego.recorded.as_ref()?
-        } else {
-            &self.0.actors.iter().find(|other| other.id == actor)?.plan
-        };
-        let position = plan.acts.iter().position(|other| other.id.as_deref() == Some(act))?;
-        u8::try_from(position).ok()
-    }
-
-    fn control(&self, at: &str) -> Option<u16> {
-        let position = self.0.control.iter().position(|control| control.at == at)?;
-        u16::try_from(position).ok()
     }
 }
 

@@ -200,6 +200,12 @@ impl Progress {
         self.speed_mps == 0.0 && (self.bound_mps == 0.0 || self.acceleration_mps2 == 0.0)
     }
 
+    /// The act that begins next, and what it waits for; `None` where it waits for nobody, or only for its delay.
+    pub(super) fn awaits(&self, programme: &Programme) -> Option<(u8, When)> {
+        let act = programme.acts.get(usize::from(self.next)).filter(|_| self.due.is_none())?;
+        act.when.map(|when| (self.next, when))
+    }
+
     /// The acceleration it has chosen along its course; 0 once the speed it aims at is reached. [m/s^2]
     pub fn acceleration_mps2(&self) -> f64 {
         if self.speed_mps == self.bound_mps { 0.0 } else { self.acceleration_mps2 }

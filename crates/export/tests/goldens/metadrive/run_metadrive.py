@@ -631,8 +631,10 @@ class World:
                     actor.vehicle.before_step(action)
             near = self.near_pairs()
             for substep in range(1, SUBSTEPS + 1):
+                # Bullet's bodies are a tick ahead of the places MetaDrive shows: what touches now is shown after the step.
+                touching = self.touching(physics, near, touched)
                 self.engine.step_physics_world()
-                self.touch(physics, near, touched, actions, self.step * Law.step_s + substep * 0.02)
+                self.note(touching, touched, actions, self.step * Law.step_s + substep * 0.02)
             for thing, _ in self.obstacles:
                 # One that was hit keeps its place but gets a velocity, which the IDM would believe.
                 thing.body.setLinearVelocity(LVector3(0, 0, 0))
@@ -663,8 +665,7 @@ class World:
                 continue
             x, y = first.vehicle.position
             reach = first.radius + 0.1 * first.vehicle.speed + 1.0
-            for b in range(a + 1, count):
-                second = self.actors[b]
+            for b, second in enumerate(self.actors[a + 1 :], a + 1):
                 if second.gone:
                     continue
                 u, v = second.vehicle.position
@@ -676,15 +677,15 @@ class World:
                     found.append((a, count + number))
         return found
 
-    def touch(self, physics, near, touched, actions, time):
-        """First contacts at this physics step, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
+    def touching(self, physics, near, touched):
+        """Pairs that touch for the first time, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
+        things = [actor.vehicle for actor in self.actors] + [thing for thing, _ in self.obstacles]
+        fresh = ((a, b, things[a].body, things[b].body) for a, b in near if (a, b) not in touched)
+        return [(a, b) for a, b, mine, theirs in fresh if physics.contactTestPair(mine, theirs).getNumContacts() > 0]
+
+    def note(self, touching, touched, actions, time):
         count = len(self.actors)
-        for a, b in near:
-            if (a, b) in touched:
-                continue
-            other = self.actors[b].vehicle if b < count else self.obstacles[b - count][0]
-            if physics.contactTestPair(self.actors[a].vehicle.body, other.body).getNumContacts() == 0:
-                continue
+        for a, b in touching:
             touched.add((a, b))
             event = {"time_s": time, "a": a, "a_state": self.state(a, actions[a])}
             if b < count:
@@ -696,8 +697,7 @@ class World:
 
     def verdict(self, touched, standing):
         ego, count = self.actors[0].vehicle, len(self.actors)
-        finite = all(math.isfinite(part) for n in range(count) for part in self.state(n, [0.0, 0.0]))
-        if not finite:
+        if not all(math.isfinite(part) for n in range(count) for part in self.state(n, [0.0, 0.0])):
             raise RuntimeError("a state is no longer finite")
         if any(a == 0 and b < count for a, b in touched):
             return "contact"
