@@ -641,7 +641,8 @@ impl Parser<'_> {
             !matches!(sense, Sense::Push | Sense::Damage | Sense::Contact | Sense::RearEnd | Sense::TakeOver);
         let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
             && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
-        let lively = acts(self.world.actors[last.actor].kind)
+        let known = &self.world.actors[last.actor];
+        let lively = (acts(known.kind) && (!known.several || between.is_empty()))
             || matches!(
                 sense,
                 Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked
