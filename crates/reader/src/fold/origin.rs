@@ -174,7 +174,12 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let Some(side) = lane_side(account).filter(|_| behind && moved_over) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
     }
-    if behind && !matches!(first, Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Beside)) {
+    if behind
+        && !matches!(
+            first,
+            Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Opposite | Relation::Beside)
+        )
+    {
         return told_as(Origin::Behind, clues.has(Relation::Behind));
     }
     if first == Some(Relation::Beside)
@@ -293,11 +298,12 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     None
 }
 
-/// Who moves over without a side told comes from the side that was touched; an animal in the way is ahead.
+/// Who moves over without a side told comes from the side that was touched, and who is parked stands there; an animal in the way is ahead.
 fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let partner = account.partner.as_ref()?;
     let moved_over = [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass].into_iter().any(|act| partner.did(act));
-    if let (true, Some(side)) = (moved_over || clues.any(Relation::Beside), zone_side(account)) {
+    let parked = told(&partner.state) == Some(ContactState::Parked);
+    if let (true, Some(side)) = (moved_over || parked || clues.any(Relation::Beside), zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
