@@ -382,6 +382,11 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     ]
     .into_iter()
     .any(|act| partner.did(act));
+    let own_way = ![Act::Turn, Act::UTurn, Act::LaneChange, Act::PullOut].into_iter().any(|act| account.sv.did(act));
+    let across = [Act::Turn, Act::UTurn, Act::PullOut, Act::Cross].into_iter().any(|act| partner.did(act));
+    if told(&account.crash_type) == Some(CrashType::Intersection) && own_way && across {
+        return rule(Role::Responder, "the other turned or came out across its way");
+    }
     if matches!(striker, Some(Striker::Sv)) && told(&account.crash_type) != Some(CrashType::Other) {
         return if cp_moves {
             rule(Role::Both, "both moved")
