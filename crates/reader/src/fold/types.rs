@@ -204,7 +204,9 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             Some((CrashType::Lateral, "one way, side by side"))
         }
         Some(Origin::Opposite) => {
-            let across = (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
+            let column = told(&account.sv.movement) == Some(Movement::LeftTurn) && turn_side(&account.sv).is_none();
+            let across = column
+                || (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
                 || (cp_turns && turn_side(partner) == Some(LeftRight::Left) && !sv_turns)
                 || told(&partner.movement) == Some(Movement::UTurn);
             Some(if across {
