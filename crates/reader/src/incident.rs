@@ -27,6 +27,10 @@ const REFERENCES: [&str; 10] = [
 const BOILERPLATE: [&str; 3] =
     ["duplicate of the redacted public copy", "is submitting a duplicate of", "incorporates cruise's responses"];
 
+/// What companies write where they pass on the narrative of another company's report.
+const PASSED_ON: [&str; 4] =
+    ["incorporates the report by reference", "is a duplicate of", "duplicate of report", "excerpt from"];
+
 /// Crashes of one incident id that lie further apart than this are two. [min]
 const SAME_CRASH_MIN: u16 = 5;
 
@@ -61,8 +65,11 @@ pub fn incidents(records: &[CrashRecord]) -> Vec<Incident> {
         .filter(|&number| reports[number].telling == Telling::Tells)
         .map(|number| sets.root(number))
         .collect();
-    for (number, report) in reports.iter().enumerate().filter(|(_, report)| report.telling == Telling::Refers) {
-        if told.contains(&sets.root(number)) {
+    for (number, report) in reports.iter().enumerate() {
+        let passed_on =
+            report.telling == Telling::Tells && !report.names.is_empty() && passes_on(&report.record.narrative);
+        let refers = report.telling == Telling::Refers && !told.contains(&sets.root(number));
+        if !(passed_on || refers) {
             continue;
         }
         if let Some(&named) = report.names.iter().find_map(|name| by_report.get(name.as_str())) {
@@ -124,9 +131,15 @@ pub fn only_refers(narrative: &str) -> bool {
     short && refers
 }
 
+fn passes_on(narrative: &str) -> bool {
+    let lower = narrative.to_lowercase();
+    PASSED_ON.iter().any(|phrase| lower.contains(phrase))
+}
+
 /// Report ids in a text: `30490-11294`, also with a version behind it.
 fn report_ids(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_ascii_digit() || c == '-')).filter_map(|word| {
+        let word = word.trim_matches('-');
         let mut parts = word.splitn(3, '-');
         let (entity, number) = (parts.next()?, parts.next()?);
         let is_id = (3..=6).contains(&entity.len()) && (1..=7).contains(&number.len());

@@ -2,6 +2,7 @@
 //! `docs/models/evaluation.md`.
 
 mod labels;
+mod told;
 
 pub use labels::{Half, Label};
 pub use recrash_lab::evaluation::{Field, FieldScore};
@@ -21,6 +22,7 @@ use recrash_model::{Diagnostic, Location, Seed, Severity};
 use recrash_records::{SourceText, ingest};
 use serde::{Deserialize, Serialize};
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The labels that come with recrash.
@@ -31,6 +33,8 @@ const BUILT_IN_NAME: &str = "eval/labels.csv";
 const MAX_LABELS: u64 = 1 << 24;
 /// Crash files larger than this are refused. [bytes]
 const MAX_CRASH_FILE: u64 = 1 << 30;
+/// Name of the reader whose accounts `recrash read` shows.
+const READER: &str = "reader";
 /// Names under which `recrash fetch` keeps NHTSA's files.
 const DOWNLOADED: [&str; 2] = ["sgo-ads-archive.csv", "sgo-ads-current.csv"];
 /// Where a development checkout keeps them, as the labels name them; the variable overrides the folder `../shared`.
@@ -40,7 +44,7 @@ const SHARED_VARIABLE: &str = "RECRASH_SHARED";
 /// What is evaluated, and on what.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationRequest {
-    /// `rules`, or a model by name.
+    /// `rules`, `reader` (the accounts of `recrash read`), or a model by name.
     pub agent: String,
     /// Label file; the built-in labels where none is given.
     pub labels: Option<PathBuf>,
@@ -128,6 +132,7 @@ pub fn evaluate(request: &EvaluationRequest) -> Result<Evaluation, PipelineError
     let mut unread = Vec::new();
     let accounts = match request.agent.as_str() {
         RULES => found.iter().map(|(_, record)| Rules.account(record, &profile)).collect(),
+        READER => told_accounts(&records, &found, &profile),
         _ => model_accounts(request, &profile, &found, &mut unread)?,
     };
     Ok(compare(request, &found, &accounts, missing, unread))
@@ -178,6 +183,22 @@ fn compare(
         missing,
         unread,
     }
+}
+
+/// The reader reads incidents, and so may tell of a record what another report of it tells.
+fn told_accounts(
+    records: &[CrashRecord],
+    found: &[(&Label, &CrashRecord)],
+    profile: &SystemProfile,
+) -> Vec<LabelledAccount> {
+    let mut by_report = BTreeMap::new();
+    for account in recrash_reader::incidents(records).iter().filter_map(recrash_reader::account) {
+        let said = told::in_labels(&account, profile);
+        for report in account.reports {
+            by_report.insert(report.report_id, said.clone());
+        }
+    }
+    found.iter().map(|(label, _)| by_report.get(&label.record.report_id).cloned().unwrap_or_default()).collect()
 }
 
 /// A model reads through the same role that retells records for a suite.

@@ -343,7 +343,7 @@ impl Chunker<'_> {
         }
         let inside: Vec<&str> = (at + 1..at + 5).map(|at| self.text(at)).collect();
         let number = match inside.as_slice() {
-            ["vehicle" | "unit" | "v", number, ")", ..] => number,
+            ["vehicle" | "unit" | "v" | "car", number, ")", ..] => number,
             [one, ")", ..] => one.strip_prefix('v')?,
             _ => return None,
         };

@@ -60,7 +60,8 @@ impl Chunker<'_> {
             }
         }
         // "the front", "the left" alone are places unless somebody owns them or a part is named.
-        let sure = owner.is_some() || nouns > 0 || its;
+        let possessed = first > self.first && self.text(first - 1) == "'s" && placed;
+        let sure = owner.is_some() || nouns > 0 || its || possessed;
         let plain_noun = parts == [Part::Noun] && owner.is_none() && !its && !door;
         let bare = placed && self.text(first) == "the" && self.ends_clause(at);
         if !(sure || bare) {
@@ -316,8 +317,11 @@ impl Chunker<'_> {
                 _ => {}
             }
             at += length;
-            if let (Some(number), true) = (self.text(at).parse().ok(), noun.kind == Some(Kind::Vehicle)) {
-                noun.number = Some(number);
+            let numbered = noun.kind == Some(Kind::Vehicle) || self.text(at - 1) == "car";
+            if let (Some(number), true) = (self.text(at).parse().ok(), numbered) {
+                // "car 1" is who reports.
+                subject |= number == 1;
+                noun.number = Some(number).filter(|number| *number > 1);
                 at += 1;
             }
             // "AV 2", "a different AV": another one of the same company.

@@ -8,7 +8,7 @@ use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
     Account, Act, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
 };
-use recrash_model::template::Movement;
+use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone as Z;
 
 /// What is known of where somebody comes from.
@@ -104,8 +104,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let (first, end) = reading.window(number);
         let source = reading.words(first, end);
         match frame.out_of {
-            Some(Spot::Stall) => return told_as(Origin::Stall { side }, source),
-            Some(Spot::Driveway | Spot::SideStreet) => return told_as(Origin::Driveway { side }, source),
+            Some(Spot::Stall) => return told_as(Origin::Stall { side: side.or_else(|| zone_side(account)) }, source),
+            Some(Spot::Driveway | Spot::SideStreet) => {
+                return told_as(Origin::Driveway { side: side.or_else(|| zone_side(account)) }, source);
+            }
             Some(Spot::Curb) => return told_as(Origin::Parked { side }, source),
             Some(Spot::Sidewalk) => return told_as(Origin::Sidewalk { side }, source),
             None => {}
@@ -117,7 +119,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         did(Act::Turn) || did(Act::PullOut) || did(Act::SetOff) || did(Act::Reverse) || did(Act::Follow),
         stall,
     ) {
-        return told_as(Origin::Stall { side }, source);
+        return told_as(Origin::Stall { side: side.or_else(|| zone_side(account)) }, source);
     }
     // It was ahead in one lane, and the subject vehicle left that lane.
     if let (Some(Relation::Ahead), Some(change)) =
@@ -174,7 +176,12 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let Some(side) = lane_side(account).filter(|_| behind && moved_over) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
     }
-    if behind && !matches!(first, Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Beside)) {
+    if behind
+        && !matches!(
+            first,
+            Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Opposite | Relation::Beside)
+        )
+    {
         return told_as(Origin::Behind, clues.has(Relation::Behind));
     }
     if first == Some(Relation::Beside)
@@ -293,11 +300,12 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     None
 }
 
-/// Who moves over without a side told comes from the side that was touched; an animal in the way is ahead.
+/// Who moves over without a side told comes from the side that was touched, and who is parked stands there; an animal in the way is ahead.
 fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let partner = account.partner.as_ref()?;
     let moved_over = [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass].into_iter().any(|act| partner.did(act));
-    if let (true, Some(side)) = (moved_over || clues.any(Relation::Beside), zone_side(account)) {
+    let parked = told(&partner.state) == Some(ContactState::Parked);
+    if let (true, Some(side)) = (moved_over || parked || clues.any(Relation::Beside), zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
@@ -399,7 +407,8 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
     if told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Object) {
         return None;
     }
-    match reading.record.cp_movement.known() {
+    let (cp, sv) = (reading.record.cp_movement.known(), reading.record.sv_movement.known());
+    match cp {
         Some(Movement::Backing) if sv_front => return rule(Origin::Ahead),
         Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay) if sv_front && cp_front => {
             return rule(Origin::Opposite);
@@ -421,7 +430,45 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
     if sv_front && cp_rear && !sv_rear {
         return rule(Origin::Ahead);
     }
-    None
+    let side = zone_side(account)?;
+    // One way, side by side.
+    let over = |movement| {
+        matches!(
+            movement,
+            Some(
+                Movement::ChangingLanes
+                    | Movement::Merging
+                    | Movement::LaneDeparture
+                    | Movement::ParkingManeuver
+                    | Movement::EnteringTraffic
+                    | Movement::Parked
+                    | Movement::Stopped
+            )
+        )
+    };
+    if over(cp)
+        || matches!(sv, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing | Movement::LaneDeparture))
+    {
+        return rule(Origin::Beside { side });
+    }
+    let junction = reading.record.road.known() == Some(RoadType::Intersection);
+    if sv == Some(Movement::LeftTurn) && junction && cp == Some(Movement::Straight) && side == LeftRight::Right {
+        return rule(Origin::Opposite);
+    }
+    let flank = |party: &recrash_model::account::Party| {
+        !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front() || zone.is_rear())
+    };
+    if junction && cp_front && flank(&account.sv) {
+        return rule(Origin::Cross { side });
+    }
+    if junction && sv_front && flank(partner) {
+        // Its right flank is met by who comes to it from its right: it came from the left.
+        let right = has_zone(partner, |zone| zone == Z::Right);
+        return rule(Origin::Cross { side: if right { LeftRight::Left } else { LeftRight::Right } });
+    }
+    let straight = |movement| matches!(movement, Some(Movement::Straight | Movement::Stopped | Movement::Parked));
+    (straight(cp) && straight(sv))
+        .then(|| Fact::by_rule(Origin::Beside { side }, "zones of both and the movement columns"))
 }
 
 /// Where somebody else is.

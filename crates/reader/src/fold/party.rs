@@ -628,6 +628,10 @@ fn kind_of(kind: PartnerKind) -> Kind {
 /// Movement of both sides just before the conflict.
 pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     account.sv.movement = movement(&account.sv, reading.record.sv_movement.known(), "SV Pre-Crash Movement");
+    // The column says of its own vehicle whether passing somebody was a manoeuvre.
+    if let (Some(Movement::Passing), Some(column)) = (told(&account.sv.movement), reading.record.sv_movement.known()) {
+        account.sv.movement = Some(Fact::of_column(column, "SV Pre-Crash Movement"));
+    }
     if let Some(partner) = &mut account.partner {
         let group = partner.kind.as_ref().map(|kind| kind.value.group());
         partner.movement = if group == Some(KindGroup::Object) {

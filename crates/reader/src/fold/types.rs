@@ -204,7 +204,9 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             Some((CrashType::Lateral, "one way, side by side"))
         }
         Some(Origin::Opposite) => {
-            let across = (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
+            let column = told(&account.sv.movement) == Some(Movement::LeftTurn) && turn_side(&account.sv).is_none();
+            let across = column
+                || (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
                 || (cp_turns && turn_side(partner) == Some(LeftRight::Left) && !sv_turns)
                 || told(&partner.movement) == Some(Movement::UTurn);
             Some(if across {
@@ -382,6 +384,11 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     ]
     .into_iter()
     .any(|act| partner.did(act));
+    let own_way = ![Act::Turn, Act::UTurn, Act::LaneChange, Act::PullOut].into_iter().any(|act| account.sv.did(act));
+    let across = [Act::Turn, Act::UTurn, Act::PullOut, Act::Cross].into_iter().any(|act| partner.did(act));
+    if told(&account.crash_type) == Some(CrashType::Intersection) && own_way && across {
+        return rule(Role::Responder, "the other turned or came out across its way");
+    }
     if matches!(striker, Some(Striker::Sv)) && told(&account.crash_type) != Some(CrashType::Other) {
         return if cp_moves {
             rule(Role::Both, "both moved")

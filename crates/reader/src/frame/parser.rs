@@ -603,8 +603,15 @@ impl Parser<'_> {
                 return near.cloned();
             }
         }
-        if carry.after_comma && form == Form::Ing && sense == Sense::Face && carry.described.is_some() {
-            return carry.described.clone();
+        if carry.after_comma
+            && form == Form::Ing
+            && let Some(described) = &carry.described
+        {
+            // "yielded to a truck, which had no lights on, traveling south": the truck.
+            let of_other = carry.main.as_ref().is_none_or(|main| main.actor != described.actor);
+            if sense == Sense::Face || (of_other && sense == Sense::Act(Act::Follow)) {
+                return carry.described.clone();
+            }
         }
         // "was struck by a van, traveling east": the van.
         if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
@@ -641,7 +648,8 @@ impl Parser<'_> {
             !matches!(sense, Sense::Push | Sense::Damage | Sense::Contact | Sense::RearEnd | Sense::TakeOver);
         let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
             && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
-        let lively = acts(self.world.actors[last.actor].kind)
+        let known = &self.world.actors[last.actor];
+        let lively = (acts(known.kind) && (!known.several || between.is_empty()))
             || matches!(
                 sense,
                 Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked

@@ -78,6 +78,16 @@ fn a_copy_whose_incident_tells_its_own_story_is_not_moved_by_a_report_that_it_na
 }
 
 #[test]
+fn who_passes_on_another_company_s_narrative_joins_its_incident() {
+    let copy = format!(
+        "We incorporate nothing of our own; this submission incorporates the Report by reference (Report ID-100-2-). {STORY}"
+    );
+    let all = incidents(&[record("500-9", 1, &copy), record("100-2", 1, STORY)]);
+    assert_eq!(all.len(), 1);
+    assert_eq!(all[0].reports.len(), 2);
+}
+
+#[test]
 fn two_crashes_under_one_id_are_split_by_their_times() {
     let at = |id: &str, minute: u16| {
         let mut row = of_incident(record(id, 1, STORY), "aa");

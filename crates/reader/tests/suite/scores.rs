@@ -1,8 +1,9 @@
 //! How often the reader agrees with people who read real records: `demand.csv` of `../shared`, whose records are all of the
-//! developed half. The floors are what it reached when it was written, less two records; who makes it worse is told.
+//! developed half, and the developed half of `eval/labels.csv`, which draws as many records of each company. The floors are what it reached when it was written, less two records; who makes it worse is told.
 
-use recrash_model::account::{Account, Driver, Origin, told};
+use recrash_model::account::{Account, Driver, Fact, Origin, told};
 use recrash_model::profile::{Dedupe, SystemProfile};
+use recrash_model::zones::ContactZone;
 use recrash_records::{SourceText, ingest};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -50,6 +51,86 @@ fn the_reader_agrees_with_careful_readers() {
         }
     }
     assert!(below.is_empty(), "{}", below.join("\n"));
+}
+
+/// Field of `labels.csv`, and the smallest share of agreement.
+const LABEL_FLOORS: [(&str, f64); 6] = [
+    ("sv_movement", 0.89),
+    ("cp_movement", 0.88),
+    ("approach", 0.85),
+    ("order", 0.86),
+    ("sv_zones", 0.97),
+    ("cp_zones", 0.95),
+];
+
+#[test]
+fn the_reader_agrees_with_the_labels_of_every_company() {
+    let Some(folder) = recrash_testing::shared("data/nhtsa") else { return };
+    let accounts = accounts(&folder);
+    let mut reader = csv::Reader::from_reader(include_str!("../../../../eval/labels.csv").as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    for row in reader.records() {
+        let row = row.unwrap();
+        let cell = |name: &str| header.iter().position(|known| known == name).map_or("", |at| &row[at]);
+        if cell("half") != "dev" {
+            continue;
+        }
+        assert!(is_developed(cell("report")));
+        // One of them only refers to a report that is in neither file.
+        let Some(account) = accounts.get(cell("report")) else { continue };
+        for (field, _) in LABEL_FLOORS {
+            let Some(agrees) = agrees_with_label(field, cell(field), account) else { continue };
+            let count = counts.entry(field).or_default();
+            *count = (count.0 + usize::from(agrees), count.1 + 1);
+        }
+    }
+    let mut below = Vec::new();
+    for (field, floor) in LABEL_FLOORS {
+        let (agreed, all) = counts[field];
+        println!("{field:24} {agreed:4} of {all:4} {:.1} %", 100.0 * agreed as f64 / all as f64);
+        if (agreed as f64) < floor * all as f64 {
+            below.push(format!("{field}: {agreed} of {all}, below {floor}"));
+        }
+    }
+    assert!(below.is_empty(), "{}", below.join("\n"));
+}
+
+/// Whether account and label agree; `None` where the labeller cannot tell.
+fn agrees_with_label(field: &str, label: &str, account: &Account) -> Option<bool> {
+    if matches!(label, "unknown" | "") {
+        return None;
+    }
+    let partner = account.partner.as_ref();
+    let near = |zones: &[Fact<ContactZone>]| {
+        let labelled: Vec<ContactZone> =
+            label.split(';').map(|zone| serde_json::from_value(zone.into()).unwrap()).collect();
+        labelled.iter().any(|label| {
+            zones
+                .iter()
+                .any(|zone| zone.value == *label || label.steps_apart(zone.value).is_some_and(|steps| steps <= 1))
+        })
+    };
+    Some(match field {
+        "sv_movement" => coded(&told(&account.sv.movement)) == label,
+        "cp_movement" => coded(&partner.and_then(|partner| told(&partner.movement))) == label,
+        "order" => coded(&told(&account.order)) == label,
+        "sv_zones" => near(&account.sv.zones),
+        "cp_zones" => near(partner.map_or(&[], |partner| partner.zones.as_slice())),
+        "approach" => {
+            let said = match told(&account.came_from) {
+                Some(Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Parked { .. }) => {
+                    "same".to_owned()
+                }
+                Some(Origin::Opposite) => "opposite".to_owned(),
+                Some(Origin::Cross { side }) => coded(&Some(side)),
+                Some(Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side }) => coded(&side),
+                Some(Origin::Above) | None => "unknown".to_owned(),
+            };
+            said == label
+        }
+        _ => return None,
+    })
 }
 
 /// The half that rules may be written on: the SHA-256 of the id, taken as one integer, is even.
