@@ -9,7 +9,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CASES = ROOT / "crates" / "export" / "tests" / "cases"
-FORMATS = "openscenario,scenic,metadrive,commonroad"
+#: Scenes of `recrash.scenario/2` that only some formats are tested with.
+SCENES = [ROOT / "crates" / "export" / "tests" / "scenes", ROOT / "cases"]
+FORMATS = "openscenario,scenic,metadrive,commonroad,scenarionet"
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,21 @@ def of_cases(recrash: str, folder: Path) -> list[Export]:
         export(recrash, path, target)
         rollout = json.loads((target / "rollout.json").read_text())
         found.append(Export("cases", scenario["id"], scenario, rollout, target, []))
+    return found
+
+
+def of_scenes(recrash: str, folder: Path) -> list[Export]:
+    """Scenes with plans, as ScenarioNet: the recorded driver in the ego's seat where there is one."""
+    found = []
+    for path in sorted(path for scenes in SCENES for path in scenes.glob("**/*.json")):
+        scenario = json.loads(path.read_text())
+        target = folder / scenario["id"]
+        target.mkdir(parents=True)
+        ego = ["--ego", "recorded"] if "recorded" in scenario["ego"] else []
+        run(recrash, "simulate", "--quiet", path, *ego, "--rollout", target / "rollout.json")
+        run(recrash, "export", "--quiet", path, "--to", "scenarionet", "--to-dir", target)
+        rollout = json.loads((target / "rollout.json").read_text())
+        found.append(Export("scenes", scenario["id"], scenario, rollout, target, []))
     return found
 
 

@@ -18,7 +18,9 @@ fn main() {
         let text = std::fs::read_to_string(&path).expect("a scenario file");
         let draft = recrash_roads::read_draft(&text).expect("a scenario").value;
         let scenario = recrash_roads::check(draft).unwrap_or_else(|found| panic!("{path}: {found:#?}")).value;
-        let rollout = simulate(&scenario, Ego::MetadriveIdm);
+        // The crash as it is told, where it is.
+        let ego = if scenario.recorded().is_some() { Ego::Recorded } else { Ego::MetadriveIdm };
+        let rollout = simulate(&scenario, ego);
         let files = export(&scenario, Some(&rollout), &two_parameters(&scenario), &options).expect("exported");
         for file in files {
             std::fs::write(format!("{folder}/{}", file.name), file.content).expect("written");

@@ -1,5 +1,5 @@
 //! Scenarios in the formats of other tools: OpenSCENARIO XML 1.3 with OpenDRIVE 1.7, Scenic 3, MetaDrive, CommonRoad
-//! 2020a; and our own OpenSCENARIO read back.
+//! 2020a and ScenarioNet; and our own OpenSCENARIO read back.
 //!
 //! Every format is a function of the checked scenario, of its rollout where recorded motion is asked for, and of the
 //! numbers that may move. What each element means is listed in `docs/formats/coverage.md`, and what each tool takes for
@@ -12,6 +12,7 @@ mod import;
 mod metadrive;
 mod opendrive;
 mod openscenario;
+mod scenarionet;
 mod scenic;
 mod xml;
 
@@ -33,13 +34,15 @@ pub enum Format {
     MetaDrive,
     /// CommonRoad 2020a.
     CommonRoad,
+    /// The scenario description of ScenarioNet and MetaDrive's `ScenarioEnv`.
+    ScenarioNet,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::OpenScenario, Self::Scenic, Self::MetaDrive, Self::CommonRoad];
+    pub const ALL: [Self; 5] = [Self::OpenScenario, Self::Scenic, Self::MetaDrive, Self::CommonRoad, Self::ScenarioNet];
     /// Their names, as on the command line and of folders.
-    pub const NAMES: [&'static str; 4] = ["openscenario", "scenic", "metadrive", "commonroad"];
+    pub const NAMES: [&'static str; 5] = ["openscenario", "scenic", "metadrive", "commonroad", "scenarionet"];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -48,6 +51,7 @@ impl Format {
             Self::Scenic => Self::NAMES[1],
             Self::MetaDrive => Self::NAMES[2],
             Self::CommonRoad => Self::NAMES[3],
+            Self::ScenarioNet => Self::NAMES[4],
         }
     }
 }
@@ -78,7 +82,7 @@ pub enum PartnersAs {
 pub struct ExportOptions {
     /// The format.
     pub format: Format,
-    /// How the partners move (OpenSCENARIO only; Scenic and MetaDrive act, CommonRoad replays).
+    /// How the partners move (OpenSCENARIO only; Scenic and MetaDrive act, CommonRoad and ScenarioNet replay).
     pub partners_as: PartnersAs,
     /// A gap below this is a close call. [m]
     pub min_gap_m: f64,
@@ -113,12 +117,23 @@ pub enum ExportError {
         /// Scenario.
         scenario: String,
     },
+    /// The format has no way to say what happens.
+    #[error("scenario {scenario}: {format} cannot hold it: {why}")]
+    CannotHold {
+        /// Scenario.
+        scenario: String,
+        /// The format.
+        format: &'static str,
+        /// What it cannot hold.
+        why: String,
+    },
 }
 
 /// Exports a scenario. `parameters` are the numbers that may move; without any there is no logical scenario.
 ///
 /// # Errors
-/// [`ExportError::NeedsRollout`] where recorded motion is asked for and there is none.
+/// [`ExportError::NeedsRollout`] where recorded motion is asked for and there is none, [`ExportError::CannotHold`] where the
+/// format cannot say what happens.
 pub fn export(
     scenario: &Scenario,
     rollout: Option<&Rollout>,
@@ -128,8 +143,9 @@ pub fn export(
     match options.format {
         Format::OpenScenario => openscenario::files(scenario, rollout, parameters, options),
         Format::Scenic => Ok(scenic::files(scenario, parameters)),
-        Format::MetaDrive => Ok(metadrive::files(scenario)),
+        Format::MetaDrive => metadrive::files(scenario),
         Format::CommonRoad => commonroad::files(scenario, rollout, options),
+        Format::ScenarioNet => scenarionet::files(scenario, rollout),
     }
 }
 

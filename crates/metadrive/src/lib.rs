@@ -54,6 +54,14 @@ pub enum MetadriveError {
         /// Why.
         reason: NotReady,
     },
+    /// What happens in a scenario cannot happen, or cannot be known, on MetaDrive.
+    #[error("scenario `{scenario}` cannot be held by MetaDrive: {why}; run it on the native simulator")]
+    Refused {
+        /// The scenario's id.
+        scenario: String,
+        /// What it is that cannot be held.
+        why: String,
+    },
     /// A scenario failed twice, the second time on a new worker.
     #[error("scenario `{scenario}` failed twice on MetaDrive: {first}; then: {second}")]
     Failed {
@@ -67,6 +75,11 @@ pub enum MetadriveError {
 }
 
 impl MetadriveError {
+    /// Whether it is the scenario that cannot be held, and not a fault.
+    pub fn is_refused(&self) -> bool {
+        matches!(self, Self::Refused { .. })
+    }
+
     /// Whether it can be mended by installing MetaDrive: Python runs, and the package is not there.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::NotReady { reason: NotReady::Missing { .. } })

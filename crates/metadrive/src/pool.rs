@@ -82,9 +82,12 @@ impl Metadrive {
     /// # Errors
     /// When it failed on two workers, or no new worker can be started.
     pub fn simulate(&self, scenario: &Scenario, drive: &Drive) -> Result<Rollout, MetadriveError> {
-        let spec = run_spec(scenario, drive);
+        let refused = |why| MetadriveError::Refused { scenario: scenario.draft().id.clone(), why };
+        let spec = run_spec(scenario, drive).map_err(refused)?;
         let first = match self.attempt(scenario, drive, &spec)? {
             Ok(rollout) => return Ok(rollout),
+            // It would be refused again.
+            Err(WorkerFault::Refused { why }) => return Err(refused(why)),
             Err(fault) => fault,
         };
         match self.attempt(scenario, drive, &spec)? {
@@ -142,7 +145,8 @@ impl Metadrive {
             rollout(scenario, drive, spec, done)
                 .ok_or_else(|| WorkerFault::Rubbish { beginning: "an answer to another scenario".to_owned() })
         });
-        if result.is_err() || worker.maps >= MOST_MAPS {
+        let fault = matches!(&result, Err(fault) if !matches!(fault, WorkerFault::Refused { .. }));
+        if fault || worker.maps >= MOST_MAPS {
             slot.worker = None;
         }
         Ok(result)

@@ -2,11 +2,12 @@
 
 use crate::METADRIVE_VERSION;
 use crate::worker::NotReady;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{
-    ActorState, ActorTrack, Event, EventKind, ROLLOUT_FORMAT, Rollout, Termination, TerminationKind,
+    ActorState, ActorTrack, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, STEP_S, Termination, TerminationKind,
 };
 use recrash_model::vehicle::VehicleSpec;
-use recrash_plan::metadrive::{Actor, Run};
+use recrash_plan::metadrive::{Actor, NO_HANDOVER, Planned, PlannedPart, Run, handover};
 use recrash_roads::Scenario;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,8 @@ use serde::{Deserialize, Serialize};
 pub enum Drive {
     /// MetaDrive's own IDM policy, at the scenario's target speed.
     MetadriveIdm,
+    /// The recorded driver to the end, where there is one; else MetaDrive's own policy.
+    Recorded,
     /// Given controls, steering and throttle per step of 0.1 s, both -1 to 1; none behind their end. Only a contact or
     /// time ends such a run: it may leave the road.
     OpenLoop(Vec<[f64; 2]>),
@@ -24,6 +27,7 @@ impl Drive {
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::MetadriveIdm => "metadrive-idm",
+            Self::Recorded => "recorded",
             Self::OpenLoop(_) => "open-loop",
         }
     }
@@ -75,6 +79,9 @@ pub(crate) struct Answer {
     pub(crate) done: Option<Done>,
     #[serde(default)]
     pub(crate) error: Option<String>,
+    /// What it cannot know, and goes on with.
+    #[serde(default)]
+    pub(crate) refused: Option<String>,
 }
 
 /// A finished run.
@@ -102,25 +109,34 @@ struct DoneEvent {
 }
 
 /// A scenario as a worker takes it.
-pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> Run {
-    let mut run = Run::new(scenario);
+///
+/// # Errors
+/// What MetaDrive cannot hold.
+pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> Result<Run, String> {
+    let handover = if *drive == Drive::Recorded { NO_HANDOVER } else { handover(scenario) };
+    let mut run = Run::new(scenario, handover)?;
     if let Drive::OpenLoop(controls) = drive {
         run.ego.controls = Some(controls.clone());
     }
-    run
+    Ok(run)
 }
 
 /// A finished run as a rollout; `None` where the answer does not fit the scenario.
 pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, run: &Run, done: Done) -> Option<Rollout> {
     let steps = done.tracks.first()?.len();
-    let fits = done.tracks.len() == run.actors().count()
+    let tracks = empty_tracks(run);
+    let fits = done.tracks.len() == tracks.len()
         && steps > 0
         && done.tracks.iter().all(|track| track.len() == steps)
         && done.time_s.is_finite();
     if !fits {
         return None;
     }
-    let actors: Vec<ActorTrack> = run.actors().zip(&done.tracks).map(|(actor, states)| track(actor, states)).collect();
+    let actors: Vec<ActorTrack> = tracks
+        .into_iter()
+        .zip(&done.tracks)
+        .map(|(track, states)| ActorTrack { states: states.iter().map(state).collect(), ..track })
+        .collect();
     let events = done.events.iter().map(|each| event(each, actors.len(), scenario.obstacles().len()));
     Some(Rollout {
         format: ROLLOUT_FORMAT.to_owned(),
@@ -135,19 +151,30 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, run: &Run, done: Done)
     })
 }
 
-fn track(actor: &Actor, states: &[[f64; 7]]) -> ActorTrack {
-    let size = VehicleSpec::of(actor.kind);
-    ActorTrack {
-        part_of: None,
-        appears_s: 0.0,
-        gone_s: None,
-        id: actor.id.clone(),
-        role: actor.role,
-        kind: actor.kind,
-        length_m: size.length_m,
-        width_m: size.width_m,
-        states: states.iter().map(state).collect(),
-    }
+/// Everybody's track without a state, in the order of rollouts.
+fn empty_tracks(run: &Run) -> Vec<ActorTrack> {
+    let (planned, parts) = run.scene.as_ref().map_or((&[][..], &[][..]), |scene| (&scene.planned, &scene.parts));
+    let (scripted, traffic): (Vec<&Actor>, Vec<&Actor>) = run.actors().partition(|actor| actor.role != Role::Traffic);
+    let driven = |actor: &Actor| {
+        let size = VehicleSpec::of(actor.kind);
+        track(&actor.id, actor.role, actor.kind, (size.length_m, size.width_m))
+    };
+    let by_plan = |planned: &Planned| ActorTrack {
+        appears_s: f64::from(planned.appears) * STEP_S,
+        gone_s: planned.gone.map(|step| f64::from(step) * STEP_S),
+        ..track(&planned.id, Role::Partner, planned.kind, (planned.length_m, planned.width_m))
+    };
+    let of_part = |part: &PlannedPart| ActorTrack {
+        part_of: Some(part.owner),
+        ..track(&part.id, Role::Part, part.kind, (part.length_m, part.width_m))
+    };
+    let all = scripted.into_iter().map(driven).chain(planned.iter().map(by_plan));
+    all.chain(traffic.into_iter().map(driven)).chain(parts.iter().map(of_part)).collect()
+}
+
+fn track(id: &str, role: Role, kind: PartnerKind, (length_m, width_m): (f64, f64)) -> ActorTrack {
+    let id = id.to_owned();
+    ActorTrack { id, role, part_of: None, kind, length_m, width_m, appears_s: 0.0, gone_s: None, states: Vec::new() }
 }
 
 fn state(&[x, y, heading, vx, vy, steer, throttle]: &[f64; 7]) -> ActorState {

@@ -35,6 +35,12 @@ pub enum WorkerFault {
         /// The beginning of what it wrote.
         beginning: String,
     },
+    /// The scenario goes on with something that cannot be known there.
+    #[error("{why}")]
+    Refused {
+        /// What.
+        why: String,
+    },
     /// MetaDrive raised an error.
     #[error("MetaDrive raised {error}")]
     Raised {
@@ -121,7 +127,7 @@ impl Worker {
         &self.hello
     }
 
-    /// Runs one scenario. After any fault but [`WorkerFault::Raised`] the worker must not be used again.
+    /// Runs one scenario. After any fault but [`WorkerFault::Raised`] and [`WorkerFault::Refused`] the worker must not be used again.
     pub(crate) fn run(&mut self, run: &Run, patience: Duration) -> Result<Done, WorkerFault> {
         self.requests += 1;
         let request = Request { id: self.requests, run };
@@ -129,11 +135,14 @@ impl Worker {
             serde_json::to_vec(&request).map_err(|error| WorkerFault::Raised { error: error.to_string() })?;
         line.push(b'\n');
         match self.ask(line, patience)? {
-            Message::Answer(Answer { id, done: Some(done), error: None }) if id == self.requests => {
+            Message::Answer(Answer { id, refused: Some(why), .. }) if id == self.requests => {
+                Err(WorkerFault::Refused { why: printable(&why, 500) })
+            }
+            Message::Answer(Answer { id, done: Some(done), error: None, .. }) if id == self.requests => {
                 self.maps = done.maps;
                 Ok(done)
             }
-            Message::Answer(Answer { id, done: None, error: Some(error) }) if id == self.requests => {
+            Message::Answer(Answer { id, done: None, error: Some(error), .. }) if id == self.requests => {
                 Err(WorkerFault::Raised { error: printable(&error, 500) })
             }
             _ => Err(WorkerFault::Rubbish { beginning: "an answer to another question".to_owned() }),

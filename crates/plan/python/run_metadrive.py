@@ -13,7 +13,7 @@ with one JSON line each. The first line that it writes then is
     {"hello": {"python": "3.11.7", "metadrive": "0.4.3", "problem": null}}
 
 and for every {"id": 1, "run": {...}} either {"id": 1, "done": {...}} or {"id": 1, "error": "..."}. What a run holds is
-written down in crates/plan/src/metadrive.rs. It brings every number with it: places, sizes, what each partner plans, and
+written down in crates/plan/src/metadrive. It brings every number with it: places, sizes, what each partner plans, and
 the constants that give plans their meaning; docs/models/policies.md says what they mean, metadrive-backend.md how the
 world is set up.
 """
@@ -23,6 +23,7 @@ import json
 import math
 import os
 import sys
+from collections import OrderedDict
 
 WANTED = "0.4.3"
 SUBSTEPS = 5
@@ -80,22 +81,35 @@ if VERSION is None:
 if VERSION != WANTED:
     give_up("metadrive_version", VERSION, VERSION)
 try:
+    import numpy as np
+    from metadrive.component.block.base_block import BaseBlock
+    from metadrive.component.lane.circular_lane import CircularLane
+    from metadrive.component.lane.straight_lane import StraightLane
     from metadrive.component.map.pg_map import PGMap
     from metadrive.component.pg_space import ConstantSpace, ParameterSpace
     from metadrive.component.pgblock.curve import Curve
     from metadrive.component.pgblock.first_block import FirstPGBlock
+    from metadrive.component.pgblock.pg_block import PGBlock
     from metadrive.component.pgblock.roundabout import Roundabout
     from metadrive.component.pgblock.std_intersection import StdInterSection
     from metadrive.component.pgblock.std_t_intersection import StdTInterSection
     from metadrive.component.pgblock.straight import Straight
     from metadrive.component.road_network.node_road_network import NodeRoadNetwork
-    from metadrive.component.static_object.traffic_object import TrafficBarrier, TrafficCone, TrafficWarning
+    from metadrive.component.static_object.traffic_object import (
+        TrafficBarrier,
+        TrafficCone,
+        TrafficObject,
+        TrafficWarning,
+    )
     from metadrive.component.vehicle.vehicle_type import StaticDefaultVehicle, vehicle_class_to_type, vehicle_type
+    from metadrive.constants import PGLineType
     from metadrive.engine.base_engine import BaseEngine
+    from metadrive.engine.physics_node import BaseRigidBodyNode
     from metadrive.envs.metadrive_env import MetaDriveEnv
     from metadrive.manager.pg_map_manager import PGMapManager
     from metadrive.obs.observation_base import DummyObservation
     from metadrive.policy.idm_policy import FrontBackObjects, IDMPolicy
+    from panda3d.bullet import BulletBoxShape
     from panda3d.core import LVector3, Vec3
 except Exception as error:  # whatever it is, it is told in one line
     give_up("import_failed", "%s: %s" % (type(error).__name__, error), VERSION)
@@ -134,11 +148,16 @@ def block_parameters(spec):
 
 
 class ScenarioMap(PGMap):
-    """One block behind the approach, every number fixed."""
+    """One block behind the approach, every number fixed; or all lanes of a network of roads."""
 
     def _generate(self):
         spec = self._config["scenario"]
         parent, physics = self.engine.worldNP, self.engine.physics_world
+        if spec["type"] == "G":
+            self.blocks = [LaneBlock(self._config["lanes"], self.road_network)]
+            self.blocks[0].construct_block(parent, physics)
+            self.road_network.after_init()
+            return
         size = (self.road_network, spec["lane_width_m"], spec["lanes"], parent, physics)
         first = FirstPGBlock(*size, length=spec["approach_m"], ignore_intersection_checking=True)
         kind = BLOCKS[spec["type"]]
@@ -154,13 +173,13 @@ class ScenarioMap(PGMap):
 class ScenarioMapManager(PGMapManager):
     """Keeps the maps it has built."""
 
-    spec = None
+    spec, lanes = None, []
     built = {}
 
     def reset(self):
-        key = json.dumps(self.spec, sort_keys=True)
+        key = json.dumps([self.spec, self.lanes], sort_keys=True)
         if key not in self.built:
-            self.built[key] = self.spawn_object(ScenarioMap, map_config={"scenario": self.spec}, random_seed=None)
+            self.built[key] = self.spawn_object(ScenarioMap, map_config={"scenario": self.spec, "lanes": self.lanes}, random_seed=None)
             self.current_map = self.built[key]
         else:
             self.load_map(self.built[key])
@@ -198,7 +217,7 @@ def wrap(angle):
 class FreePolicy(IDMPolicy):
     """MetaDrive's IDM policy at the speed somebody wants: the ego's and that of background traffic."""
 
-    target_mps, timer_steps = 30.0 / 3.6, 25
+    target_mps, timer_steps, beside = 30.0 / 3.6, 25, 0.0
 
     def __init__(self, vehicle, random_seed):
         super().__init__(vehicle, random_seed)
@@ -207,9 +226,22 @@ class FreePolicy(IDMPolicy):
         self.np_random = MiddleOfTheRange()
 
     def decide(self, world, me):
+        actor, errand = world.actors[me], world.errand if me == 0 else None
+        halt = errand and errand.nearest(world.step * Law.step_s, actor.place.path_s, actor.vehicle.speed)
+        self.beside = errand.beside(actor.place.path_s) if errand else 0.0
         steering, throttle = drive_ego(world, self) if me == 0 else self.act()
-        actor = world.actors[me]
-        return [steering, hold_still(actor.vehicle.speed) if actor.halted else throttle]
+        if actor.halted:
+            throttle = hold_still(actor.vehicle.speed)
+        if halt is not None:
+            throttle = errand.before(throttle, halt, actor.vehicle.speed, actor.brake_mps2)
+        return [steering, throttle]
+
+    def steering_control(self, target_lane):
+        if self.beside == 0.0:
+            return super().steering_control(target_lane)
+        s, t = target_lane.local_coordinates(self.control_object.position)
+        off = wrap(target_lane.heading_theta_at(s + 1) - self.control_object.heading_theta)
+        return float(self.heading_pid.get_result(-off) + self.lateral_pid.get_result(self.beside - t))
 
     def has_plans(self, step):
         return False
@@ -230,11 +262,16 @@ class Place:
         self.starts = [spec["begins_m"]]
         for lane in self.lanes:
             self.starts.append(self.starts[-1] + lane.length)
+        self.ends = [lane.length for lane in self.lanes]
+        if "way_m" in spec:
+            # A way that changes lanes takes parts of them.
+            self.starts = [start - first for start, first, _ in spec["way_m"]]
+            self.ends = [last for _, _, last in spec["way_m"]]
         self.segment = 0
 
     def update(self, position):
         s, t = self.lanes[self.segment].local_coordinates(position)
-        while s > self.lanes[self.segment].length and self.segment + 1 < len(self.lanes):
+        while s > self.ends[self.segment] and self.segment + 1 < len(self.lanes):
             self.segment += 1
             s, t = self.lanes[self.segment].local_coordinates(position)
         self.s, self.t = s, t
@@ -252,193 +289,6 @@ class Place:
         return lane.heading_theta_at(s), lane.direction / radius if radius else 0.0
 
 
-class PartnerPolicy(IDMPolicy):
-    """What a plan asks for: the same law as recrash's crates/plan, function by function."""
-
-    def __init__(self, vehicle, spec):
-        super().__init__(vehicle, 0)
-        self.spec, self.plan, self.way = spec, spec["plan"], spec["partner_way"]
-        self.script = self.plan["speed"]
-        # Of the IDM policy the gap law is used, nothing else.
-        self.NORMAL_SPEED = self.target_speed = 3.6 * self.script["speed_mps"]
-        self.enable_lane_change = False
-        self.standing_steps = 0
-        self.last_heading = None
-
-    def waits(self, step):
-        return self.script["type"] == "wait" and (self.script["until"] is None or step < self.script["until"])
-
-    def has_plans(self, step):
-        script, kind = self.script, self.script["type"]
-        if kind == "wait":
-            return script["speed_mps"] > 0 and script["until"] is not None and step <= script["until"]
-        if kind == "timed":
-            return script["speed_mps"] > 0 or step < max(script["brake_until"], script["throttle_until"])
-        return False
-
-    def decide(self, world, me):
-        actor = world.actors[me]
-        if self.waits(world.step):
-            # The controllers begin when it sets off.
-            return [0.0, hold_still(actor.vehicle.speed)]
-        throttle = hold_still(actor.vehicle.speed) if actor.halted else self.pedal(world, me)
-        return [self.steer(world, actor), throttle]
-
-    def lateral_target(self, time):
-        """Offset wanted from the lane's centre, and its rate; a move takes over from wherever the last one is."""
-        offset, moves = self.plan["start_t_m"], self.way["moves"]
-        for position, move in enumerate(moves):
-            if time < move["start_s"]:
-                return offset, 0.0
-            rate = (move["to_t_m"] - offset) / max(move["duration_s"], Law.shortest_move_s)
-            following = moves[position + 1]["start_s"] if position + 1 < len(moves) else math.inf
-            until = min(following, move["start_s"] + move["duration_s"])
-            if time < until:
-                return offset + rate * (time - move["start_s"]), rate
-            offset += rate * max(until - move["start_s"], 0.0)
-        return offset, 0.0
-
-    def line(self, time):
-        """The line of its moves, each corner rounded."""
-        half = 0.5 * self.way["blend_s"]
-        if half <= 0.0:
-            return self.lateral_target(time)
-        before, now, after = (self.lateral_target(time + share * half)[0] for share in (-1, 0, 1))
-        return (before + 4.0 * now + after) / 6.0, (after - before) / (2.0 * half)
-
-    def steer(self, world, actor):
-        plan, vehicle, place = self.plan, actor.vehicle, actor.place
-        preview, greatest = Law.preview_s, plan["greatest_drift_rad"]
-        wanted, rate = self.line(world.step * Law.step_s + preview - Law.seen_late_s)
-        drift = math.asin(max(-1.0, min(1.0, -rate / max(vehicle.speed, Law.slow_mps))))
-        drift = max(-greatest, min(greatest, drift))
-
-        heading, speed, last = vehicle.heading_theta, vehicle.speed, self.last_heading
-        yaw_rate = 0.0 if last is None else wrap(heading - last) / Law.step_s
-        self.last_heading = heading
-        arm = plan["rear_axle_m"] - plan["slip_s"] * speed
-        lane, curvature = place.way_at(place.path_s)
-        here = wrap(heading + arm * curvature - lane)
-        lane, curvature = place.way_at(place.path_s + speed * preview)
-        ahead = wrap(heading + yaw_rate * preview + arm * curvature - lane)
-        offset = place.t - speed * preview * math.sin(0.5 * (here + ahead))
-
-        length = max(speed * Law.return_s, Law.return_wheelbases * plan["wheelbase_m"])
-        per_offset = 1.0 / length**2
-        per_course = max(2.0 / length - arm * per_offset, 1.0 / length)
-        angle = drift - (wanted - offset) * per_offset / per_course
-        angle = max(-greatest, min(greatest, angle))
-        bend = curvature / max(1.0 + curvature * offset, 0.1) + per_course * wrap(angle - ahead)
-        most = plan["sideways_mps2"] / max(speed, Law.slow_mps) ** 2
-        return math.atan(plan["wheelbase_m"] * max(-most, min(most, bend))) / plan["full_wheel_rad"]
-
-    def pedal(self, world, me):
-        plan, script, kind = self.plan, self.script, self.script["type"]
-        actor = world.actors[me]
-        speed, place = actor.vehicle.speed, actor.place
-        if kind == "timed" and script["brake_from"] <= world.step < script["brake_until"]:
-            return hold_still(speed)
-        if kind == "timed" and world.step < script["throttle_until"]:
-            wanted = self.meaning(script["throttle"])
-        elif kind == "follow":
-            wanted = self.meaning(self.gap_law(actor.vehicle))
-        else:
-            if script["speed_mps"] < Law.standing_mps and speed < Law.hold_below_mps:
-                return Law.hold_brake
-            wanted = max(plan["gain_per_s"] * (script["speed_mps"] - speed), -plan["comfortable_mps2"])
-        acceleration = wanted
-        stop = min([math.inf] + self.give_way(world, me) + self.blocked_ahead(world, place))
-        if -Law.committed_m <= stop < math.inf:
-            left = max(stop - Law.stop_short_m, 0.0)
-            at_line = math.sqrt(2.0 * plan["stopping_mps2"] * left)
-            if at_line < Law.standing_mps and speed < Law.hold_below_mps:
-                return Law.hold_brake
-            acceleration = min(acceleration, self.come_down(speed, 0.0, left, plan["stopping_mps2"]))
-        for bend in self.way["bends"]:
-            if bend["to_m"] > place.path_s:
-                left = max(bend["from_m"] - place.path_s, 0.0)
-                slower = self.come_down(speed, bend["speed_mps"], left, plan["comfortable_mps2"])
-                acceleration = min(acceleration, slower)
-        hardest = min(-plan["greatest_braking_mps2"], wanted)
-        acceleration = max(hardest, min(acceleration, plan["full_throttle_mps2"]))
-        if acceleration < 0.0:
-            return acceleration / plan["full_brake_mps2"]
-        return max(acceleration / max(plan["full_throttle_mps2"], 1e-3), Law.least_throttle)
-
-    def meaning(self, pedal):
-        """The acceleration that a pedal asks for."""
-        pedal = max(-1.0, min(1.0, pedal))
-        return pedal * self.plan["full_brake_mps2" if pedal < 0.0 else "full_throttle_mps2"]
-
-    @staticmethod
-    def come_down(speed, target, distance, deceleration):
-        """The acceleration along the parabola that ends at a place with a speed."""
-        on_parabola = math.sqrt(target * target + 2.0 * deceleration * distance)
-        slope = deceleration * speed / on_parabola if distance > 0.0 else 0.0
-        return (on_parabola - speed) / Law.catch_up_s - slope
-
-    def gap_law(self, vehicle):
-        self.target_speed = self.NORMAL_SPEED
-        front, distance = None, 5
-        try:
-            objects = vehicle.lidar.get_surrounding_objects(vehicle)
-            around = FrontBackObjects.get_find_front_back_objs(
-                objects, vehicle.lane, vehicle.position, self.MAX_LONG_DIST
-            )
-            front, distance = around.front_object(), around.front_min_distance()
-        except AttributeError:
-            pass
-        return self.acceleration(front, distance)
-
-    def blocked_ahead(self, world, place):
-        """Distances to obstacles that lie on its line."""
-        wanted, half = self.line(world.step * Law.step_s)[0], self.plan["half_width_m"] - Law.brushes_m
-        left, right = min(place.t, wanted) - half, max(place.t, wanted) + half
-        there = [each for each in self.way["blocked"] if each["left_m"] < right and each["right_m"] > left]
-        aheads = (each["from_m"] - self.plan["half_length_m"] - place.path_s for each in there)
-        return [ahead for ahead in aheads if ahead >= -Law.committed_m]
-
-    def give_way(self, world, me):
-        """Distances to where it has to wait for others."""
-        if self.script["type"] != "give_way":
-            return []
-        speed, place = world.actors[me].vehicle.speed, world.actors[me].place
-        self.standing_steps = self.standing_steps + 1 if speed < Law.standing_mps else 0
-        aheads = []
-        for crossing in self.spec["crossings"]:
-            ahead = crossing["mine"]["from"] - place.path_s
-            if ahead >= -Law.committed_m and self.must_wait(world, me, crossing, ahead):
-                aheads.append(max(ahead, 0.0))
-        return aheads
-
-    def must_wait(self, world, me, crossing, ahead):
-        number, merges, mine, theirs = (crossing[name] for name in ("other", "merges", "mine", "theirs"))
-        own, other = world.actors[me], world.actors[number]
-        if other.gone:
-            return False
-        other_s, other_speed = other.place.path_s, other.vehicle.speed
-        if other_s > (theirs["from"] + Law.merged_m if merges else theirs["to"]):
-            return False
-        if other_s > theirs["from"]:
-            return True
-        own_speed = own.vehicle.speed
-        if other_speed < Law.standing_mps:
-            patient = self.standing_steps < Law.patience_steps
-            return number < me and own_speed < Law.standing_mps and patient
-        speed = max(own_speed, 0.5 * self.script["speed_mps"], Law.standing_mps)
-        own_entry = max(ahead, 0.0) / speed
-        own_exit = own_entry + Law.merging_s if merges else (mine["to"] - own.place.path_s) / speed
-        way = theirs["from"] - other_s
-        # The earliest they can be there.
-        a = Law.their_acceleration_mps2
-        their_entry = (math.sqrt(other_speed * other_speed + 2.0 * a * way) - other_speed) / a
-        their_exit = way / other_speed + Law.merging_s if merges else (theirs["to"] - other_s) / other_speed
-        if their_entry > Law.horizon_s or own_entry > Law.horizon_s:
-            return False
-        gap = self.script["gap_s"]
-        return own_exit + gap > their_entry and their_exit + 0.5 * gap > own_entry
-
-
 class OpenLoopPolicy:
     """Given controls, one pair a step; none behind their end."""
 
@@ -453,9 +303,20 @@ class Actor:
     def __init__(self, vehicle, policy, place, spec):
         self.vehicle, self.policy, self.place = vehicle, policy, place
         self.radius = 0.5 * math.hypot(spec["body"]["length_m"], spec["body"]["width_m"])
-        self.halted = False
+        self.halted, self.parts, self.brake_mps2 = False, [], spec["body"]["brake_mps2"]
         # Background traffic that has driven off the map: its last state, going straight on.
         self.gone = None
+
+    @property
+    def away(self):
+        return self.gone is not None
+
+    def carry(self, now):
+        """Puts it where its recorded driver was."""
+        x, y, heading, vx, vy = now
+        self.vehicle.set_position((x, y))
+        self.vehicle.set_heading_theta(heading)
+        self.vehicle.set_velocity([vx, vy])
 
     def state(self):
         """Position, heading and velocity."""
@@ -512,7 +373,11 @@ def adjust_inertia(vehicle, body):
 
 
 def nodes_of(spec):
-    return [spec["way"][0][0]] + [end for _, end, _ in spec["way"]]
+    nodes = list(spec["way"][0][:1])
+    for _, end, _ in spec["way"]:
+        # A way that changes lanes names its road more than once.
+        nodes += [end] if end != nodes[-1] else []
+    return nodes
 
 
 def spawn_config(spec):
@@ -547,12 +412,16 @@ class World:
         self.spawned = []
         self.events = []
         self.released = False
+        self.scene = spec.get("scene")
+        self.errand = Errand(self.scene) if self.scene else None
+        self.attached = []
 
     def set_up(self):
         env, spec = self.env, self.spec
         for name, value in spec["constants"].items():
             setattr(Law, name, value)
         ScenarioMapManager.spec = spec["map"]
+        ScenarioMapManager.lanes = self.scene["lanes"] if self.scene else []
         ego = spec["ego"]
         FreePolicy.target_mps, FreePolicy.timer_steps = ego["target_speed_mps"], ego["overtake_timer_steps"]
         vehicle_type["static_default"] = vehicle_class(ego["body"])
@@ -566,22 +435,56 @@ class World:
         for partner in spec["partners"]:
             vehicle = self.spawn(partner)
             self.actors.append(self.introduce(vehicle, PartnerPolicy(vehicle, partner), partner))
+        if self.scene:
+            self.actors += [PlannedActor(self, planned) for planned in self.scene["planned"]]
+        self.first_traffic = len(self.actors)
         for other in spec["traffic"]:
             vehicle = self.spawn(other)
             TrafficPolicy.target_mps = other["target_speed_mps"]
             TrafficPolicy.timer_steps = other["overtake_timer_steps"]
             self.actors.append(self.introduce(vehicle, TrafficPolicy(vehicle, 0), other))
-        self.first_traffic = 1 + len(spec["partners"])
+        if self.scene:
+            self.attached = [Attached(self, part) for part in self.scene["parts"]]
+            self.carry(0.0)
         self.obstacles = []
         for obstacle in spec["obstacles"]:
-            thing = self.engine.spawn_object(
-                OBSTACLES[obstacle["kind"]],
-                lane=self.network.get_lane(tuple(obstacle["lane"])),
-                position=[obstacle["x"], obstacle["y"]],
-                **{"heading_theta": obstacle["heading"], "static": True},
-            )
-            self.spawned.append(thing.id)
+            place = {"position": [obstacle["x"], obstacle["y"]], "heading_theta": obstacle["heading"]}
+            place["lane"] = self.lane(obstacle["lane"])
+            if obstacle["kind"] in OBSTACLES and not self.scene:
+                thing = self.engine.spawn_object(OBSTACLES[obstacle["kind"]], static=True, **place)
+                self.spawned.append(thing.id)
+            else:
+                thing = self.box(obstacle, **place)
             self.obstacles.append((thing, math.hypot(obstacle["length_m"], obstacle["width_m"])))
+
+    def lane(self, name):
+        """A lane by its name; None where nobody may drive on it."""
+        start, end, number = name
+        lanes = self.network.graph.get(start, {}).get(end)
+        return lanes[number] if lanes else None
+
+    def box(self, spec, position=(0.0, 0.0), heading_theta=0.0, lane=None):
+        size = {"length": spec["length_m"], "width": spec["width_m"]}
+        box = self.engine.spawn_object(Box, position=position, heading_theta=heading_theta, lane=lane, **size)
+        self.spawned.append(box.id)
+        box.put(*position, heading_theta)
+        return box
+
+    def drives(self):
+        """Whether the ego's policy drives, and not its recorded driver."""
+        return not self.scene or self.scene["recorded"] is None or self.step >= self.scene["handover"]
+
+    def carry(self, share):
+        """Puts everybody with a plan where the plan has them, at a share of this step."""
+        if not self.scene:
+            return
+        if not self.drives():
+            self.actors[0].carry(between(self.scene["recorded"]["states"], self.step, share))
+        for actor in self.actors:
+            if isinstance(actor, PlannedActor):
+                actor.carry(self, self.step, share)
+        for part in self.attached:
+            part.carry(self.step, share)
 
     def spawn(self, spec):
         kind, config = vehicle_class(spec["body"]), spawn_config(spec)
@@ -608,22 +511,29 @@ class World:
 
     def run(self, window=False):
         physics = self.engine.physics_world.dynamic_world
-        tracks = [[] for _ in self.actors]
+        tracks, parts = [[] for _ in self.actors], [[] for _ in self.attached]
         touched = set()
         ego, standing = self.actors[0].vehicle, 0
         while True:
             self.released = self.released or ego.navigation.current_road.start_node != ENTRANCE
-            standing = standing + 1 if ego.speed < Law.standing_mps else 0
+            waits = not self.drives() or (self.errand and self.errand.stays())
+            standing = standing + 1 if ego.speed < Law.standing_mps and not waits else 0
+            self.carry(0.0)
             end = self.verdict(touched, standing)
             actions = [[0.0, 0.0]] * len(self.actors)
             if end is None:
+                self.refuse()
                 actions = []
                 for number, actor in enumerate(self.actors):
-                    action = [0.0, 0.0] if actor.gone else actor.policy.decide(self, number)
+                    plays = actor.gone or (number == 0 and not self.drives())
+                    action = [0.0, 0.0] if plays else actor.policy.decide(self, number)
                     actions.append([max(-1.0, min(1.0, float(part))) for part in action])
             for number, track in enumerate(tracks):
                 track.append(self.state(number, actions[number]))
+            for part, track in zip(self.attached, parts):
+                track.append(part.now + [0.0, 0.0])
             if end is not None:
+                tracks += parts
                 return {"end": end, "time_s": self.step * Law.step_s, "tracks": tracks, "events": self.events}
             present = [actor for actor in self.actors if actor.gone is None]
             for actor, action in zip(self.actors, actions):
@@ -632,8 +542,10 @@ class World:
             near = self.near_pairs()
             for substep in range(1, SUBSTEPS + 1):
                 # Bullet's bodies are a tick ahead of the places MetaDrive shows: what touches now is shown after the step.
+                self.carry(substep / SUBSTEPS)
                 touching = self.touching(physics, near, touched)
                 self.engine.step_physics_world()
+                self.carry(substep / SUBSTEPS)
                 self.note(touching, touched, actions, self.step * Law.step_s + substep * 0.02)
             for thing, _ in self.obstacles:
                 # One that was hit keeps its place but gets a velocity, which the IDM would believe.
@@ -649,6 +561,12 @@ class World:
             if window:
                 self.env.render(mode="topdown", window=True, screen_size=(900, 700))
 
+    def refuse(self):
+        """Ends a run whose plans go on in a way that cannot be known here."""
+        ends = self.scene and self.scene["ends"]
+        if ends and self.step >= ends[0]:
+            raise Refused("at %.1f s %s" % (ends[0] * Law.step_s, ends[1]))
+
     def remove_who_left(self):
         """Background traffic that is on no lane any more is unseen and untouchable from then on."""
         for actor in self.actors[self.first_traffic :]:
@@ -661,12 +579,13 @@ class World:
         """Who may touch whom within this step: actors by number, obstacles behind them."""
         found, count = [], len(self.actors)
         for a, first in enumerate(self.actors):
-            if first.gone:
+            if first.away:
                 continue
             x, y = first.vehicle.position
             reach = first.radius + 0.1 * first.vehicle.speed + 1.0
-            for b, second in enumerate(self.actors[a + 1 :], a + 1):
-                if second.gone:
+            for b in range(a + 1, count):
+                second = self.actors[b]
+                if second.away:
                     continue
                 u, v = second.vehicle.position
                 if math.hypot(u - x, v - y) < reach + second.radius + 0.1 * second.vehicle.speed:
@@ -679,14 +598,20 @@ class World:
 
     def touching(self, physics, near, touched):
         """Pairs that touch for the first time, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
-        things = [actor.vehicle for actor in self.actors] + [thing for thing, _ in self.obstacles]
-        fresh = ((a, b, things[a].body, things[b].body) for a, b in near if (a, b) not in touched)
-        return [(a, b) for a, b, mine, theirs in fresh if physics.contactTestPair(mine, theirs).getNumContacts() > 0]
+        things = [[actor.vehicle] + actor.parts for actor in self.actors] + [[thing] for thing, _ in self.obstacles]
+
+        def touch(a, b):
+            pairs = ((mine.body, theirs.body) for mine in things[a] for theirs in things[b])
+            return any(physics.contactTestPair(mine, theirs).getNumContacts() > 0 for mine, theirs in pairs)
+
+        return [(a, b) for a, b in near if (a, b) not in touched and touch(a, b)]
 
     def note(self, touching, touched, actions, time):
         count = len(self.actors)
         for a, b in touching:
             touched.add((a, b))
+            if a != 0 and b < count and isinstance(self.actors[b], PlannedActor) != isinstance(self.actors[a], PlannedActor):
+                raise Refused("at %.2f s somebody with a plan is pushed" % time)
             event = {"time_s": time, "a": a, "a_state": self.state(a, actions[a])}
             if b < count:
                 self.actors[a].halted = self.actors[b].halted = True
@@ -702,7 +627,7 @@ class World:
         if any(a == 0 and b < count for a, b in touched):
             return "contact"
         # Given controls are played to their end, wherever that is.
-        if not isinstance(self.actors[0].policy, OpenLoopPolicy):
+        if self.drives() and not isinstance(self.actors[0].policy, OpenLoopPolicy):
             if self.env._is_arrive_destination(ego):
                 return "arrived"
             if self.is_off_road(ego):
@@ -710,7 +635,7 @@ class World:
             if standing >= Law.stuck_steps and not self.anybody_moves():
                 return "stuck"
         if self.step * Law.step_s >= self.spec["duration_s"] - 0.5 * Law.step_s:
-            return "timeout"
+            return "arrived" if self.drives() and self.errand and self.errand.stays() else "timeout"
         return None
 
     def is_off_road(self, vehicle):
@@ -719,13 +644,13 @@ class World:
             return False
         lanes = (lane for ends in self.network.graph.values() for lanes in ends.values() for lane in lanes)
         places = ((lane, lane.local_coordinates(vehicle.position)) for lane in lanes)
-        return not any(0.0 <= s <= lane.length and abs(t) <= 0.5 * lane.width for lane, (s, t) in places)
+        return not any(0.0 <= s <= lane.length and abs(t) <= 0.5 * width_at(lane, s) for lane, (s, t) in places)
 
     def anybody_moves(self):
         return any(
             actor.vehicle.speed >= Law.standing_mps or (not actor.halted and actor.policy.has_plans(self.step))
             for actor in self.actors[1:]
-            if actor.gone is None
+            if not actor.away
         )
 
     def clear(self):
@@ -744,6 +669,8 @@ def work():
             done = world.run()
             done["maps"] = len(ScenarioMapManager.built)
             answer = {"id": request["id"], "done": done}
+        except Refused as error:
+            answer = {"id": request["id"], "refused": str(error)[:500]}
         except Exception as error:  # told, and the next request goes on
             answer = {"id": request["id"], "error": ("%s: %s" % (type(error).__name__, error))[:500]}
         if world.engine is not None:
@@ -787,7 +714,9 @@ def main():
     done = world.run(display and not arguments.headless)
     env.close()
     if arguments.trace:
-        actors = [spec["id"] for spec in [run["ego"]] + run["partners"] + run["traffic"]]
+        scene = run.get("scene") or {"planned": [], "parts": []}
+        specs = [run["ego"]] + run["partners"] + scene["planned"] + run["traffic"] + scene["parts"]
+        actors = [spec["id"] for spec in specs]
         columns = ["x_m", "y_m", "heading_rad", "vx_mps", "vy_mps", "steering", "throttle"]
         trace = {"step_s": Law.step_s, "columns": columns, "actors": actors, "states": list(zip(*done["tracks"]))}
         with open(arguments.trace, "w", encoding="utf-8") as file:
@@ -795,6 +724,3 @@ def main():
     gap, when = least_gap(run, done)
     last = {"min_gap_m": None if when is None else round(gap, 3), "min_gap_time_s": when and round(when, 2)}
     print(json.dumps({"scenario": content["id"], "end": done["end"], "time_s": round(done["time_s"], 2), **last}))
-
-
-work() if WORKER else main()

@@ -109,6 +109,26 @@ pub const STUCK_STEPS: u32 = 200;
 /// depends on nothing but its scenario (background traffic has its own, `roads::background_traffic`). [steps]
 pub const EGO_OVERTAKE_TIMER_STEPS: u32 = 25;
 
+/// Deceleration with which a built-in ego stops for what it sees in time (treiber2013). [m/s^2]
+pub const HALT_MPS2: f64 = 2.0;
+
+/// Deceleration above which it goes on when a signal turns yellow: 10 ft/s^2, by which yellow times are set (ite2020). [m/s^2]
+pub const YELLOW_MPS2: f64 = 3.05;
+
+/// It stands this far before the place, at most. [m]
+pub const HALT_SHORT_M: f64 = 0.3;
+
+/// A place farther behind than this has been passed. [m]
+pub const PASSED_LINE_M: f64 = 1.5;
+
+/// Time for which it stands at a stop sign; assumed. [steps]
+pub const SIGN_STEPS: u32 = 10;
+
+/// It pulls over, and out again, within these distances of its stop. [m]
+pub const PULL_OVER_M: f64 = 30.0;
+/// See [`PULL_OVER_M`]. [m]
+pub const STRAIGHT_BEFORE_M: f64 = 4.0;
+
 /// All of them as data. Units as above.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[allow(missing_docs, reason = "each is the constant of its name")]
@@ -134,6 +154,13 @@ pub struct Constants {
     pub merging_s: f64,
     pub their_acceleration_mps2: f64,
     pub stuck_steps: u32,
+    pub halt_mps2: f64,
+    pub yellow_mps2: f64,
+    pub halt_short_m: f64,
+    pub passed_line_m: f64,
+    pub sign_steps: u32,
+    pub pull_over_m: f64,
+    pub straight_before_m: f64,
 }
 
 impl Constants {
@@ -160,5 +187,12 @@ impl Constants {
         merging_s: MERGING_S,
         their_acceleration_mps2: THEIR_ACCELERATION_MPS2,
         stuck_steps: STUCK_STEPS,
+        halt_mps2: HALT_MPS2,
+        yellow_mps2: YELLOW_MPS2,
+        halt_short_m: HALT_SHORT_M,
+        passed_line_m: PASSED_LINE_M,
+        sign_steps: SIGN_STEPS,
+        pull_over_m: PULL_OVER_M,
+        straight_before_m: STRAIGHT_BEFORE_M,
     };
 }

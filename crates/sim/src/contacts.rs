@@ -9,8 +9,11 @@ use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, Event, EventKind, STEP_S};
 
+/// Who has touched and drives on has left the other when they are this far apart. [m]
+const APART_M: f64 = 0.05;
+
 /// The pairs that may touch within the next step: those whose circles, widened by what both can drive, overlap.
-pub(crate) fn find_near(setting: &Setting, state: &State, near: &mut Vec<(u16, u16)>) {
+pub(crate) fn find_near(setting: &Setting, state: &mut State, near: &mut Vec<(u16, u16)>) {
     near.clear();
     let actors = state.seen.len();
     let columns = actors + setting.obstacles.len();
@@ -22,7 +25,18 @@ pub(crate) fn find_near(setting: &Setting, state: &State, near: &mut Vec<(u16, u
         for (b, second) in state.seen.iter().enumerate().skip(a + 1).filter(|(_, seen)| seen.present) {
             let reach = reach + radius(b, second) + (second.speed + 1.0) * STEP_S;
             let offset = second.pose.position - first.pose.position;
-            if offset.length_squared() <= reach * reach && !state.touched[a * columns + b] {
+            if offset.length_squared() > reach * reach {
+                continue;
+            }
+            let pair = a * columns + b;
+            // Who drives on after a touch may touch again.
+            if state.touched[pair]
+                && (goes_on(setting, state, a) || goes_on(setting, state, b))
+                && first.outline().gap(&second.outline()) > APART_M
+            {
+                state.touched[pair] = false;
+            }
+            if !state.touched[pair] {
                 near.push((a as u16, b as u16));
             }
         }
@@ -88,6 +102,11 @@ pub(crate) fn collide(setting: &Setting, state: &mut State, workspace: &mut Work
     });
 }
 
+/// Whether it keeps to its plan after a touch.
+fn goes_on(setting: &Setting, state: &State, actor: usize) -> bool {
+    setting.outlasts_a_touch[actor] && state.movers[actor] == Mover::Plan
+}
+
 /// The boxes of an actor: its own, then those of its parts.
 fn boxes_of<'a>(setting: &'a Setting, state: &'a State, actor: usize) -> impl Iterator<Item = OrientedBox> + 'a {
     let (member, pose) = (&setting.cast[actor], state.bodies[actor].pose);
@@ -125,6 +144,9 @@ fn push(setting: &Setting, state: &mut State, a: usize, b: usize) {
     };
     let (first, second) = impact::collide(&body(a, mine), &body(b, theirs));
     for (actor, after) in [(a, first), (b, second)] {
+        if goes_on(setting, state, actor) {
+            continue;
+        }
         state.loose[actor] = Loose { pose: state.bodies[actor].pose, ..after };
         state.movers[actor] = Mover::Momentum;
     }

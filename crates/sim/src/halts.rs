@@ -8,27 +8,10 @@ use crate::world::{Errand, Setting, State};
 use recrash_model::math;
 use recrash_model::scenario::{Aspect, Device};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_plan::constants::STANDING_MPS;
+use recrash_plan::constants::{
+    HALT_MPS2, HALT_SHORT_M, PASSED_LINE_M, PULL_OVER_M, SIGN_STEPS, STANDING_MPS, STRAIGHT_BEFORE_M, YELLOW_MPS2,
+};
 use recrash_plan::hold_still;
-
-/// Deceleration with which it stops for what it sees in time (treiber2013). [m/s^2]
-const COMFORTABLE_MPS2: f64 = 2.0;
-
-/// Deceleration above which it goes on when a signal turns yellow: 10 ft/s^2, by which yellow times are set (ite2020). [m/s^2]
-const YELLOW_MPS2: f64 = 3.05;
-
-/// It stands this far before the place, at most. [m]
-const SHORT_M: f64 = 0.3;
-
-/// A place farther behind than this has been passed. [m]
-const PASSED_M: f64 = 1.5;
-
-/// Time for which it stands at a stop sign; assumed. [steps]
-const SIGN_STEPS: u32 = 10;
-
-/// It pulls over, and out again, within these distances of its stop. [m]
-const PULL_OVER_M: f64 = 30.0;
-const STRAIGHT_BEFORE_M: f64 = 4.0;
 
 /// The distance to the nearest place where it must stand now. [m]
 pub(crate) fn nearest(setting: &Setting, state: &mut State, s_m: f64, speed_mps: f64) -> Option<f64> {
@@ -39,20 +22,20 @@ pub(crate) fn nearest(setting: &Setting, state: &mut State, s_m: f64, speed_mps:
     let mut at_sign = false;
     for (number, line) in setting.ego_lines.iter().enumerate().take(16) {
         let distance_m = line.at_m - s_m;
-        if distance_m < -PASSED_M {
+        if distance_m < -PASSED_LINE_M {
             continue;
         }
         let must_stand_first = match (&setting.control[line.control], state.signals[line.control]) {
             (Device::YieldSign {}, _) | (_, Some(Aspect::Green | Aspect::Dark)) => continue,
             (_, Some(Aspect::Yellow)) => {
-                if math::sq(speed_mps) > 2.0 * YELLOW_MPS2 * distance_m.max(0.1) || distance_m < -SHORT_M {
+                if math::sq(speed_mps) > 2.0 * YELLOW_MPS2 * distance_m.max(0.1) || distance_m < -HALT_SHORT_M {
                     continue;
                 }
                 false
             }
             (_, Some(Aspect::Red)) => {
                 // Who is over the line goes on.
-                if distance_m < -SHORT_M {
+                if distance_m < -HALT_SHORT_M {
                     continue;
                 }
                 false
@@ -121,14 +104,14 @@ pub(crate) fn pull_over_m(setting: &Setting, errand: &Errand, s_m: f64) -> f64 {
 
 /// Controls that also lead to a stand at a place this far ahead. [m]
 pub(crate) fn before(controls: Controls, distance_m: f64, speed_mps: f64, spec: &VehicleSpec) -> Controls {
-    let left_m = distance_m - SHORT_M;
+    let left_m = distance_m - HALT_SHORT_M;
     if left_m <= 0.0 || (speed_mps < STANDING_MPS && left_m < 0.5) {
         return Controls { throttle: controls.throttle.min(hold_still(speed_mps)), ..controls };
     }
     let needed = math::sq(speed_mps) / (2.0 * left_m);
     // It never comes to the place faster than a comfortable stop allows.
-    let allowed_mps = (2.0 * COMFORTABLE_MPS2 * left_m).sqrt();
-    if needed < 0.9 * COMFORTABLE_MPS2 && speed_mps < 0.95 * allowed_mps {
+    let allowed_mps = (2.0 * HALT_MPS2 * left_m).sqrt();
+    if needed < 0.9 * HALT_MPS2 && speed_mps < 0.95 * allowed_mps {
         return controls;
     }
     Controls { throttle: controls.throttle.min(-needed / spec.brake_demand_mps2), ..controls }.clipped()

@@ -185,7 +185,7 @@ impl Run {
             if let Some(programme) = programme {
                 let progress = &state.progress[usize::from(programme)];
                 seen.present = progress.present;
-                seen.plan_s_m = Some(progress.s_m);
+                seen.plan_s_m = (actor > 0).then_some(progress.s_m);
             }
             if seen.present {
                 seen.place.localise(&setting.lanes, &setting.routes, body.pose.position, body.pose.heading);
@@ -283,12 +283,16 @@ impl Run {
         }
         let sight = Sight { step: state.step, all: glimpses, signals: &state.signals };
         for actor in 0..state.seen.len() {
-            let Some(number) = setting.programme_of[actor].filter(|_| state.movers[actor] == Mover::Plan) else {
+            let Some(number) = setting.programme_of[actor] else { continue };
+            if state.movers[actor] == Mover::Momentum {
                 continue;
-            };
+            }
             let (programme, progress) =
                 (&setting.programmes[usize::from(number)], &mut state.progress[usize::from(number)]);
-            if actor == 0 && state.step >= setting.handover {
+            if state.movers[actor] == Mover::Wheels {
+                // Doors are opened by riders, whoever drives; and others wait for what was recorded.
+                progress.be_driven(state.seen[actor].speed, STEP_S);
+            } else if actor == 0 && state.step >= setting.handover {
                 let (pose, velocity, yaw_rate) = programme.motion(progress);
                 state.bodies[0] = VehicleState::rolling(pose, velocity, yaw_rate);
                 state.movers[0] = Mover::Wheels;
@@ -303,7 +307,7 @@ impl Run {
                     moved.turn(to_rad, step, steps);
                 }
             });
-            if was_present && !progress.present {
+            if was_present && !progress.present && state.movers[actor] == Mover::Plan {
                 self.workspace.events.push(Event { time_s, kind: EventKind::Gone { actor } });
             }
         }

@@ -23,7 +23,7 @@ pub(crate) struct Seen {
     pub(crate) present: bool,
     /// On the lane that its place names; who moves by a plan may be beside all.
     pub(crate) on_lane: bool,
-    /// Along its plan's course, where it moves by one. [m]
+    /// Along its plan's course, where it moves by one; `None` of the ego, whose place is that on its route. [m]
     pub(crate) plan_s_m: Option<f64>,
 }
 

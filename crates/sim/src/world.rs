@@ -6,7 +6,7 @@ use crate::ego::Ego;
 use crate::idm::Idm;
 use crate::lanes::{LaneIndex, LaneTable, Navigator, Progress};
 use crate::metadrive_idm::MetadriveIdm;
-use crate::movement::{Attached, Loose, Mover, PartState};
+use crate::movement::{Loose, Mover};
 use crate::recorder::CastMember;
 use crate::reference::{Attention, Reference};
 use crate::run::Seat;
@@ -15,10 +15,10 @@ use crate::script::Script;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorState, Event, Role, SUBSTEPS, Termination};
-use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy, ScenarioDraft};
+use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy};
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
-use recrash_plan::acts::{self, Glimpse, Programme, Who};
+use recrash_plan::acts::{self, Attached, Glimpse, Names, PartState, Programme, ego_stop_lines};
 use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
 use recrash_plan::{Crossing, Plan, Way};
 use recrash_roads::{
@@ -49,6 +49,8 @@ pub(crate) struct Setting {
     /// Plans of acts, and for each actor which is its own.
     pub(crate) programmes: Vec<Programme>,
     pub(crate) programme_of: Vec<Option<u16>>,
+    /// Whose plan goes on after a touch.
+    pub(crate) outlasts_a_touch: Vec<bool>,
     /// The step at which the ego's seat takes over from its recorded driver.
     pub(crate) handover: u32,
     pub(crate) after_contact_s: f64,
@@ -320,6 +322,7 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
     setting.masses_kg.push(VehicleSpec::mass_kg(kind).unwrap_or(FIRM_KG));
     setting.parts_reach_m.push(0.0);
     setting.programme_of.push(None);
+    setting.outlasts_a_touch.push(false);
     state.movers.push(Mover::Wheels);
     state.loose.push(Loose::default());
     state.bodies.push(VehicleState::new(pose, speed_mps));
@@ -396,6 +399,7 @@ impl Setting {
         self.crossings.clear();
         self.programmes.clear();
         self.programme_of.clear();
+        self.outlasts_a_touch.clear();
         self.handover = 0;
         self.after_contact_s = 0.0;
         self.parts.clear();
@@ -421,7 +425,7 @@ fn plan(setting: &mut Setting, state: &mut State, scenario: &Scenario, seat: Sea
     setting.after_contact_s = draft.after_contact_s;
     setting.control.extend(draft.control.iter().map(|control| control.device.clone()));
     setting.stops.extend_from_slice(&draft.ego.stops);
-    setting.ego_lines.extend(stop_lines(scenario));
+    setting.ego_lines.extend(ego_stop_lines(scenario));
     state.signals.resize(setting.control.len(), None);
     let names = Names(draft);
     if let (Some(placement), Some(recorded)) = (scenario.recorded(), &draft.ego.recorded) {
@@ -457,6 +461,7 @@ fn follow_plan(setting: &mut Setting, state: &mut State, actor: usize, programme
     state.bodies[actor].carry(pose, velocity, yaw_rate);
     state.seen[actor].present = progress.present;
     setting.cast[actor].appears = programme.appears;
+    setting.outlasts_a_touch[actor] = programme.outlasts_a_touch(actor as u16);
     setting.programme_of[actor] = u16::try_from(setting.programmes.len()).ok();
     setting.programmes.push(programme);
     state.progress.push(progress);
@@ -487,46 +492,6 @@ fn attach(setting: &mut Setting, state: &mut State, owner: usize, parts: &[Part]
     }
 }
 
-/// Where the ego's path passes stop lines.
-fn stop_lines(scenario: &Scenario) -> impl Iterator<Item = StopLine> + '_ {
-    let (path, half_length_m) = (&scenario.ego().path, 0.5 * VehicleSpec::of(scenario.ego().kind).length_m);
-    scenario.control().iter().enumerate().flat_map(move |(control, placed)| {
-        placed.lines.iter().filter_map(move |&(lane, line_m)| {
-            let segment = path.segments.iter().find(|segment| segment.lane == lane)?;
-            Some(StopLine { at_m: segment.start_m + line_m - half_length_m, control })
-        })
-    })
-}
-
-/// What names mean in a draft.
-struct Names<'a>(&'a ScenarioDraft);
-
-impl Who for Names<'_> {
-    fn actor(&self, id: &str) -> Option<u16> {
-        if id == recrash_model::rollout::EGO_ID {
-            return Some(0);
-        }
-        let partners = self.0.partners.iter().map(|partner| &partner.id);
-        let position = partners.chain(self.0.actors.iter().map(|actor| &actor.id)).position(|other| other == id)?;
-        u16::try_from(position + 1).ok()
-    }
-
-    fn act(&self, actor: &str, act: &str) -> Option<u8> {
-        let plan = if actor == recrash_model::rollout::EGO_ID {
-            self.0.ego.recorded.as_ref()?
-        } else {
-            &self.0.actors.iter().find(|other| other.id == actor)?.plan
-        };
-        let position = plan.acts.iter().position(|other| other.id.as_deref() == Some(act))?;
-        u8::try_from(position).ok()
-    }
-
-    fn control(&self, at: &str) -> Option<u16> {
-        let position = self.0.control.iter().position(|control| control.at == at)?;
-        u16::try_from(position).ok()
-    }
-}
-
 impl State {
     /// Writes down everybody's state, with the controls chosen last.
     pub(crate) fn write_states(&mut self, parts: &[Attached]) {
@@ -549,7 +514,7 @@ impl State {
                 Mover::Plan => {
                     let Some(number) = setting.programme_of[actor].map(usize::from) else { continue };
                     let (programme, progress) = (&setting.programmes[number], &mut self.progress[number]);
-                    if progress.stands() {
+                    if !progress.present || progress.stands() {
                         continue;
                     }
                     programme.advance(progress, PHYSICS_STEP_S);

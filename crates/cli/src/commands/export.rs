@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash export suite --to openscenario,scenic,metadrive,commonroad    a suite in every format, in suite/exports/
+  recrash export suite --to openscenario,scenic,metadrive,commonroad,scenarionet    in every format, in suite/exports/
   recrash export suite --to openscenario --as trajectory --to-dir t     partners on the way that was recorded
   recrash export suite/6-tuned/intersection-straight-straight-90102-28.json --to scenic --to-dir t
   recrash import suite/exports/openscenario/intersection-straight-straight-90102-28.xosc    and back
@@ -22,7 +22,7 @@ pub struct ExportArgs {
     /// Folder of a suite, or a scenario file (JSON).
     #[arg(value_name = "SUITE|SCENARIO")]
     pub source: PathBuf,
-    /// Formats, separated by commas: openscenario (with OpenDRIVE), scenic, metadrive, commonroad.
+    /// Formats, separated by commas: openscenario (with OpenDRIVE), scenic, metadrive, commonroad, scenarionet.
     #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
     pub to: Vec<Format>,
     /// How partners move: by their policies as actions, or on the trajectory that was recorded.

@@ -109,7 +109,10 @@ fn an_unknown_format_and_a_folder_that_is_no_suite_are_refused() {
     let case = Case { folder: tempfile::tempdir().unwrap() };
     let (code, shown) = case.run(&["export", "suite", "--to", "opendrive"]);
     assert_eq!(code, USAGE);
-    assert!(shown.contains("opendrive") && shown.contains("openscenario, scenic, metadrive, commonroad"), "{shown}");
+    assert!(
+        shown.contains("opendrive") && shown.contains("openscenario, scenic, metadrive, commonroad, scenarionet"),
+        "{shown}"
+    );
     std::fs::create_dir(case.path("empty")).unwrap();
     let (code, shown) = case.run(&["export", "empty", "--to", "scenic"]);
     assert_eq!(code, BAD_INPUT);

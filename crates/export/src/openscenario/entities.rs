@@ -59,11 +59,11 @@ fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {
                 .with("name", category)
                 .with("mass", "80")
                 .with("pedestrianCategory", category)
-                .child(bounding_box(0.0, [spec.length_m, spec.width_m, height(kind)]))
+                .child(bounding_box(0.0, [spec.length_m, spec.width_m, height_m(kind)]))
                 .child(properties(description).child(between_vertices()))
         }
         PartnerKind::FixedObject => {
-            misc_object("object", "obstacle", [spec.length_m, spec.width_m, height(kind)], description)
+            misc_object("object", "obstacle", [spec.length_m, spec.width_m, height_m(kind)], description)
         }
         _ => vehicle(kind_name(kind), kind, description),
     }
@@ -85,7 +85,7 @@ fn vehicle(name: &str, kind: PartnerKind, description: &impl Serialize) -> Eleme
         element = element.with("role", "police");
     }
     element
-        .child(bounding_box(to_centre, [spec.length_m, spec.width_m, height(kind)]))
+        .child(bounding_box(to_centre, [spec.length_m, spec.width_m, height_m(kind)]))
         .child(
             Element::new("Performance")
                 .with_number("maxSpeed", spec.max_speed_mps)
@@ -135,7 +135,7 @@ pub(super) fn property(name: &str, value: &str) -> Element {
 }
 
 /// Heights of road users; the plane model has none. Usual sizes, assumed. [m]
-fn height(kind: PartnerKind) -> f64 {
+pub(crate) fn height_m(kind: PartnerKind) -> f64 {
     match kind {
         PartnerKind::PassengerCar | PartnerKind::Motorcycle | PartnerKind::FirstResponder => 1.5,
         PartnerKind::Suv | PartnerKind::PickupTruck => 1.8,

@@ -15,7 +15,7 @@ mod sweep;
 use crate::opendrive::DriveMap;
 use crate::xml::Element;
 use crate::{ExportError, ExportFile, ExportOptions, PartnersAs};
-pub(crate) use entities::PROPERTY;
+pub(crate) use entities::{PROPERTY, height_m};
 use names::Declarations;
 use recrash_model::rollout::{ActorTrack, Role, Rollout};
 use recrash_model::tuning::Parameter;

@@ -11,7 +11,7 @@ fn formats_are_known_by_name_and_nothing_else_is() {
         assert_eq!(format.name().parse(), Ok(format));
     }
     let error = "opendrive".parse::<Format>().unwrap_err();
-    assert!(error.contains("openscenario, scenic, metadrive, commonroad"), "{error}");
+    assert!(error.contains("openscenario, scenic, metadrive, commonroad, scenarionet"), "{error}");
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn the_same_scenario_gives_the_same_bytes() {
 fn recorded_partners_need_a_rollout() {
     let scenario = scenario(CASES[0].1);
     let recorded = ExportOptions { partners_as: PartnersAs::Trajectory, ..ExportOptions::new(Format::OpenScenario) };
-    for options in [recorded, ExportOptions::new(Format::CommonRoad)] {
+    for options in [recorded, ExportOptions::new(Format::CommonRoad), ExportOptions::new(Format::ScenarioNet)] {
         let error = export(&scenario, None, &[], &options).unwrap_err();
         assert_eq!(error, ExportError::NeedsRollout { scenario: "s-cut-in".to_owned() });
     }
@@ -47,8 +47,10 @@ fn every_file_begins_with_title_and_source_records() {
             let files = export(&scenario, Some(&rollout), &[], &ExportOptions::new(format)).unwrap();
             assert!(!files.is_empty());
             for file in files.iter().filter(|file| file.name != "run_metadrive.py") {
-                let text = String::from_utf8(file.content.clone()).unwrap();
-                let head: String = text.lines().take(8).collect();
+                let text = String::from_utf8_lossy(&file.content);
+                // What a pickle says of itself stands at its end.
+                let lines = if format == Format::ScenarioNet { usize::MAX } else { 8 };
+                let head: String = text.lines().take(lines).collect();
                 let record = scenario.draft().source.records[0].to_string();
                 assert!(head.contains(name) && head.contains(&record), "{}: {head}", file.name);
             }
@@ -64,8 +66,16 @@ fn hostile_text_stays_text() {
     let rollout = straight_on(&scenario, 2);
     for format in Format::ALL {
         for file in export(&scenario, Some(&rollout), &[], &ExportOptions::new(format)).unwrap() {
-            let text = String::from_utf8(file.content).unwrap();
-            if file.name.ends_with(".scenic") {
+            let text = String::from_utf8_lossy(&file.content);
+            if format == Format::ScenarioNet {
+                let length = u32::try_from(scenario.draft().source.narrative.len()).unwrap();
+                let told =
+                    [b"X".as_slice(), &length.to_le_bytes(), scenario.draft().source.narrative.as_bytes()].concat();
+                assert!(
+                    file.content.windows(told.len()).any(|window| window == told),
+                    "a text with its length before it"
+                );
+            } else if file.name.ends_with(".scenic") {
                 assert_eq!(text.matches("\"\"\"").count() % 2, 0, "{}", file.name);
                 assert!(!text.lines().any(|line| line.trim_start().starts_with("import os")), "{}", file.name);
             } else if !file.name.ends_with(".py") && !file.name.ends_with(".json") {

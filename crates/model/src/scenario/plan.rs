@@ -278,7 +278,8 @@ pub enum Doing {
     Moving,
     /// Loses more than 1 m/s in a second.
     Braking,
-    /// Has touched, or been touched by, somebody.
+    /// Has touched, or been touched by, somebody. Who waits for its own touch goes on with its plan after it; everybody else
+    /// is left to momentum.
     Hit,
 }
 

@@ -15,6 +15,7 @@ use recrash_lab::run_scenario;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::selection::Selection;
 use recrash_model::tuning::{Parameter, TuneLog};
+use recrash_sim::Ego;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -193,8 +194,9 @@ fn files_of(
     };
     let (scenario, _) = read_scenario(&source.path).map_err(told)?;
     let profile = load_profile("paper").map_err(told)?;
-    let native =
-        start_simulator(SimulatorKind::Native, &source.ego, Path::new(""), 1, Patience::default()).map_err(told)?;
+    // The crash as it is told, where it is: so another tool shows it too.
+    let ego = if scenario.recorded().is_some() { Ego::Recorded.name() } else { &source.ego };
+    let native = start_simulator(SimulatorKind::Native, ego, Path::new(""), 1, Patience::default()).map_err(told)?;
     let rollout = run_scenario(&scenario, &native, &profile, None).map_err(|error| told(error.into()))?.rollout;
     let files = formats.iter().map(|&format| {
         let options = ExportOptions { partners_as, ..ExportOptions::new(format) };

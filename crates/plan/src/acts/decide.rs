@@ -2,7 +2,7 @@
 
 use super::programme::{Deed, Programme, When};
 use super::progress::{MEMORY, Mode, Progress, Shift, WaitsFor};
-use crate::constants::STANDING_MPS;
+use crate::constants::{SIGN_STEPS, STANDING_MPS};
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::STEP_S;
@@ -19,9 +19,6 @@ const HARD_STOP_MPS2: f64 = 6.0;
 
 /// Deceleration of who is told to stand and still moves. [m/s^2]
 const HOLD_MPS2: f64 = 3.0;
-
-/// Time that it stands at a stop sign; assumed. [steps]
-const SIGN_STEPS: u32 = 10;
 
 /// A place that is no farther away than this has been reached. [m]
 const THERE_M: f64 = 0.02;

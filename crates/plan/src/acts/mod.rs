@@ -6,9 +6,15 @@
 //! the meaning of every act and trigger: `docs/models/acts.md`.
 
 mod decide;
+mod names;
+mod parts;
 mod programme;
 mod progress;
+mod replay;
 
 pub use decide::{Glimpse, Sight};
+pub use names::{Names, ego_stop_lines};
+pub use parts::{Attached, PartState};
 pub use programme::{Deed, PlannedAct, Programme, When, Who};
 pub use progress::{Mode, Progress};
+pub use replay::{PartTrack, Replay, ReplayTrack, replay};

@@ -1,8 +1,10 @@
 //! How far somebody has come with a plan.
 
-use super::programme::Programme;
+use super::programme::{Programme, When};
+use crate::constants::STANDING_MPS;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
+use recrash_model::scenario::Doing;
 use recrash_roads::Beside;
 
 /// Steps that a follower may look back: 2.4 s.
@@ -122,6 +124,11 @@ impl Shift {
 }
 
 impl Programme {
+    /// Whether it goes on after a touch: one of its acts waits for that. `me` is the own number.
+    pub fn outlasts_a_touch(&self, me: u16) -> bool {
+        self.acts.iter().any(|act| act.when == Some(When::State { actor: me, is: Doing::Hit }))
+    }
+
     /// At the start.
     pub fn start(&self) -> Progress {
         Progress {
@@ -182,9 +189,21 @@ impl Programme {
 }
 
 impl Progress {
+    /// Goes on in somebody else's hands: what of the plan is not driving still happens. [m/s, s]
+    pub fn be_driven(&mut self, speed_mps: f64, time_s: f64) {
+        self.s_m += speed_mps * time_s;
+        self.speed_mps = if speed_mps < STANDING_MPS { 0.0 } else { speed_mps };
+    }
+
     /// Whether it stands, and goes on standing in this step.
     pub fn stands(&self) -> bool {
         self.speed_mps == 0.0 && (self.bound_mps == 0.0 || self.acceleration_mps2 == 0.0)
+    }
+
+    /// The act that begins next, and what it waits for; `None` where it waits for nobody, or only for its delay.
+    pub(super) fn awaits(&self, programme: &Programme) -> Option<(u8, When)> {
+        let act = programme.acts.get(usize::from(self.next)).filter(|_| self.due.is_none())?;
+        act.when.map(|when| (self.next, when))
     }
 
     /// The acceleration it has chosen along its course; 0 once the speed it aims at is reached. [m/s^2]

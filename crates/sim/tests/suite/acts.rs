@@ -204,6 +204,62 @@ fn a_door_opens_into_who_passes() {
 }
 
 #[test]
+fn a_rider_opens_the_door_whoever_drives() {
+    for ego in Ego::DRIVERS {
+        let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 8.0, 8.0);
+        draft.duration_s = 30.0;
+        draft.ego.stops = vec![MissionStop { s_m: 80.0, t_m: 0.0, for_s: Some(20.0) }];
+        draft.ego.parts.push(Part {
+            id: "door".to_owned(),
+            kind: PartKind::Door,
+            x_m: -0.3,
+            y_m: 0.93,
+            length_m: 1.0,
+            width_m: 0.08,
+            axle_m: None,
+        });
+        let open = Deed::Part { part: "door".to_owned(), to_deg: 70.0, over_s: 1.0 };
+        let stop = Deed::Stop { rate_mps2: 2.0, at_m: Some(60.0) };
+        draft.ego.recorded = Some(ActorPlan {
+            speed_mps: 8.0,
+            course: vec![straight_on(350.0, 0.0)],
+            acts: vec![act(stop), Act { delay_s: 2.0, ..act(open) }],
+            ..ActorPlan::standing(Place::at(20.0, 0.0, 0.0))
+        });
+        draft.ego.handover_s = Some(1.0);
+        let rollout = simulate(&checked(draft), ego);
+        let (car, door) = (&rollout.actors[0].states, &track(&rollout, "ego.door").states);
+        let open = |step: usize| math::wrap_angle(door[step].heading - car[step].heading - math::PI).abs() > 1.0;
+        let opened = (0..car.len()).find(|step| open(*step)).expect("the door opens");
+        let stood = (0..car.len()).find(|step| car[*step].speed() < 0.1).expect("it stops");
+        assert!((20..45).contains(&(opened - stood)), "{ego}: {stood} {opened}");
+    }
+}
+
+#[test]
+fn who_waits_for_its_own_touch_drives_on_and_may_touch_again() {
+    let mut draft = scene();
+    draft.after_contact_s = 20.0;
+    draft.ego.recorded = Some(ActorPlan::standing(Place::at(60.0, 0.0, 0.0)));
+    let leg = |x: f64, reverse: bool| Leg::Curve { to: Place::at(x, 0.0, 0.0), reverse };
+    // Bumper to bumper is 4.515 m.
+    let course = vec![leg(64.48, true), leg(66.0, false), leg(64.46, true)];
+    let acts = vec![
+        act(Deed::Speed { to_mps: 0.8, rate_mps2: 1.0 }),
+        when(Trigger::Actor { actor: "cp".to_owned(), is: Doing::Hit }, Deed::Hold { for_s: Some(0.5) }),
+        act(Deed::Speed { to_mps: 0.8, rate_mps2: 1.0 }),
+    ];
+    draft.actors.push(actor("cp", 67.0, 0.0, 0.0, course, acts));
+    let contacts = |draft: ScenarioDraft| {
+        let rollout = recorded(draft);
+        rollout.events.iter().filter(|event| matches!(event.kind, EventKind::Contact { .. })).count()
+    };
+    assert_eq!(contacts(draft.clone()), 2);
+    draft.actors[0].plan.acts.truncate(1);
+    assert_eq!(contacts(draft), 1, "who waits for nothing is left to momentum");
+}
+
+#[test]
 fn a_trailer_cuts_the_corner() {
     let mut draft = scene();
     let turn = Leg::Curve { to: Place::at(40.0, 20.0, 90.0), reverse: false };
@@ -280,6 +336,32 @@ fn every_built_in_ego_stops_for_red_and_goes_at_green() {
         assert!(states[249].speed() < 0.1 && front <= 160.0 && front > 156.5, "{ego}: {front} {}", states[249].speed());
         assert_eq!(rollout.termination.kind, TerminationKind::Arrived, "{ego}");
     }
+}
+
+#[test]
+fn who_takes_over_sees_how_far_it_has_come_along_its_route() {
+    for ego in Ego::DRIVERS {
+        let mut draft = alone(straight(2, 300.0), Turn::Straight, 1, 10.0, 10.0);
+        let start = ActorPlan::standing(Place::at(60.0, 0.0, 0.0));
+        draft.ego.recorded = Some(ActorPlan { speed_mps: 10.0, course: vec![straight_on(350.0, 0.0)], ..start });
+        draft.ego.handover_s = Some(2.0);
+        draft.control.push(signal(&[(Aspect::Red, 60.0)]));
+        let rollout = simulate(&checked(draft), ego);
+        // The line lies at 160 m, the course began at 60 m.
+        let front = rollout.actors[0].states.last().unwrap().x + 0.5 * 4.515;
+        assert!(front <= 160.0 && front > 156.5, "{ego}: {front}");
+    }
+}
+
+#[test]
+fn who_appears_later_begins_at_its_start() {
+    let mut draft = scene();
+    draft.actors.push(actor("wheel", 30.0, 0.0, 6.0, vec![straight_on(250.0, 0.0)], Vec::new()));
+    draft.actors[0].plan.appears_s = 4.0;
+    let rollout = recorded(draft);
+    let states = &track(&rollout, "wheel").states;
+    assert!(states[..=40].iter().all(|state| state.x == 30.0), "{:?}", states[40]);
+    assert!((states[50].x - 36.0).abs() < 1e-9, "{:?}", states[50]);
 }
 
 #[test]

@@ -3,7 +3,9 @@
 mod acts;
 mod behaviour;
 mod common;
+mod demand;
 mod driven;
+mod gallery;
 mod parity;
 mod partners;
 mod reference;

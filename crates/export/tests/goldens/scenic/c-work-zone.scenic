@@ -301,7 +301,7 @@ if not IN_METADRIVE:
     new Object at place(EGO_WAY, 130, 5.5), facing direction(EGO_WAY, 130), with length 0.3, with width 2,
         with requireVisible False, with regionContainedIn everywhere    # barrier
     new Object at place(EGO_WAY, 30, 6.5), facing direction(EGO_WAY, 30), with length 1, with width 1,
-        with requireVisible False, with regionContainedIn everywhere    # warning
+        with requireVisible False, with regionContainedIn everywhere    # warning sign
 
 record (distance from ego to partner1) as "centre distance to partner1"
 terminate when contact(ego, partner1)

@@ -1,6 +1,11 @@
 //! A checked scenario as MetaDrive's Python takes it: every place resolved to a lane and a position on it, every plan
 //! and constant as data, so that MetaDrive decides nothing.
 
+mod scene;
+
+use scene::LaneNames;
+pub use scene::{LaneLine, LaneShape, NO_HANDOVER, Planned, PlannedPart, Scene, handover};
+
 use crate::constants::{Constants, EGO_OVERTAKE_TIMER_STEPS};
 use crate::give_way::Crossing;
 use crate::speed::{Plan, SpeedPlan};
@@ -9,11 +14,17 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{EGO_ID, Role};
 use recrash_model::scenario::{MapSpec, ObstacleKind};
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
-use recrash_roads::{Footprint, LaneId, LanePath, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic};
+use recrash_roads::{Footprint, LanePath, Scenario, TRAFFIC_SPEED_MPS, TrafficPlacement, background_traffic};
 use serde::Serialize;
 
 /// The Python that runs it: recrash's own worker, and the script that is exported.
-pub const SCRIPT: &str = include_str!("../python/run_metadrive.py");
+pub const SCRIPT: &str = concat!(
+    include_str!("../../python/run_metadrive.py"),
+    "\n\n",
+    include_str!("../../python/partners.py"),
+    "\n\n",
+    include_str!("../../python/scenes.py"),
+);
 
 /// MetaDrive's name of a lane: the nodes it lies between and its number, 0 the leftmost.
 pub type LaneName = (String, String, u8);
@@ -35,6 +46,9 @@ pub struct Run {
     pub obstacles: Vec<Obstacle>,
     /// How long it lasts at most. [s]
     pub duration_s: f64,
+    /// What it has besides the paper's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scene: Option<Scene>,
 }
 
 /// A road user.
@@ -48,6 +62,9 @@ pub struct Actor {
     pub kind: PartnerKind,
     /// Lanes from the one it starts on.
     pub way: Vec<LaneName>,
+    /// Of a way in a network of roads, for each lane: where its part of the way begins, and the part of the lane. [m]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub way_m: Vec<[f64; 3]>,
     /// Where that lane begins on its path. [m]
     pub begins_m: f64,
     /// Start on that lane. [m]
@@ -113,11 +130,16 @@ pub struct Obstacle {
 }
 
 impl Run {
-    /// The run of a scenario, with MetaDrive's own policy for the ego.
-    pub fn new(scenario: &Scenario) -> Self {
+    /// The run of a scenario, with MetaDrive's own policy for the ego from a step on: before it, its recorded driver drives.
+    ///
+    /// # Errors
+    /// What MetaDrive cannot hold.
+    pub fn new(scenario: &Scenario, handover: u32) -> Result<Self, String> {
+        let scene = Scene::of(scenario, handover)?;
+        let names = LaneNames::of(scenario);
         let traffic = background_traffic(scenario);
         let cast = cast(scenario, &traffic);
-        let mut actors = cast.iter().map(|member| actor(scenario, member)).collect::<Vec<_>>();
+        let mut actors = cast.iter().map(|member| actor(scenario, &names, member)).collect::<Vec<_>>();
         let partners = scenario.draft().partners.iter().zip(scenario.partners()).enumerate();
         for (position, (partner, placement)) in partners {
             let surface = scenario.draft().environment.surface;
@@ -133,14 +155,14 @@ impl Run {
         let partners = actors.split_off(1);
         let obstacles = scenario.obstacles().iter().map(|obstacle| Obstacle {
             kind: obstacle.placed.kind,
-            lane: lane_name(scenario, obstacle.lane),
+            lane: names.name(obstacle.lane),
             x: obstacle.placed.pose.position.x,
             y: obstacle.placed.pose.position.y,
             heading: obstacle.placed.pose.heading,
             length_m: obstacle.placed.length_m,
             width_m: obstacle.placed.width_m,
         });
-        Self {
+        Ok(Self {
             constants: Constants::ALL,
             map: scenario.draft().map.clone(),
             ego: actors.swap_remove(0),
@@ -148,7 +170,8 @@ impl Run {
             traffic,
             obstacles: obstacles.collect(),
             duration_s: scenario.draft().duration_s,
-        }
+            scene,
+        })
     }
 
     /// Everybody, in the order of the tracks that come back.
@@ -200,7 +223,7 @@ fn cast<'a>(scenario: &'a Scenario, traffic: &'a [TrafficPlacement]) -> Vec<Memb
     scripted.chain(traffic).collect()
 }
 
-fn actor(scenario: &Scenario, member: &Member<'_>) -> Actor {
+fn actor(scenario: &Scenario, names: &LaneNames<'_>, member: &Member<'_>) -> Actor {
     let first = member.path.segment_at(member.s_m);
     let begins_m = member.path.segments[first].start_m;
     let size = VehicleSpec::of(member.kind);
@@ -208,7 +231,12 @@ fn actor(scenario: &Scenario, member: &Member<'_>) -> Actor {
         id: member.id.clone(),
         role: member.role,
         kind: member.kind,
-        way: member.path.segments[first..].iter().map(|segment| lane_name(scenario, segment.lane)).collect(),
+        way: member.path.segments[first..].iter().map(|segment| names.name(segment.lane)).collect(),
+        way_m: if matches!(scenario.draft().map, MapSpec::G(_)) {
+            way_m(scenario, member.path, first)
+        } else {
+            Vec::new()
+        },
         begins_m,
         s_m: member.s_m - begins_m,
         t_m: member.t_m,
@@ -236,10 +264,14 @@ fn actor(scenario: &Scenario, member: &Member<'_>) -> Actor {
     }
 }
 
-fn lane_name(scenario: &Scenario, id: LaneId) -> LaneName {
-    let lane = scenario.network().lane(id);
-    let road = scenario.network().road(lane.road);
-    (road.from.clone(), road.to.clone(), lane.index)
+/// Where each lane's part of a way begins, and the part of the lane. [m]
+fn way_m(scenario: &Scenario, path: &LanePath, first: usize) -> Vec<[f64; 3]> {
+    let parts = path.segments[first..].iter().map(|segment| {
+        let lane = scenario.network().lane(segment.lane);
+        let on_lane = |s: f64| lane.local(segment.shape.frame(s).0).0;
+        [segment.start_m, on_lane(0.0), on_lane(segment.length_m)]
+    });
+    parts.collect()
 }
 
 /// Where the way of an actor meets the others'.

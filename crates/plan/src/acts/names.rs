@@ -1,0 +1,48 @@
+//! What names in a scenario's plans mean, and where its ego passes stop lines.
+
+use super::programme::Who;
+use recrash_model::rollout::EGO_ID;
+use recrash_model::scenario::ScenarioDraft;
+use recrash_model::vehicle::VehicleSpec;
+use recrash_roads::{Scenario, StopLine};
+
+/// What names in a draft mean.
+#[derive(Debug, Clone, Copy)]
+pub struct Names<'a>(pub &'a ScenarioDraft);
+
+impl Who for Names<'_> {
+    fn actor(&self, id: &str) -> Option<u16> {
+        if id == EGO_ID {
+            return Some(0);
+        }
+        let partners = self.0.partners.iter().map(|partner| &partner.id);
+        let position = partners.chain(self.0.actors.iter().map(|actor| &actor.id)).position(|other| other == id)?;
+        u16::try_from(position + 1).ok()
+    }
+
+    fn act(&self, actor: &str, act: &str) -> Option<u8> {
+        let plan = if actor == EGO_ID {
+            self.0.ego.recorded.as_ref()?
+        } else {
+            &self.0.actors.iter().find(|other| other.id == actor)?.plan
+        };
+        let position = plan.acts.iter().position(|other| other.id.as_deref() == Some(act))?;
+        u8::try_from(position).ok()
+    }
+
+    fn control(&self, at: &str) -> Option<u16> {
+        let position = self.0.control.iter().position(|control| control.at == at)?;
+        u16::try_from(position).ok()
+    }
+}
+
+/// Where the ego's path passes stop lines.
+pub fn ego_stop_lines(scenario: &Scenario) -> impl Iterator<Item = StopLine> + '_ {
+    let (path, half_length_m) = (&scenario.ego().path, 0.5 * VehicleSpec::of(scenario.ego().kind).length_m);
+    scenario.control().iter().enumerate().flat_map(move |(control, placed)| {
+        placed.lines.iter().filter_map(move |&(lane, line_m)| {
+            let segment = path.segments.iter().find(|segment| segment.lane == lane)?;
+            Some(StopLine { at_m: segment.start_m + line_m - half_length_m, control })
+        })
+    })
+}
