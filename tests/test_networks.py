@@ -26,6 +26,16 @@ WAYS = {
         "merge+": {"leave+"},
         "leave+": {"drop+", "exit+"},
     },
+    "roundabout": {
+        "arm0-": {"ring0+"},
+        "arm1-": {"ring1+"},
+        "arm2-": {"ring2+"},
+        "arm3-": {"ring3+"},
+        "ring0+": {"arm1+", "ring1+"},
+        "ring1+": {"arm2+", "ring2+"},
+        "ring2+": {"arm3+", "ring3+"},
+        "ring3+": {"arm0+", "ring0+"},
+    },
 }
 
 

@@ -258,3 +258,35 @@ fn every_connection_leads_from_the_end_of_a_lane_to_the_beginning_of_another() {
         assert!(followers.iter().flatten().any(|id| usize::from(id.0) == index), "a connection begins nowhere");
     }
 }
+
+#[test]
+fn four_junctions_on_a_circle_make_a_roundabout() {
+    let (radius, gap) = (20.0, 6.0);
+    let mut roads = Vec::new();
+    let mut junctions = Vec::new();
+    for arm in 0..4 {
+        let angle = 90.0 * f64::from(arm);
+        let (sin, cos) = recrash_model::math::sincos(angle * PI / 180.0);
+        junctions.push(json!({ "id": format!("j{arm}"), "x_m": radius * cos, "y_m": radius * sin, "ends": [format!("ring{}", (arm + 3) % 4)] }));
+        roads.push(json!({
+            "id": format!("arm{arm}"), "start": { "arm": { "junction": format!("j{arm}"), "bearing_deg": angle, "from_m": 12.0 } },
+            "line": [{ "straight": { "length_m": 60.0 } }], "right": drive(1), "left": drive(1),
+        }));
+        // Along a chord of the ring, which begins and ends `gap` from the junctions' centres.
+        let turned = gap / radius;
+        roads.push(json!({
+            "id": format!("ring{arm}"),
+            "start": { "arm": { "junction": format!("j{arm}"), "bearing_deg": angle + 90.0 + turned * 90.0 / PI, "from_m": gap } },
+            "line": [{ "arc": { "length_m": radius * (FRAC_PI_2 - 2.0 * turned), "radius_m": radius, "to": "left" } }],
+            "right": [{ "kind": "driving", "width_m": 5.0 }],
+        }));
+    }
+    let network = network(json!({ "roads": roads, "junctions": junctions }));
+    for (from, to, rings) in [(0, 1, 1), (0, 2, 2), (0, 3, 3), (1, 0, 3)] {
+        let path = network.way(&names(&[&format!("arm{from}-"), &format!("arm{to}+")]), 0, None).unwrap();
+        continuous(&path, 1e-6, 1e-6);
+        let of = |name: &str| network.named[network.named_road(name, "road").unwrap()].pieces[0];
+        let passed = (0..4).filter(|ring| path.roads.contains(&of(&format!("ring{ring}+")))).count();
+        assert_eq!(passed, rings, "from {from} to {to}");
+    }
+}
