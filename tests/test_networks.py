@@ -33,7 +33,7 @@ WAYS = {
 def maps(recrash: str, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("networks")
     for path in NETWORKS.glob("*.json"):
-        run(recrash, "export", "--quiet", path, "--to", "openscenario", "--to-dir", folder)
+        run(recrash, "export", "--quiet", path, "--to", "openscenario", "--to-dir", folder / path.stem)
     return {path.stem: next(folder.rglob(f"{path.stem}.xodr")) for path in NETWORKS.glob("*.json")}
 
 

@@ -90,9 +90,7 @@ def test_netconvert_reads_the_maps_as_they_are(exports: list[Export], tmp_path: 
 def test_partners_played_by_their_actions_are_where_ours_are(exports: list[Export]) -> None:
     for export in exports:
         for name, off in deviations(export, export.path("openscenario", ".xosc")):
-            # On a roundabout a partner that slows for its bends is fitted less well: 0.35 m in one file of the paper suite.
-            most = 0.4 if export.scenario["map"]["type"] == "O" else 0.3
-            assert off <= most, f"{export} {name}: {off:.2f} m"
+            assert off <= 0.3, f"{export} {name}: {off:.2f} m"
 
 
 def test_partners_played_by_their_recording_are_where_ours_are(exports: list[Export]) -> None:

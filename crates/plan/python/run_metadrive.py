@@ -546,9 +546,12 @@ class World:
                     actor.vehicle.before_step(action)
             near = self.near_pairs()
             for substep in range(1, SUBSTEPS + 1):
+                # Bullet's bodies are a tick ahead of the places MetaDrive shows: what touches now is shown after the step.
+                self.carry(substep / SUBSTEPS)
+                touching = self.touching(physics, near, touched)
                 self.engine.step_physics_world()
                 self.carry(substep / SUBSTEPS)
-                self.touch(physics, near, touched, actions, self.step * Law.step_s + substep * 0.02)
+                self.note(touching, touched, actions, self.step * Law.step_s + substep * 0.02)
             for thing, _ in self.obstacles:
                 # One that was hit keeps its place but gets a velocity, which the IDM would believe.
                 thing.body.setLinearVelocity(LVector3(0, 0, 0))
@@ -598,17 +601,19 @@ class World:
                     found.append((a, count + number))
         return found
 
-    def touch(self, physics, near, touched, actions, time):
-        """First contacts at this physics step, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
+    def touching(self, physics, near, touched):
+        """Pairs that touch for the first time, by Bullet's own contact test (what MetaDrive's crash flags come from)."""
+        things = [[actor.vehicle] + actor.parts for actor in self.actors] + [[thing] for thing, _ in self.obstacles]
+
+        def touch(a, b):
+            pairs = ((mine.body, theirs.body) for mine in things[a] for theirs in things[b])
+            return any(physics.contactTestPair(mine, theirs).getNumContacts() > 0 for mine, theirs in pairs)
+
+        return [(a, b) for a, b in near if (a, b) not in touched and touch(a, b)]
+
+    def note(self, touching, touched, actions, time):
         count = len(self.actors)
-        for a, b in near:
-            if (a, b) in touched:
-                continue
-            mine = [self.actors[a].vehicle] + self.actors[a].parts
-            theirs = [self.obstacles[b - count][0]] if b >= count else [self.actors[b].vehicle] + self.actors[b].parts
-            pairs = ((one.body, other.body) for one in mine for other in theirs)
-            if not any(physics.contactTestPair(one, other).getNumContacts() for one, other in pairs):
-                continue
+        for a, b in touching:
             touched.add((a, b))
             if a != 0 and b < count and isinstance(self.actors[b], PlannedActor) != isinstance(self.actors[a], PlannedActor):
                 raise Refused("at %.2f s somebody with a plan is pushed" % time)
@@ -622,8 +627,7 @@ class World:
 
     def verdict(self, touched, standing):
         ego, count = self.actors[0].vehicle, len(self.actors)
-        finite = all(math.isfinite(part) for n in range(count) for part in self.state(n, [0.0, 0.0]))
-        if not finite:
+        if not all(math.isfinite(part) for n in range(count) for part in self.state(n, [0.0, 0.0])):
             raise RuntimeError("a state is no longer finite")
         if any(a == 0 and b < count for a, b in touched):
             return "contact"

@@ -56,6 +56,8 @@ pub struct World {
     /// The subject vehicle first.
     pub actors: Vec<Known>,
     clock: usize,
+    /// "The driver" drives the subject vehicle.
+    pub own_driver: bool,
     /// Number of the sentence that is read.
     pub sentence: usize,
     /// Who the sentence, or the one before, is about.
@@ -67,7 +69,7 @@ impl World {
     pub fn new(own: crate::frame::Own<'_>) -> Self {
         let names = own.make.into_iter().map(str::to_owned).collect();
         let subject = Known { kind: own.kind, names, ..Known::default() };
-        Self { actors: vec![subject], clock: 0, sentence: 0, topic: SUBJECT }
+        Self { actors: vec![subject], clock: 0, own_driver: false, sentence: 0, topic: SUBJECT }
     }
 
     /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
@@ -246,7 +248,9 @@ impl World {
             return self.find(&owner, None).unwrap_or_else(|| self.add(&owner));
         }
         match who {
-            Occupant::Driver if plain => self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT),
+            Occupant::Driver if plain && !self.own_driver => {
+                self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT)
+            }
             _ => SUBJECT,
         }
     }

@@ -185,6 +185,7 @@ impl Run {
             if let Some(programme) = programme {
                 let progress = &state.progress[usize::from(programme)];
                 seen.present = progress.present;
+                seen.plan_s_m = (actor > 0).then_some(progress.s_m);
             }
             if seen.present {
                 seen.place.localise(&setting.lanes, &setting.routes, body.pose.position, body.pose.heading);

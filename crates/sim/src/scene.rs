@@ -23,6 +23,8 @@ pub(crate) struct Seen {
     pub(crate) present: bool,
     /// On the lane that its place names; who moves by a plan may be beside all.
     pub(crate) on_lane: bool,
+    /// Along its plan's course, where it moves by one; `None` of the ego, whose place is that on its route. [m]
+    pub(crate) plan_s_m: Option<f64>,
 }
 
 impl Seen {
@@ -77,6 +79,9 @@ impl Scene<'_> {
     /// How far an actor has come along its path. [m]
     #[inline]
     pub(crate) fn path_s(&self, actor: usize) -> f64 {
+        if let Some(s_m) = self.actors[actor].plan_s_m {
+            return s_m;
+        }
         let progress = &self.actors[actor].progress;
         self.route_starts[progress.at as usize] + progress.s
     }

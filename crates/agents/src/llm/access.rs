@@ -46,8 +46,7 @@ impl LiveOptions {
             let unknown: Vec<&str> = models.iter().copied().filter(|m| self.prices.price(m).is_none()).collect();
             if !unknown.is_empty() {
                 return Err(format!(
-                    "--max-cost needs a price, and none is known for {}; give one with --prices FILE, or cap the \
-                     tokens with --max-tokens",
+                    "a cap on costs needs a price, and none is known for {}; give one in a file of prices, or cap the tokens",
                     unknown.join(", ")
                 ));
             }
@@ -66,7 +65,7 @@ fn check_address(url: &str) -> Result<(), String> {
         Some(_) => return Ok(()),
     };
     // The address is not repeated: it may hold a password.
-    Err(format!("--base-url is no address of a server, such as http://localhost:11434/v1: {wrong}"))
+    Err(format!("the address given is none of a server, such as http://localhost:11434/v1: {wrong}"))
 }
 
 #[cfg(test)]

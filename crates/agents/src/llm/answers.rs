@@ -50,7 +50,7 @@ pub enum AskError {
     #[error("{0}")]
     Ledger(String),
     /// The ledger does not hold it, and nothing else is asked. The run stops.
-    #[error("the ledger has no answer to question {hash} ({what}); run once without --llm replay")]
+    #[error("the ledger has no answer to question {hash} ({what}); have the models asked once")]
     NotInLedger {
         /// Hash of the question.
         hash: String,

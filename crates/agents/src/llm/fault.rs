@@ -9,8 +9,7 @@ use ureq::http::{HeaderMap, Uri};
 const LONGEST_TEXT: usize = 240;
 
 /// How models find their servers.
-const WHERE: &str =
-    "Models are asked at --base-url; without it, at the provider their name tells, and at Ollama where it tells none";
+const WHERE: &str = "Models are asked at the address given; without one, at the provider their name tells, and at Ollama where it tells none";
 
 /// What is wrong, and what follows from it.
 #[derive(Debug, PartialEq)]
@@ -44,7 +43,7 @@ impl Fault {
                 unreachable(&format!("no connection within {} s", options.timeout_s.min(CONNECT_S)))
             }
             Error::Timeout(_) => Self::Passing {
-                why: format!("no whole answer within {} s (--timeout)", options.timeout_s),
+                why: format!("no whole answer within {} s", options.timeout_s),
                 retry_after_s: None,
                 reachable: true,
             },
@@ -82,10 +81,10 @@ impl Fault {
             402 => Self::Refused(format!("the provider wants to be paid first ({told})")),
             300..=399 => Self::Refused(format!(
                 "the server sends questions to another address ({told}), and keys are sent to none but the given one; give \
-                 that one with --base-url"
+                 that one as the address"
             )),
             404 | 405 | 410 => Self::Refused(format!(
-                "the provider knows no such model or address ({told}); check the name of the model, and --base-url"
+                "the provider knows no such model or address ({told}); check the name of the model, and the address"
             )),
             429 if text.contains("quota") && text.contains("billing") => {
                 Self::Refused(format!("the account's quota is used up ({told})"))

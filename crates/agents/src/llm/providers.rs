@@ -87,8 +87,8 @@ pub fn provider(model: &str) -> Result<Provider, String> {
         Some((prefix, _)) => PROVIDERS.into_iter().find(|provider| provider.prefix == prefix).ok_or_else(|| {
             let known = PROVIDERS.map(|provider| provider.prefix).join(", ");
             format!(
-                "{model} names no provider that is known; there are: {known}. Any server that speaks OpenAI's protocol is \
-                 asked at --base-url"
+                "{model} names no provider that is known; there are: {known}. Any server that speaks OpenAI's protocol can be \
+                 named by its address"
             )
         }),
         None => Ok(FAMILIES.into_iter().find(|(start, _)| model.starts_with(start)).map_or(OLLAMA, |(_, p)| p)),

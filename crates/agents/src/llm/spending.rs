@@ -91,10 +91,10 @@ impl Spending {
         let spent = self.spent();
         let reached = match caps {
             Caps { tokens: Some(cap), .. } if spent.tokens >= *cap => {
-                format!("the cap of {cap} tokens is reached: {} are spent (--max-tokens)", spent.tokens)
+                format!("the cap of {cap} tokens is reached: {} are spent", spent.tokens)
             }
             Caps { cost_usd: Some(cap), .. } if spent.cost_usd >= *cap => {
-                format!("the cap of {cap} USD is reached: {:.4} are spent (--max-cost)", spent.cost_usd)
+                format!("the cap of {cap} USD is reached: {:.4} are spent", spent.cost_usd)
             }
             _ => return Ok(()),
         };

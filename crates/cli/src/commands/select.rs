@@ -10,7 +10,7 @@ use recrash_pipeline::{PipelineError, SelectionStudy, Stage, StrategyStudy, Suit
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash select --records archive.csv                  reads the records first where there are none
+  recrash select --records archive.csv                  begins a suite where there is none
   recrash select --budget 30 --weighting severity       harmful kinds of crash get more scenarios
   recrash select --strategy kmeans --embedding minilm   the paper's choice
   recrash select --study                                every strategy over 50 seeds; many budgets
@@ -38,9 +38,10 @@ pub struct SelectArgs {
 /// The stage's.
 pub fn run(args: &SelectArgs, output: Output) -> Result<(), PipelineError> {
     let is_new = Suite::saved_options(&args.suite.out)?.is_none();
-    let suite = args.suite.open_or_begin()?;
+    let names_records = args.suite.source.is_given();
+    let suite = if names_records { args.suite.open_or_begin()? } else { args.suite.open_saved()? };
     let progress = output.progress();
-    if is_new || args.suite.source.is_given() || args.suite.profile.is_some() {
+    if is_new || names_records || args.suite.profile.is_some() {
         let report = run_stage(&suite, Stage::Records, &*progress)?;
         if output.tables() {
             output::remarks(&report);

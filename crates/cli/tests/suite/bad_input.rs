@@ -245,7 +245,7 @@ fn a_damaged_suite_file_is_named() {
     let (code, shown) = case.run(&["run", "--out", out.to_str().unwrap()]);
     assert_eq!(code, BAD_INPUT, "{shown}");
     // Without that file the folder would be refused as no suite: taking it away is no advice.
-    assert_says(&shown, &["suite.json", "choose another --out"]);
+    assert_says(&shown, &["suite.json", "choose another folder"]);
 }
 
 /// A profile whose templates go beyond what the rules can stage.

@@ -584,6 +584,31 @@ fn a_missing_key_of_a_later_role_is_told_before_the_first_question() {
 }
 
 #[test]
+fn a_stage_command_asks_no_model_that_only_the_suite_names() {
+    let (folder, server) = (Folder::new(), server(|_| None));
+    finished(&server, &folder.suite(), &[]);
+    let asked = server.requests().len();
+    // What a stranger's suite looks like whose answers were taken out.
+    std::fs::remove_dir_all(folder.suite().join("ledger")).unwrap();
+    for stage in ["3-narratives", "4-scenarios"] {
+        std::fs::remove_dir_all(folder.suite().join(stage)).unwrap();
+    }
+    let stage = |extra: &[&str]| {
+        let arguments = ["narrate", "--quiet", "--base-url", &server.base_url, "--out"];
+        recrash(&arguments).arg(folder.suite()).args(extra).output().unwrap()
+    };
+    let output = stage(&[]);
+    assert_eq!(output.status.code(), Some(3), "{}", shown(&output));
+    assert!(shown(&output).contains("wants to ask the language model scripted"), "{}", shown(&output));
+    assert_eq!(server.requests().len(), asked);
+    for allowed in [&["--agent", "scripted"][..], &["--trust"]] {
+        let output = stage(allowed);
+        assert!(output.status.success(), "{}", shown(&output));
+        assert!(server.requests().len() > asked);
+    }
+}
+
+#[test]
 fn a_typing_error_is_told_before_any_question_is_asked() {
     let server = server(|_| None);
     for (typed, told) in [

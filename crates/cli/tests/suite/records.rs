@@ -114,7 +114,7 @@ fn a_filter_narrows_the_records_and_stays_with_the_suite() {
 
     let (code, _, error) = place.run(&["records", "--where", "raod = highway"]);
     assert_eq!(code, 3, "{error}");
-    assert!(error.contains("--where, column 1") && error.contains("did you mean \"road\""), "{error}");
+    assert!(error.contains("the filter, column 1") && error.contains("did you mean \"road\""), "{error}");
     let (_, help, _) = place.run(&["records", "--help"]);
     assert!(help.contains("time_of_day_min") && help.contains("contains, in (a, b)"), "{help}");
 }

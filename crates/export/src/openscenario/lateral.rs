@@ -12,6 +12,12 @@ use recrash_model::vehicle::VehicleSpec;
 /// Swaying by less than this is not told. [m]
 const SWAY_M: f64 = 0.03;
 
+/// A move that one shape follows no nearer than this is told as two. [m]
+const NEAR_M: f64 = 0.2;
+
+/// Parts of a move are no shorter than this. [steps]
+const SHORTEST_PART: usize = 3;
+
 /// Moves shorter than this do not scale with their target. [m]
 const SHORT_MOVE_M: f64 = 0.3;
 
@@ -150,19 +156,25 @@ impl Window {
         }
         let t: Vec<f64> = driven.places[first..=last].iter().map(|place| place.t).collect();
         let turns = turning_points(&t);
-        let mut list = Vec::new();
-        for pair in turns.windows(2) {
-            let (from, to) = (t[pair[0]], t[pair[1]]);
-            let goes_on = |end: &f64| pair[1] == t.len() - 1 && (end - from) / (to - from) > 1.0;
+        let fitted = |begin: usize, end: usize| {
+            let (from, to) = (t[begin], t[end]);
+            let goes_on = |goal: &f64| end == t.len() - 1 && (goal - from) / (to - from) > 1.0;
             let goal = end_m.filter(goes_on).unwrap_or(to);
-            let lever_s = driven.lever_s(first + pair[0], first + pair[1]);
-            let touches = driven.touches && first + pair[1] == driven.places.len() - 1;
-            let curve = &t[pair[0]..=pair[1]];
-            let Some((shape, from_s, to_s)) = fit(curve, goal, lever_s, touches) else { continue };
-            let at = |steps_s: f64| self.time(((first + pair[0]) as f64 * STEP_S + steps_s).max(self.begin_s));
+            let lever_s = driven.lever_s(first + begin, first + end);
+            let touches = driven.touches && first + end == driven.places.len() - 1;
+            (fit(&t[begin..=end], goal, lever_s, touches), goal)
+        };
+        let mut list = Vec::new();
+        let off_m = |begin: usize, end: usize| match fitted(begin, end).0 {
+            Some(fit) => fit.off_m,
+            None => off_when_it_stays(&t[begin..=end], driven.lever_s(first + begin, first + end)),
+        };
+        for (begin, end) in turns.windows(2).flat_map(|pair| parts(pair[0], pair[1], &off_m)) {
+            let (Some(Fit { shape, from_s, to_s, .. }), goal) = fitted(begin, end) else { continue };
+            let at = |steps_s: f64| self.time(((first + begin) as f64 * STEP_S + steps_s).max(self.begin_s));
             let start = at(from_s);
             let duration = at(to_s).plus(&start.clone().times(-1.0));
-            let s_m = driven.places[first + pair[1]].s;
+            let s_m = driven.places[first + end].s;
             list.push(Piece { shape, start, duration, t: target(goal), t_m: goal, s_m });
         }
         list
@@ -218,11 +230,41 @@ fn turning_points(t: &[f64]) -> Vec<usize> {
     turns
 }
 
+/// A shape over a time, and how far off the centre of the vehicle is in it at most. [s, s, m]
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Fit {
+    shape: Shape,
+    from_s: f64,
+    to_s: f64,
+    off_m: f64,
+}
+
+/// The parts in which a move from one position to another is told: the whole, or where no shape is near enough the two
+/// parts that are followed best, each in parts again.
+fn parts(begin: usize, end: usize, off_m: &impl Fn(usize, usize) -> f64) -> Vec<(usize, usize)> {
+    let whole_m = off_m(begin, end);
+    let best = (begin + SHORTEST_PART..=end.saturating_sub(SHORTEST_PART))
+        .filter(|_| whole_m > NEAR_M)
+        .map(|middle| (off_m(begin, middle).max(off_m(middle, end)), middle))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(parted_m, _)| *parted_m < whole_m);
+    let Some((_, middle)) = best else { return vec![(begin, end)] };
+    let mut list = parts(begin, middle, off_m);
+    list.extend(parts(middle, end, off_m));
+    list
+}
+
+/// How far the centre of a vehicle is off at most whose curve is told as none. [m]
+fn off_when_it_stays(t: &[f64], lever_s: f64) -> f64 {
+    let off = |around: &[f64]| around[1] - t[0] + (around[2] - around[0]) / (2.0 * STEP_S) * lever_s;
+    t.windows(3).map(|around| off(around).abs()).fold(0.0, f64::max)
+}
+
 /// The shape that a curve goes from its first place to `goal` in, and when it begins and ends [s]; `None` where it
 /// stays. The best is the one in which the centre of the vehicle is nearest, which goes sideways `lever_s` ahead of the
 /// curve; at the end five times as near where the vehicle touches something there. Found by smaller and smaller steps of
 /// begin and end, from where the first and the last tenth of the way are.
-fn fit(t: &[f64], goal: f64, lever_s: f64, touches: bool) -> Option<(Shape, f64, f64)> {
+fn fit(t: &[f64], goal: f64, lever_s: f64, touches: bool) -> Option<Fit> {
     let (from, covered) = (t[0], t[t.len() - 1] - t[0]);
     if covered.abs() < SWAY_M {
         return None;
@@ -272,10 +314,9 @@ fn fit(t: &[f64], goal: f64, lever_s: f64, touches: bool) -> Option<(Shape, f64,
                 (least, begin_s, end_s) = best;
             }
         }
-        (least, shape, begin_s, end_s)
+        Fit { shape, from_s: begin_s, to_s: end_s, off_m: least }
     });
-    let (_, shape, begin_s, end_s) = fits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((shape, begin_s, end_s))
+    fits.into_iter().min_by(|a, b| a.off_m.total_cmp(&b.off_m))
 }
 
 /// How late a steered vehicle follows a target that moves sideways: the time for some metres of way. Fitted to the native
@@ -323,7 +364,7 @@ mod tests {
         t.extend((0..20).map(|step| 3.0 - 0.2 * Shape::Sinusoidal.at(f64::from(step) / 10.0)));
         let turns = turning_points(&t);
         assert_eq!(turns.len(), 4, "{turns:?}");
-        let (shape, from_s, to_s) = fit(&t[turns[1]..=turns[2]], 3.0, 0.2, false).unwrap();
+        let Fit { shape, from_s, to_s, .. } = fit(&t[turns[1]..=turns[2]], 3.0, 0.2, false).unwrap();
         let begin_s = turns[1] as f64 * STEP_S + from_s;
         assert_eq!(shape, Shape::Cubic);
         assert!((begin_s - 1.0).abs() < 0.02 && (to_s - from_s - 2.0).abs() < 0.03, "{begin_s} {}", to_s - from_s);
@@ -332,7 +373,7 @@ mod tests {
     #[test]
     fn a_move_cut_short_goes_on_to_its_goal() {
         let t: Vec<f64> = (0..12).map(|step| 3.0 * Shape::Cubic.at(f64::from(step) / 20.0)).collect();
-        let (shape, from_s, to_s) = fit(&t, 3.0, 0.2, false).unwrap();
+        let Fit { shape, from_s, to_s, .. } = fit(&t, 3.0, 0.2, false).unwrap();
         assert_eq!(shape, Shape::Cubic);
         assert!(from_s < 0.1 && (to_s - 2.0).abs() < 0.15, "{from_s} {to_s}");
         assert_eq!(fit(&t[..2], 3.0, 0.2, false), None);

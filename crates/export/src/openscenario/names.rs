@@ -124,13 +124,14 @@ pub(crate) fn name_of(pointer: &str) -> String {
     for part in pointer.split(['/', '_']).filter(|part| !part.is_empty()) {
         if let Ok(position) = part.parse::<usize>() {
             name = name.strip_suffix('s').unwrap_or(&name).to_owned();
-            name.push_str(&(position + 1).to_string());
+            name.push_str(&position.saturating_add(1).to_string());
         } else if name.is_empty() {
             name.push_str(part);
         } else {
-            let (first, rest) = part.split_at(1);
-            name.push_str(&first.to_ascii_uppercase());
-            name.push_str(rest);
+            // A file that is read may hold any text here.
+            let mut letters = part.chars();
+            name.extend(letters.next().map(|first| first.to_ascii_uppercase()));
+            name.push_str(letters.as_str());
         }
     }
     name
@@ -139,6 +140,11 @@ pub(crate) fn name_of(pointer: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::name_of;
+
+    #[test]
+    fn any_text_of_a_file_that_is_read_has_a_name() {
+        assert_eq!(name_of("/ego/\u{23a}t/18446744073709551615"), "ego\u{23a}t18446744073709551615");
+    }
 
     #[test]
     fn names_are_read_from_left_to_right_and_hold_no_underscore() {

@@ -41,8 +41,8 @@ pub(super) fn features(scenario: &Scenario, origin: Vec2) -> Vec<(String, Value)
             LineKind::Edge => "ROAD_EDGE_BOUNDARY",
             LineKind::LaneDivider => "ROAD_LINE_BROKEN_SINGLE_WHITE",
             LineKind::Centre => "ROAD_LINE_SOLID_SINGLE_YELLOW",
-            LineKind::Stall | LineKind::Stop => "ROAD_LINE_SOLID_SINGLE_WHITE",
-            LineKind::Guide => continue,
+            LineKind::Stall => "ROAD_LINE_SOLID_SINGLE_WHITE",
+            LineKind::Guide | LineKind::Stop => continue,
         };
         let feature = Value::dict([("type", kind.into()), ("polyline", points(line.points.iter().copied(), origin))]);
         found.push((format!("line{position}"), feature));

@@ -53,7 +53,7 @@ def steering(car, way, t):
 
 def pedals(car, command):
     """Throttle and brake for a command from -1 (full brake) to 1 (full throttle) in terms of recrash's vehicles."""
-    engine, demand, tyres, comfortable = car.limits
+    engine, demand, tyres, comfortable, stopping = car.limits
     command = max(-1.0, min(1.0, command))
     acceleration = command * engine if command >= 0 else max(command * demand, -tyres)
     if acceleration >= 0:
@@ -62,14 +62,63 @@ def pedals(car, command):
         return 0.0, min(-acceleration / 6.8, 1.0)
     return 0.0, -acceleration / 27.27 if acceleration > -8.17 else min(0.3 + (-8.17 - acceleration) / 9.94, 1.0)
 
-def drive(car, way, command, t):
-    """The actions of one step: pedals for a command, wheels for a lateral target."""
-    throttle, brake = pedals(car, command)
+def come_down(car, target, distance, deceleration):
+    """The acceleration that leads down to a speed at a place, along the parabola that ends there. [m/s^2]"""
+    parabola = math.sqrt(target ** 2 + 2 * deceleration * distance)
+    slope = deceleration * car.speed / parabola if distance > 0 else 0.0
+    return (parabola - car.speed) / CATCH_UP - slope
+
+def slowed(car, way, command, bends, wait):
+    """The command of who also slows for the bends of its way, each (begin, end, speed), and waits after so many metres."""
+    engine, demand, tyres, comfortable, stopping = car.limits
+    wanted = command * (engine if command >= 0 else demand)
+    acceleration, here, left = wanted, along(way, car), max(wait - STOP_SHORT, 0.0)
+    if math.sqrt(2 * stopping * left) < STANDING and car.speed < HOLD_BELOW:
+        return HOLD_BRAKE
+    if wait < math.inf:
+        acceleration = min(acceleration, come_down(car, 0.0, left, stopping))
+    for begin, end, speed in bends:
+        if end > here:
+            acceleration = min(acceleration, come_down(car, speed, max(begin - here, 0.0), comfortable))
+    acceleration = max(acceleration, min(-GREATEST_BRAKING, wanted))
+    return acceleration / (engine if acceleration >= 0 else demand)
+
+def wait_after(car, way, crossings, speed, gap, standing):
+    """How far ahead it has to wait for others now. Crossings are (number of the other, its way, whether the ways merge, begin
+    and end on the own way, on the other's); `standing` counts the steps it has stood."""
+    places = [max(crossing[3] - along(way, car), 0.0) for crossing in crossings
+              if crossing[3] - along(way, car) >= -COMMITTED and must_wait(car, way, crossing, speed, gap, standing)]
+    return min(places + [math.inf])
+
+def must_wait(car, way, crossing, wanted, gap, standing):
+    """Whether it lets another go first at a crossing."""
+    number, other_way, merges, begin, end, other_begin, other_end = crossing
+    other, me = simulation().objects[number], simulation().objects.index(car)
+    here, there = along(way, car), along(other_way, other)
+    if there > (other_begin + MERGED if merges else other_end):
+        return False
+    if there > other_begin:
+        return True
+    if other.speed < STANDING:
+        return number < me and car.speed < STANDING and standing < PATIENCE
+    speed, left = max(car.speed, 0.5 * wanted, STANDING), other_begin - there
+    entry = max(begin - here, 0.0) / speed
+    exit = entry + MERGING if merges else (end - here) / speed
+    # The earliest they can be there.
+    other_entry = (math.sqrt(other.speed ** 2 + 2 * THEIR_ACCELERATION * left) - other.speed) / THEIR_ACCELERATION
+    other_exit = left / other.speed + MERGING if merges else (other_end - there) / other.speed
+    if max(entry, other_entry) > HORIZON:
+        return False
+    return exit + gap > other_entry and other_exit + 0.5 * gap > entry
+
+def drive(car, way, command, t, bends=(), wait=math.inf):
+    """The actions of one step: pedals for a command, slowed for bends and others, wheels for a lateral target."""
+    throttle, brake = pedals(car, slowed(car, way, command, bends, wait))
     return (SetThrottleAction(throttle), SetBrakeAction(brake), SetSteerAction(steering(car, way, t)))
 
 def hold(car, speed, gain=GAIN):
     """The command that holds a speed, or comes down to it comfortably."""
-    engine, demand, tyres, comfortable = car.limits
+    engine, demand, tyres, comfortable, stopping = car.limits
     acceleration = max(gain * engine * (speed - car.speed), -comfortable)
     return acceleration / (engine if acceleration >= 0 else demand)
 

@@ -8,12 +8,13 @@ use crate::openscenario::names::Declarations;
 use crate::xml::{number, rounded};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
-use recrash_model::surroundings::Surface;
 use recrash_model::tuning::Parameter;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_plan::Plan;
 use recrash_plan::constants::{
-    ACCELERATION, DECELERATION, SIGHT_M, STANDSTILL_DISTANCE_M, STOPPING_MPS2, TIME_HEADWAY_S,
+    ACCELERATION, CATCH_UP_S, COMMITTED_M, DECELERATION, GREATEST_BRAKING_MPS2, HOLD_BELOW_MPS, HOLD_BRAKE, HORIZON_S,
+    MERGED_M, MERGING_S, PATIENCE_STEPS, SIGHT_M, STANDING_MPS, STANDSTILL_DISTANCE_M, STOP_SHORT_M,
+    THEIR_ACCELERATION_MPS2, TIME_HEADWAY_S,
 };
 use recrash_roads::{LanePath, Placement, Scenario};
 use std::fmt::Write;
@@ -144,7 +145,18 @@ fn constants() -> String {
     );
     for (name, value) in [
         ("GAIN", DEFAULT_SPEED_KP),
-        ("STOPPING", STOPPING_MPS2),
+        ("GREATEST_BRAKING", GREATEST_BRAKING_MPS2),
+        ("CATCH_UP", CATCH_UP_S),
+        ("STANDING", STANDING_MPS),
+        ("HOLD_BELOW", HOLD_BELOW_MPS),
+        ("HOLD_BRAKE", HOLD_BRAKE),
+        ("STOP_SHORT", STOP_SHORT_M),
+        ("COMMITTED", COMMITTED_M),
+        ("PATIENCE", f64::from(PATIENCE_STEPS)),
+        ("HORIZON", HORIZON_S),
+        ("MERGED", MERGED_M),
+        ("MERGING", MERGING_S),
+        ("THEIR_ACCELERATION", THEIR_ACCELERATION_MPS2),
         ("SIGHT", SIGHT_M),
         ("STANDSTILL_DISTANCE", STANDSTILL_DISTANCE_M),
         ("TIME_HEADWAY", TIME_HEADWAY_S),
@@ -165,6 +177,28 @@ fn ways(context: &Context<'_>) -> String {
     for (position, partner) in context.scenario.partners().iter().enumerate() {
         let _ = writeln!(text, "PARTNER{}_WAY = {}", position + 1, line_string(partner));
     }
+    for position in 0..context.scenario.partners().len() {
+        let bends = partners::bends(context, position);
+        if !bends.is_empty() {
+            // Each with a comma behind: one alone is a list too.
+            let _ = writeln!(
+                text,
+                "PARTNER{}_BENDS = ({},)    # begin and end along it, and the most it drives there [m, m, m/s]",
+                position + 1,
+                bends.join(", ")
+            );
+        }
+        let crossings = partners::crossings(context, position);
+        if !crossings.is_empty() {
+            let _ = writeln!(
+                text,
+                "PARTNER{}_CROSSINGS = (    # who else is met (0 is the ego), on which way, merging; begin and end on both ways [m]",
+                position + 1,
+            );
+            crossings.iter().for_each(|crossing| text.push_str(crossing));
+            text.push_str(")\n");
+        }
+    }
     text
 }
 
@@ -180,12 +214,9 @@ fn cast(context: &Context<'_>) -> String {
     let ego = context.scenario.ego();
     let (s, speed) = (context.value("/ego/s_m", draft.ego.s_m), context.value("/ego/speed_mps", draft.ego.speed_mps));
     let target = context.value("/ego/target_speed_mps", draft.ego.target_speed_mps);
+    let start = Start { way: "EGO_WAY", s: &s, t: "0", speed: &speed };
     let _ = writeln!(text, "\n# The system under test: replace Follow by your own behavior.");
-    let _ = writeln!(
-        text,
-        "ego = {}",
-        road_user(ego, "EGO_WAY", &s, "0", &speed, &format!("Follow(EGO_WAY, {target})"), true)
-    );
+    let _ = writeln!(text, "ego = {}", road_user(context, ego, &start, &format!("Follow(EGO_WAY, {target})"), true));
     for position in 0..draft.partners.len() {
         text.push_str(&partners::instance(context, position));
     }
@@ -204,22 +235,33 @@ fn cast(context: &Context<'_>) -> String {
     text
 }
 
+/// Where a road user starts, and how fast, as expressions.
+struct Start<'a> {
+    way: &'a str,
+    s: &'a str,
+    t: &'a str,
+    speed: &'a str,
+}
+
 /// A road user at a place of its way.
-fn road_user(placement: &Placement, way: &str, s: &str, t: &str, speed: &str, behavior: &str, on_road: bool) -> String {
+fn road_user(context: &Context<'_>, placement: &Placement, start: &Start<'_>, behavior: &str, on_road: bool) -> String {
+    let Start { way, s, t, speed } = start;
     let spec = VehicleSpec::of(placement.kind);
     let stands = Policy::Stopped { depart_step: None, target_speed_mps: 0.0 };
-    let comfortable_mps2 = Plan::new(placement.kind, &stands, 0.0, Surface::Dry).comfortable_mps2;
+    let surface = context.scenario.draft().environment.surface;
+    let plan = Plan::new(placement.kind, &stands, 0.0, surface);
     let class = if placement.kind == PartnerKind::Pedestrian { "Pedestrian" } else { "Car" };
     let mut text = format!(
         "new {class} at place({way}, {s}, {t}), facing direction({way}, {s}),\n    \
-         with length {}, with width {}, with limits ({}, {}, {}, {}),\n    \
+         with length {}, with width {}, with limits ({}, {}, {}, {}, {}),\n    \
          with speed {speed}, with requireVisible False",
         number(spec.length_m),
         number(spec.width_m),
         number(rounded(spec.max_acceleration_mps2)),
         number(rounded(spec.brake_demand_mps2)),
         number(rounded(spec.max_deceleration_mps2)),
-        number(rounded(comfortable_mps2)),
+        number(rounded(plan.comfortable_mps2)),
+        number(rounded(plan.stopping_mps2)),
     );
     if !on_road {
         text.push_str(", with regionContainedIn everywhere");

@@ -1,14 +1,59 @@
 //! The partners of a Scenic file: a behavior for each policy, and where each starts.
 
-use super::{Context, constant, road_user};
+use super::{Context, constant, millimetres, road_user};
 use crate::xml::{number, rounded};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Approach, DEFAULT_SPEED_KP, Policy, Start};
+use recrash_plan::{Crossing, Plan, Way};
+use recrash_roads::Footprint;
 use std::fmt::Write;
 
 /// The name of a partner's object.
 pub(super) fn variable(position: usize) -> String {
     format!("partner{}", position + 1)
+}
+
+/// The bends of a partner's way as `(begin, end, speed)`: where it slows, and to what. [m, m, m/s]
+pub(super) fn bends(context: &Context<'_>, position: usize) -> Vec<String> {
+    let draft = context.scenario.draft();
+    let partner = &draft.partners[position];
+    if partner.kind == PartnerKind::Pedestrian {
+        return Vec::new();
+    }
+    let start_t_m = context.scenario.partners()[position].t_m;
+    let plan = Plan::new(partner.kind, &partner.policy, start_t_m, draft.environment.surface);
+    let text = |value: f64| number(millimetres(value));
+    Way::new(context.scenario, position, &plan)
+        .bends
+        .iter()
+        .map(|bend| format!("({}, {}, {})", text(bend.from_m), text(bend.to_m), text(bend.speed_mps)))
+        .collect()
+}
+
+/// Where the way of a partner that gives way meets others' ways, a line each.
+pub(super) fn crossings(context: &Context<'_>, position: usize) -> Vec<String> {
+    if !matches!(context.scenario.draft().partners[position].policy, Policy::Yielding { .. }) {
+        return Vec::new();
+    }
+    let (ego, partners) = (context.scenario.ego(), context.scenario.partners());
+    let me = position + 1;
+    let member = |number: usize| {
+        let placement = if number == 0 { ego } else { &partners[number - 1] };
+        (number, &placement.path, Footprint::of(placement.kind))
+    };
+    let text = |value: f64| if value.is_finite() { number(millimetres(value)) } else { "math.inf".to_owned() };
+    (0..=partners.len())
+        .filter(|&other| other != me)
+        .filter_map(|other| {
+            let (mine, theirs) = (member(me), member(other));
+            let conflict = mine.1.conflict(theirs.1, mine.2.width_m, theirs.2.width_m)?;
+            let crossing = Crossing::new(mine, theirs, conflict);
+            let way = if other == 0 { "EGO_WAY".to_owned() } else { format!("PARTNER{other}_WAY") };
+            let merges = if crossing.merges { "True" } else { "False" };
+            let ends = [crossing.mine.from, crossing.mine.to, crossing.theirs.from, crossing.theirs.to].map(text);
+            Some(format!("    ({other}, {way}, {merges}, {}),\n", ends.join(", ")))
+        })
+        .collect()
 }
 
 /// The definition of a partner's behavior.
@@ -29,7 +74,9 @@ pub(super) fn behavior(context: &Context<'_>, position: usize) -> String {
         Some(gain) if gain == DEFAULT_SPEED_KP => format!("hold(self, {speed})"),
         Some(gain) => format!("hold(self, {speed}, {})", number(gain)),
     };
-    let take = |command: &str| format!("take drive(self, {way}, {command}, {t})");
+    let bends =
+        if bends(context, position).is_empty() { "()".to_owned() } else { format!("PARTNER{}_BENDS", position + 1) };
+    let take = |command: &str| format!("take drive(self, {way}, {command}, {t}, {bends})");
     let forever = |command: &str| format!("        while True:\n            {}\n", take(command));
     let window = |from: &str, until: &str, command: &str| {
         format!("    interrupt when {from} <= seconds() + 1e-6 < {until}:\n        {}\n", take(command))
@@ -60,20 +107,16 @@ pub(super) fn behavior(context: &Context<'_>, position: usize) -> String {
         }
         Policy::Yielding { target_speed_mps, gap_s } => {
             let (speed, gap) = (at("target_speed_mps", target_speed_mps), at("gap_s", gap_s));
-            let conflict = &context.scenario.partners()[position].conflict;
-            if conflict.is_none() {
-                let _ = writeln!(text, "    while True:\n        {}", take(&hold(&speed, None)));
-            }
-            if let Some(conflict) = conflict {
-                text.push_str("    try:\n");
-                text.push_str(&forever(&hold(&speed, None)));
-                // It stops short of the conflict while the ego is about to come: v^2 = 2 * deceleration * distance.
-                let (mine, theirs) = (number(rounded(conflict.s_b - 6.0)), number(rounded(conflict.s_a)));
+            let command = hold(&speed, None);
+            if crossings(context, position).is_empty() {
+                let _ = writeln!(text, "    while True:\n        {}", take(&command));
+            } else {
                 let _ = writeln!(
                     text,
-                    "    interrupt when (0 < {mine} - along({way}, self) < self.speed ** 2 / (2 * STOPPING) + 2\n            \
-                     and 0 < {theirs} - along(EGO_WAY, ego) < {gap} * max(ego.speed, 1)):\n        {}",
-                    take("-STOPPING / self.limits[1]")
+                    "    standing = 0\n    while True:\n        standing = standing + 1 if self.speed < STANDING else 0\n        \
+                     wait = wait_after(self, {way}, PARTNER{}_CROSSINGS, {speed}, {gap}, standing)\n        \
+                     take drive(self, {way}, {command}, {t}, {bends}, wait)",
+                    position + 1,
                 );
             }
         }
@@ -144,11 +187,12 @@ pub(super) fn instance(context: &Context<'_>, position: usize) -> String {
     let speed = at("speed_mps", partner.speed_mps);
     let way = format!("PARTNER{}_WAY", position + 1);
     let behavior = format!("Partner{}()", position + 1);
+    let begins = super::Start { way: &way, s: &format!("PARTNER{}_S", position + 1), t: &t, speed: &speed };
     format!(
         "\nPARTNER{0}_S = {s}    # start along its way [m]\nrequire 0 <= PARTNER{0}_S <= PARTNER{0}_WAY.length\n{1} = {2}\n",
         position + 1,
         variable(position),
-        road_user(placement, &way, &format!("PARTNER{}_S", position + 1), &t, &speed, &behavior, on_road)
+        road_user(context, placement, &begins, &behavior, on_road)
     )
 }
 

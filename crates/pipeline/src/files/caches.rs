@@ -25,7 +25,7 @@ pub fn cache_folder(variable: Variable<'_>) -> Option<PathBuf> {
 
 /// The error where there is none.
 pub fn no_cache_folder() -> PipelineError {
-    PipelineError::bad_input(format!("no folder for caches is known here; give one with --cache or {CACHE_VARIABLE}"))
+    PipelineError::bad_input(format!("no folder for caches is known here; name one in {CACHE_VARIABLE}"))
 }
 
 /// The platform's folder for caches.

@@ -11,8 +11,8 @@ use crate::secrets;
 #[cfg(feature = "live")]
 use recrash_agents::llm::Live;
 use recrash_agents::llm::{
-    Answers, Batch, Caps, Exchange, LanguageModel, Ledger, LiveOptions, PriceTable, Replay, Spending, Spent,
-    request_line,
+    Answers, AskError, Batch, Caps, Exchange, LanguageModel, Ledger, LiveOptions, PriceTable, Question, Replay,
+    Spending, Spent, request_line,
 };
 use recrash_model::Diagnostic;
 use responses::{PENDING, REQUESTS, TakenIn, exchange_file};
@@ -86,12 +86,20 @@ impl Models {
     ///
     /// # Errors
     /// The ledger cannot be read or written, or the models cannot be asked like this.
-    pub fn open(store: &Store, cast: &Cast, access: &ModelAccess) -> Result<(Self, Vec<Diagnostic>), PipelineError> {
+    ///
+    /// Without `may_ask` what the ledger lacks is asked of nobody: the models are named by a file, which may be anybody's.
+    pub fn open(
+        store: &Store,
+        cast: &Cast,
+        access: &ModelAccess,
+        may_ask: bool,
+    ) -> Result<(Self, Vec<Diagnostic>), PipelineError> {
         let ledger: Arc<dyn Ledger> = Arc::new(FileLedger(store.clone()));
         let spending = Arc::new(Spending::default());
         let mut diagnostics = Vec::new();
         let (answers, batch): (Arc<dyn Answers>, _) = match access.mode {
             AnswerMode::Replay => (Arc::new(Replay { ledger }), None),
+            AnswerMode::Live if !may_ask => (Arc::new(Unasked { ledger }), None),
             AnswerMode::Live => (live(ledger, cast, access, &spending)?, None),
             AnswerMode::Batch => {
                 let taken_in = responses::take_in(store, &price_table(access)?, &secrets::scrubber())?;
@@ -127,6 +135,23 @@ impl Models {
     }
 }
 
+/// Answers from the ledger, where nobody allowed to ask the models.
+struct Unasked {
+    ledger: Arc<dyn Ledger>,
+}
+
+impl Answers for Unasked {
+    fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
+        self.ledger.find(&question.hash()).map_err(AskError::Ledger)?.ok_or_else(|| {
+            AskError::Refused(format!(
+                "the suite wants to ask the language model {}; a suite may be anybody's, so name the model in the command, or \
+                 say that the suite is trusted",
+                question.model
+            ))
+        })
+    }
+}
+
 #[cfg(feature = "live")]
 fn live(
     ledger: Arc<dyn Ledger>,
@@ -155,9 +180,9 @@ struct Absent;
 
 #[cfg(not(feature = "live"))]
 impl Answers for Absent {
-    fn answer(&self, _question: &recrash_agents::llm::Question) -> Result<Exchange, recrash_agents::llm::AskError> {
-        let why = "this recrash was built without live models; build it with the feature `live`, or give --llm batch";
-        Err(recrash_agents::llm::AskError::Refused(why.into()))
+    fn answer(&self, _question: &Question) -> Result<Exchange, AskError> {
+        let why = "this recrash was built without live models; build it with the feature `live`, or have the questions written for a batch";
+        Err(AskError::Refused(why.into()))
     }
 }
 

@@ -70,7 +70,7 @@ impl RecordInput {
         };
         let files = match &options.records {
             RecordSource::Sample if mapping.is_some() => {
-                return Err(PipelineError::bad_input("a mapping needs its crash files: give them with --records"));
+                return Err(PipelineError::bad_input("a mapping needs its crash files: name them too"));
             }
             RecordSource::Sample => vec![(SAMPLE_NAME.to_owned(), Content::Memory(SAMPLE_CSV.as_bytes().into()))],
             RecordSource::Files(paths) => {
@@ -111,7 +111,7 @@ impl RecordInput {
 /// It cannot be read: with its column.
 pub fn read_filter(options: &Options) -> Result<Option<Filter>, PipelineError> {
     let read = options.filter.as_deref().map(Filter::parse).transpose();
-    read.map_err(|e| PipelineError::bad_input(format!("--where, {e}\n  recrash records --help lists the fields")))
+    read.map_err(|e| PipelineError::bad_input(format!("the filter, {e}\n  recrash records --help lists the fields")))
 }
 
 /// A file by its path; a bare name that is no file here is looked up among the downloaded ones.

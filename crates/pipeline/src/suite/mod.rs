@@ -126,6 +126,8 @@ pub struct Permissions {
     pub reselect: bool,
     /// Starts programs that the suite names; without it only those that the caller names.
     pub trust: bool,
+    /// Asks the language models of its options; without it only the ledger answers for them.
+    pub ask_models: bool,
 }
 
 /// What a run may use of the machine, and what it may do. No byte of the results depends on it.
@@ -250,7 +252,8 @@ impl Suite {
         let profile = options.system_profile()?;
         let threads = thread_pool(resources.threads.unwrap_or(0))?;
         let has_model = !options.cast.models().is_empty();
-        let opened = has_model.then(|| Models::open(&store, &options.cast, &resources.models)).transpose()?;
+        let may_ask = resources.permissions.ask_models;
+        let opened = has_model.then(|| Models::open(&store, &options.cast, &resources.models, may_ask)).transpose()?;
         let (models, remarks) = opened.map_or((None, Vec::new()), |(models, remarks)| (Some(models), remarks));
         let asks = has_model && resources.models.mode == AnswerMode::Live;
         let askers = asks.then(|| thread_pool(resources.models.concurrency)).transpose()?;
@@ -532,7 +535,7 @@ fn lock_folder(dir: &Path) -> Result<Option<File>, PipelineError> {
 fn read_saved(store: &Store) -> Result<Saved, PipelineError> {
     let unusable = |problem: String| {
         PipelineError::bad_input(format!(
-            "{}: {problem}; nothing can go on in this folder: choose another --out (with a copy of ledger/ in it, answers \
+            "{}: {problem}; nothing can go on in this folder: choose another folder (with a copy of ledger/ in it, answers \
              of models are kept)",
             store.path(SUITE_FILE).display()
         ))

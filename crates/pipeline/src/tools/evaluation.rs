@@ -189,7 +189,7 @@ fn model_accounts(
 ) -> Result<Vec<LabelledAccount>, PipelineError> {
     let store = Store::create(&request.out, write_file_whole)?;
     let cast = Cast { paraphrase: request.agent.clone(), ..Cast::default() };
-    let (models, _) = Models::open(&store, &cast, &request.models)?;
+    let (models, _) = Models::open(&store, &cast, &request.models, true)?;
     let mut accounts = Vec::with_capacity(found.len());
     let mut waiting = false;
     for (label, record) in found {

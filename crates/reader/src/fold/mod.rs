@@ -57,7 +57,7 @@ impl Reading<'_> {
         let simultaneous = frame.sentence == at.sentence
             && frame.joint == Some(crate::chunk::Joint::While)
             && frame.clause > at.clause;
-        !simultaneous && !(frame.described && frame.sentence == at.sentence)
+        !(simultaneous || frame.described && frame.sentence == at.sentence)
     }
 
     /// Frames of somebody up to the contact.
@@ -192,10 +192,10 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
             let value = if value == Driver::Human && took_over.is_some() { Driver::HumanTookOver } else { value };
             return Some(reading.told(value, at, at + length));
         }
-        if !in_time_before {
+        if !in_time_before && !sentence_after(reading, sentence.first) {
             human = human.or(said_human.filter(|_| {
                 !words.iter().any(|token| {
-                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition" | "into")
+                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition")
                 })
             }));
             system = system.or(said_system);
@@ -214,6 +214,12 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// Whether a sentence stands behind the one of the contact.
+fn sentence_after(reading: &Reading<'_>, token: usize) -> bool {
+    let contact = reading.contacts.first.map(|number| reading.story.sentences[reading.story.frames[number].sentence]);
+    contact.is_some_and(|sentence| token >= sentence.end)
 }
 
 /// Everybody else who is in the story up to the contact.

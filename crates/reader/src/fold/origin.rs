@@ -233,6 +233,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             _ => {}
         }
     }
+    if did(Act::WrongWay) && heading.is_none() {
+        return told_as(Origin::Opposite, clues.source(|frame| frame.act() == Some(Act::WrongWay)));
+    }
     if clues.any(Relation::Opposite) && !did(Act::Pass) {
         return told_as(Origin::Opposite, clues.has(Relation::Opposite));
     }

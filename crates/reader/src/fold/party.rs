@@ -17,6 +17,12 @@ use recrash_model::zones::ContactZone;
 /// What the words tell of one side.
 pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     let known = &reading.story.world.actors[actor];
+    // Where it drove afterwards is no place of the crash.
+    let end = reading
+        .contacts
+        .first
+        .map_or(usize::MAX, |number| reading.story.sentences[reading.story.frames[number].sentence].end);
+    let before = |first: usize| first < end;
     let (state, standing) = state(reading, actor);
     let kind = match (known.kind, known.kind_tokens) {
         (Some(kind), Some((first, end))) => Some(reading.told(kind, first, end)),
@@ -30,9 +36,15 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
         standing,
         reasons: Vec::new(),
         acts: acts(reading, actor),
-        heading: known.heading.map(|(compass, first, end)| reading.told(compass, first, end)),
+        heading: known
+            .heading
+            .filter(|(_, first, _)| before(*first))
+            .map(|(compass, first, end)| reading.told(compass, first, end)),
         heading_after: after(reading, actor),
-        lane: known.lane.map(|(lane, first, end)| reading.told(lane, first, end)),
+        lane: known
+            .lane
+            .filter(|(_, first, _)| before(*first))
+            .map(|(lane, first, end)| reading.told(lane, first, end)),
         speeds: speeds(reading, actor),
         zones: zones(reading, actor),
         controls: controls(reading, actor),
@@ -355,7 +367,7 @@ fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
         }
         let piece = if frame.who == Some(actor) {
             frame.with.as_ref()
-        } else if frame.object == Some(actor) || frame.object.is_none() || frame.who.is_none() {
+        } else if frame.object == Some(actor) || (frame.object.is_none() && actor == SUBJECT) {
             frame.on.as_ref()
         } else {
             None
@@ -656,7 +668,12 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
     let before = || party.acts.iter().filter(|fact| !fact.after_contact);
     let mut best: Option<(u8, Movement, &Source)> = None;
     for fact in before() {
-        // Who drives on has done with its turn.
+        // Who passes has done with going backwards, and who drives on with its turn.
+        if matches!(fact.act, Act::Pass | Act::LaneChange)
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)
+        {
+            best = None;
+        }
         if fact.act == Act::Follow
             && best.as_ref().is_some_and(|(_, known, _)| matches!(known, Movement::LeftTurn | Movement::RightTurn))
         {

@@ -99,6 +99,14 @@ pub(crate) fn crash_type(reading: &Reading<'_>, account: &Account) -> Option<Fac
 
 fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
     let partner = account.partner.as_ref()?;
+    if group(account) == Some(KindGroup::Object) {
+        let thrown = matches!(told(&partner.kind), Some(Kind::LooseWheel | Kind::Cargo));
+        return Some(if thrown {
+            (CrashType::Other, "a thing that came off a vehicle")
+        } else {
+            (CrashType::SingleVehicle, "a thing")
+        });
+    }
     if partner.did(Act::Pushed)
         || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
         || separate(reading)
@@ -110,21 +118,10 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         Some(KindGroup::Cyclist) => return Some((CrashType::Cyclist, "kind of the partner")),
         Some(KindGroup::Motorcycle) => return Some((CrashType::Motorcycle, "kind of the partner")),
         Some(KindGroup::Animal | KindGroup::Other) => return Some((CrashType::Other, "kind of the partner")),
-        Some(KindGroup::Object) => {
-            let thrown = matches!(told(&partner.kind), Some(Kind::LooseWheel | Kind::Cargo));
-            return Some(if thrown {
-                (CrashType::Other, "a thing that came off a vehicle")
-            } else {
-                (CrashType::SingleVehicle, "a thing")
-            });
-        }
         _ => {}
     }
     if reading.contacts.others_only {
         return Some((CrashType::Other, "the subject vehicle was not touched"));
-    }
-    if account.door.is_some() {
-        return Some((CrashType::Other, "a door"));
     }
     let sv = sv_state(account);
     let cp = cp_state(account);
@@ -134,6 +131,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         && sv != Some(ContactState::Reversing)
         && !partner.did(Act::PullOut)
         && !double_parked(reading)
+        && account.door.is_none()
     {
         return Some((CrashType::SingleVehicle, "an unoccupied parked vehicle"));
     }
@@ -142,6 +140,9 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         || told(&partner.movement) == Some(Movement::Backing)
     {
         return Some((CrashType::Backing, "one went backwards"));
+    }
+    if account.door.is_some() {
+        return Some((CrashType::Other, "a door"));
     }
     let origin = told(&account.came_from);
     let front = |party: &Party| has_zone(party, |zone| zone.is_front());

@@ -172,6 +172,8 @@ async function checkSizes(stems, running) {
     const section = await opened(page, running);
     check(await inView(section.locator('.play')), `the play button is out of sight ${at}`);
     check(await inView(section.locator('.scrub')), `the slider is out of sight ${at}`);
+    // The widest that a clock can say, whatever this run's length.
+    await section.locator('.clock').evaluate((clock) => (clock.textContent = '120.0 / 120.0 s'));
     await checkSize(page, `${running} ${at}`);
     const tabs = section.locator('[role=tab]');
     for (let i = 1; i < (await tabs.count()); i++) {

@@ -3,7 +3,7 @@
 use super::areas::{self, Mouth};
 use super::curve;
 use super::strips::{self, LEFT, RIGHT, StripPiece};
-use super::{Builder, problem};
+use super::{Builder, is_open, problem};
 use crate::lane::LaneId;
 use crate::network::RoadPart;
 use recrash_model::geometry::{OrientedBox, Pose};
@@ -133,7 +133,7 @@ impl Builder<'_> {
         }))
     }
 
-    /// The lanes of a kind that lead into the junction, or out of it, by an arm; leftmost first.
+    /// The lanes of a kind that lead into the junction, or out of it, by an arm and are open there; leftmost first.
     fn lanes(&self, arm: &Arm, kind: StripKind, leads_in: bool) -> Vec<LaneId> {
         let id = &self.map.roads[arm.road].id;
         let sign = if arm.begins == leads_in { '-' } else { '+' };
@@ -141,7 +141,12 @@ impl Builder<'_> {
         let name = format!("{id}{sign}{strip}");
         let Some(named) = self.network.named.iter().find(|named| named.name == name) else { return Vec::new() };
         let piece = if leads_in { named.pieces.last() } else { named.pieces.first() };
-        piece.map_or_else(Vec::new, |piece| self.network.road(*piece).lanes.clone())
+        let lanes = piece.map_or_else(Vec::new, |piece| self.network.road(*piece).lanes.clone());
+        let open = |lane: &LaneId| {
+            let lane = self.network.lane(*lane);
+            is_open((lane.width_m, lane.end_width_m), leads_in)
+        };
+        lanes.into_iter().filter(open).collect()
     }
 
     fn connect_driving(&mut self, position: usize, arms: &[Arm], from: usize, ways: &[Option<Way>]) {
@@ -149,8 +154,11 @@ impl Builder<'_> {
         let lanes = self.lanes(arm, StripKind::Driving, true);
         let spec = &self.map.roads[arm.road];
         let side = strips::side_of(spec, if arm.begins { LEFT } else { RIGHT });
-        let written: Vec<&[Turn]> =
-            strips::of_kind(side, StripKind::Driving).into_iter().map(|index| side[index].turns.as_slice()).collect();
+        let written: Vec<&[Turn]> = strips::of_kind(side, StripKind::Driving)
+            .into_iter()
+            .filter(|index| is_open(side[*index].widths_m(), !arm.begins))
+            .map(|index| side[index].turns.as_slice())
+            .collect();
         let leads = |to: usize, turn: Turn| {
             ways[to] == Some(Way::Turn(turn)) && !self.lanes(&arms[to], StripKind::Driving, false).is_empty()
         };

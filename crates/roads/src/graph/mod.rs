@@ -26,6 +26,14 @@ use strips::{Parts, StripPiece};
 /// The most lanes a network may have: a lane of each stretch counts.
 const MOST_LANES: usize = 6000;
 
+/// A lane that is narrower than this at an end begins or ends there: none follows it, or it follows none. [m]
+const OPEN_M: f64 = 1.0;
+
+/// Whether a lane or strip with widths at its beginning and end is open at one of them.
+fn is_open((start, end): (f64, f64), at_end: bool) -> bool {
+    (if at_end { end } else { start }) >= OPEN_M
+}
+
 /// Builds the network of a map, whose numbers are in range.
 pub(crate) fn build(map: &GraphMap) -> Result<RoadNetwork, Vec<Diagnostic>> {
     let mut problems = Vec::new();
@@ -153,7 +161,12 @@ impl Builder<'_> {
             .into_iter()
             .enumerate()
             .map(|(lane, next)| {
-                next.into_iter().filter(|next| of(&first, usize::from(next.0)) == of(&last, lane)).collect()
+                let leads = |next: &LaneId| {
+                    let (own, next) = (&network.lanes[lane], usize::from(next.0));
+                    let widths = (network.lanes[next].width_m, own.end_width_m);
+                    of(&first, next) == of(&last, lane) && is_open(widths, true) && is_open(widths, false)
+                };
+                next.into_iter().filter(leads).collect()
             })
             .collect();
         for pair in network.named.iter().flat_map(|named| named.pieces.windows(2)) {

@@ -1,8 +1,8 @@
 //! Where reference lines lie: pieces one behind the other, roads behind each other, at junctions and along lanes.
 
 use super::curve::{self, Stretch};
-use super::problem;
 use super::strips::{self, LEFT, RIGHT, ReferenceLine};
+use super::{is_open, problem};
 use recrash_model::Diagnostic;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
@@ -55,6 +55,7 @@ pub(super) fn lines(map: &GraphMap, problems: &mut Vec<Diagnostic>) -> Vec<Refer
     }
     if problems.is_empty() {
         joints(map, &lines, problems);
+        ramps(map, problems);
         ends(map, &lines, problems);
     }
     lines
@@ -196,6 +197,27 @@ fn joints(map: &GraphMap, lines: &[ReferenceLine], problems: &mut Vec<Diagnostic
                     break;
                 }
             }
+        }
+    }
+}
+
+/// The lanes that ramps lead to and come from are open where they meet.
+fn ramps(map: &GraphMap, problems: &mut Vec<Diagnostic>) {
+    for (position, spec) in map.roads.iter().enumerate() {
+        let (name, lane, ends) = match &spec.start {
+            RoadStart::IntoLane { road, lane } => (road, *lane, false),
+            RoadStart::FromLane { road, lane } => (road, *lane, true),
+            _ => continue,
+        };
+        let Some(other) = undirected(name).and_then(|id| map.roads.iter().find(|road| road.id == id)) else { continue };
+        let side = if name.ends_with('+') { RIGHT } else { LEFT };
+        let strips = strips::side_of(other, side);
+        let Some(index) = strips::of_kind(strips, StripKind::Driving).get(usize::from(lane)).copied() else { continue };
+        if !is_open(strips[index].widths_m(), ends == (side > 0.0)) {
+            let what = if ends { "ends" } else { "begins" };
+            let message = format!("lane {lane} of {name:?} is no lane where it {what}: it is too narrow there");
+            let hint = "allowed: 1 m or more; let it be as wide as the ramp's lane where they meet";
+            problems.push(problem("scenario.joint", format!("map.roads[{position}].start"), message, hint));
         }
     }
 }

@@ -199,6 +199,34 @@ fn a_ramp_ends_where_its_lane_of_the_other_road_begins() {
 }
 
 #[test]
+fn a_lane_that_narrows_to_nothing_leads_nowhere() {
+    let mut json = json!({ "roads": [
+        { "id": "drop", "start": { "at": { "x_m": 0.0, "y_m": 0.0, "heading_deg": 0.0 } }, "line": [{ "straight": { "length_m": 80.0 } }],
+          "right": [{ "kind": "driving" }, { "kind": "driving", "end_width_m": 0.0 }] },
+        { "id": "grow", "start": { "after": { "road": "drop" } }, "line": [{ "straight": { "length_m": 80.0 } }],
+          "right": [{ "kind": "driving" }, { "kind": "driving", "width_m": 0.0, "end_width_m": 3.3 }] },
+    ] });
+    let dropped = network(json.clone());
+    let path = dropped.way(&names(&["drop+", "grow+"]), 1, Some(1)).unwrap();
+    continuous(&path, 1e-6, 1e-6);
+    let at_joint = path.segment_at(80.0);
+    assert_eq!(
+        dropped.lane(path.segments[at_joint].lane).index,
+        0,
+        "two changes: off the lane that ends, onto the new one"
+    );
+    json["roads"].as_array_mut().unwrap().push(json!({
+        "id": "ramp", "start": { "into_lane": { "road": "grow+", "lane": 1 } }, "line": [{ "straight": { "length_m": 30.0 } }],
+        "right": [{ "kind": "driving" }],
+    }));
+    let problems = RoadNetwork::try_build(&map(json)).unwrap_err();
+    assert_eq!(
+        (problems[0].code.as_str(), problems[0].location.path.as_deref()),
+        ("scenario.joint", Some("map.roads[2].start"))
+    );
+}
+
+#[test]
 fn blocks_have_the_names_of_the_format() {
     let named = |map: &MapSpec| {
         let network = RoadNetwork::build(map);

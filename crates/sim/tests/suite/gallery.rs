@@ -234,6 +234,26 @@ fn every_case_goes_on_from_a_snapshot_with_the_same_bytes() {
     }
 }
 
+/// In the folder of crashes each recorded run is one, and whoever is tested has some seconds to choose otherwise.
+#[test]
+fn every_crash_is_shown_and_is_taken_over_in_time() {
+    let cases = cases();
+    let crashes: Vec<&Case> = cases.iter().filter(|case| case.name.starts_with("crashes/")).collect();
+    assert!(crashes.len() >= 24 && cases.len() >= 60, "{} of {}", crashes.len(), cases.len());
+    for Case { name, draft, scenario } in crashes {
+        let rollout = simulate(scenario, Ego::Recorded);
+        let (_, contact_s, ego, _) = rollout.first_ego_contact().unwrap_or_else(|| panic!("{name} shows no contact"));
+        let handover_s = draft.ego.handover_s.unwrap_or(0.0);
+        assert!(handover_s + 1.5 <= contact_s, "{name}: {handover_s} s, contact at {contact_s} s");
+        assert!(
+            contact_s + 4.0 >= draft.duration_s - draft.after_contact_s,
+            "{name}: goes on long after {contact_s} s"
+        );
+        // Who is told to stand stands exactly.
+        assert!(ego.velocity().length() == 0.0 || ego.velocity().length() > 0.3, "{name}: {ego:?}");
+    }
+}
+
 /// Which variants of which enums a case uses.
 #[derive(Default)]
 struct Used(BTreeMap<&'static str, BTreeSet<String>>);

@@ -43,7 +43,18 @@ DURATION_S = 30
 
 # What recrash's plans mean (docs/models/policies.md): SI units, and MetaDrive's own for its gap law.
 GAIN = 0.3
-STOPPING = 3
+GREATEST_BRAKING = 6
+CATCH_UP = 0.5
+STANDING = 0.3
+HOLD_BELOW = 0.5
+HOLD_BRAKE = -0.1
+STOP_SHORT = 0.5
+COMMITTED = 1
+PATIENCE = 30
+HORIZON = 12
+MERGED = 12
+MERGING = 1
+THEIR_ACCELERATION = 1
 SIGHT = 30
 STANDSTILL_DISTANCE = 10
 TIME_HEADWAY = 1.5
@@ -104,7 +115,7 @@ def steering(car, way, t):
 
 def pedals(car, command):
     """Throttle and brake for a command from -1 (full brake) to 1 (full throttle) in terms of recrash's vehicles."""
-    engine, demand, tyres, comfortable = car.limits
+    engine, demand, tyres, comfortable, stopping = car.limits
     command = max(-1.0, min(1.0, command))
     acceleration = command * engine if command >= 0 else max(command * demand, -tyres)
     if acceleration >= 0:
@@ -113,14 +124,63 @@ def pedals(car, command):
         return 0.0, min(-acceleration / 6.8, 1.0)
     return 0.0, -acceleration / 27.27 if acceleration > -8.17 else min(0.3 + (-8.17 - acceleration) / 9.94, 1.0)
 
-def drive(car, way, command, t):
-    """The actions of one step: pedals for a command, wheels for a lateral target."""
-    throttle, brake = pedals(car, command)
+def come_down(car, target, distance, deceleration):
+    """The acceleration that leads down to a speed at a place, along the parabola that ends there. [m/s^2]"""
+    parabola = math.sqrt(target ** 2 + 2 * deceleration * distance)
+    slope = deceleration * car.speed / parabola if distance > 0 else 0.0
+    return (parabola - car.speed) / CATCH_UP - slope
+
+def slowed(car, way, command, bends, wait):
+    """The command of who also slows for the bends of its way, each (begin, end, speed), and waits after so many metres."""
+    engine, demand, tyres, comfortable, stopping = car.limits
+    wanted = command * (engine if command >= 0 else demand)
+    acceleration, here, left = wanted, along(way, car), max(wait - STOP_SHORT, 0.0)
+    if math.sqrt(2 * stopping * left) < STANDING and car.speed < HOLD_BELOW:
+        return HOLD_BRAKE
+    if wait < math.inf:
+        acceleration = min(acceleration, come_down(car, 0.0, left, stopping))
+    for begin, end, speed in bends:
+        if end > here:
+            acceleration = min(acceleration, come_down(car, speed, max(begin - here, 0.0), comfortable))
+    acceleration = max(acceleration, min(-GREATEST_BRAKING, wanted))
+    return acceleration / (engine if acceleration >= 0 else demand)
+
+def wait_after(car, way, crossings, speed, gap, standing):
+    """How far ahead it has to wait for others now. Crossings are (number of the other, its way, whether the ways merge, begin
+    and end on the own way, on the other's); `standing` counts the steps it has stood."""
+    places = [max(crossing[3] - along(way, car), 0.0) for crossing in crossings
+              if crossing[3] - along(way, car) >= -COMMITTED and must_wait(car, way, crossing, speed, gap, standing)]
+    return min(places + [math.inf])
+
+def must_wait(car, way, crossing, wanted, gap, standing):
+    """Whether it lets another go first at a crossing."""
+    number, other_way, merges, begin, end, other_begin, other_end = crossing
+    other, me = simulation().objects[number], simulation().objects.index(car)
+    here, there = along(way, car), along(other_way, other)
+    if there > (other_begin + MERGED if merges else other_end):
+        return False
+    if there > other_begin:
+        return True
+    if other.speed < STANDING:
+        return number < me and car.speed < STANDING and standing < PATIENCE
+    speed, left = max(car.speed, 0.5 * wanted, STANDING), other_begin - there
+    entry = max(begin - here, 0.0) / speed
+    exit = entry + MERGING if merges else (end - here) / speed
+    # The earliest they can be there.
+    other_entry = (math.sqrt(other.speed ** 2 + 2 * THEIR_ACCELERATION * left) - other.speed) / THEIR_ACCELERATION
+    other_exit = left / other.speed + MERGING if merges else (other_end - there) / other.speed
+    if max(entry, other_entry) > HORIZON:
+        return False
+    return exit + gap > other_entry and other_exit + 0.5 * gap > entry
+
+def drive(car, way, command, t, bends=(), wait=math.inf):
+    """The actions of one step: pedals for a command, slowed for bends and others, wheels for a lateral target."""
+    throttle, brake = pedals(car, slowed(car, way, command, bends, wait))
     return (SetThrottleAction(throttle), SetBrakeAction(brake), SetSteerAction(steering(car, way, t)))
 
 def hold(car, speed, gain=GAIN):
     """The command that holds a speed, or comes down to it comfortably."""
-    engine, demand, tyres, comfortable = car.limits
+    engine, demand, tyres, comfortable, stopping = car.limits
     acceleration = max(gain * engine * (speed - car.speed), -comfortable)
     return acceleration / (engine if acceleration >= 0 else demand)
 
@@ -163,37 +223,44 @@ PARTNER2_WAY = shapely.geometry.LineString([
     (73.636, 10.348), (74.203, 11.158), (74.722, 12), (75.192, 12.87), (75.61, 13.767), (75.975, 14.686),
     (76.286, 15.624), (76.542, 16.58), (76.742, 17.548), (76.885, 18.526), (76.971, 19.512), (77, 20.5),
     (77, 110.5),])
+PARTNER2_BENDS = ((60, 86.704, 5.713),)    # begin and end along it, and the most it drives there [m, m, m/s]
+PARTNER2_CROSSINGS = (    # who else is met (0 is the ego), on which way, merging; begin and end on both ways [m]
+    (1, PARTNER1_WAY, False, 66.113, 75.268, 100.707, 106.788),
+)
 
 # ---- who does what ------------------------------------------------------------------------------------------------
 
 behavior Partner1():    # "bike", sudden_brake: holds a speed, brakes fully for a while, holds it again
     try:
         while True:
-            take drive(self, PARTNER1_WAY, hold(self, PARTNER1_POLICY_TARGET_SPEED), 0)
+            take drive(self, PARTNER1_WAY, hold(self, PARTNER1_POLICY_TARGET_SPEED), 0, ())
     interrupt when PARTNER1_POLICY_BRAKE_STEP * STEP <= seconds() + 1e-6 < PARTNER1_POLICY_BRAKE_STEP * STEP + PARTNER1_POLICY_BRAKE_STEPS * STEP:
-        take drive(self, PARTNER1_WAY, -1, 0)
+        take drive(self, PARTNER1_WAY, -1, 0, ())
 
 behavior Partner2():    # "pickup", yielding: holds a speed, waits while the ego is about to come
+    standing = 0
     while True:
-        take drive(self, PARTNER2_WAY, hold(self, PARTNER2_POLICY_TARGET_SPEED_MPS), PARTNER2_START_DELTA_T_M)
+        standing = standing + 1 if self.speed < STANDING else 0
+        wait = wait_after(self, PARTNER2_WAY, PARTNER2_CROSSINGS, PARTNER2_POLICY_TARGET_SPEED_MPS, PARTNER2_POLICY_GAP_S, standing)
+        take drive(self, PARTNER2_WAY, hold(self, PARTNER2_POLICY_TARGET_SPEED_MPS), PARTNER2_START_DELTA_T_M, PARTNER2_BENDS, wait)
 
 # The system under test: replace Follow by your own behavior.
 ego = new Car at place(EGO_WAY, EGO_S_M, 0), facing direction(EGO_WAY, EGO_S_M),
-    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13, 2),
+    with length 4.515, with width 1.852, with limits (2.909090909, 27.272727273, 15.13, 1.58922, 1.58922),
     with speed EGO_SPEED_MPS, with requireVisible False,
     with behavior Follow(EGO_WAY, EGO_TARGET_SPEED_MPS)
 
 PARTNER1_S = 115.702404352 - PARTNER1_POLICY_TARGET_SPEED * ((70.704156664 - EGO_S_M) / EGO_TARGET_SPEED_MPS + PARTNER1_START_ARRIVAL_GAP_S)    # start along its way [m]
 require 0 <= PARTNER1_S <= PARTNER1_WAY.length
 partner1 = new Car at place(PARTNER1_WAY, PARTNER1_S, 0), facing direction(PARTNER1_WAY, PARTNER1_S),
-    with length 1.8, with width 0.6, with limits (1, 3.4, 3.4, 2),
+    with length 1.8, with width 0.6, with limits (1, 3.4, 3.4, 1.58922, 1.58922),
     with speed PARTNER1_SPEED_MPS, with requireVisible False,
     with behavior Partner1()
 
 PARTNER2_S = EGO_S_M + PARTNER2_START_DELTA_S_M    # start along its way [m]
 require 0 <= PARTNER2_S <= PARTNER2_WAY.length
 partner2 = new Car at place(PARTNER2_WAY, PARTNER2_S, PARTNER2_START_DELTA_T_M), facing direction(PARTNER2_WAY, PARTNER2_S),
-    with length 5.74, with width 2.3, with limits (2.909090909, 27.272727273, 15.13, 2),
+    with length 5.74, with width 2.3, with limits (2.909090909, 27.272727273, 15.13, 1.58922, 1.58922),
     with speed PARTNER2_SPEED_MPS, with requireVisible False,
     with behavior Partner2()
 

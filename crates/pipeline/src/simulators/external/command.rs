@@ -25,12 +25,12 @@ impl EgoCommand {
     /// There is no program, or a quote is not closed.
     pub fn parse(ego: &str) -> Result<Option<Self>, String> {
         let Some(line) = ego.strip_prefix(EGO_COMMAND_PREFIX) else { return Ok(None) };
-        let mut words = split(line).ok_or_else(|| format!("a quote is not closed in --ego '{ego}'"))?.into_iter();
+        let mut words = split(line).ok_or_else(|| format!("a quote is not closed in the ego '{ego}'"))?.into_iter();
         match words.next() {
             Some(program) if !program.is_empty() => {
                 Ok(Some(Self { text: ego.to_owned(), program, arguments: words.collect() }))
             }
-            _ => Err("--ego cmd: needs a program, such as --ego 'cmd:python3 my_ego.py'".to_owned()),
+            _ => Err("the ego cmd: needs a program, such as 'cmd:python3 my_ego.py'".to_owned()),
         }
     }
 

@@ -52,7 +52,7 @@ pub enum EgoFault {
         found: String,
     },
     /// It did not answer in time and was ended.
-    #[error("gave no answer to {question} within {seconds} s (--ego-timeout allows more)")]
+    #[error("gave no answer to {question} within {seconds} s")]
     Hung {
         /// What it was asked.
         question: String,

@@ -60,8 +60,9 @@ fn word<T: Serialize>(value: &T) -> String {
     serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
-fn percent(count: usize, of: usize) -> String {
-    if of == 0 { "-".to_owned() } else { format!("{:.1} %", 100.0 * count as f64 / of as f64) }
+/// A share, in percent.
+fn share(count: usize, of: usize) -> String {
+    if of == 0 { "-".to_owned() } else { format!("{:.1}", 100.0 * count as f64 / of as f64) }
 }
 
 impl Parity {
@@ -88,7 +89,7 @@ impl Parity {
             vec![
                 threshold.what.to_owned(),
                 format!("{} of {}", threshold.count, threshold.of),
-                percent(threshold.count, threshold.of),
+                format!("{} %", share(threshold.count, threshold.of)),
                 format!("{:.0} %", 100.0 * threshold.wanted),
                 if threshold.passed { "reached" } else { "missed" }.to_owned(),
             ]
@@ -120,13 +121,13 @@ impl Parity {
             header: vec![
                 "",
                 "pairs",
-                "verdict",
-                "least gap",
-                "its time",
-                "arrival",
-                "median gap diff.",
+                "verdict %",
+                "least gap %",
+                "its time %",
+                "arrival %",
+                "median gap diff. m",
                 "failed",
-                "confirmed",
+                "confirmed %",
                 "errors",
             ],
             rows,
@@ -237,13 +238,13 @@ fn group(name: &str, pairs: &[&Pair]) -> Vec<String> {
     vec![
         name.to_owned(),
         all.pairs.to_string(),
-        percent(all.same_verdict, all.pairs),
-        percent(all.same_gap, all.pairs),
-        percent(all.same_time, all.pairs),
-        percent(all.same_arrival, all.pairs),
-        format!("{:.3} m", quantile(&differences, 0.5)),
+        share(all.same_verdict, all.pairs),
+        share(all.same_gap, all.pairs),
+        share(all.same_time, all.pairs),
+        share(all.same_arrival, all.pairs),
+        format!("{:.3}", quantile(&differences, 0.5)),
         all.failed_natively.to_string(),
-        percent(all.confirmed, all.failed_natively),
+        share(all.confirmed, all.failed_natively),
         all.errors.to_string(),
     ]
 }

@@ -1,239 +1,79 @@
-//! Event frames: who did what, to whom, where, in which order; folded from the chunks of one sentence after the other.
+//! One sentence after the other: subjects find their verbs, verbs their objects.
 
+use super::Frame;
+use super::sided;
 use crate::chunk::{Chunk, Joint, Noun, Piece, Placed, Spot, chunks};
-use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Part, Progress, Relation, Sense};
+use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
+use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
 
-/// One event.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
-    /// Who; `None` where nobody is named.
-    pub who: Option<Actor>,
-    /// The part of it that is named.
-    pub with: Option<Piece>,
-    /// What.
-    pub sense: Sense,
-    /// Form of the verb.
-    pub form: Form,
-    /// To whom.
-    pub object: Option<Actor>,
-    /// The part of whom that is named.
-    pub on: Option<Piece>,
-    /// To which side.
-    pub side: Option<LeftRight>,
-    /// Where, seen from whom.
-    pub relations: Vec<(Relation, Option<Actor>)>,
-    /// A direction that belongs to it.
-    pub heading: Option<(Compass, usize, usize)>,
-    /// The direction is that of the road it goes into.
-    pub onto: bool,
-    /// Its lane.
-    pub lane: Option<(LaneWord, usize, usize)>,
-    /// Out of where.
-    pub out_of: Option<Spot>,
-    /// It did not happen.
-    pub negated: bool,
-    /// How far it came.
-    pub progress: Progress,
-    /// The words say that it stood: "was stopped", or an adjective.
-    pub state: bool,
-    /// Told of a noun in passing, not in a clause of its own.
-    pub aside: bool,
-    /// Its clause begins with this.
-    pub joint: Option<Joint>,
-    /// The second in a row "and": told of a person in the vehicle.
-    pub person: Option<Occupant>,
-    /// It is told of a noun by a relative clause or a participle.
-    pub described: bool,
-    /// The words behind a passive "by".
-    pub passive: bool,
-    /// Number of the clause in its sentence.
-    pub clause: u32,
-    /// Number of the sentence.
-    pub sentence: usize,
-    /// The sentence looks back: "prior to the collision".
-    pub looks_back: bool,
-    /// First token.
-    pub first: usize,
-    /// Token behind the last.
-    pub end: usize,
-}
-
-impl Frame {
-    /// The act of the account that it is, where it is one.
-    pub fn act(&self) -> Option<Act> {
-        match self.sense {
-            Sense::Act(act) | Sense::Sided(act, _) => Some(act),
-            Sense::Parked => Some(Act::Hold),
-            Sense::Approach => Some(Act::Follow),
-            Sense::ReverseContact => Some(Act::Reverse),
-            Sense::OpenDoorInto => Some(Act::OpenDoor),
-            Sense::Yield => None,
-            _ => None,
-        }
-    }
-
-    /// Whether it touches somebody.
-    pub fn is_contact(&self) -> bool {
-        matches!(
-            self.sense,
-            Sense::Contact | Sense::ContactMade | Sense::RearEnd | Sense::ReverseContact | Sense::OpenDoorInto
-        ) && !self.negated
-            && self.progress == Progress::Real
-    }
-
-    /// Whether it happened, or was begun.
-    pub fn happened(&self) -> bool {
-        !self.negated && self.progress != Progress::Wished
-    }
-}
-
-/// The story of one narrative.
-#[derive(Debug, Clone)]
-pub struct Story {
-    /// Tokens of the narrative.
-    pub tokens: Vec<Token>,
-    /// Its sentences.
-    pub sentences: Vec<Sentence>,
-    /// Whether a sentence is a standing phrase.
-    pub standing: Vec<bool>,
-    /// Events, in the order of the words.
-    pub frames: Vec<Frame>,
-    /// Who is in it.
-    pub world: World,
-}
-
-/// What is known of the subject vehicle beforehand.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Own<'a> {
-    /// Its kind.
-    pub kind: Option<Kind>,
-    /// The make by which the company that reports calls it.
-    pub make: Option<&'a str>,
-}
-
-/// Most tokens of a narrative that are read; the longest published one has a third of it.
-const MOST_TOKENS: usize = 6_000;
-
-/// Reads a narrative. `own`: kind of the subject vehicle, where it is known.
-pub fn story(text: &str, own: Own<'_>) -> Story {
-    let mut tokens = crate::token::tokens(text);
-    tokens.truncate(MOST_TOKENS);
-    let sentences = crate::token::sentences(&tokens);
-    let lexicon = Lexicon::get();
-    let mut standing = Vec::new();
-    let mut parser =
-        Parser { tokens: &tokens, lexicon, world: World::new(own), frames: Vec::new(), sentence: 0, looks_back: false };
-    for (number, sentence) in sentences.iter().enumerate() {
-        let words = &tokens[sentence.first..sentence.end];
-        let drop = lexicon.is_standing(words) && !tells_contact(words);
-        standing.push(drop);
-        if drop {
-            continue;
-        }
-        (parser.sentence, parser.world.sentence) = (number, number);
-        parser.looks_back = looks_back(words);
-        parser.read(*sentence);
-    }
-    let (mut frames, world) = (parser.frames, parser.world);
-    for frame in &mut frames {
-        // Nobody touches itself.
-        if frame.is_contact() && frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
-            frame.who = None;
-        }
-    }
-    Story { tokens, sentences, standing, frames, world }
-}
-
-/// A sentence with a standing phrase in it may tell the crash all the same.
-fn tells_contact(words: &[Token]) -> bool {
-    let tells = |phrase: &str| {
-        let phrase: Vec<String> = phrase.split(' ').map(str::to_owned).collect();
-        crate::lexicon::find(&phrase, words).is_some()
-    };
-    tells("made contact") || tells("struck") || tells("collided") || tells("rear ended") || tells("collision involving")
-}
-
-fn looks_back(words: &[Token]) -> bool {
-    let text: Vec<&str> = words.iter().take(8).map(|token| token.text.as_str()).collect();
-    let of_crash = text
-        .iter()
-        .any(|word| matches!(*word, "collision" | "incident" | "impact" | "crash" | "event" | "contact" | "accident"));
-    matches!(
-        text.as_slice(),
-        ["prior" | "before" | "immediately" | "just" | "leading" | "moments" | "shortly" | "seconds", ..]
-    ) && of_crash
-        && text.iter().any(|word| matches!(*word, "prior" | "before" | "up"))
-}
-
-struct Parser<'a> {
-    tokens: &'a [Token],
-    lexicon: &'static Lexicon,
-    world: World,
-    frames: Vec<Frame>,
-    sentence: usize,
-    looks_back: bool,
+pub(super) struct Parser<'a> {
+    pub(super) tokens: &'a [Token],
+    pub(super) lexicon: &'static Lexicon,
+    pub(super) world: World,
+    pub(super) frames: Vec<Frame>,
+    pub(super) sentence: usize,
+    pub(super) looks_back: bool,
 }
 
 /// What is carried from chunk to chunk.
 #[derive(Default)]
-struct Carry {
+pub(super) struct Carry {
     /// Who the clause is about.
-    subject: Option<Mention>,
+    pub(super) subject: Option<Mention>,
     /// It has its verb.
-    has_verb: bool,
+    pub(super) has_verb: bool,
     /// Who the sentence is about.
-    main: Option<Mention>,
+    pub(super) main: Option<Mention>,
     /// Noun named last.
-    last: Option<Mention>,
+    pub(super) last: Option<Mention>,
     /// The noun named last stands behind a preposition or a relation.
-    governed: bool,
+    pub(super) governed: bool,
     /// Frame that takes what follows.
-    frame: Option<usize>,
+    pub(super) frame: Option<usize>,
     /// Preposition or relation that waits for its noun.
-    preposition: Option<&'static str>,
-    relation: Option<Relation>,
-    be: bool,
-    negated: bool,
-    progress: Option<Progress>,
-    to: bool,
-    joint: Option<Joint>,
-    relative: bool,
+    pub(super) preposition: Option<&'static str>,
+    pub(super) relation: Option<Relation>,
+    pub(super) be: bool,
+    pub(super) negated: bool,
+    pub(super) progress: Option<Progress>,
+    pub(super) to: bool,
+    pub(super) joint: Option<Joint>,
+    pub(super) relative: bool,
     /// Who the clause around a relative clause is about, where it still waits for its verb.
-    outer: Option<Mention>,
-    after_comma: bool,
+    pub(super) outer: Option<Mention>,
+    pub(super) after_comma: bool,
     /// Who began, tried or wished what the next verb tells.
-    lead_who: Option<Mention>,
+    pub(super) lead_who: Option<Mention>,
     /// Number of the clause.
-    clause: u32,
+    pub(super) clause: u32,
     /// "and" stands between the last verb and the next.
-    row: bool,
+    pub(super) row: bool,
     /// Who the relative clause before the comma was about.
-    described: Option<Mention>,
+    pub(super) described: Option<Mention>,
     /// The first of two subjects joined by "and".
-    also: Option<Mention>,
+    pub(super) also: Option<Mention>,
     /// Frames whose subject is named later: "While stopped, the van ..."
-    pending: Vec<usize>,
+    pub(super) pending: Vec<usize>,
     /// Tokens of the last progress word.
-    began: bool,
+    pub(super) began: bool,
     /// The clause begins here, and nothing but small words stood in it.
-    fresh: bool,
-    pushed: bool,
+    pub(super) fresh: bool,
+    pub(super) pushed: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Mention {
-    actor: Actor,
-    piece: Option<Piece>,
-    person: Option<Occupant>,
+pub(super) struct Mention {
+    pub(super) actor: Actor,
+    pub(super) piece: Option<Piece>,
+    pub(super) person: Option<Occupant>,
     /// Token behind it.
-    end: usize,
+    pub(super) end: usize,
 }
 
 impl Parser<'_> {
-    fn read(&mut self, sentence: Sentence) {
+    pub(super) fn read(&mut self, sentence: Sentence) {
         let all = chunks(self.tokens, sentence.first, sentence.end);
         let mut carry = Carry { fresh: true, ..Carry::default() };
         for at in 0..all.len() {
@@ -380,7 +220,7 @@ impl Parser<'_> {
         }
     }
 
-    fn frame(&self, who: Option<Actor>, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> Frame {
+    pub(super) fn frame(&self, who: Option<Actor>, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> Frame {
         Frame {
             who,
             with: None,
@@ -492,343 +332,20 @@ impl Parser<'_> {
         carry.fresh = false;
     }
 
-    /// A part whose owner is not said: "made contact with the rear bumper".
-    fn loose_piece(&mut self, piece: &Piece, placed: &Placed, carry: &mut Carry) {
-        let Some(frame) = carry.frame else {
-            return;
-        };
-        let touches =
-            matches!(self.frames[frame].sense, Sense::Contact | Sense::ContactMade | Sense::Damage | Sense::RearEnd);
-        if touches && self.frames[frame].on.is_none() {
-            self.frames[frame].on = Some(piece.clone());
-            self.frames[frame].end = placed.end;
-        }
-        (carry.preposition, carry.relation) = (None, None);
-    }
-
-    /// A noun behind a preposition.
-    fn object_of(&mut self, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
-        let Some(frame) = carry.frame else { return };
-        let actor = mention.actor;
-        let sense = self.frames[frame].sense;
-        match preposition {
-            "by" if sense == Sense::Tow => {
-                if let Some(towed) = self.frames[frame].who {
-                    self.world.tow(actor, towed);
-                    if self.world.actors[towed].announced {
-                        self.world.actors[actor].announced = true;
-                    }
-                    self.frames[frame].object = Some(towed);
-                    self.frames[frame].who = Some(actor);
-                }
-            }
-            "by" => {
-                let taken = &mut self.frames[frame];
-                let passive = taken.form == Form::Past
-                    && matches!(
-                        taken.sense,
-                        Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
-                    )
-                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass)) && taken.passive;
-                if passive {
-                    if !matches!(taken.sense, Sense::ContactMade) && taken.object.is_none() {
-                        taken.object = taken.who;
-                        taken.on = taken.with.take();
-                    }
-                    taken.who = Some(actor);
-                    taken.with.clone_from(&mention.piece);
-                    (taken.passive, taken.end) = (true, placed.end);
-                    if let (Sense::Act(Act::Follow), Some(followed)) = (taken.sense, taken.object) {
-                        self.follows(Some(actor), followed);
-                    }
-                    if carry.relative || carry.subject.is_some() {
-                        carry.governed = true;
-                    }
-                }
-            }
-            "into" | "onto" | "with" | "against" | "between" | "and" | "upon" | "on" | "at" | "to" => {
-                if sense == Sense::Push && preposition != "with" {
-                    // Pushed into somebody: who was pushed touches them.
-                    let pushed = self.frames[frame].object;
-                    let placed_frame = Placed { chunk: Chunk::Word, first: self.frames[frame].first, end: placed.end };
-                    let mut contact = self.frame(pushed, Sense::Contact, Form::Past, &placed_frame, carry);
-                    contact.object = Some(actor);
-                    contact.on.clone_from(&mention.piece);
-                    contact.progress = Progress::Real;
-                    self.frames.push(contact);
-                    return;
-                }
-                let taken = &mut self.frames[frame];
-                let contact = matches!(
-                    taken.sense,
-                    Sense::Contact | Sense::ContactMade | Sense::ReverseContact | Sense::OpenDoorInto | Sense::RearEnd
-                );
-                if matches!(taken.sense, Sense::ContactMade) && taken.who.is_none() && preposition == "between" {
-                    taken.who = Some(actor);
-                    taken.with.clone_from(&mention.piece);
-                } else if (contact || taken.sense == Sense::Headline)
-                    && taken.object.is_none()
-                    && taken.who != Some(actor)
-                {
-                    taken.object = Some(actor);
-                    taken.on.clone_from(&mention.piece);
-                    taken.end = placed.end;
-                    if taken.sense == Sense::Headline && actor != SUBJECT {
-                        self.world.actors[actor].announced = true;
-                    }
-                } else if taken.sense == Sense::Yield && taken.object.is_none() {
-                    taken.object = Some(actor);
-                } else if contact && taken.object == Some(actor) && taken.on.is_none() {
-                    taken.on.clone_from(&mention.piece);
-                    taken.end = placed.end;
-                } else if matches!(
-                    taken.act(),
-                    Some(
-                        Act::Swerve
-                            | Act::Drift
-                            | Act::Turn
-                            | Act::LaneChange
-                            | Act::Reverse
-                            | Act::Roll
-                            | Act::Fall
-                            | Act::Slow
-                    )
-                ) && taken.object.is_none()
-                {
-                    taken.object = Some(actor);
-                }
-            }
-            "for"
-                if matches!(sense, Sense::Act(Act::Stop | Act::Hold))
-                    && self.frames[frame].who == Some(SUBJECT)
-                    && self.world.actors[actor].kind.is_some_and(Kind::is_vehicle)
-                    && !self.world.actors[actor].several =>
-            {
-                self.note(actor, Relation::Ahead);
-                self.frames[frame].object.get_or_insert(actor);
-            }
-            "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
-                let taken = &mut self.frames[frame];
-                if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
-                    taken.object = Some(actor);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// Where somebody is: of the frame, or of the noun before.
-    fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &Carry) {
-        let mut who = None;
-        if let Some(frame) = carry.frame {
-            // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
-            let of_object = carry.last.is_some() && carry.governed_object(&self.frames[frame]);
-            if of_object {
-                who = carry.last.as_ref().map(|last| last.actor);
-            } else {
-                self.frames[frame].relations.push((relation, to));
-                who = self.frames[frame].who;
-            }
-        } else if let Some(subject) = &carry.subject {
-            who = Some(subject.actor);
-        }
-        let Some(who) = who else { return };
-        match to {
-            Some(SUBJECT) | None if who != SUBJECT => self.note(who, relation),
-            Some(other) if who == SUBJECT && other != SUBJECT => {
-                let turned = match relation {
-                    Relation::Behind => Relation::Ahead,
-                    Relation::Ahead => Relation::Behind,
-                    Relation::Left => Relation::Right,
-                    Relation::Right => Relation::Left,
-                    same => same,
-                };
-                self.note(other, turned);
-            }
-            _ => {}
-        }
-    }
-
-    fn follows(&mut self, who: Option<Actor>, whom: Actor) {
-        match who {
-            Some(SUBJECT) if whom != SUBJECT => self.note(whom, Relation::Ahead),
-            Some(who) if whom == SUBJECT && who != SUBJECT => self.note(who, Relation::Behind),
-            _ => {}
-        }
-    }
-
-    fn note(&mut self, actor: Actor, relation: Relation) {
-        self.world.actors[actor].place(relation, self.sentence);
-    }
-
-    fn relation(&mut self, relation: Relation, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
-        let governs = match next {
-            Some(Chunk::Noun(_) | Chunk::Pronoun) => true,
-            Some(Chunk::Piece(piece)) => piece.owner.is_some() || piece.its,
-            _ => false,
-        };
-        // "behind [XXX]", "next to the mall": places.
-        let last = self.tokens[placed.end - 1].text.as_str();
-        let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
-            || (last == "behind" && placed.end == placed.first + 1);
-        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) {
-            return;
-        }
-        // "to the left" is a side of what is done there, or a place.
-        let side = match relation {
-            Relation::Left => Some(LeftRight::Left),
-            Relation::Right => Some(LeftRight::Right),
-            _ => None,
-        };
-        // "pulled out of a driveway on the right", "merged from a ramp on the right": a place, and no side.
-        let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in");
-        let stays = |act: Option<Act>| match act {
-            Some(Act::Park | Act::PullOver) => governs,
-            Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn) => {
-                located || (act == Some(Act::PullOut) && governs)
-            }
-            _ => false,
-        };
-        if let (Some(side), Some(frame)) = (side, carry.frame)
-            && self.frames[frame].act().is_some_and(sided)
-            && !stays(self.frames[frame].act())
-            && self.frames[frame].sense != Sense::Parked
-            && self.frames[frame].side.is_none()
-        {
-            self.frames[frame].side = Some(side);
-            self.frames[frame].end = placed.end;
-            if governs {
-                carry.relation = None;
-                carry.preposition = Some("around");
-            }
-            return;
-        }
-        if governs {
-            carry.relation = Some(relation);
-            carry.preposition = None;
-        } else {
-            self.relate(relation, None, carry);
-        }
-    }
-
-    /// "on the left side of the roadway".
-    fn of_road(&self, at: usize) -> bool {
-        self.tokens.get(at..(at + 3).min(self.tokens.len())).unwrap_or_default().iter().any(|token| {
-            matches!(token.text.as_str(), "road" | "roadway" | "street" | "alley" | "driveway" | "lane" | "highway")
-        })
-    }
-
-    fn compass(&mut self, compass: Compass, placed: &Placed, carry: &mut Carry) {
-        let stands = (compass, placed.first, placed.end);
-        let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
-        let from = carry.preposition == Some("from");
-        carry.preposition = None;
-        // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
-        match carry.frame {
-            Some(frame) => {
-                let taken = &mut self.frames[frame];
-                if let (true, Some(who)) = (from, taken.who) {
-                    self.world.actors[who].heading.get_or_insert(stands);
-                    return;
-                }
-                let turns =
-                    matches!(taken.act(), Some(Act::Turn | Act::UTurn | Act::PullOut | Act::Enter | Act::LaneChange));
-                if taken.heading.is_none() {
-                    taken.heading = Some(stands);
-                    taken.onto = onto || (turns && taken.act() != Some(Act::Enter));
-                }
-                let (who, onto) = (taken.who, taken.onto);
-                if let (Some(who), false) = (who, onto) {
-                    self.world.actors[who].heading.get_or_insert(stands);
-                }
-            }
-            None => {
-                if let Some(subject) = &carry.subject {
-                    self.world.actors[subject.actor].heading.get_or_insert(stands);
-                }
-            }
-        }
-    }
-
-    fn side(&mut self, side: LeftRight, carry: &Carry) {
-        if let Some(frame) = carry.frame
-            && self.frames[frame].act().is_some_and(sided)
-            && self.frames[frame].side.is_none()
-        {
-            self.frames[frame].side = Some(side);
-        }
-    }
-
-    fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {
-        let into = matches!(carry.preposition, Some("into" | "onto" | "to")) || carry.to;
-        let from = carry.preposition == Some("from");
-        (carry.preposition, carry.to) = (None, false);
-        let stands = (lane, placed.first, placed.end);
-        let Some(frame) = carry.frame else {
-            if let Some(subject) = &carry.subject {
-                self.world.actors[subject.actor].lane.get_or_insert(stands);
-            }
-            return;
-        };
-        let side = match lane {
-            LaneWord::Left | LaneWord::LeftTurn => Some(LeftRight::Left),
-            LaneWord::Right | LaneWord::RightTurn => Some(LeftRight::Right),
-            _ => None,
-        };
-        let taken = &mut self.frames[frame];
-        let moves = matches!(taken.act(), Some(Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter));
-        if moves && taken.side.is_none() && side.is_some() && !from {
-            taken.side = side;
-            return;
-        }
-        if moves && from && taken.side.is_none() && side.is_some() {
-            taken.side = side.map(LeftRight::other);
-        }
-        taken.lane.get_or_insert(stands);
-        let who = taken.who;
-        if let Some(who) = who.filter(|_| !into || from) {
-            self.world.actors[who].lane.get_or_insert(stands);
-        }
-    }
-
-    fn spot(&mut self, spot: Spot, carry: &mut Carry) {
-        let word = carry.preposition.take();
-        carry.to = false;
-        let Some(frame) = carry.frame else { return };
-        let taken = &mut self.frames[frame];
-        let moves = matches!(
-            taken.act(),
-            Some(
-                Act::Reverse
-                    | Act::PullOut
-                    | Act::Enter
-                    | Act::Follow
-                    | Act::SetOff
-                    | Act::Turn
-                    | Act::Drift
-                    | Act::Cross
-                    | Act::Swerve
-                    | Act::Accelerate
-            )
-        ) || taken.sense == Sense::Approach;
-        let says_out = (taken.first..taken.end).any(|at| self.tokens[at].text == "out");
-        let leaves = match word {
-            Some("out") => moves || taken.sense == Sense::Other,
-            Some("from") => moves,
-            Some("of") => moves && says_out,
-            Some("into" | "onto" | "to" | "in" | "at" | "on" | "near" | "through" | "towards" | "toward") => false,
-            _ => matches!(taken.act(), Some(Act::PullOut | Act::Reverse)),
-        };
-        if leaves && taken.happened() {
-            taken.out_of.get_or_insert(spot);
-        }
-    }
-
     fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
-        let next = behind.first().map(|placed| &placed.chunk);
+        let next = behind
+            .iter()
+            .take(3)
+            .map(|placed| &placed.chunk)
+            .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
         // "between the van and a parked car": the second of a pair, and no new clause.
         let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
-        let ends = behind.get(1).is_none_or(|placed| matches!(placed.chunk, Chunk::Comma | Chunk::Joint(_)));
+        let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
+            Chunk::Comma => true,
+            // "and the van then reversed" is a clause of its own.
+            Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
+            _ => false,
+        });
         if joint == Joint::And && noun && ends && carry.has_verb {
             carry.preposition = Some("and");
             return;
@@ -921,9 +438,13 @@ impl Parser<'_> {
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
+        frame.person = who.as_ref().and_then(|mention| mention.person);
+        if sense == Sense::TakeOver && frame.person == Some(Occupant::Driver) {
+            frame.who = Some(SUBJECT);
+            self.world.own_driver = true;
+        }
         frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject;
         frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
-        frame.person = who.as_ref().and_then(|mention| mention.person);
         // "a van parked on the left began to move": the first verb describes, the second one tells.
         let bare = placed.end == placed.first + 1;
         let describes =
@@ -1143,7 +664,7 @@ impl Carry {
     }
 
     /// Whether the noun named last is the object of this frame, and not who does it.
-    fn governed_object(&self, frame: &Frame) -> bool {
+    pub(super) fn governed_object(&self, frame: &Frame) -> bool {
         let Some(last) = &self.last else { return false };
         frame.object == Some(last.actor)
             && frame.who != Some(last.actor)
@@ -1163,7 +684,7 @@ fn acts(kind: Option<Kind>) -> bool {
 }
 
 /// Whether the verb takes an object.
-fn transitive(sense: Sense) -> bool {
+pub(super) fn transitive(sense: Sense) -> bool {
     matches!(
         sense,
         Sense::Contact
@@ -1181,22 +702,6 @@ fn transitive(sense: Sense) -> bool {
             | Sense::Other
             | Sense::Tow
             | Sense::Act(Act::Pass | Act::Follow | Act::LaneChange | Act::OpenDoor | Act::Cross | Act::Slow)
-    )
-}
-
-/// Whether an act goes to a side.
-pub fn sided(act: Act) -> bool {
-    matches!(
-        act,
-        Act::Turn
-            | Act::UTurn
-            | Act::LaneChange
-            | Act::Drift
-            | Act::Swerve
-            | Act::Pass
-            | Act::PullOver
-            | Act::PullOut
-            | Act::Park
     )
 }
 
@@ -1236,25 +741,4 @@ fn relation_behind(all: &[Placed], at: usize, _world: &World) -> Option<Relation
         (Chunk::Relation(relation), Some(Chunk::Noun(noun))) if noun.subject => Some(*relation),
         _ => None,
     }
-}
-
-/// The zone that the words of a part name.
-pub fn zone_of(piece: &Piece) -> Option<recrash_model::zones::ContactZone> {
-    use recrash_model::zones::ContactZone as Z;
-    let has = |part: Part| piece.parts.contains(&part);
-    let (front, rear) = (has(Part::Front), has(Part::Rear));
-    let (left, right) = (has(Part::Left), has(Part::Right));
-    Some(match (front && !rear, rear && !front, left && !right, right && !left) {
-        (true, _, true, _) => Z::FrontLeft,
-        (true, _, _, true) => Z::FrontRight,
-        (_, true, true, _) => Z::RearLeft,
-        (_, true, _, true) => Z::RearRight,
-        (true, ..) => Z::Front,
-        (_, true, ..) => Z::Rear,
-        (_, _, true, _) => Z::Left,
-        (_, _, _, true) => Z::Right,
-        _ if has(Part::Top) => Z::Top,
-        _ if has(Part::Bottom) => Z::Bottom,
-        _ => return None,
-    })
 }

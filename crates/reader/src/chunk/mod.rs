@@ -1,0 +1,468 @@
+//! Tokens of one sentence into chunks: who is named, verbs, where, lanes, and the small words between them.
+
+mod noun;
+mod places;
+
+use crate::lexicon::{Adjective, Form, Lexicon, Meaning, Occupant, Part, Relation, Sense};
+use crate::token::{Token, TokenKind};
+use recrash_model::account::{Compass, Kind, KindGroup, LaneWord, LeftRight};
+
+/// How a noun is introduced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Article {
+    /// `the`, `this`, `its`.
+    Definite,
+    /// `a`, `an`, `one`.
+    Indefinite,
+    /// Nothing.
+    None,
+}
+
+/// Somebody or something that is named.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noun {
+    /// Article.
+    pub article: Article,
+    /// It is the subject vehicle.
+    pub subject: bool,
+    /// Kind.
+    pub kind: Option<Kind>,
+    /// The number of `Vehicle 2`.
+    pub number: Option<u8>,
+    /// Makes and colours, to know it again by.
+    pub names: Vec<String>,
+    /// Adjectives.
+    pub adjectives: Vec<Adjective>,
+    /// Direction, as in "an eastbound van".
+    pub compass: Option<Compass>,
+    /// More than one.
+    pub several: bool,
+    /// Somebody in a vehicle.
+    pub occupant: Option<(Occupant, bool)>,
+    /// The vehicle of somebody, or of a part.
+    pub owner: Option<Box<Noun>>,
+}
+
+/// A part of a vehicle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// What the words say.
+    pub parts: Vec<Part>,
+    /// It is a door.
+    pub door: bool,
+    /// It is open, or opened.
+    pub open: bool,
+    /// Whose; `None` where that is not said.
+    pub owner: Option<Noun>,
+    /// `its`.
+    pub its: bool,
+}
+
+/// A chunk of a sentence.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Chunk {
+    /// Somebody or something.
+    Noun(Noun),
+    /// A part.
+    Piece(Piece),
+    /// A verb.
+    Verb(Sense, Form),
+    /// Where.
+    Relation(Relation),
+    /// A direction.
+    Compass(Compass),
+    /// To the left or right, with nothing behind it.
+    Side(LeftRight),
+    /// A lane.
+    Lane(LaneWord),
+    /// A place that somebody comes out of, or goes into.
+    Spot(Spot),
+    /// `it`, `they`.
+    Pronoun,
+    /// `that`, `which`, `who`.
+    Relative,
+    /// A form of `be`.
+    Be,
+    /// `to` before a verb, and the like.
+    Preposition(&'static str),
+    /// A word that joins clauses.
+    Joint(Joint),
+    /// `not`, `without`, `failed to`.
+    Not,
+    /// A comma.
+    Comma,
+    /// Any other word.
+    Word,
+}
+
+/// Places beside the road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spot {
+    /// A stall.
+    Stall,
+    /// A driveway, a garage, a lot, an alley.
+    Driveway,
+    /// The kerb.
+    Curb,
+    /// A sidewalk.
+    Sidewalk,
+    /// A crossing road.
+    SideStreet,
+}
+
+/// Words that join clauses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Joint {
+    /// `and`, `then`, `but`.
+    And,
+    /// `when`, `as`, `while`.
+    While,
+    /// `after`, `once`.
+    After,
+    /// `before`, `until`.
+    Before,
+    /// `because`.
+    Because,
+}
+
+/// A chunk and its tokens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed {
+    /// The chunk.
+    pub chunk: Chunk,
+    /// First token.
+    pub first: usize,
+    /// Token behind the last.
+    pub end: usize,
+}
+
+const PREPOSITIONS: [&str; 28] = [
+    "to", "of", "with", "by", "on", "in", "at", "into", "onto", "for", "from", "through", "between", "against",
+    "across", "around", "past", "over", "under", "within", "near", "out", "along", "off", "up", "upon", "toward",
+    "towards",
+];
+
+const DETERMINERS: [&str; 14] =
+    ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
+
+/// Most tokens that name one part.
+const LONGEST_PIECE: usize = 14;
+
+const COLOURS: [&str; 14] = [
+    "white", "black", "red", "blue", "silver", "gray", "grey", "green", "yellow", "orange", "brown", "tan", "gold",
+    "beige",
+];
+
+/// Splits a sentence into chunks.
+pub fn chunks(tokens: &[Token], first: usize, end: usize) -> Vec<Placed> {
+    let chunker = Chunker { lexicon: Lexicon::get(), tokens: &tokens[..end], first };
+    let mut all: Vec<Placed> = Vec::new();
+    let mut at = first;
+    while at < end {
+        let (chunk, length) = chunker.next(at, &all);
+        let next = at + length.max(1);
+        if let Some(chunk) = chunk {
+            all.push(Placed { chunk, first: at, end: next });
+            give_owner(&mut all, tokens);
+        }
+        at = next;
+    }
+    all
+}
+
+/// "the van's rear bumper", "the van rear bumper": the noun before a part is whose part it is.
+fn give_owner(all: &mut Vec<Placed>, tokens: &[Token]) {
+    let [.., before, last] = all.as_slice() else { return };
+    let Chunk::Piece(piece) = &last.chunk else { return };
+    let determined = DETERMINERS.contains(&tokens[last.first].text.as_str());
+    if piece.owner.is_some() || piece.its || determined {
+        return;
+    }
+    let possessive = tokens[before.first].text == "'s";
+    let noun = if possessive { all.len().checked_sub(3).map(|at| &all[at]) } else { Some(before) };
+    let Some(Placed { chunk: Chunk::Noun(noun), first, end }) = noun else { return };
+    let adjacent = possessive || *end == last.first;
+    if !adjacent || noun.occupant.is_some() {
+        return;
+    }
+    let merged = Placed {
+        // "the cars rear bumper" is one car's.
+        chunk: Chunk::Piece(Piece { owner: Some(Noun { several: false, ..noun.clone() }), ..piece.clone() }),
+        first: *first,
+        end: last.end,
+    };
+    all.truncate(all.len() - if possessive { 3 } else { 2 });
+    all.push(merged);
+}
+
+struct Chunker<'a> {
+    lexicon: &'static Lexicon,
+    tokens: &'a [Token],
+    first: usize,
+}
+
+impl Chunker<'_> {
+    fn text(&self, at: usize) -> &str {
+        self.tokens.get(at).map_or("", |token| token.text.as_str())
+    }
+
+    fn next(&self, at: usize, before: &[Placed]) -> (Option<Chunk>, usize) {
+        let token = &self.tokens[at];
+        if token.kind == TokenKind::Mark {
+            return match token.text.as_str() {
+                "(" => (None, self.parenthesis(at)),
+                "," | ":" => (Some(Chunk::Comma), 1),
+                _ => (None, 1),
+            };
+        }
+        if let Some((lane, length)) = self.lane(at) {
+            return (Some(Chunk::Lane(lane)), length);
+        }
+        if let Some(length) = self.run_in_words(at) {
+            return (Some(Chunk::Not), length);
+        }
+        let joins = self.joint(at);
+        if let Some((joint, length)) = joins {
+            return (Some(Chunk::Joint(joint)), length);
+        }
+        let relation = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(_)));
+        let relation = relation.filter(|found| !self.is_no_relation(at, found.length));
+        let verb = self.verb(at, before);
+        let piece = self.piece(at);
+        let noun = self.noun(at);
+        let spot = self.spot(at);
+        let candidates = [
+            relation.map(|found| found.length),
+            verb.map(|(_, _, length)| length),
+            piece.as_ref().map(|(_, length)| *length),
+            noun.as_ref().map(|(_, length)| *length),
+            spot.map(|(_, length)| length),
+        ];
+        let longest = candidates.iter().flatten().copied().max().unwrap_or(0);
+        if longest > 0 {
+            if let (Some(found), Some(length)) = (relation, candidates[0])
+                && length == longest
+                && let Meaning::Relation(relation) = found.meaning
+            {
+                return (Some(Chunk::Relation(relation)), length);
+            }
+            if let Some((spot, length)) = spot.filter(|(_, length)| *length == longest) {
+                return (Some(Chunk::Spot(spot)), length);
+            }
+            if let Some((sense, form, length)) = verb.filter(|(_, _, length)| *length == longest) {
+                return (Some(Chunk::Verb(sense, form)), length);
+            }
+            let thing = noun.as_ref().is_some_and(|(noun, length)| {
+                *length == longest && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
+            });
+            if let Some((piece, length)) =
+                piece.filter(|(piece, length)| *length == longest && (piece.owner.is_some() || !thing))
+            {
+                return (Some(Chunk::Piece(piece)), length);
+            }
+            if let Some((noun, length)) = noun {
+                return (Some(Chunk::Noun(noun)), length);
+            }
+        }
+        if let Some((compass, length)) = self.compass(at) {
+            return (Some(Chunk::Compass(compass)), length);
+        }
+        self.small_word(at)
+    }
+
+    fn small_word(&self, at: usize) -> (Option<Chunk>, usize) {
+        let word = self.text(at);
+        let chunk = match word {
+            "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
+            "that" | "which" | "who" | "whom" => Chunk::Relative,
+            "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
+            "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
+            | "avoiding" | "avoided" => Chunk::Not,
+            "fail" | "failed" | "failing" | "fails" | "refused" => Chunk::Not,
+            "left" | "leftward" | "leftwards" => Chunk::Side(LeftRight::Left),
+            "right" | "rightward" | "rightwards" => Chunk::Side(LeftRight::Right),
+            _ => match PREPOSITIONS.iter().find(|known| **known == word) {
+                Some(known) => Chunk::Preposition(known),
+                None => Chunk::Word,
+            },
+        };
+        (Some(chunk), 1)
+    }
+
+    fn joint(&self, at: usize) -> Option<(Joint, usize)> {
+        let next = self.text(at + 1);
+        if next == "go" && at > self.first && self.text(at - 1) == "stop" {
+            return None;
+        }
+        Some(match self.text(at) {
+            "and" | "then" | "but" | "however" | "subsequently" | "or" => (Joint::And, 1),
+            "when" | "as" | "while" | "whereupon" | "during" => (Joint::While, 1),
+            "after" | "once" => (Joint::After, 1),
+            "following" if matches!(next, "the" | "this") && at == self.first => (Joint::After, 1),
+            "before" | "until" => (Joint::Before, 1),
+            "prior" if next == "to" => (Joint::Before, 2),
+            "because" | "due" | "since" => (Joint::Because, 1),
+            _ => return None,
+        })
+    }
+
+    /// `failed to`, `did not`, `without` are one negation each.
+    fn run_in_words(&self, at: usize) -> Option<usize> {
+        let (one, two) = (self.text(at), self.text(at + 1));
+        match one {
+            "did" | "does" | "do" | "was" | "were" | "is" | "could" | "would" | "had" | "has" | "have"
+                if two == "not" =>
+            {
+                Some(2)
+            }
+            "fail" | "failed" | "failing" | "unable" if two == "to" => Some(2),
+            "rather" if two == "than" => Some(2),
+            "instead" if two == "of" => Some(2),
+            _ => None,
+        }
+    }
+
+    /// "on the right front of the van" is a part, "from the right lane" a lane.
+    fn is_no_relation(&self, at: usize, length: usize) -> bool {
+        let (last, behind) = (self.text(at + length - 1), at + length);
+        let side = matches!(last, "left" | "right");
+        let part = self
+            .part(behind)
+            .is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));
+        side && (part || matches!(self.text(behind), "lane" | "lanes" | "turn" | "most"))
+    }
+
+    fn parenthesis(&self, at: usize) -> usize {
+        (at + 1..self.tokens.len().min(at + 40)).find(|&end| self.text(end) == ")").map_or(1, |end| end + 1 - at)
+    }
+
+    /// The number of "(Vehicle 2)" behind a noun that ends here.
+    fn alias(&self, at: usize) -> Option<u8> {
+        if self.text(at) != "(" {
+            return None;
+        }
+        let inside: Vec<&str> = (at + 1..at + 5).map(|at| self.text(at)).collect();
+        let number = match inside.as_slice() {
+            ["vehicle" | "unit" | "v", number, ")", ..] => number,
+            [one, ")", ..] => one.strip_prefix('v')?,
+            _ => return None,
+        };
+        number.parse().ok()
+    }
+
+    fn verb(&self, at: usize, before: &[Placed]) -> Option<(Sense, Form, usize)> {
+        let token = &self.tokens[at];
+        if token.capital && at > self.first {
+            return None;
+        }
+        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
+        let Meaning::Verb(sense, form) = found.meaning else { return None };
+        let word_before = if at > self.first { self.text(at - 1) } else { "" };
+        // Behind an article or an adjective it is a noun: "the stop", "a lane change", "initial contact".
+        let article = DETERMINERS.contains(&word_before) && word_before != "that" && word_before != "this";
+        let adjective = matches!(
+            word_before,
+            "left"
+                | "right"
+                | "complete"
+                | "full"
+                | "initial"
+                | "first"
+                | "second"
+                | "this"
+                | "unprotected"
+                | "physical"
+                | "rear"
+                | "front"
+                | "of"
+                | "'s"
+                | "light"
+                | "hard"
+                | "minor"
+                | "lane"
+                | "no"
+                | "any"
+                | "further"
+                | "secondary"
+                | "three"
+                | "u"
+        );
+        let single = found.length == 1;
+        if form == Form::Base && !self.takes_base(at, before) {
+            return None;
+        }
+        if sense == Sense::ContactMade {
+            return Some((sense, form, found.length));
+        }
+        if article && (form == Form::Base || single) {
+            return None;
+        }
+        if adjective && form == Form::Base && single {
+            return None;
+        }
+        if matches!(word_before, "left" | "right") && matches!(self.text(at), "turn" | "turns" | "turning") && single {
+            return None;
+        }
+        // A bare noun at the end of a prepositional phrase: "in contact", "under braking", "without impact".
+        let behind_preposition =
+            matches!(before.last().map(|placed| &placed.chunk), Some(Chunk::Preposition(word)) if *word != "to");
+        if behind_preposition && form == Form::Base && single {
+            return None;
+        }
+        // "right turn" as a noun: "during the right turn".
+        if matches!(self.text(at), "left" | "right")
+            && matches!(self.text(at + 1), "turn")
+            && found.length == 2
+            && form == Form::Base
+        {
+            return None;
+        }
+        // "parking lot", "driving lane", "parking space" are places.
+        if matches!(self.text(at), "parking") && self.spot(at).is_some() {
+            return None;
+        }
+        if matches!(self.text(at), "traveling" | "driving" | "turning" | "merging")
+            && matches!(self.text(at + 1), "lane" | "lanes")
+        {
+            return None;
+        }
+        if self.text(at) == "back"
+            && matches!(self.text(at + 1), "to" | "onto" | "into" | "of" | "pain" | "injury")
+            && single
+        {
+            return None;
+        }
+        if self.text(at) == "cross" && matches!(self.text(at + 1), "traffic" | "street" | "road" | "walk") {
+            return None;
+        }
+        if self.text(at) == "contacts" || (self.text(at) == "stop" && self.text(at + 1) == "sign") {
+            return None;
+        }
+        Some((sense, form, found.length))
+    }
+
+    /// A base form is a verb only behind the words that call for one: "to stop", "did not stop", "to stop and wait".
+    fn takes_base(&self, at: usize, before: &[Placed]) -> bool {
+        let Some(word) = at.checked_sub(1).filter(|before| *before >= self.first).map(|at| self.text(at)) else {
+            return false;
+        };
+        if word == "to"
+            && at >= 2
+            && matches!(self.text(at - 2), "prior" | "leading" | "due" | "led" | "subsequent" | "up" | "response")
+        {
+            return false;
+        }
+        if word.ends_with("ly") && at >= 2 && self.text(at - 2) == "to" {
+            return true;
+        }
+        match word {
+            "to" | "not" | "had" | "has" | "have" | "will" | "would" | "could" | "can" | "may" | "might" | "should"
+            | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"
+            | "safely" => true,
+            "and" | "or" => {
+                before.iter().rev().skip(1).take(4).any(|placed| matches!(placed.chunk, Chunk::Verb(_, Form::Base)))
+            }
+            _ => false,
+        }
+    }
+}

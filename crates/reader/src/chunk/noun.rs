@@ -1,0 +1,455 @@
+//! Who or what is named, and parts of vehicles.
+
+use super::{Article, COLOURS, Chunker, DETERMINERS, LONGEST_PIECE, Noun, Piece};
+use crate::lexicon::{Adjective, Meaning, Part};
+use crate::token::TokenKind;
+use recrash_model::account::{Kind, KindGroup};
+
+impl Chunker<'_> {
+    /// A part of a vehicle, with whose it is.
+    pub(super) fn piece(&self, first: usize) -> Option<(Piece, usize)> {
+        let mut at = first;
+        let mut its = false;
+        if DETERMINERS.contains(&self.text(at)) {
+            its = matches!(self.text(at), "its" | "their" | "his" | "her");
+            at += 1;
+        }
+        let (mut parts, mut door, mut open, mut nouns) = (Vec::new(), false, false, 0);
+        let mut last_joined = at;
+        while at < self.tokens.len().min(first + LONGEST_PIECE) {
+            let word = self.text(at);
+            if matches!(word, "open" | "opened" | "opening") && self.tokens.get(at + 1).is_some() {
+                (open, at) = (true, at + 1);
+                continue;
+            }
+            if word == "and" && !parts.is_empty() && self.part(at + 1).is_some() && self.noun(at + 1).is_none() {
+                at += 1;
+                continue;
+            }
+            let Some((part, length)) = self.part(at) else { break };
+            door |= (at..at + length).any(|at| matches!(self.text(at), "door" | "doors"));
+            nouns +=
+                usize::from(part == Part::Noun || (at..at + length).any(|at| matches!(self.text(at), "side" | "end")));
+            if !parts.contains(&part) {
+                parts.push(part);
+            }
+            at += length;
+            last_joined = at;
+        }
+        at = at.min(last_joined.max(first));
+        if parts.is_empty() || at == first {
+            return None;
+        }
+        let placed = parts.iter().any(|part| *part != Part::Noun);
+        let mut owner = None;
+        if self.text(at) == "of" || (self.text(at) == "on" && nouns > 0) {
+            let mut behind = at + 1;
+            // "the rear of both the van and the bus" has one owner: the first.
+            if matches!(self.text(behind), "both" | "another") {
+                behind += usize::from(self.text(behind) == "both");
+            }
+            if let Some((noun, length)) =
+                self.noun(behind).filter(|(noun, _)| noun.subject || noun.kind.is_some_and(can_own))
+            {
+                owner = Some(noun);
+                at = behind + length;
+            } else if self.text(behind) == "it" {
+                (its, at) = (true, behind + 1);
+            } else if self.text(at) == "of" {
+                return None;
+            }
+        }
+        // "the front", "the left" alone are places unless somebody owns them or a part is named.
+        let sure = owner.is_some() || nouns > 0 || its;
+        let plain_noun = parts == [Part::Noun] && owner.is_none() && !its && !door;
+        let bare = placed && self.text(first) == "the" && self.ends_clause(at);
+        if !(sure || bare) {
+            return None;
+        }
+        if plain_noun
+            && !matches!(
+                self.text(at - 1),
+                "mirror" | "bumper" | "sensor" | "wheel" | "tire" | "handlebar" | "handlebars" | "fender"
+            )
+        {
+            return None;
+        }
+        let side_of_road = matches!(self.text(at - 1), "side" | "lane" | "edge" | "hand")
+            && owner.is_none()
+            && !its
+            && !parts.iter().any(|part| matches!(part, Part::Front | Part::Rear))
+            && matches!(self.text(at.wrapping_sub(2)), "left" | "right" | "hand")
+            && self.text(at) == "of";
+        if side_of_road {
+            return None;
+        }
+        Some((Piece { parts, door, open, owner, its }, at - first))
+    }
+
+    pub(super) fn ends_clause(&self, at: usize) -> bool {
+        at >= self.tokens.len() || matches!(self.text(at), "," | "." | "and" | "by" | "when" | "while" | "as")
+    }
+
+    pub(super) fn part(&self, at: usize) -> Option<(Part, usize)> {
+        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Part(_)))?;
+        let Meaning::Part(part) = found.meaning else { return None };
+        // "driver" and "passenger" are sides only before a part.
+        let alone = found.length == 1 && matches!(self.text(at), "driver" | "drivers" | "passenger" | "passengers");
+        if alone || (found.length == 2 && self.text(at + 1) == "'s") {
+            let behind = at + found.length;
+            let next = self.lexicon.longest(self.tokens, behind, |meaning| matches!(meaning, Meaning::Part(_)))?;
+            let is_part = matches!(next.meaning, Meaning::Part(Part::Noun | Part::Front | Part::Rear));
+            let person =
+                matches!(self.text(behind), "side") || !matches!(self.text(behind), "back" | "body" | "arm" | "window");
+            if !is_part || !person {
+                return None;
+            }
+        }
+        if matches!(self.text(at), "back")
+            && matches!(self.text(at + 1), "to" | "into" | "onto" | "out" | "up" | "down" | "and" | "in")
+        {
+            return None;
+        }
+        if matches!(self.text(at), "light")
+            && !matches!(self.text(at.wrapping_sub(1)), "tail" | "head" | "brake" | "side")
+        {
+            return None;
+        }
+        Some((part, found.length))
+    }
+
+    /// Somebody or something that is named here.
+    pub(super) fn noun(&self, first: usize) -> Option<(Noun, usize)> {
+        let mut noun = Noun {
+            article: Article::None,
+            subject: false,
+            kind: None,
+            number: None,
+            names: Vec::new(),
+            adjectives: Vec::new(),
+            compass: None,
+            several: false,
+            occupant: None,
+            owner: None,
+        };
+        let mut at = first;
+        match self.text(at) {
+            "the" | "this" | "that" | "these" | "those" | "its" | "their" | "our" | "his" | "her" => {
+                noun.article = Article::Definite;
+                at += 1;
+            }
+            "a" | "an" | "one" => {
+                noun.article = Article::Indefinite;
+                at += 1;
+            }
+            "another" => noun.article = Article::Indefinite,
+            _ => {}
+        }
+        let mut company = false;
+        let mut make = false;
+        let mut strange = 0;
+        let head = loop {
+            if at >= self.tokens.len() || at > first + 10 || self.tokens[at].kind == TokenKind::Mark {
+                return None;
+            }
+            if let Some(found) = self.head(at) {
+                break found;
+            }
+            let known = self.lexicon.longest(self.tokens, at, |meaning| {
+                matches!(meaning, Meaning::Adjective(_) | Meaning::Make | Meaning::Company)
+            });
+            if let Some(found) = known {
+                match found.meaning {
+                    Meaning::Adjective(adjective) if make && !matches!(adjective, Adjective::Plain) => {
+                        return self.only_named(noun, first, at, company, make);
+                    }
+                    Meaning::Adjective(adjective) => {
+                        if COLOURS.contains(&self.text(at)) {
+                            noun.names.push(self.text(at).to_owned());
+                        }
+                        noun.several |=
+                            matches!(self.text(at), "several" | "multiple" | "many" | "two" | "three" | "four");
+                        noun.adjectives.push(adjective);
+                    }
+                    Meaning::Make if self.tokens[at].capital || make => {
+                        make = true;
+                        noun.names.push(self.text(at).to_owned());
+                    }
+                    Meaning::Company if self.tokens[at].capital => company = true,
+                    _ => return self.only_named(noun, first, at, company, make),
+                }
+                at += found.length;
+                continue;
+            }
+            if let Some((compass, length)) = self.compass(at) {
+                noun.compass = Some(compass);
+                at += length;
+                continue;
+            }
+            // Words nobody knows, between an article and a noun: models of cars.
+            let token = &self.tokens[at];
+            let unknown = (token.capital || token.kind != TokenKind::Word) && at > first && strange < 3;
+            if !unknown || self.verb_stands(at) {
+                return self.only_named(noun, first, at, company, make);
+            }
+            if token.capital && token.kind == TokenKind::Word {
+                noun.names.push(token.text.clone());
+            }
+            strange += 1;
+            at += 1;
+        };
+        self.heads(noun, first, at, company, make, head)
+    }
+
+    pub(super) fn verb_stands(&self, at: usize) -> bool {
+        !self.tokens[at].capital
+            && self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..))).is_some()
+    }
+
+    /// "the Waymo", "a Toyota": a name without a noun.
+    pub(super) fn only_named(
+        &self,
+        mut noun: Noun,
+        first: usize,
+        at: usize,
+        company: bool,
+        make: bool,
+    ) -> Option<(Noun, usize)> {
+        let article = noun.article != Article::None;
+        if at <= first || !article || !(company || make) {
+            return None;
+        }
+        if company {
+            noun.subject = true;
+        } else {
+            noun.kind = Some(Kind::Vehicle);
+        }
+        self.finish(noun, first, at)
+    }
+
+    pub(super) fn head(&self, at: usize) -> Option<(Meaning, usize)> {
+        let found = self.lexicon.longest(self.tokens, at, |meaning| {
+            matches!(meaning, Meaning::Subject | Meaning::Kind(_) | Meaning::Occupant(_))
+        })?;
+        let part = self.part(at).map_or(0, |(_, length)| length);
+        // "passenger side", "driver door" are parts.
+        if matches!(found.meaning, Meaning::Occupant(_))
+            && (part > found.length || (part > 0 && self.part(at + part).is_some()))
+        {
+            return None;
+        }
+        if matches!(self.text(at + found.length), "rack" | "racks" | "lane" | "lanes" | "path" | "share" | "yard")
+            && !matches!(found.meaning, Meaning::Subject)
+        {
+            return None;
+        }
+        // "light", "sign" of "traffic sign" and "stop sign" are no things that are struck, unless they are.
+        if self.text(at) == "traffic"
+            && matches!(
+                self.text(at + 1),
+                "light"
+                    | "lights"
+                    | "signal"
+                    | "signals"
+                    | "circle"
+                    | "lane"
+                    | "lanes"
+                    | "control"
+                    | "congestion"
+                    | "stop"
+                    | "conditions"
+                    | "queue"
+                    | "sign"
+                    | "cone"
+                    | "barrier"
+                    | "island"
+                    | "cones"
+            )
+        {
+            return None;
+        }
+        if matches!(self.text(at), "sign") && at > self.first && matches!(self.text(at - 1), "stop" | "yield") {
+            return None;
+        }
+        Some((found.meaning, found.length))
+    }
+
+    pub(super) fn heads(
+        &self,
+        mut noun: Noun,
+        first: usize,
+        at: usize,
+        company: bool,
+        make: bool,
+        head: (Meaning, usize),
+    ) -> Option<(Noun, usize)> {
+        let mut at = at;
+        let mut head = Some(head);
+        let mut subject = company;
+        let mut plural = false;
+        while let Some((meaning, length)) = head {
+            match meaning {
+                Meaning::Subject => subject = true,
+                Meaning::Kind(Kind::Trailer) if noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) => {
+                    noun.kind = Some(Kind::SemiTrailerTruck);
+                }
+                Meaning::Kind(Kind::Trailer) if noun.kind == Some(Kind::Pickup) => {
+                    noun.kind = Some(Kind::PickupWithTrailer)
+                }
+                Meaning::Kind(kind) => {
+                    noun.kind = Some(kind);
+                    plural = matches!(self.text(at + length - 1), "people" | "personnel" | "traffic")
+                        || self.text(at + length - 1).ends_with('s')
+                            && !matches!(self.text(at + length - 1), "bus" | "debris" | "cross");
+                }
+                Meaning::Occupant(who) => {
+                    let owner = Noun { occupant: None, owner: None, names: noun.names.clone(), ..noun.clone() };
+                    let owned = subject || noun.kind.is_some() || make;
+                    if owned {
+                        noun.owner = Some(Box::new(Noun { subject, kind: noun.kind.or(Some(Kind::Vehicle)), ..owner }));
+                    }
+                    let plain = matches!(self.text(at), "driver" | "drivers") && length == 1;
+                    noun.occupant = Some((who, plain));
+                    noun.kind = None;
+                    subject = false;
+                }
+                _ => {}
+            }
+            at += length;
+            if let (Some(number), true) = (self.text(at).parse().ok(), noun.kind == Some(Kind::Vehicle)) {
+                noun.number = Some(number);
+                at += 1;
+            }
+            // "AV 2", "a different AV": another one of the same company.
+            if let (true, Some(number)) =
+                (subject, self.text(at).parse::<u8>().ok().filter(|number| (1..=4).contains(number)))
+            {
+                at += 1;
+                if number > 1 {
+                    (subject, noun.kind, noun.number) = (false, Some(Kind::PassengerCar), Some(number));
+                }
+            }
+            // Another noun at once makes a compound: "pickup truck driver", "Waymo AV operator". An adjective does not.
+            head = self.head(at).filter(|(next, _)| {
+                self.text(at) != "'s" && !(matches!(next, Meaning::Subject) && noun.kind.is_some() && !subject)
+            });
+            if matches!(head, Some((Meaning::Kind(kind), _)) if noun.occupant.is_some() && !kind.is_vehicle()) {
+                head = None;
+            }
+        }
+        if subject
+            && noun.occupant.is_none()
+            && noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Another | Adjective::Other))
+        {
+            subject = false;
+            noun.kind = noun.kind.or(Some(Kind::PassengerCar));
+        }
+        noun.subject = (subject || self.text(first) == "our") && noun.occupant.is_none();
+        noun.several |= plural;
+        let alone = (first..at).any(|at| {
+            matches!(self.text(at), "abandoned" | "parked" | "unattended" | "riderless" | "fallen" | "unoccupied")
+        });
+        if alone && matches!(noun.kind, Some(Kind::ScooterRider | Kind::Bicycle | Kind::EBike)) {
+            noun.kind = Some(Kind::Scooter);
+        }
+        self.finish(noun, first, at)
+    }
+
+    /// What stands behind a noun and belongs to it: "(Vehicle 2)", "of the bus", "'s rear bumper" is left to others.
+    pub(super) fn finish(&self, mut noun: Noun, first: usize, at: usize) -> Option<(Noun, usize)> {
+        let mut at = at;
+        if let Some(number) = self.alias(at) {
+            noun.subject |= number == 1;
+            noun.number = Some(number).filter(|number| *number > 1);
+            // "the motorcycle (Vehicle 2) operator".
+            let behind = at + self.parenthesis(at);
+            if let Some((Meaning::Occupant(who), length)) = self.head(behind).filter(|_| noun.occupant.is_none()) {
+                let owner = noun.clone();
+                (noun.owner, noun.occupant, noun.kind, noun.subject) =
+                    (Some(Box::new(owner)), Some((who, false)), None, false);
+                at = behind + length;
+            }
+        }
+        if noun.occupant.is_some() && noun.owner.is_none() {
+            let mut behind = at;
+            if self.text(behind) == "(" {
+                behind += self.parenthesis(behind);
+            }
+            if matches!(
+                self.text(behind),
+                "of" | "in" | "inside" | "from" | "operating" | "driving" | "on" | "within" | "aboard"
+            ) && let Some((owner, length)) = self.noun(behind + 1)
+                && (owner.subject || owner.kind.is_some_and(can_own))
+                && owner.occupant.is_none()
+            {
+                noun.owner = Some(Box::new(owner));
+                at = behind + 1 + length;
+            }
+        }
+        // "a person on a scooter", "a rider of a bicycle" is who rides it.
+        let on_foot = noun
+            .kind
+            .is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle))
+            || (noun.occupant.is_some() && noun.owner.is_none());
+        let mut ride = at;
+        while matches!(
+            self.text(ride),
+            "on" | "riding"
+                | "operating"
+                | "using"
+                | "who"
+                | "was"
+                | "were"
+                | "of"
+                | "in"
+                | "his"
+                | "her"
+                | "top"
+                | "driving"
+        ) && ride < at + 4
+        {
+            ride += 1;
+        }
+        if on_foot
+            && ride > at
+            && let Some((ridden, length)) = self.noun(ride)
+        {
+            let wheels = matches!(
+                ridden.kind,
+                Some(
+                    Kind::Bicycle
+                        | Kind::EBike
+                        | Kind::ScooterRider
+                        | Kind::Skateboarder
+                        | Kind::Motorcycle
+                        | Kind::Moped
+                        | Kind::Wheelchair
+                )
+            );
+            if wheels && ridden.occupant.is_none() {
+                let several = noun.several;
+                noun.kind = ridden.kind;
+                (noun.occupant, noun.owner, noun.several) = (None, None, several);
+                at = ride + length;
+            }
+        }
+        // Possessive: the owner of what follows, a part or somebody inside.
+        if self.text(at) == "'s"
+            && let Some((mut person, length)) = self.owned_person(at + 1)
+        {
+            person.owner = Some(Box::new(noun));
+            return Some((person, at + 1 + length - first));
+        }
+        Some((noun, at - first))
+    }
+
+    pub(super) fn owned_person(&self, at: usize) -> Option<(Noun, usize)> {
+        let (noun, length) = self.noun(at).filter(|(noun, _)| noun.article == Article::None)?;
+        (noun.occupant.is_some() && noun.owner.is_none()).then_some((noun, length))
+    }
+}
+
+/// Whether a thing of this kind has parts and people in it.
+fn can_own(kind: Kind) -> bool {
+    kind.group() != KindGroup::Animal || kind == Kind::Animal
+}

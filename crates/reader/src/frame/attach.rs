@@ -1,0 +1,352 @@
+//! What stands behind a verb and belongs to it: objects, places, directions, lanes.
+
+use super::parser::{Carry, Mention, Parser, transitive};
+use super::sided;
+use crate::chunk::{Chunk, Piece, Placed, Spot};
+use crate::lexicon::{Form, Progress, Relation, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
+
+impl Parser<'_> {
+    /// A part whose owner is not said: "made contact with the rear bumper".
+    pub(super) fn loose_piece(&mut self, piece: &Piece, placed: &Placed, carry: &mut Carry) {
+        let Some(frame) = carry.frame else {
+            return;
+        };
+        let touches =
+            matches!(self.frames[frame].sense, Sense::Contact | Sense::ContactMade | Sense::Damage | Sense::RearEnd);
+        if touches && self.frames[frame].on.is_none() {
+            self.frames[frame].on = Some(piece.clone());
+            self.frames[frame].end = placed.end;
+        }
+        (carry.preposition, carry.relation) = (None, None);
+    }
+
+    /// A noun behind a preposition.
+    pub(super) fn object_of(&mut self, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
+        let Some(frame) = carry.frame else { return };
+        let actor = mention.actor;
+        let sense = self.frames[frame].sense;
+        match preposition {
+            "by" if sense == Sense::Tow => {
+                if let Some(towed) = self.frames[frame].who {
+                    self.world.tow(actor, towed);
+                    if self.world.actors[towed].announced {
+                        self.world.actors[actor].announced = true;
+                    }
+                    self.frames[frame].object = Some(towed);
+                    self.frames[frame].who = Some(actor);
+                }
+            }
+            "by" => {
+                let taken = &mut self.frames[frame];
+                let passive = taken.form == Form::Past
+                    && matches!(
+                        taken.sense,
+                        Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
+                    )
+                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass)) && taken.passive;
+                if passive {
+                    if !matches!(taken.sense, Sense::ContactMade) && taken.object.is_none() {
+                        taken.object = taken.who;
+                        taken.on = taken.with.take();
+                    }
+                    taken.who = Some(actor);
+                    taken.with.clone_from(&mention.piece);
+                    (taken.passive, taken.end) = (true, placed.end);
+                    if let (Sense::Act(Act::Follow), Some(followed)) = (taken.sense, taken.object) {
+                        self.follows(Some(actor), followed);
+                    }
+                    if carry.relative || carry.subject.is_some() {
+                        carry.governed = true;
+                    }
+                }
+            }
+            "into" | "onto" | "with" | "against" | "between" | "and" | "upon" | "on" | "at" | "to" => {
+                if sense == Sense::Push && preposition != "with" {
+                    // Pushed into somebody: who was pushed touches them.
+                    let pushed = self.frames[frame].object;
+                    let placed_frame = Placed { chunk: Chunk::Word, first: self.frames[frame].first, end: placed.end };
+                    let mut contact = self.frame(pushed, Sense::Contact, Form::Past, &placed_frame, carry);
+                    contact.object = Some(actor);
+                    contact.on.clone_from(&mention.piece);
+                    contact.progress = Progress::Real;
+                    self.frames.push(contact);
+                    return;
+                }
+                let taken = &mut self.frames[frame];
+                let contact = matches!(
+                    taken.sense,
+                    Sense::Contact | Sense::ContactMade | Sense::ReverseContact | Sense::OpenDoorInto | Sense::RearEnd
+                );
+                if matches!(taken.sense, Sense::ContactMade) && taken.who.is_none() && preposition == "between" {
+                    taken.who = Some(actor);
+                    taken.with.clone_from(&mention.piece);
+                } else if (contact || taken.sense == Sense::Headline)
+                    && taken.object.is_none()
+                    && taken.who != Some(actor)
+                {
+                    taken.object = Some(actor);
+                    taken.on.clone_from(&mention.piece);
+                    taken.end = placed.end;
+                    if taken.sense == Sense::Headline && actor != SUBJECT {
+                        self.world.actors[actor].announced = true;
+                    }
+                } else if taken.sense == Sense::Yield && taken.object.is_none() {
+                    taken.object = Some(actor);
+                } else if contact && taken.object == Some(actor) && taken.on.is_none() {
+                    taken.on.clone_from(&mention.piece);
+                    taken.end = placed.end;
+                } else if matches!(
+                    taken.act(),
+                    Some(
+                        Act::Swerve
+                            | Act::Drift
+                            | Act::Turn
+                            | Act::LaneChange
+                            | Act::Reverse
+                            | Act::Roll
+                            | Act::Fall
+                            | Act::Slow
+                    )
+                ) && taken.object.is_none()
+                {
+                    taken.object = Some(actor);
+                }
+            }
+            "for"
+                if matches!(sense, Sense::Act(Act::Stop | Act::Hold))
+                    && self.frames[frame].who == Some(SUBJECT)
+                    && self.world.actors[actor].kind.is_some_and(Kind::is_vehicle)
+                    && !self.world.actors[actor].several =>
+            {
+                self.note(actor, Relation::Ahead);
+                self.frames[frame].object.get_or_insert(actor);
+            }
+            "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
+                let taken = &mut self.frames[frame];
+                if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
+                    taken.object = Some(actor);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Where somebody is: of the frame, or of the noun before.
+    pub(super) fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &Carry) {
+        let mut who = None;
+        if let Some(frame) = carry.frame {
+            // "made contact with the van ahead": the van.
+            if let (None, Some(last)) = (to, &carry.last)
+                && self.frames[frame].is_contact()
+                && self.frames[frame].who == Some(SUBJECT)
+                && self.frames[frame].object == Some(last.actor)
+                && last.actor != SUBJECT
+                && matches!(relation, Relation::Ahead | Relation::Left | Relation::Right)
+            {
+                return self.note(last.actor, relation);
+            }
+            // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
+            let of_object = carry.last.is_some() && carry.governed_object(&self.frames[frame]);
+            if of_object {
+                who = carry.last.as_ref().map(|last| last.actor);
+            } else {
+                self.frames[frame].relations.push((relation, to));
+                who = self.frames[frame].who;
+            }
+        } else if let Some(subject) = &carry.subject {
+            who = Some(subject.actor);
+        }
+        let Some(who) = who else { return };
+        match to {
+            Some(SUBJECT) | None if who != SUBJECT => self.note(who, relation),
+            Some(other) if who == SUBJECT && other != SUBJECT => {
+                let turned = match relation {
+                    Relation::Behind => Relation::Ahead,
+                    Relation::Ahead => Relation::Behind,
+                    Relation::Left => Relation::Right,
+                    Relation::Right => Relation::Left,
+                    same => same,
+                };
+                self.note(other, turned);
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn follows(&mut self, who: Option<Actor>, whom: Actor) {
+        match who {
+            Some(SUBJECT) if whom != SUBJECT => self.note(whom, Relation::Ahead),
+            Some(who) if whom == SUBJECT && who != SUBJECT => self.note(who, Relation::Behind),
+            _ => {}
+        }
+    }
+
+    pub(super) fn note(&mut self, actor: Actor, relation: Relation) {
+        self.world.actors[actor].place(relation, self.sentence);
+    }
+
+    pub(super) fn relation(&mut self, relation: Relation, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
+        let governs = match next {
+            Some(Chunk::Noun(_) | Chunk::Pronoun) => true,
+            Some(Chunk::Piece(piece)) => piece.owner.is_some() || piece.its,
+            _ => false,
+        };
+        // "behind [XXX]", "next to the mall": places.
+        let last = self.tokens[placed.end - 1].text.as_str();
+        let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
+            || (last == "behind" && placed.end == placed.first + 1);
+        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) {
+            return;
+        }
+        // "to the left" is a side of what is done there, or a place.
+        let side = match relation {
+            Relation::Left => Some(LeftRight::Left),
+            Relation::Right => Some(LeftRight::Right),
+            _ => None,
+        };
+        // "pulled out of a driveway on the right", "merged from a ramp on the right": a place, and no side.
+        let located = matches!(self.tokens[placed.first].text.as_str(), "on" | "from" | "in");
+        let stays = |act: Option<Act>| match act {
+            Some(Act::Park | Act::PullOver) => governs,
+            Some(Act::PullOut | Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn) => {
+                located || (act == Some(Act::PullOut) && governs)
+            }
+            _ => false,
+        };
+        if let (Some(side), Some(frame)) = (side, carry.frame)
+            && self.frames[frame].act().is_some_and(sided)
+            && !stays(self.frames[frame].act())
+            && self.frames[frame].sense != Sense::Parked
+            && self.frames[frame].side.is_none()
+        {
+            self.frames[frame].side = Some(side);
+            self.frames[frame].end = placed.end;
+            if governs {
+                carry.relation = None;
+                carry.preposition = Some("around");
+            }
+            return;
+        }
+        if governs {
+            carry.relation = Some(relation);
+            carry.preposition = None;
+        } else {
+            self.relate(relation, None, carry);
+        }
+    }
+
+    /// "on the left side of the roadway".
+    pub(super) fn of_road(&self, at: usize) -> bool {
+        self.tokens.get(at..(at + 3).min(self.tokens.len())).unwrap_or_default().iter().any(|token| {
+            matches!(token.text.as_str(), "road" | "roadway" | "street" | "alley" | "driveway" | "lane" | "highway")
+        })
+    }
+
+    pub(super) fn compass(&mut self, compass: Compass, placed: &Placed, carry: &mut Carry) {
+        let stands = (compass, placed.first, placed.end);
+        let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
+        let from = carry.preposition == Some("from");
+        carry.preposition = None;
+        // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
+        match carry.frame {
+            Some(frame) => {
+                let taken = &mut self.frames[frame];
+                if let (true, Some(who)) = (from, taken.who) {
+                    self.world.actors[who].heading.get_or_insert(stands);
+                    return;
+                }
+                let turns =
+                    matches!(taken.act(), Some(Act::Turn | Act::UTurn | Act::PullOut | Act::Enter | Act::LaneChange));
+                if taken.heading.is_none() {
+                    taken.heading = Some(stands);
+                    taken.onto = onto || (turns && taken.act() != Some(Act::Enter));
+                }
+                let (who, onto) = (taken.who, taken.onto);
+                if let (Some(who), false) = (who, onto) {
+                    self.world.actors[who].heading.get_or_insert(stands);
+                }
+            }
+            None => {
+                if let Some(subject) = &carry.subject {
+                    self.world.actors[subject.actor].heading.get_or_insert(stands);
+                }
+            }
+        }
+    }
+
+    pub(super) fn side(&mut self, side: LeftRight, carry: &Carry) {
+        if let Some(frame) = carry.frame
+            && self.frames[frame].act().is_some_and(sided)
+            && self.frames[frame].side.is_none()
+        {
+            self.frames[frame].side = Some(side);
+        }
+    }
+
+    pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {
+        let into = matches!(carry.preposition, Some("into" | "onto" | "to")) || carry.to;
+        let from = carry.preposition == Some("from");
+        (carry.preposition, carry.to) = (None, false);
+        let stands = (lane, placed.first, placed.end);
+        let Some(frame) = carry.frame else {
+            if let Some(subject) = &carry.subject {
+                self.world.actors[subject.actor].lane.get_or_insert(stands);
+            }
+            return;
+        };
+        let side = match lane {
+            LaneWord::Left | LaneWord::LeftTurn => Some(LeftRight::Left),
+            LaneWord::Right | LaneWord::RightTurn => Some(LeftRight::Right),
+            _ => None,
+        };
+        let taken = &mut self.frames[frame];
+        let moves = matches!(taken.act(), Some(Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter));
+        if moves && taken.side.is_none() && side.is_some() && !from {
+            taken.side = side;
+            return;
+        }
+        if moves && from && taken.side.is_none() && side.is_some() {
+            taken.side = side.map(LeftRight::other);
+        }
+        taken.lane.get_or_insert(stands);
+        let who = taken.who;
+        if let Some(who) = who.filter(|_| !into || from) {
+            self.world.actors[who].lane.get_or_insert(stands);
+        }
+    }
+
+    pub(super) fn spot(&mut self, spot: Spot, carry: &mut Carry) {
+        let word = carry.preposition.take();
+        carry.to = false;
+        let Some(frame) = carry.frame else { return };
+        let taken = &mut self.frames[frame];
+        let moves = matches!(
+            taken.act(),
+            Some(
+                Act::Reverse
+                    | Act::PullOut
+                    | Act::Enter
+                    | Act::Follow
+                    | Act::SetOff
+                    | Act::Turn
+                    | Act::Drift
+                    | Act::Cross
+                    | Act::Swerve
+                    | Act::Accelerate
+            )
+        ) || taken.sense == Sense::Approach;
+        let says_out = (taken.first..taken.end).any(|at| self.tokens[at].text == "out");
+        let leaves = match word {
+            Some("out") => moves || taken.sense == Sense::Other,
+            Some("from") => moves,
+            Some("of") => moves && says_out,
+            Some("into" | "onto" | "to" | "in" | "at" | "on" | "near" | "through" | "towards" | "toward") => false,
+            _ => matches!(taken.act(), Some(Act::PullOut | Act::Reverse)),
+        };
+        if leaves && taken.happened() {
+            taken.out_of.get_or_insert(spot);
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Event frames: who did what, to whom, where, in which order; folded from the chunks of one sentence after the other.
+
+mod attach;
+mod parser;
+
+use crate::chunk::{Joint, Piece, Spot};
+use crate::lexicon::{Form, Lexicon, Occupant, Part, Progress, Relation, Sense};
+use crate::token::{Sentence, Token};
+use crate::world::{Actor, SUBJECT, World};
+use parser::Parser;
+use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
+
+/// One event.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Who; `None` where nobody is named.
+    pub who: Option<Actor>,
+    /// The part of it that is named.
+    pub with: Option<Piece>,
+    /// What.
+    pub sense: Sense,
+    /// Form of the verb.
+    pub form: Form,
+    /// To whom.
+    pub object: Option<Actor>,
+    /// The part of whom that is named.
+    pub on: Option<Piece>,
+    /// To which side.
+    pub side: Option<LeftRight>,
+    /// Where, seen from whom.
+    pub relations: Vec<(Relation, Option<Actor>)>,
+    /// A direction that belongs to it.
+    pub heading: Option<(Compass, usize, usize)>,
+    /// The direction is that of the road it goes into.
+    pub onto: bool,
+    /// Its lane.
+    pub lane: Option<(LaneWord, usize, usize)>,
+    /// Out of where.
+    pub out_of: Option<Spot>,
+    /// It did not happen.
+    pub negated: bool,
+    /// How far it came.
+    pub progress: Progress,
+    /// The words say that it stood: "was stopped", or an adjective.
+    pub state: bool,
+    /// Told of a noun in passing, not in a clause of its own.
+    pub aside: bool,
+    /// Its clause begins with this.
+    pub joint: Option<Joint>,
+    /// The second in a row "and": told of a person in the vehicle.
+    pub person: Option<Occupant>,
+    /// It is told of a noun by a relative clause or a participle.
+    pub described: bool,
+    /// The words behind a passive "by".
+    pub passive: bool,
+    /// Number of the clause in its sentence.
+    pub clause: u32,
+    /// Number of the sentence.
+    pub sentence: usize,
+    /// The sentence looks back: "prior to the collision".
+    pub looks_back: bool,
+    /// First token.
+    pub first: usize,
+    /// Token behind the last.
+    pub end: usize,
+}
+
+impl Frame {
+    /// The act of the account that it is, where it is one.
+    pub fn act(&self) -> Option<Act> {
+        match self.sense {
+            Sense::Act(act) | Sense::Sided(act, _) => Some(act),
+            Sense::Parked => Some(Act::Hold),
+            Sense::Approach => Some(Act::Follow),
+            Sense::ReverseContact => Some(Act::Reverse),
+            Sense::OpenDoorInto => Some(Act::OpenDoor),
+            Sense::Yield => None,
+            _ => None,
+        }
+    }
+
+    /// Whether it touches somebody.
+    pub fn is_contact(&self) -> bool {
+        matches!(
+            self.sense,
+            Sense::Contact | Sense::ContactMade | Sense::RearEnd | Sense::ReverseContact | Sense::OpenDoorInto
+        ) && !self.negated
+            && self.progress == Progress::Real
+    }
+
+    /// Whether it happened, or was begun.
+    pub fn happened(&self) -> bool {
+        !self.negated && self.progress != Progress::Wished
+    }
+}
+
+/// The story of one narrative.
+#[derive(Debug, Clone)]
+pub struct Story {
+    /// Tokens of the narrative.
+    pub tokens: Vec<Token>,
+    /// Its sentences.
+    pub sentences: Vec<Sentence>,
+    /// Whether a sentence is a standing phrase.
+    pub standing: Vec<bool>,
+    /// Events, in the order of the words.
+    pub frames: Vec<Frame>,
+    /// Who is in it.
+    pub world: World,
+}
+
+/// What is known of the subject vehicle beforehand.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Own<'a> {
+    /// Its kind.
+    pub kind: Option<Kind>,
+    /// The make by which the company that reports calls it.
+    pub make: Option<&'a str>,
+}
+
+/// Most tokens of a narrative that are read; the longest published one has a third of it.
+const MOST_TOKENS: usize = 6_000;
+
+/// Reads a narrative. `own`: kind of the subject vehicle, where it is known.
+pub fn story(text: &str, own: Own<'_>) -> Story {
+    let mut tokens = crate::token::tokens(text);
+    tokens.truncate(MOST_TOKENS);
+    let sentences = crate::token::sentences(&tokens);
+    let lexicon = Lexicon::get();
+    let mut standing = Vec::new();
+    let mut parser =
+        Parser { tokens: &tokens, lexicon, world: World::new(own), frames: Vec::new(), sentence: 0, looks_back: false };
+    for (number, sentence) in sentences.iter().enumerate() {
+        let words = &tokens[sentence.first..sentence.end];
+        let drop = lexicon.is_standing(words) && !tells_contact(words);
+        standing.push(drop);
+        if drop {
+            continue;
+        }
+        (parser.sentence, parser.world.sentence) = (number, number);
+        parser.looks_back = looks_back(words);
+        parser.read(*sentence);
+    }
+    let (mut frames, world) = (parser.frames, parser.world);
+    for frame in &mut frames {
+        // Nobody touches itself.
+        if frame.is_contact() && frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
+            frame.who = None;
+        }
+    }
+    Story { tokens, sentences, standing, frames, world }
+}
+
+/// A sentence with a standing phrase in it may tell the crash all the same.
+fn tells_contact(words: &[Token]) -> bool {
+    let tells = |phrase: &str| {
+        let phrase: Vec<String> = phrase.split(' ').map(str::to_owned).collect();
+        crate::lexicon::find(&phrase, words).is_some()
+    };
+    tells("made contact") || tells("struck") || tells("collided") || tells("rear ended") || tells("collision involving")
+}
+
+fn looks_back(words: &[Token]) -> bool {
+    let text: Vec<&str> = words.iter().take(8).map(|token| token.text.as_str()).collect();
+    let of_crash = text
+        .iter()
+        .any(|word| matches!(*word, "collision" | "incident" | "impact" | "crash" | "event" | "contact" | "accident"));
+    matches!(
+        text.as_slice(),
+        ["prior" | "before" | "immediately" | "just" | "leading" | "moments" | "shortly" | "seconds", ..]
+    ) && of_crash
+        && text.iter().any(|word| matches!(*word, "prior" | "before" | "up"))
+}
+
+/// Whether an act goes to a side.
+pub fn sided(act: Act) -> bool {
+    matches!(
+        act,
+        Act::Turn
+            | Act::UTurn
+            | Act::LaneChange
+            | Act::Drift
+            | Act::Swerve
+            | Act::Pass
+            | Act::PullOver
+            | Act::PullOut
+            | Act::Park
+    )
+}
+
+/// The zone that the words of a part name.
+pub fn zone_of(piece: &Piece) -> Option<recrash_model::zones::ContactZone> {
+    use recrash_model::zones::ContactZone as Z;
+    let has = |part: Part| piece.parts.contains(&part);
+    let (front, rear) = (has(Part::Front), has(Part::Rear));
+    let (left, right) = (has(Part::Left), has(Part::Right));
+    Some(match (front && !rear, rear && !front, left && !right, right && !left) {
+        (true, _, true, _) => Z::FrontLeft,
+        (true, _, _, true) => Z::FrontRight,
+        (_, true, true, _) => Z::RearLeft,
+        (_, true, _, true) => Z::RearRight,
+        (true, ..) => Z::Front,
+        (_, true, ..) => Z::Rear,
+        (_, _, true, _) => Z::Left,
+        (_, _, _, true) => Z::Right,
+        _ if has(Part::Top) => Z::Top,
+        _ if has(Part::Bottom) => Z::Bottom,
+        _ => return None,
+    })
+}
