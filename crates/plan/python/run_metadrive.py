@@ -444,6 +444,11 @@ class World:
             TrafficPolicy.timer_steps = other["overtake_timer_steps"]
             self.actors.append(self.introduce(vehicle, TrafficPolicy(vehicle, 0), other))
         if self.scene:
+            if self.scene["recorded"] is not None:
+                # Where its record begins, whoever drives then.
+                self.actors[0].carry(self.scene["recorded"]["states"][0])
+                env.agent.after_step()
+                self.actors[0].place.update(env.agent.position)
             self.attached = [Attached(self, part) for part in self.scene["parts"]]
             self.carry(0.0)
         self.obstacles = []

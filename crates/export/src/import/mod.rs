@@ -9,6 +9,7 @@ mod differences;
 mod origins;
 
 use crate::openscenario::names::{Declaration, name_of, numbers_below};
+use crate::openscenario::scene::{WHOLE, whole};
 use crate::openscenario::{PROPERTY, is_obstacle_name};
 use crate::xml::{Element, parse};
 use origins::Origins;
@@ -96,6 +97,10 @@ fn described(root: &Element, origins: &mut Origins) -> Result<Value, Vec<Diagnos
                 .with_hint("export one with `recrash export --to openscenario` to see what they look like"),
         ]);
     };
+    if let Some(text) = whole(properties) {
+        let place = format!("OpenSCENARIO/FileHeader/Properties/{WHOLE}");
+        return serde_json::from_str(text).map_err(|error| vec![bad_json(&place, properties, &error)]);
+    }
     let mut diagnostics = Vec::new();
     let mut scenario = Map::new();
     scenario.insert("format".to_owned(), SCENARIO_FORMAT.into());

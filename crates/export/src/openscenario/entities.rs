@@ -2,9 +2,9 @@
 
 use super::{Context, obstacle_name};
 use crate::openscenario::places::reference_to_centre;
-use crate::xml::Element;
+use crate::xml::{Element, number};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::rollout::EGO_ID;
+use recrash_model::rollout::{ActorTrack, EGO_ID, PlacedObstacle, Role};
 use recrash_model::scenario::ObstacleKind;
 use recrash_model::vehicle::VehicleSpec;
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub(super) fn entities(context: &Context<'_>) -> Element {
 }
 
 /// Where the user's system under test goes: replace the controller, and set the parameter `egoControllerActive`.
-fn controller_slot() -> Element {
+pub(super) fn controller_slot() -> Element {
     let note = "put the system under test here and set the parameter egoControllerActive to true; \
                 until then the ego drives along its route at its target speed";
     Element::new("Controller")
@@ -48,6 +48,33 @@ fn controller_slot() -> Element {
             Element::new("Properties")
                 .children([property("slot", note), property("esminiController", "ExternalController")]),
         )
+}
+
+/// Somebody as a rollout has it, with the size it had.
+pub(super) fn recorded(track: &ActorTrack) -> Element {
+    if track.role == Role::Part {
+        let size = [track.length_m, track.width_m, height_m(track.kind)];
+        return misc_object("part", "none", size, &track.kind);
+    }
+    let mut element = road_user(track.kind, &track.kind);
+    let boxes = element.children.iter_mut().filter(|child| child.name == "BoundingBox");
+    for sizes in boxes.flat_map(|bounds| &mut bounds.children).filter(|child| child.name == "Dimensions") {
+        for (name, value) in &mut sizes.attributes {
+            match name.as_str() {
+                "length" => *value = number(track.length_m),
+                "width" => *value = number(track.width_m),
+                _ => {}
+            }
+        }
+    }
+    element
+}
+
+/// A thing as a rollout has it.
+pub(super) fn thing(placed: &PlacedObstacle) -> Element {
+    let size = [placed.length_m, placed.width_m, placed.kind.height_m()];
+    let category = if placed.kind == ObstacleKind::Barrier { "barrier" } else { "obstacle" };
+    misc_object(placed.kind.label(), category, size, &placed.kind)
 }
 
 fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {
@@ -69,7 +96,7 @@ fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {
     }
 }
 
-fn vehicle(name: &str, kind: PartnerKind, description: &impl Serialize) -> Element {
+pub(super) fn vehicle(name: &str, kind: PartnerKind, description: &impl Serialize) -> Element {
     let spec = VehicleSpec::of(kind);
     let to_centre = reference_to_centre(kind);
     let axle = |element: &str, steering: f64, x: f64| {

@@ -8,6 +8,7 @@ mod lateral;
 mod line;
 pub(crate) mod names;
 mod places;
+pub(crate) mod scene;
 mod speed;
 mod storyboard;
 mod sweep;
@@ -42,6 +43,9 @@ pub(crate) fn files(
 ) -> Result<Vec<ExportFile>, ExportError> {
     let draft = scenario.draft();
     let id = &draft.id;
+    if scene::is_scene(draft) {
+        return scene_files(scenario, rollout, options);
+    }
     let tracks = match options.partners_as {
         PartnersAs::Actions => Vec::new(),
         PartnersAs::Trajectory => {
@@ -74,6 +78,25 @@ pub(crate) fn files(
         }
     }
     Ok(files)
+}
+
+/// The files of a scenario whose road users have plans: map and scenario. A recording cannot be varied.
+fn scene_files(
+    scenario: &Scenario,
+    rollout: Option<&Rollout>,
+    options: &ExportOptions,
+) -> Result<Vec<ExportFile>, ExportError> {
+    let draft = scenario.draft();
+    let id = &draft.id;
+    let recorded = rollout.ok_or_else(|| ExportError::NeedsRollout { scenario: id.clone() })?;
+    let map = DriveMap::new(scenario.network(), &draft.control);
+    let names = Declarations::default();
+    let context = Context { scenario, map, names, parameters: &[], tracks: Vec::new(), rollout, options };
+    let comment = crate::comment(draft);
+    let map_file = format!("{id}.xodr");
+    let document = scene::document(&context, recorded, &crate::title(draft), &map_file);
+    let file = |name: String, root: Element| ExportFile { name, content: root.document(&comment) };
+    Ok(vec![file(map_file, context.map.document(scenario.network(), id)), file(format!("{id}.xosc"), document)])
 }
 
 fn document(context: &Context<'_>, title: &str, map_file: &str) -> Element {

@@ -10,7 +10,8 @@ use crate::openscenario::places::{
 };
 use crate::openscenario::{lateral, names::Declarations};
 use crate::xml::{Element, number, rounded};
-use recrash_model::rollout::{ActorState, ActorTrack, EGO_ID, STEP_S};
+use recrash_model::geometry::Pose;
+use recrash_model::rollout::{ActorState, ActorTrack, EGO_ID, Role, STEP_S};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Placement;
 
@@ -110,15 +111,12 @@ fn ego_story(context: &Context<'_>) -> Element {
             ]),
         ),
     );
-    let no_controller = by_value(
-        "no system under test",
-        Element::new("ParameterCondition")
-            .with("parameterRef", "egoControllerActive")
-            .with("rule", "equalTo")
-            .with("value", "false"),
+    let event = event(
+        "ego: drive",
+        "ego: to the target speed",
+        drive,
+        Element::new("ConditionGroup").child(controller_is("no system under test", "false")),
     );
-    let event =
-        event("ego: drive", "ego: to the target speed", drive, Element::new("ConditionGroup").child(no_controller));
     story("ego", vec![group("ego", Some(EGO_ID), vec![maneuver("ego: speed", vec![event])])])
 }
 
@@ -225,10 +223,10 @@ fn stop_trigger(context: &Context<'_>) -> Element {
 
 /// The recorded way of a partner as a polyline in time, with the moment of its first contact between two steps: what it does
 /// in the step of it is no straight line.
-fn follow_trajectory(context: &Context<'_>, actor: usize, track: &ActorTrack, name: &str) -> Element {
+pub(super) fn follow_trajectory(context: &Context<'_>, actor: usize, track: &ActorTrack, name: &str) -> Element {
     let contact = context.rollout.and_then(|rollout| rollout.first_contact_of(actor));
-    let mut moments: Vec<(f64, &ActorState)> =
-        track.states.iter().enumerate().map(|(step, state)| (step as f64 * STEP_S, state)).collect();
+    let present = track.states.iter().enumerate().filter(|(step, _)| track.is_present(*step));
+    let mut moments: Vec<(f64, &ActorState)> = present.map(|(step, state)| (step as f64 * STEP_S, state)).collect();
     if let Some((time_s, state)) = contact
         && let Some(after) = moments.iter().position(|(time, _)| *time > time_s + 1e-6)
         && after > 0
@@ -239,7 +237,7 @@ fn follow_trajectory(context: &Context<'_>, actor: usize, track: &ActorTrack, na
     let vertices = moments.into_iter().map(|(time_s, state)| {
         Element::new("Vertex")
             .with_number("time", rounded(time_s))
-            .child(world_position(reference_point(track.kind, state.pose())))
+            .child(world_position(reference_of(track, state.pose())))
     });
     let shape = Element::new("Shape").child(Element::new("Polyline").children(vertices));
     private(Element::new("RoutingAction").child(Element::new("FollowTrajectoryAction").children([
@@ -249,6 +247,11 @@ fn follow_trajectory(context: &Context<'_>, actor: usize, track: &ActorTrack, na
         ),
         Element::new("TrajectoryFollowingMode").with("followingMode", "position"),
     ])))
+}
+
+/// The reference point of a track's box: parts are placed by their centre.
+pub(super) fn reference_of(track: &ActorTrack, pose: Pose) -> Pose {
+    if track.role == Role::Part { pose } else { reference_point(track.kind, pose) }
 }
 
 /// The variables the watch sets.
@@ -268,11 +271,11 @@ pub(super) fn parameters(names: &Declarations) -> Element {
     )
 }
 
-fn private(action: Element) -> Element {
+pub(super) fn private(action: Element) -> Element {
     Element::new("PrivateAction").child(action)
 }
 
-fn teleport(position: Element) -> Element {
+pub(super) fn teleport(position: Element) -> Element {
     Element::new("TeleportAction").child(position)
 }
 
@@ -282,7 +285,7 @@ fn assign_route(context: &Context<'_>, placement: &Placement, name: &str) -> Ele
     )
 }
 
-fn story(name: &str, groups: Vec<Element>) -> Element {
+pub(super) fn story(name: &str, groups: Vec<Element>) -> Element {
     let act = Element::new("Act")
         .with("name", format!("{name}: act"))
         .children(groups)
@@ -290,11 +293,11 @@ fn story(name: &str, groups: Vec<Element>) -> Element {
     Element::new("Story").with("name", format!("{name}: story")).child(act)
 }
 
-fn maneuver(name: &str, events: Vec<Element>) -> Element {
+pub(super) fn maneuver(name: &str, events: Vec<Element>) -> Element {
     Element::new("Maneuver").with("name", name).children(events)
 }
 
-fn group(name: &str, actor: Option<&str>, maneuvers: Vec<Element>) -> Element {
+pub(super) fn group(name: &str, actor: Option<&str>, maneuvers: Vec<Element>) -> Element {
     let actors = Element::new("Actors")
         .with("selectTriggeringEntities", "false")
         .children(actor.map(|id| Element::new("EntityRef").with("entityRef", id)));
@@ -305,12 +308,12 @@ fn group(name: &str, actor: Option<&str>, maneuvers: Vec<Element>) -> Element {
         .children(maneuvers)
 }
 
-fn event(name: &str, action_name: &str, action: Element, trigger: Element) -> Element {
+pub(super) fn event(name: &str, action_name: &str, action: Element, trigger: Element) -> Element {
     event_on(name, action_name, action, vec![trigger])
 }
 
 /// An event that starts on any of these groups of conditions.
-fn event_on(name: &str, action_name: &str, action: Element, groups: Vec<Element>) -> Element {
+pub(super) fn event_on(name: &str, action_name: &str, action: Element, groups: Vec<Element>) -> Element {
     Element::new("Event")
         .with("name", name)
         .with("priority", "override")
@@ -319,15 +322,26 @@ fn event_on(name: &str, action_name: &str, action: Element, groups: Vec<Element>
         .child(Element::new("StartTrigger").children(groups))
 }
 
-fn set_variable(name: &str) -> Element {
+pub(super) fn set_variable(name: &str) -> Element {
     Element::new("GlobalAction").child(
         Element::new("VariableAction").with("variableRef", name).child(Element::new("SetAction").with("value", "true")),
     )
 }
 
-fn at_time(name: &str, time: &str) -> Element {
+pub(super) fn at_time(name: &str, time: &str) -> Element {
     let condition = Element::new("SimulationTimeCondition").with("rule", "greaterOrEqual").with("value", time);
     Element::new("ConditionGroup").child(by_value(name, condition))
+}
+
+/// Whether somebody has put a system under test there, `true` or `false`.
+pub(super) fn controller_is(name: &str, active: &str) -> Element {
+    by_value(
+        name,
+        Element::new("ParameterCondition")
+            .with("parameterRef", "egoControllerActive")
+            .with("rule", "equalTo")
+            .with("value", active),
+    )
 }
 
 fn by_value(name: &str, condition: Element) -> Element {
@@ -338,7 +352,7 @@ fn by_value(name: &str, condition: Element) -> Element {
         .child(Element::new("ByValueCondition").child(condition))
 }
 
-fn collision(name: &str, entity: &str, other: &str, delay_s: f64) -> Element {
+pub(super) fn collision(name: &str, entity: &str, other: &str, delay_s: f64) -> Element {
     let condition = Element::new("CollisionCondition").child(Element::new("EntityRef").with("entityRef", other));
     by_entity(name, entity, delay_s, condition)
 }

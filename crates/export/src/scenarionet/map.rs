@@ -3,6 +3,7 @@
 use super::pickle::Value;
 use recrash_model::geometry::Vec2;
 use recrash_model::scenario::{Device, StripKind};
+use recrash_roads::graph::GroundKind;
 use recrash_roads::{Lane, LaneId, LineKind, NamedRoad, Road, RoadNetwork, RoadPart, Scenario};
 
 /// Points of a straight line are this far apart: learning simulators look at points, not at lines. [m]
@@ -45,6 +46,16 @@ pub(super) fn features(scenario: &Scenario, origin: Vec2) -> Vec<(String, Value)
         };
         let feature = Value::dict([("type", kind.into()), ("polyline", points(line.points.iter().copied(), origin))]);
         found.push((format!("line{position}"), feature));
+    }
+    for (position, area) in network.areas.iter().enumerate() {
+        let kind = match area.kind {
+            GroundKind::Crosswalk => "CROSSWALK",
+            GroundKind::Driveway => "DRIVEWAY",
+            GroundKind::Island => "ROAD_EDGE_SIDEWALK",
+            GroundKind::Paved | GroundKind::Junction | GroundKind::Stall | GroundKind::Building => continue,
+        };
+        let polygon = points(area.points.iter().copied(), origin);
+        found.push((format!("area{position}"), Value::dict([("type", kind.into()), ("polygon", polygon)])));
     }
     for (position, (control, placement)) in scenario.draft().control.iter().zip(scenario.control()).enumerate() {
         if !matches!(control.device, Device::StopSign {}) {

@@ -42,6 +42,13 @@ fn written_for_a_pedestrian() -> BTreeSet<String> {
     scenarios.flat_map(|file| elements(std::str::from_utf8(&file.content).expect("text")).collect::<Vec<_>>()).collect()
 }
 
+/// Names of the elements of a scenario whose road users have plans.
+fn written_for_a_scene() -> BTreeSet<String> {
+    let files = crate::scenes::exported(Format::OpenScenario);
+    let scenarios = files.iter().filter(|file| file.name.ends_with(".xosc"));
+    scenarios.flat_map(|file| elements(std::str::from_utf8(&file.content).expect("text")).collect::<Vec<_>>()).collect()
+}
+
 /// Names in code font in a section of the page.
 fn listed(section: &str) -> BTreeSet<String> {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formats/coverage.md");
@@ -58,6 +65,7 @@ fn openscenario() {
     page.remove("import");
     let mut found = written(&["openscenario", "openscenario-trajectory"], ".xosc");
     found.extend(written_for_a_pedestrian());
+    found.extend(written_for_a_scene());
     assert_eq!(found, page);
 }
 
@@ -66,7 +74,13 @@ fn opendrive() {
     let mut found = written(&["openscenario"], ".xodr");
     for json in [include_str!("../networks/town.json"), include_str!("../networks/ramps.json")] {
         let scenario = recrash_roads::check(draft(json)).expect("a network passes the check").value;
-        let files = export(&scenario, None, &[], &ExportOptions::new(Format::OpenScenario)).expect("exported");
+        let files = export(
+            &scenario,
+            Some(&recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded)),
+            &[],
+            &ExportOptions::new(Format::OpenScenario),
+        )
+        .expect("exported");
         let map = files.iter().find(|file| file.name.ends_with(".xodr")).expect("a map");
         found.extend(elements(std::str::from_utf8(&map.content).expect("text")));
     }

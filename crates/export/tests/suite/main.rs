@@ -6,3 +6,4 @@ mod export;
 mod fuzz_corpus;
 mod goldens;
 mod import;
+mod scenes;

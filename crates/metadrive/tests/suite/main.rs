@@ -3,3 +3,4 @@
 mod common;
 mod faults;
 mod real_metadrive;
+mod scenes;

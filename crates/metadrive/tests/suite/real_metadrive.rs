@@ -15,7 +15,7 @@ fn options() -> Option<Options> {
 }
 
 /// One pool for all tests: importing MetaDrive is what takes time.
-fn start() -> Option<&'static Metadrive> {
+pub fn start() -> Option<&'static Metadrive> {
     static POOL: OnceLock<Metadrive> = OnceLock::new();
     options().map(|options| POOL.get_or_init(|| Metadrive::start(options).unwrap_or_else(|error| panic!("{error}"))))
 }

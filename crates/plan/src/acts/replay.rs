@@ -308,3 +308,66 @@ fn is_timed(ego: &Member<'_>) -> bool {
     ego.progress.due.is_some()
         || act.is_some_and(|act| matches!(act.when, Some(When::Step(_) | When::Signal { .. } | When::Act { .. })))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A straight road, an ego recorded at 10 m/s, and a car ahead of it that does something.
+    fn scenario(actors: &str) -> Scenario {
+        let text = format!(
+            r#"{{ "format": "recrash.scenario/2", "id": "t", "source": {{}}, "duration_s": 4,
+                "map": {{ "type": "G", "roads": [{{ "id": "main", "start": {{ "at": {{ "x_m": 0, "y_m": 0, "heading_deg": 0 }} }},
+                    "line": [{{ "straight": {{ "length_m": 200 }} }}], "right": [{{ "kind": "driving" }}] }}] }},
+                "ego": {{ "route": ["main+"], "target_speed_mps": 10, "handover_s": 1,
+                    "recorded": {{ "start": {{ "road": "main+", "s_m": 20 }}, "speed_mps": 10,
+                        "course": [{{ "lanes": {{ "roads": ["main+"] }} }}],
+                        "acts": [{{ "id": "brake", "when": {{ "time_s": 0.5 }}, "do": {{ "stop": {{ "rate_mps2": 2 }} }} }}] }} }},
+                "actors": [{actors}] }}"#
+        );
+        let draft = recrash_roads::read_draft(&text).unwrap_or_else(|problems| panic!("{problems:#?}")).value;
+        recrash_roads::check(draft).unwrap_or_else(|problems| panic!("{problems:#?}")).value
+    }
+
+    fn car(id: &str, s_m: f64, acts: &str) -> String {
+        format!(
+            r#"{{ "id": "{id}", "plan": {{ "start": {{ "road": "main+", "s_m": {s_m} }}, "speed_mps": 8,
+                "course": [{{ "lanes": {{ "roads": ["main+"] }} }}], "acts": [{acts}] }} }}"#
+        )
+    }
+
+    #[test]
+    fn who_asks_nobody_is_known_to_the_end() {
+        let replay = replay(&scenario(&car("cp", 60.0, "")), 10);
+        assert_eq!(replay.ends, None);
+        let states = &replay.actors[0].states;
+        assert_eq!(states.len(), 41);
+        assert!((states[30][0] - (60.0 + 3.0 * 8.0)).abs() < 1e-9, "{:?}", states[30]);
+    }
+
+    #[test]
+    fn an_act_of_the_recorded_ego_is_seen_and_who_watches_the_driven_one_is_told() {
+        let after_brake =
+            r#"{ "when": { "act": { "actor": "ego", "act": "brake" } }, "do": { "stop": { "rate_mps2": 4 } } }"#;
+        let seen = replay(&scenario(&car("cp", 60.0, after_brake)), 10);
+        assert_eq!(seen.ends, None);
+        assert!(seen.actors[0].states[40][3].abs() < 1e-9, "it stands: {:?}", seen.actors[0].states[40]);
+        let near = r#"{ "when": { "near": { "actor": "ego", "within_m": 3 } }, "do": { "stop": { "rate_mps2": 4 } } }"#;
+        let (step, why) = replay(&scenario(&car("cp", 60.0, near)), 10).ends.expect("it watches the ego");
+        assert_eq!(step, 10);
+        assert!(why.contains("act 1 of cp"), "{why}");
+        // Recorded to the end, it is known.
+        assert_eq!(replay(&scenario(&car("cp", 60.0, near)), u32::MAX).ends, None);
+    }
+
+    #[test]
+    fn a_push_ends_it_in_the_step_of_the_touch() {
+        let standing = r#"{ "when": { "time_s": 0 }, "do": { "stop": { "rate_mps2": 12 } } }"#;
+        let both = format!("{}, {}", car("front", 80.0, standing), car("behind", 70.0, ""));
+        let (step, why) = replay(&scenario(&both), 10).ends.expect("they touch");
+        // The front one stands after 8 / 12 s and 2.67 m; the gap is 10 - 4.515 m.
+        let touch_s = (10.0 - 4.515 + 8.0 * 8.0 / 24.0) / 8.0;
+        assert!((f64::from(step) * STEP_S - touch_s).abs() <= 0.12, "{step} {touch_s}");
+        assert_eq!(why, "front and behind push each other");
+    }
+}

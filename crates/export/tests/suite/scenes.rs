@@ -1,0 +1,66 @@
+//! Scenarios whose road users have plans: told by what was recorded.
+
+use crate::common::{draft, scenario};
+use recrash_export::{ExportError, ExportFile, ExportOptions, Format, export, import};
+use recrash_sim::{Ego, simulate};
+
+/// A car that stands at a red signal is hit from behind; others cross, park, walk, appear and leave.
+const RED_LIGHT: &str = include_str!("../scenes/red-light.json");
+
+/// Its files in a format, with the recorded driver in the ego's seat.
+pub fn exported(format: Format) -> Vec<ExportFile> {
+    let scenario = scenario(RED_LIGHT);
+    let rollout = simulate(&scenario, Ego::Recorded);
+    export(&scenario, Some(&rollout), &[], &ExportOptions::new(format)).expect("exported")
+}
+
+fn xosc() -> String {
+    let files = exported(Format::OpenScenario);
+    let file = files.into_iter().find(|file| file.name.ends_with(".xosc")).expect("a scenario file");
+    String::from_utf8(file.content).expect("text")
+}
+
+#[test]
+fn everybody_follows_what_was_recorded_and_the_ego_hands_over() {
+    let scenario = scenario(RED_LIGHT);
+    let rollout = simulate(&scenario, Ego::Recorded);
+    let text = xosc();
+    for track in &rollout.actors {
+        assert!(text.contains(&format!("<ScenarioObject name=\"{}\">", track.id)), "{}", track.id);
+        assert!(text.contains(&format!("<Trajectory name=\"{}: recorded\"", track.id)), "{}", track.id);
+    }
+    let present: usize =
+        rollout.actors.iter().map(|track| (0..rollout.steps()).filter(|step| track.is_present(*step)).count()).sum();
+    // Two more where ego and the one behind it touch between two steps.
+    let vertices = text.matches("<Vertex ").count();
+    assert!((present..=present + 2).contains(&vertices), "{vertices} of {present}");
+    assert!(text.contains("<Condition name=\"ego: handover\""), "a system under test takes over at its time");
+    assert!(text.contains("<AddEntityAction>") && text.contains("<EntityAction entityRef=\"cyclist\">"));
+    // A program of 9, 20 and 3 s, from its beginning.
+    let phases: Vec<&str> =
+        text.split("<Phase ").skip(1).map(|rest| rest.split('>').next().unwrap_or_default()).collect();
+    assert_eq!(
+        phases,
+        ["name=\"1 red\" duration=\"9\"", "name=\"2 green\" duration=\"20\"", "name=\"3 yellow\" duration=\"3\""]
+    );
+    assert!(text.contains("recrash.remark.1"), "what is not carried is told");
+}
+
+#[test]
+fn the_whole_scenario_is_read_back() {
+    let read = import(&xosc()).expect("read");
+    assert_eq!(read.value.draft(), &draft(RED_LIGHT));
+}
+
+#[test]
+fn plans_need_a_rollout_and_metadrive_takes_them_as_they_are() {
+    let scenario = scenario(RED_LIGHT);
+    for format in [Format::OpenScenario, Format::ScenarioNet] {
+        let error = export(&scenario, None, &[], &ExportOptions::new(format)).unwrap_err();
+        assert_eq!(error, ExportError::NeedsRollout { scenario: "red-light".to_owned() });
+    }
+    let files = export(&scenario, None, &[], &ExportOptions::new(Format::MetaDrive)).expect("exported");
+    let json: serde_json::Value = serde_json::from_slice(&files[0].content).expect("JSON");
+    assert_eq!(json["run"]["scene"]["planned"].as_array().map(Vec::len), Some(5));
+    assert!(json["run"]["scene"]["lanes"].as_array().is_some_and(|lanes| lanes.len() > 20));
+}
