@@ -37,7 +37,8 @@ pub use spending::{Caps, Spending, Spent};
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
 use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT, Narrative, Origin};
 use recrash_model::scenario::{
-    Author, EgoSpec, Environment, MapSpec, Obstacle, Partner, SCENARIO_FORMAT, ScenarioDraft, Source,
+    Author, CrossMap, CurveMap, Environment, Obstacle, Partner, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source,
+    StraightMap, TeeMap,
 };
 use recrash_model::tuning::Parameter;
 use recrash_model::{Diagnostic, Outcome};
@@ -83,9 +84,9 @@ struct NarrativeAnswer {
 #[expect(dead_code, reason = "only its schema is used")]
 struct ScenarioAnswer {
     /// Road map.
-    map: MapSpec,
+    map: MapAnswer,
     /// The subject vehicle.
-    ego: EgoSpec,
+    ego: EgoAnswer,
     /// Other road users with a script, at most 16.
     partners: Vec<Partner>,
     /// Static obstacles, at most 64.
@@ -96,6 +97,40 @@ struct ScenarioAnswer {
     environment: Environment,
     /// The rollout ends after this time at the latest, 1 to 120. [s]
     duration_s: f64,
+}
+
+/// The maps a model designs on: the paper's blocks.
+#[derive(JsonSchema)]
+#[schemars(tag = "type")]
+#[expect(dead_code, reason = "only its schema is used")]
+enum MapAnswer {
+    /// Straight road.
+    S(StraightMap),
+    /// Curve.
+    C(CurveMap),
+    /// Four-way intersection.
+    X(CrossMap),
+    /// Three-way intersection.
+    T(TeeMap),
+    /// Roundabout.
+    O(RoundaboutMap),
+}
+
+/// What a model decides of the subject vehicle. It starts on the approach road.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+#[expect(dead_code, reason = "only its schema is used")]
+struct EgoAnswer {
+    /// Which way it leaves the block.
+    turn: recrash_model::scenario::Turn,
+    /// Lane, 0 is the leftmost.
+    lane: u8,
+    /// Start along its lane, from the beginning of the map. [m]
+    s_m: f64,
+    /// Speed at the start. [m/s]
+    speed_mps: f64,
+    /// Speed it wants. [m/s]
+    target_speed_mps: f64,
 }
 
 /// The form of a proposal.

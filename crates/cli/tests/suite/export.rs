@@ -167,7 +167,7 @@ fn the_papers_dialect_is_imported_and_run() {
     assert_eq!(code, 0, "{shown}");
     assert!(shown.contains("dialect.json") && shown.contains("state hash"), "{shown}");
     let written: Value = serde_json::from_slice(&std::fs::read(case.path("dialect.json")).unwrap()).unwrap();
-    assert_eq!(written["format"], "recrash.scenario/1");
+    assert_eq!(written["format"], "recrash.scenario/2");
     assert_eq!(written["partners"][0]["policy"]["brake_step"], 30);
 
     let (code, shown) = case.run(&["import", "theirs.json"]);
