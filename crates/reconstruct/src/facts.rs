@@ -7,10 +7,17 @@ use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::narrative::FirstMover;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout};
 
 /// Slower than this is standing. [m/s]
 const STANDS_MPS: f64 = 0.1;
+
+/// Who is no farther from the place of the contact is there. [m]
+const NEAR_M: f64 = 0.5;
+
+/// Who come within this time come together. [s]
+const TOGETHER_S: f64 = 1.0;
 
 /// A kind of fact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,11 +42,13 @@ pub enum FactKind {
     CpMovement,
     /// From where the partner comes.
     Origin,
+    /// Who was at the place of the contact first.
+    Order,
 }
 
 impl FactKind {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Contact,
         Self::Partner,
         Self::SvZone,
@@ -50,6 +59,7 @@ impl FactKind {
         Self::SvMovement,
         Self::CpMovement,
         Self::Origin,
+        Self::Order,
     ];
 
     /// For tables.
@@ -65,6 +75,7 @@ impl FactKind {
             Self::SvMovement => "ego's movement",
             Self::CpMovement => "partner's movement",
             Self::Origin => "partner's origin",
+            Self::Order => "who was first",
         }
     }
 }
@@ -141,7 +152,32 @@ pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Shown> {
             fact(FactKind::Origin, shown, sentence);
         }
     }
+    if let (Some(first), Some(track)) = (told.order, touch.track) {
+        let (shown, sentence) = order(first, ego_track, track, geometry.point, touch.time_s);
+        fact(FactKind::Order, shown, sentence);
+    }
     list
+}
+
+/// Whether who is told to have been first was at the place of the contact first, and by how much.
+fn order(first: FirstMover, ego: &ActorTrack, other: &ActorTrack, point: Vec2, time_s: f64) -> (bool, String) {
+    let there_s = |track: &ActorTrack| {
+        let until = ((time_s * 10.0).ceil() as usize + 1).min(track.states.len());
+        let covers = |step: &usize| {
+            let outline = track.outline(*step);
+            let local = outline.to_local(point);
+            local.x.abs() <= outline.half_length + NEAR_M && local.y.abs() <= outline.half_width + NEAR_M
+        };
+        (0..until).find(covers).map_or(time_s, |step| 0.1 * step as f64)
+    };
+    let (ego_s, other_s) = (there_s(ego), there_s(other));
+    let earlier_s = other_s - ego_s;
+    let shown = match first {
+        FirstMover::Sv => earlier_s > 0.1,
+        FirstMover::Cp => earlier_s < -0.1,
+        FirstMover::Both => earlier_s.abs() <= TOGETHER_S,
+    };
+    (shown, format!("told: {first:?} first; shown: the ego {earlier_s:.1} s before the partner"))
 }
 
 fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {

@@ -43,6 +43,14 @@ impl Reconstruction {
     }
 }
 
+/// Told facts of an account, held against a rollout of any scenario.
+///
+/// # Errors
+/// The account cannot be staged at all.
+pub fn held_against(account: &Account, rollout: &Rollout) -> Result<Vec<Shown>, Untold> {
+    Ok(facts::facts(&told::Told::of(account)?, rollout))
+}
+
 /// Stages an account: the first staging that shows every told fact, else the one that shows most.
 ///
 /// # Errors

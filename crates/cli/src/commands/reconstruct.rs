@@ -23,7 +23,7 @@ Examples:
   recrash simulate scenes/incident-X.json --ego idm        another driver in its place, from the handover on
 
 The ego is the recorded driver. Checked are: contact, kind of partner, zones of both within a step, state of both at the
-contact, the ego's impact speed, turns of both, and from where the partner comes. Not yet checked: who was first, lanes,
+contact, the ego's impact speed, turns of both, from where the partner comes, and who was first. Not yet checked: lanes,
 signals, others, doors, and why somebody stood. docs/models/reconstruction.md says how each is checked.";
 
 /// Options of `reconstruct`.

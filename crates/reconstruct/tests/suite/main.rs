@@ -1,0 +1,7 @@
+//! Reconstructions of mini narratives, and what sabotage does to them.
+
+#[path = "../../../reader/tests/suite/common.rs"]
+#[allow(dead_code, reason = "the reader's own tests use the rest")]
+mod common;
+mod sabotage;
+mod stories;

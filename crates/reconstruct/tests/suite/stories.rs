@@ -1,0 +1,62 @@
+//! Mini narratives of our own are shown as they are told.
+
+use crate::common::account_of;
+use recrash_model::account::Account;
+use recrash_reconstruct::{Reconstruction, reconstruct};
+
+const STORIES: &str = include_str!("../../../reader/tests/suite/stories.toml");
+
+/// Name and account of every mini narrative that is one.
+pub fn accounts() -> Vec<(String, Account)> {
+    let table: toml::Table = toml::from_str(STORIES).expect("stories");
+    let stories = table["story"].as_array().expect("stories").iter();
+    stories
+        .filter_map(|story| {
+            let text = |field: &str| story[field].as_str().expect("text").to_owned();
+            Some((text("name"), account_of(&text("text"))?))
+        })
+        .collect()
+}
+
+/// Those whose every checked fact is shown.
+pub fn shown() -> Vec<(String, Account, Reconstruction)> {
+    let made = accounts().into_iter().filter_map(|(name, account)| {
+        let made = reconstruct(&account).ok().filter(Reconstruction::is_true)?;
+        Some((name, account, made))
+    });
+    made.collect()
+}
+
+#[test]
+fn most_mini_narratives_are_shown_as_told() {
+    let all = accounts();
+    let shown = shown();
+    assert!(all.len() >= 60, "{}", all.len());
+    let share = shown.len() as f64 / all.len() as f64;
+    assert!(share >= 0.75, "{} of {}", shown.len(), all.len());
+    for (name, _, made) in &shown {
+        assert!(made.facts.len() >= 3, "{name}: {:?}", made.facts);
+        assert!(made.rollout.ego == "recorded");
+    }
+}
+
+#[test]
+fn the_same_account_gives_the_same_bytes() {
+    for (_, account, made) in shown().into_iter().step_by(9) {
+        let again = reconstruct(&account).expect("as before");
+        assert_eq!(again, made);
+    }
+}
+
+#[test]
+fn another_driver_takes_over_in_every_one() {
+    for (name, _, made) in shown() {
+        let scenario = recrash_roads::check(made.draft).expect("it ran").value;
+        let tested = recrash_sim::simulate(&scenario, recrash_sim::Ego::Idm);
+        let handover_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
+        for step in 0..=((handover_s * 10.0) as usize).min(made.rollout.steps() - 1) {
+            let (told, other) = (&made.rollout.actors[0].states[step], &tested.actors[0].states[step]);
+            assert_eq!(told.pose(), other.pose(), "{name} at step {step}");
+        }
+    }
+}
