@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from exports import Export, of_cases, of_suite, run, shared
+from exports import Export, of_cases, of_scenes, of_suite, run, shared
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -48,6 +48,12 @@ def exports(recrash: str, suite: Path, tmp_path_factory: pytest.TempPathFactory)
         run(recrash, "run", "--quiet", "--records", records, "--profile", "paper", "--out", paper)
         found += of_suite(recrash, paper, "paper", folder / "paper")
     return found
+
+
+@pytest.fixture(scope="session")
+def scenes(recrash: str, tmp_path_factory: pytest.TempPathFactory) -> list[Export]:
+    """Scenes with plans."""
+    return of_scenes(recrash, tmp_path_factory.mktemp("scenes"))
 
 
 @pytest.fixture(scope="session")

@@ -65,7 +65,7 @@ def of_cases(recrash: str, folder: Path) -> list[Export]:
 
 
 def of_scenes(recrash: str, folder: Path) -> list[Export]:
-    """Scenes with plans, as ScenarioNet: the recorded driver in the ego's seat where there is one."""
+    """Scenes with plans: the recorded driver in the ego's seat where there is one."""
     found = []
     for path in sorted(path for scenes in SCENES for path in scenes.glob("**/*.json")):
         scenario = json.loads(path.read_text())
@@ -73,7 +73,7 @@ def of_scenes(recrash: str, folder: Path) -> list[Export]:
         target.mkdir(parents=True)
         ego = ["--ego", "recorded"] if "recorded" in scenario["ego"] else []
         run(recrash, "simulate", "--quiet", path, *ego, "--rollout", target / "rollout.json")
-        run(recrash, "export", "--quiet", path, "--to", "scenarionet", "--to-dir", target)
+        run(recrash, "export", "--quiet", path, "--to", "scenarionet,openscenario", "--to-dir", target)
         rollout = json.loads((target / "rollout.json").read_text())
         found.append(Export("scenes", scenario["id"], scenario, rollout, target, []))
     return found

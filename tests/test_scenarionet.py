@@ -5,7 +5,7 @@ import math
 import shutil
 from pathlib import Path
 
-from exports import Export, of_scenes
+from exports import Export
 from oracles import answers
 
 #: Everybody is replayed this near to where it was. [m, rad]
@@ -16,8 +16,7 @@ TURNED = 0.02
 UNSEEN = {"OTHER", "TRAFFIC_OBJECT"}
 
 
-def test_files_load_and_replay_what_was_driven(exports: list[Export], recrash: str, tmp_path: Path) -> None:
-    scenes = of_scenes(recrash, tmp_path / "scenes")
+def test_files_load_and_replay_what_was_driven(exports: list[Export], scenes: list[Export], tmp_path: Path) -> None:
     assert scenes
     found = check(exports, tmp_path / "exported")
     found.update(check(scenes, tmp_path / "drawn"))

@@ -69,7 +69,8 @@ pub use tools::exporting::{ExportReport, ExportRequest, export};
 pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
 pub use tools::parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
-    ParityRequest, ParitySource, ParityTable, TIME_TOLERANCE_S, Threshold, open_loop, parity, random_scenario,
+    ParityRequest, ParitySource, ParityTable, RefusedScenario, TIME_TOLERANCE_S, Threshold, open_loop, parity,
+    random_scenario,
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
 pub use tools::reconstructing::{

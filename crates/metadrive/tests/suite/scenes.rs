@@ -72,8 +72,8 @@ fn a_door_of_a_parked_car_is_touched() {
     assert_eq!(rollout.termination.kind, TerminationKind::Contact);
     let (other, time_s, state, _) = rollout.first_ego_contact().expect("a contact");
     assert_eq!(rollout.actors[other].id, "parked");
-    // Its front reaches the door's end, 0.6 - 1.1 cos 70 m ahead of the middle of the car.
-    let end = 40.0 + 0.6 - 1.1 * 70.0_f64.to_radians().cos();
+    // Its front reaches the door's end, 0.6 - 1.1 cos 70 deg m ahead of the middle of the car.
+    let end = 40.0 + 0.6 - 1.1 * 0.342;
     assert!((state.x + 2.2575 - end).abs() < 0.35, "{state:?} at {time_s} s");
     let part = rollout.actors.last().expect("parts come last");
     assert_eq!((part.role, part.part_of, part.id.as_str()), (Role::Part, Some(1), "parked.door"));

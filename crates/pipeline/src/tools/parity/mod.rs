@@ -17,7 +17,7 @@ use crate::reading::scenarios::read_scenario;
 use crate::suite::Suite;
 use crate::suite::names;
 use recrash_lab::judge;
-use recrash_metadrive::{Drive, Metadrive};
+use recrash_metadrive::{Drive, Metadrive, MetadriveError};
 use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::Selection;
@@ -83,6 +83,15 @@ impl Threshold {
     }
 }
 
+/// A scenario that MetaDrive cannot hold.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct RefusedScenario {
+    /// Its name.
+    pub name: String,
+    /// Why.
+    pub why: String,
+}
+
 /// What the comparison says.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Parity {
@@ -102,6 +111,8 @@ pub struct Parity {
     pub pairs: Vec<Pair>,
     /// Positions in `pairs` of those farthest apart, the worst first.
     pub worst: Vec<usize>,
+    /// Scenarios that MetaDrive cannot hold; they are no pairs.
+    pub refused: Vec<RefusedScenario>,
 }
 
 impl Parity {
@@ -130,7 +141,21 @@ pub fn parity(request: &ParityRequest, progress: &dyn Progress) -> Result<Parity
         judge(&named.scenario, recrash_sim::simulate(&named.scenario, Ego::MetadriveIdm), &profile, None)
     };
     let ours: Vec<JudgedRun> = scenarios.iter().map(native).collect();
-    let theirs = on_metadrive(&metadrive, &scenarios, &profile, progress);
+    let all = on_metadrive(&metadrive, &scenarios, &profile, progress);
+    let (mut held, mut refused) = ((Vec::new(), Vec::new(), Vec::new()), Vec::new());
+    for ((named, ours), theirs) in scenarios.into_iter().zip(ours).zip(all) {
+        match theirs {
+            Err(error) if error.is_refused() => {
+                refused.push(RefusedScenario { name: named.name, why: error.to_string() })
+            }
+            theirs => {
+                held.0.push(named);
+                held.1.push(ours);
+                held.2.push(theirs.map_err(|error| error.to_string()));
+            }
+        }
+    }
+    let (scenarios, ours, theirs) = held;
     let pairs = scenarios.iter().zip(ours.iter().zip(&theirs)).map(|(named, (ours, theirs))| {
         let theirs = theirs.as_ref().map_err(Clone::clone);
         Pair::of(named.name.clone(), named.scenario.draft(), ours, theirs)
@@ -152,6 +177,7 @@ pub fn parity(request: &ParityRequest, progress: &dyn Progress) -> Result<Parity
         apart: recrash_lab::parity::compare::apart_over_time(&pairs),
         pairs,
         worst,
+        refused,
     };
     store.write("parity.json", &to_json(&parity))?;
     store.write("parity.csv", parity.csv().as_bytes())?;
@@ -177,16 +203,17 @@ fn on_metadrive(
     scenarios: &[Named],
     profile: &SystemProfile,
     progress: &dyn Progress,
-) -> Vec<Result<JudgedRun, String>> {
+) -> Vec<Result<JudgedRun, MetadriveError>> {
     const STAGE: &str = "parity";
     progress.event(ProgressEvent::Started { stage: STAGE, units: scenarios.len() });
     let checked: Vec<Scenario> = scenarios.iter().map(|named| named.scenario.clone()).collect();
     let done = |_| progress.event(ProgressEvent::Advanced { stage: STAGE, unit: "MetaDrive", skipped: false });
     let rollouts = metadrive.simulate_all(&checked, &Drive::MetadriveIdm, &done);
     progress.event(ProgressEvent::Finished { stage: STAGE });
-    let judged = rollouts.into_iter().zip(&checked).map(|(rollout, scenario)| {
-        rollout.map(|rollout| judge(scenario, rollout, profile, None)).map_err(|error| error.to_string())
-    });
+    let judged = rollouts
+        .into_iter()
+        .zip(&checked)
+        .map(|(rollout, scenario)| rollout.map(|rollout| judge(scenario, rollout, profile, None)));
     judged.collect()
 }
 

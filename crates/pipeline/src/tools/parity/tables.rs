@@ -81,7 +81,18 @@ impl Parity {
             tables.push(self.verdicts());
         }
         tables.push(self.farthest());
+        if !self.refused.is_empty() {
+            tables.push(self.not_held());
+        }
         tables
+    }
+
+    fn not_held(&self) -> ParityTable {
+        ParityTable {
+            caption: "What MetaDrive cannot hold",
+            header: vec!["scenario", "why"],
+            rows: self.refused.iter().map(|refused| vec![refused.name.clone(), refused.why.clone()]).collect(),
+        }
     }
 
     fn asked(&self) -> ParityTable {
