@@ -99,7 +99,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let record = &report.record;
     let text = record.narrative.as_str();
     let make = own_make(record);
-    let story = story(text, Own { kind: own_kind(record), make: make.as_deref() });
+    let story = story(text, Own { kind: own_kind(record), make: make.as_deref(), vehicle: &record.vehicle });
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };
     let mut account = Account {
