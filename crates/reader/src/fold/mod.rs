@@ -139,6 +139,10 @@ pub fn account(incident: &Incident) -> Option<Account> {
     account.scenario = types::scenario(&account);
     account.matrix = types::matrix(&account);
     account.contradictions.extend(contradictions(&account, record));
+    party::refine(&mut account.sv.zones, &record.sv_zones, "SV Contact Area");
+    if let Some(partner) = &mut account.partner {
+        party::refine(&mut partner.zones, &record.cp_zones, "CP Contact Area");
+    }
     Some(account)
 }
 
