@@ -56,6 +56,8 @@ pub struct World {
     /// The subject vehicle first.
     pub actors: Vec<Known>,
     clock: usize,
+    /// Words of what the record calls the subject vehicle.
+    vehicle: Vec<String>,
     /// "The driver" drives the subject vehicle.
     pub own_driver: bool,
     /// Number of the sentence that is read.
@@ -68,8 +70,10 @@ impl World {
     /// A world with the subject vehicle in it.
     pub fn new(own: crate::frame::Own<'_>) -> Self {
         let names = own.make.into_iter().map(str::to_owned).collect();
+        let words = own.vehicle.split(|c: char| !c.is_alphanumeric());
+        let vehicle = words.filter(|word| word.len() > 2).map(str::to_lowercase).collect();
         let subject = Known { kind: own.kind, names, ..Known::default() };
-        Self { actors: vec![subject], clock: 0, own_driver: false, sentence: 0, topic: SUBJECT }
+        Self { actors: vec![subject], clock: 0, vehicle, own_driver: false, sentence: 0, topic: SUBJECT }
     }
 
     /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
@@ -156,6 +160,13 @@ impl World {
         }
         let by_own_make = noun.article == Article::Definite
             && noun.names.iter().any(|name| self.actors[SUBJECT].names.contains(name));
+        let unnamed = self.actors.len() == 1 && self.actors[SUBJECT].mentions == 0;
+        if let (true, Article::Definite, Some(name)) =
+            (unnamed, noun.article, noun.names.iter().find(|name| self.vehicle.contains(*name)))
+        {
+            self.actors[SUBJECT].names.push(name.clone());
+            return Some(SUBJECT);
+        }
         if by_own_make && !self.actors[1..].iter().any(|known| known.names.iter().any(|name| noun.names.contains(name)))
         {
             return Some(SUBJECT);

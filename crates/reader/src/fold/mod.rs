@@ -99,7 +99,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let record = &report.record;
     let text = record.narrative.as_str();
     let make = own_make(record);
-    let story = story(text, Own { kind: own_kind(record), make: make.as_deref() });
+    let story = story(text, Own { kind: own_kind(record), make: make.as_deref(), vehicle: &record.vehicle });
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };
     let mut account = Account {
@@ -139,6 +139,10 @@ pub fn account(incident: &Incident) -> Option<Account> {
     account.scenario = types::scenario(&account);
     account.matrix = types::matrix(&account);
     account.contradictions.extend(contradictions(&account, record));
+    party::refine(&mut account.sv.zones, &record.sv_zones, "SV Contact Area");
+    if let Some(partner) = &mut account.partner {
+        party::refine(&mut partner.zones, &record.cp_zones, "CP Contact Area");
+    }
     Some(account)
 }
 

@@ -543,6 +543,15 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
     }
 }
 
+/// Words name an end or a side where the column ticks one corner of it: both are meant.
+pub(crate) fn refine(zones: &mut Vec<Fact<ContactZone>>, column: &[ContactZone], name: &str) {
+    if let ([told], [ticked]) = (zones.as_slice(), column)
+        && super::steps(told.value, *ticked) == 1
+    {
+        zones.push(Fact::of_column(*ticked, name));
+    }
+}
+
 /// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.
 fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     let record = reading.record;

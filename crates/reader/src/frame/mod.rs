@@ -116,6 +116,8 @@ pub struct Own<'a> {
     pub kind: Option<Kind>,
     /// The make by which the company that reports calls it.
     pub make: Option<&'a str>,
+    /// What the record calls the vehicle: it is meant by "the Volvo" where nobody was named before.
+    pub vehicle: &'a str,
 }
 
 /// Most tokens of a narrative that are read; the longest published one has a third of it.
