@@ -89,7 +89,7 @@ fn a_standing_partner_that_drives_on() {
 
 #[test]
 fn a_reversing_partner_that_drives_forward() {
-    caught("a partner in forward gear", 5, |account, draft| {
+    caught("a partner in forward gear", 3, |account, draft| {
         let reversed = partner_state(account) == Some(ContactState::Reversing);
         let Some(partner) = draft.actors.first_mut().filter(|_| reversed) else { return false };
         for leg in &mut partner.plan.course {
