@@ -1,8 +1,8 @@
 //! From an account to a scenario that shows the crash as it is told, with the recorded driver in the ego's seat; and every
 //! told fact held against what the rollout shows.
 //!
-//! The crash is staged backwards: first how the two touch ([`mod@touch`]: headings, zones, who closes on whom), then how each
-//! of them came there ([`mod@came`]), then the road around it ([`mod@ground`]). What the account leaves open is chosen, and
+//! The crash is staged backwards: first how the two touch (`touch`: headings, zones, who closes on whom), then how each
+//! of them came there (`came`), then the road around it (`ground`). What the account leaves open is chosen, and
 //! named as assumed. A rollout decides: who is drawn and does not show a told fact is not told. Rules and numbers:
 //! `docs/models/reconstruction.md`.
 
