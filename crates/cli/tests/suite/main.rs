@@ -12,6 +12,7 @@ mod export;
 mod live;
 mod outputs;
 mod read;
+mod reconstruct;
 mod records;
 mod repeatable;
 mod selection;

@@ -1,0 +1,60 @@
+//! `recrash reconstruct`, as a user of it meets it.
+
+use crate::common::Place;
+use serde_json::Value;
+
+#[test]
+fn shares_reasons_and_facts_are_shown_on_a_screen() {
+    let place = Place::new();
+    let (code, shown, remarks) = place.run(&["reconstruct"]);
+    assert_eq!(code, 0, "{remarks}");
+    for words in ["Crashes shown as they are told", "Front to rear", "Why the others are not", "who was first"] {
+        assert!(shown.contains(words), "{words}:\n{shown}");
+    }
+    assert_eq!(std::fs::read_dir(place.folder()).unwrap().count(), 0, "nothing is written that was not asked for");
+}
+
+#[test]
+fn every_incident_is_shown_or_has_a_reason() {
+    let place = Place::new();
+    let (code, shown, remarks) = place.run(&["reconstruct", "--json"]);
+    assert_eq!(code, 0, "{remarks}");
+    let value: Value = serde_json::from_str(&shown).unwrap();
+    let all = value["reconstructions"].as_array().unwrap();
+    assert_eq!(all.len() as u64, value["accounts"].as_u64().unwrap());
+    for each in all {
+        let facts = each["facts"].as_array().unwrap();
+        match each["standing"].as_str().unwrap() {
+            "shown" => assert!(facts.iter().all(|fact| fact["shown"] == true) && each["reason"].is_null(), "{each}"),
+            "not_shown" => {
+                assert!(facts.iter().any(|fact| fact["shown"] == false) && each["reason"].is_string(), "{each}")
+            }
+            _ => assert!(facts.is_empty() && each["reason"].is_string(), "{each}"),
+        }
+    }
+}
+
+#[test]
+fn what_is_written_shows_its_crash_and_takes_another_driver() {
+    let place = Place::new();
+    let (code, _, remarks) = place.run(&["reconstruct", "--to-dir", "scenes", "--quiet"]);
+    assert_eq!(code, 0, "{remarks}");
+    let mut files: Vec<_> =
+        std::fs::read_dir(place.path("scenes")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    assert!(files.len() > 100, "{}", files.len());
+    for file in files.iter().step_by(40) {
+        for ego in ["recorded", "idm"] {
+            let (code, shown, remarks) = place.run(&["simulate", file.to_str().unwrap(), "--ego", ego]);
+            assert!([0, 5].contains(&code) && shown.contains("state hash"), "{ego}: {remarks}\n{shown}");
+        }
+    }
+}
+
+#[test]
+fn a_report_that_is_not_there_is_told() {
+    let place = Place::new();
+    let (code, _, errors) = place.run(&["reconstruct", "--report", "nobody"]);
+    assert_eq!(code, 3, "{errors}");
+    assert!(errors.contains("no readable narrative of a report nobody"), "{errors}");
+}
