@@ -42,6 +42,12 @@ const FASTEST_EGO_MPS: f64 = 80.0 / 3.6;
 /// Nobody takes longer to set off. [s]
 const LONGEST_START_S: f64 = 6.0;
 
+/// Who throws the partner at the ego runs into it at this speed over its own, this long before the contact, and this far from where
+/// that is. [m/s, s, m]
+const PUSH_MPS: f64 = 10.0;
+const THROW_S: f64 = 0.25;
+const THROW_M: f64 = 1.0;
+
 /// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
 fn beyond_m(speed_mps: f64) -> f64 {
     20.0 + 5.0 * speed_mps
@@ -231,17 +237,15 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         let size = Some(Size { length_m, width_m });
         return (Vec::new(), vec![ObjectSpec { kind: obstacle_kind(thing), at: at(staging.cp), size }]);
     }
+    if told.is_thrown() {
+        return (thrown(told, staging), Vec::new());
+    }
     let pace = partner_pace(told);
     let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
     }
-    let plan = course_to(told, staging, pace, at);
-    let mut actors = vec![actor(plan)];
-    if told.pushed && cp.state.stands() {
-        actors.push(pusher(staging));
-    }
-    (actors, Vec::new())
+    (vec![actor(course_to(told, staging, pace, at))], Vec::new())
 }
 
 /// The line by which the partner comes to the contact, as long as its pace needs.
@@ -297,23 +301,41 @@ fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Ve
     Pose { position, heading: came }
 }
 
-/// Who throws the partner at the ego: from behind it.
-fn pusher(staging: &Staging) -> Actor {
+/// The partner stands behind the ego, or comes along behind it, and another runs into it: a car at [`PUSH_MPS`] over its speed.
+fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
+    let cp = &told.cp;
     let way = Vec2::from_heading(staging.cp.heading);
-    let start = staging.cp.position - way * (10.0 * CONTACT_S);
-    let to = staging.cp.position + way * beyond_m(10.0);
     let degrees = staging.cp.heading.to_degrees();
-    Actor {
-        id: "pusher".to_owned(),
-        kind: PartnerKind::PassengerCar,
-        size: None,
-        parts: Vec::new(),
-        plan: ActorPlan {
-            speed_mps: 10.0,
-            course: vec![Leg::Curve { to: Place::at(to.x, to.y, degrees), reverse: false }],
-            ..ActorPlan::standing(Place::at(start.x, start.y, degrees))
-        },
-    }
+    let at = |back_m: f64| staging.cp.position - way * back_m;
+    let place = |point: Vec2| Place::at(point.x, point.y, degrees);
+    let on = |speed_mps: f64, from: Vec2, acts: Vec<Act>| ActorPlan {
+        speed_mps,
+        course: vec![Leg::Curve { to: place(staging.cp.position + way * beyond_m(speed_mps)), reverse: false }],
+        acts,
+        ..ActorPlan::standing(place(from))
+    };
+    let actor = |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, parts: Vec::new(), plan };
+    let braking_s = ROLLING_MPS / STOPPING_MPS2;
+    let from_s = ((CONTACT_S - STOOD_S - braking_s) * 10.0).floor() / 10.0;
+    let driven_m = ROLLING_MPS * from_s + 0.5 * ROLLING_MPS * braking_s;
+    let ego_drives_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
+    let (partner, pusher_mps) = if told.sv.state == ContactState::Parked {
+        (ActorPlan::standing(place(at(THROW_M))), PUSH_MPS)
+    } else if ego_drives_mps > 0.0 {
+        (on(ego_drives_mps, at(THROW_M + ego_drives_mps * CONTACT_S), Vec::new()), ego_drives_mps + PUSH_MPS)
+    } else {
+        let stop =
+            vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }), next(Deed::Hold { for_s: None })];
+        (on(ROLLING_MPS, at(THROW_M + driven_m), stop), PUSH_MPS)
+    };
+    let (length_m, car_m) =
+        (size_of(cp).0, recrash_model::vehicle::VehicleSpec::of(PartnerKind::PassengerCar).length_m);
+    let until_m = THROW_M + 0.5 * (length_m + car_m) + pusher_mps * (CONTACT_S - THROW_S);
+    let behind_m = until_m + ego_drives_mps * THROW_S;
+    vec![
+        actor("cp", cp.kind, cp.size, partner),
+        actor("pusher", PartnerKind::PassengerCar, None, on(pusher_mps, at(behind_m), Vec::new())),
+    ]
 }
 
 fn obstacle_kind(kind: recrash_model::account::Kind) -> ObstacleKind {

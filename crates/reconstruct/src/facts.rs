@@ -1,7 +1,7 @@
 //! Told facts, held against a rollout. Nothing here reads the scenario: only who was where.
 
 use crate::told::{Told, Turning};
-use crate::touch::zones_off;
+use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Vec2};
@@ -9,9 +9,20 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::narrative::FirstMover;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout};
+use recrash_model::zones::ContactZone;
 
 /// Slower than this is standing. [m/s]
 const STANDS_MPS: f64 = 0.1;
+
+/// Nearer to the middle than this a contact is on neither side. [m]
+const MIDDLE_M: f64 = 0.1;
+
+/// Whether a contact lies within a step of a told zone, and not on the other side of the vehicle than all told ones.
+fn is_near(told: &[ContactZone], seen: ContactZone, outline: &OrientedBox, point: Vec2) -> bool {
+    let aside_m = outline.to_local(point).y;
+    let other_side = side_of(told).is_some_and(|side| side * aside_m < -MIDDLE_M);
+    zones_off(told, seen) <= 1 && !other_side
+}
 
 /// Who is no farther from the place of the contact is there. [m]
 const NEAR_M: f64 = 0.5;
@@ -36,6 +47,8 @@ pub enum FactKind {
     CpState,
     /// The ego's speed at the contact.
     SvSpeed,
+    /// The partner's speed at the contact.
+    CpSpeed,
     /// The ego's turn, or that it does not turn.
     SvMovement,
     /// The partner's turn, or that it does not turn.
@@ -44,11 +57,13 @@ pub enum FactKind {
     Origin,
     /// Who was at the place of the contact first.
     Order,
+    /// Somebody else touched the partner before it touched the ego.
+    Pushed,
 }
 
 impl FactKind {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Contact,
         Self::Partner,
         Self::SvZone,
@@ -56,10 +71,12 @@ impl FactKind {
         Self::SvState,
         Self::CpState,
         Self::SvSpeed,
+        Self::CpSpeed,
         Self::SvMovement,
         Self::CpMovement,
         Self::Origin,
         Self::Order,
+        Self::Pushed,
     ];
 
     /// For tables.
@@ -72,10 +89,12 @@ impl FactKind {
             Self::SvState => "ego's state",
             Self::CpState => "partner's state",
             Self::SvSpeed => "ego's impact speed",
+            Self::CpSpeed => "partner's impact speed",
             Self::SvMovement => "ego's movement",
             Self::CpMovement => "partner's movement",
             Self::Origin => "partner's origin",
             Self::Order => "who was first",
+            Self::Pushed => "partner passed on by another",
         }
     }
 }
@@ -115,12 +134,12 @@ pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Shown> {
     let ego_box = OrientedBox::new(touch.ego.pose(), ego_track.length_m, ego_track.width_m);
     let geometry = contact_geometry(&ego_box, touch.ego.velocity(), &touch.other_box, touch.other.velocity());
     if !told.sv.zones.is_empty() {
-        let off = zones_off(&told.sv.zones, geometry.ego_zone);
-        fact(FactKind::SvZone, off <= 1, format!("told: {:?}; shown: {:?}", told.sv.zones, geometry.ego_zone));
+        let near = is_near(&told.sv.zones, geometry.ego_zone, &ego_box, geometry.point);
+        fact(FactKind::SvZone, near, format!("told: {:?}; shown: {:?}", told.sv.zones, geometry.ego_zone));
     }
     if !told.cp.zones.is_empty() && told.thing.is_none() {
-        let off = zones_off(&told.cp.zones, geometry.other_zone);
-        fact(FactKind::CpZone, off <= 1, format!("told: {:?}; shown: {:?}", told.cp.zones, geometry.other_zone));
+        let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
+        fact(FactKind::CpZone, near, format!("told: {:?}; shown: {:?}", told.cp.zones, geometry.other_zone));
     }
     if told.sv.state_told {
         let shown = state(told.sv.state, ego_track, &touch.ego, touch.time_s);
@@ -137,6 +156,20 @@ pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Shown> {
         let speed_mps = touch.ego.velocity().length();
         let close = (speed_mps - impact_mps).abs() <= 2.0_f64.max(0.25 * impact_mps);
         fact(FactKind::SvSpeed, close, format!("told: {impact_mps:.1} m/s; shown: {speed_mps:.1} m/s"));
+    }
+    if let Some(impact_mps) = told.cp.impact_mps {
+        let speed_mps = touch.other.velocity().length();
+        let close = (speed_mps - impact_mps).abs() <= 2.0_f64.max(0.25 * impact_mps);
+        fact(FactKind::CpSpeed, close, format!("told: {impact_mps:.1} m/s; shown: {speed_mps:.1} m/s"));
+    }
+    if told.pushed {
+        let number = rollout.actors.iter().position(|track| track.id == "cp");
+        let before =
+            rollout.events.iter().take_while(|event| event.time_s < touch.time_s).any(|event| match event.kind {
+                EventKind::Contact { a, b, .. } => a != 0 && (Some(a) == number || Some(b) == number),
+                _ => false,
+            });
+        fact(FactKind::Pushed, before, format!("told: another touched the partner first; shown: {before}"));
     }
     if told.sv.movement.is_some() && told.sv.turning != Turning::Round {
         let turned = turned(ego_track, touch.time_s);

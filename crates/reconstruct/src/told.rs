@@ -11,6 +11,9 @@ use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use std::fmt;
 
+/// Speed at which a partner that is thrown at the ego meets it, about. [m/s]
+const THROWN_MPS: f64 = 4.0;
+
 /// Why an account cannot be staged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Untold {
@@ -129,7 +132,9 @@ impl Told {
             origin,
             origin_told,
             order: told(&account.order),
-            pushed: partner.did(Act::Pushed),
+            pushed: partner.did(Act::Pushed)
+                || crash_type == CrashType::Secondary
+                || account.others.iter().any(|other| other.touched_partner),
             striker,
             assumed,
         };
@@ -170,6 +175,11 @@ impl Told {
         origins.into_iter().map(with).collect()
     }
 
+    /// Whether somebody throws the partner at the ego from behind: both stood in one lane, or came along it.
+    pub(crate) fn is_thrown(&self) -> bool {
+        self.pushed && self.origin == Origin::Behind && self.thing.is_none() && self.cp.state != ContactState::Reversing
+    }
+
     /// Speeds at the contact: as told, or such that who closes on whom does.
     fn speeds(&mut self) {
         let usual = |side: &Side| match side.state {
@@ -191,6 +201,8 @@ impl Told {
             (None, false) => fit(usual(&self.sv)),
         };
         self.cp.speed_mps = match (self.cp.impact_mps, self.cp.state.stands()) {
+            // It is thrown at the ego.
+            _ if self.is_thrown() => THROWN_MPS,
             (_, true) => 0.0,
             (Some(told), false) => told.max(0.4),
             (None, false) => fit(usual(&self.cp)),

@@ -94,6 +94,17 @@ pub(crate) fn zones_off(told: &[ContactZone], seen: ContactZone) -> u32 {
     told.iter().filter_map(|zone| zone.steps_apart(seen)).min().map_or(0, u32::from)
 }
 
+/// The side on which these zones lie, front and rear aside: 1 left, -1 right; nothing where they lie on both, or on neither.
+pub(crate) fn side_of(zones: &[ContactZone]) -> Option<f64> {
+    let side = |zone: &ContactZone| match zone {
+        ContactZone::FrontLeft | ContactZone::Left | ContactZone::RearLeft => 1.0,
+        ContactZone::FrontRight | ContactZone::Right | ContactZone::RearRight => -1.0,
+        _ => 0.0,
+    };
+    let first = zones.iter().map(side).find(|side| *side != 0.0)?;
+    zones.iter().all(|zone| side(zone) != -first).then_some(first)
+}
+
 /// Zones to try: the told ones, or all where none is told; then the neighbours of told ones, since a zone is told to a step.
 fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
     let all = || ContactZone::ALL[..8].to_vec();

@@ -15,6 +15,7 @@ pub use actors::arm_m;
 use crate::network::RoadNetwork;
 use crate::scenario::{ActorPlacement, Placement, Scenario};
 use recrash_model::geometry::OrientedBox;
+use recrash_model::rollout::EGO_ID;
 use recrash_model::scenario::{MapSpec, ScenarioDraft};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::{Diagnostic, Outcome};
@@ -93,11 +94,11 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
     if planned {
         let names = actors::Names::of(&draft);
         if let Some(plan) = &draft.ego.recorded {
-            actors::references(&draft, &names, plan, &draft.ego.parts, "ego.recorded", &mut remarks);
+            actors::references(&draft, &names, (EGO_ID, plan), &draft.ego.parts, "ego.recorded", &mut remarks);
         }
         for (position, actor) in draft.actors.iter().enumerate() {
             let path = format!("actors[{position}].plan");
-            actors::references(&draft, &names, &actor.plan, &actor.parts, &path, &mut remarks);
+            actors::references(&draft, &names, (&actor.id, &actor.plan), &actor.parts, &path, &mut remarks);
             let body = (actor.kind, actor.size, actor.parts.as_slice());
             planned_actors.push(actors::placement(&network, &control, body, &actor.plan, &path, &mut remarks));
         }

@@ -23,7 +23,7 @@ Examples:
   recrash simulate scenes/incident-X.json --ego idm        another driver in its place, from the handover on
 
 The ego is the recorded driver. Checked are: contact, kind of partner, zones of both within a step, state of both at the
-contact, the ego's impact speed, turns of both, from where the partner comes, and who was first. Not yet checked: lanes,
+contact, the ego's impact speed, turns of both, from where the partner comes, who was first, and whether another threw the partner at the ego. Not yet checked: lanes,
 signals, others, doors, and why somebody stood. docs/models/reconstruction.md says how each is checked.";
 
 /// Options of `reconstruct`.
@@ -125,7 +125,7 @@ fn json(read: &Accounts, retold: &[Retold]) -> serde_json::Value {
 
 /// Prints, by crash type, how many crashes are shown as they are told.
 fn types(read: &Accounts, retold: &[Retold]) {
-    title("Crashes shown as they are told");
+    title("Crashes whose every checked fact is shown");
     let mut table = table(&["type", "incidents", "staged", "every checked fact shown", "share"]);
     let kind_of = |each: &&Retold| told(&read.accounts[each.account].crash_type);
     let mut row = |label: &str, of: &[&Retold]| {
@@ -144,6 +144,9 @@ fn types(read: &Accounts, retold: &[Retold]) {
     row("all", &retold.iter().collect::<Vec<_>>());
     println!("{table}");
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
+    println!(
+        "not checked yet: lanes, signals and signs, others in the story but who throws the partner, doors, why somebody stood"
+    );
 }
 
 /// Prints why crashes are not told.

@@ -8,7 +8,13 @@ fn shares_reasons_and_facts_are_shown_on_a_screen() {
     let place = Place::new();
     let (code, shown, remarks) = place.run(&["reconstruct"]);
     assert_eq!(code, 0, "{remarks}");
-    for words in ["Crashes shown as they are told", "Front to rear", "Why the others are not", "who was first"] {
+    for words in [
+        "Crashes whose every checked fact is shown",
+        "not checked yet: lanes",
+        "Front to rear",
+        "Why the others are not",
+        "who was first",
+    ] {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }
     assert_eq!(std::fs::read_dir(place.folder()).unwrap().count(), 0, "nothing is written that was not asked for");
@@ -57,4 +63,20 @@ fn a_report_that_is_not_there_is_told() {
     let (code, _, errors) = place.run(&["reconstruct", "--report", "nobody"]);
     assert_eq!(code, 3, "{errors}");
     assert!(errors.contains("no readable narrative of a report nobody"), "{errors}");
+}
+
+#[test]
+fn a_scenario_that_somebody_edited_is_not_replaced() {
+    let place = Place::new();
+    let write = || place.run(&["reconstruct", "--to-dir", "scenes", "--quiet"]);
+    assert_eq!(write().0, 0);
+    assert_eq!(write().0, 0, "the same again is no loss");
+    let edited = std::fs::read_dir(place.path("scenes")).unwrap().next().unwrap().unwrap().path();
+    std::fs::write(&edited, "{}").unwrap();
+    let (code, _, errors) = write();
+    assert_eq!(code, 3, "{errors}");
+    assert!(errors.contains("is there and differs"), "{errors}");
+    assert_eq!(std::fs::read_to_string(&edited).unwrap(), "{}");
+    std::fs::write(place.path("file"), "mine").unwrap();
+    assert_eq!(place.run(&["reconstruct", "--to-dir", "file", "--quiet"]).0, 3);
 }

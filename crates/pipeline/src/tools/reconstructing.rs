@@ -76,13 +76,32 @@ pub fn write_reconstructions(
     folder: &Path,
     outputs: &mut Outputs,
 ) -> Result<Vec<PathBuf>, PipelineError> {
+    if folder.exists() && !folder.is_dir() {
+        return Err(PipelineError::bad_input(format!(
+            "{} is a file; name a folder for the scenarios",
+            folder.display()
+        )));
+    }
     std::fs::create_dir_all(folder).map_err(|source| io("create", folder, source))?;
     let mut files = Vec::new();
+    // A file that is there and says something else may be somebody's work: nothing is written then.
+    let text = |made: &Reconstruction| recrash_roads::write_draft(&made.draft);
+    for made in
+        retold.iter().filter(|each| each.standing() == Standing::Shown).filter_map(|each| each.result.as_ref().ok())
+    {
+        let file = folder.join(format!("{}.json", made.draft.id));
+        if std::fs::symlink_metadata(&file).is_ok() && std::fs::read(&file).ok() != Some(text(made).into_bytes()) {
+            return Err(PipelineError::bad_input(format!(
+                "{} is there and differs from what would be written; name another folder, or move the file away",
+                file.display()
+            )));
+        }
+    }
     for each in retold.iter().filter(|each| each.standing() == Standing::Shown) {
         let Ok(made) = &each.result else { continue };
         let file = folder.join(format!("{}.json", made.draft.id));
         let output = outputs.claim(&file)?;
-        output.write(recrash_roads::write_draft(&made.draft).as_bytes())?;
+        output.write(text(made).as_bytes())?;
         files.push(file);
     }
     Ok(files)

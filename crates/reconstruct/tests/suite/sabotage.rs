@@ -4,6 +4,7 @@ use crate::stories::shown;
 use recrash_model::account::{Account, ContactState, told};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{Deed, Leg, Place, ScenarioDraft};
+use recrash_model::zones::ContactZone;
 use recrash_reconstruct::{Shown, held_against};
 use recrash_sim::{Ego, simulate};
 
@@ -113,5 +114,44 @@ fn nobody_comes() {
         draft.actors.clear();
         draft.objects.clear();
         true
+    });
+}
+
+#[test]
+fn a_contact_on_the_other_side() {
+    caught("a partner mirrored to the other side", 3, |account, draft| {
+        let on = |zones: &[recrash_model::account::Fact<ContactZone>], sides: [ContactZone; 3]| {
+            !zones.is_empty() && zones.iter().all(|zone| sides.contains(&zone.value))
+        };
+        let left = on(&account.sv.zones, [ContactZone::FrontLeft, ContactZone::Left, ContactZone::RearLeft]);
+        let right = on(&account.sv.zones, [ContactZone::FrontRight, ContactZone::Right, ContactZone::RearRight]);
+        if !left && !right || !draft.ego.route.iter().all(|road| road.starts_with("main")) {
+            return false;
+        }
+        let Some(partner) = draft.actors.first_mut() else { return false };
+        let mirror = |place: &mut Place| {
+            if let Place::Plane { y_m, heading_deg, .. } = place {
+                (*y_m, *heading_deg) = (-*y_m, -*heading_deg);
+            }
+        };
+        mirror(&mut partner.plan.start);
+        for leg in &mut partner.plan.course {
+            if let Leg::Curve { to, .. } = leg {
+                mirror(to);
+            }
+        }
+        true
+    });
+}
+
+#[test]
+fn a_partner_that_nobody_throws() {
+    caught("a partner that comes by itself", 1, |_, draft| {
+        let thrown = draft.actors.len() == 2;
+        if thrown {
+            draft.actors.truncate(1);
+            draft.actors[0].plan.acts.clear();
+        }
+        thrown
     });
 }

@@ -290,7 +290,7 @@ impl<'a> Names<'a> {
 pub(super) fn references(
     draft: &ScenarioDraft,
     names: &Names<'_>,
-    plan: &ActorPlan,
+    (own, plan): (&str, &ActorPlan),
     parts: &[Part],
     path: &str,
     remarks: &mut Remarks,
@@ -319,7 +319,13 @@ pub(super) fn references(
             _ => {}
         }
         match &act.deed {
-            Deed::Follow { actor, .. } => names.actor(actor, at("do.follow.actor"), remarks),
+            Deed::Follow { actor, .. } => {
+                names.actor(actor, at("do.follow.actor"), remarks);
+                if actor == own {
+                    let hint = "name whom it follows";
+                    remarks.error("scenario.unknown-actor", at("do.follow.actor"), "nobody follows himself", hint);
+                }
+            }
             Deed::Part { part, .. } => {
                 let known = parts.iter().find(|each| each.id == *part);
                 if !known.is_some_and(|part| matches!(part.kind, PartKind::Door | PartKind::Arm)) {
