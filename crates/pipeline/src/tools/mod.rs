@@ -11,5 +11,6 @@ pub(crate) mod importing;
 pub(crate) mod parity;
 pub(crate) mod prompting;
 pub(crate) mod reconstructing;
+pub(crate) mod running;
 #[cfg(feature = "parquet")]
 pub(crate) mod sweep;

@@ -1,0 +1,32 @@
+//! The extension module `recrash._recrash`: the Rust library as Python objects, and nothing that it does not have.
+//!
+//! What stands here turns arguments into values of the library, calls it without Python's lock, and turns what comes back
+//! into objects, arrays and tables. The pure part of the package (`python/recrash`) presents it.
+
+mod batch;
+mod ego;
+mod errors;
+mod reading;
+mod run;
+mod scenario;
+mod suite;
+mod table;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _recrash(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("EGOS", recrash_sim::Ego::NAMES)?;
+    module.add_class::<scenario::Scenario>()?;
+    module.add_class::<run::Run>()?;
+    module.add_class::<table::Table>()?;
+    module.add_class::<reading::Accounts>()?;
+    module.add_class::<batch::Batch>()?;
+    module.add_function(wrap_pyfunction!(scenario::run_all, module)?)?;
+    module.add_function(wrap_pyfunction!(reading::read_accounts, module)?)?;
+    module.add_function(wrap_pyfunction!(reading::read_records, module)?)?;
+    module.add_function(wrap_pyfunction!(suite::run_suite, module)?)?;
+    module.add_function(wrap_pyfunction!(suite::suite_options, module)?)?;
+    batch::add_constants(module)
+}
