@@ -1,6 +1,7 @@
 //! Many slots, stepped together.
 
 use crate::handles::{ACTS, Handles};
+use crate::raster::Raster;
 use crate::reward::{Reward, TERMS};
 use crate::scene::Scene;
 use crate::slot::{Shared, Slot};
@@ -228,6 +229,21 @@ impl Batch {
     /// The last episode of a slot that ended, judged; `None` before one has, and where none is judged.
     pub fn judged(&self, slot: usize) -> Option<&JudgedRun> {
         self.slots.get(slot)?.judged.as_ref()
+    }
+
+    /// A slot's picture from above as it is now, written row by row: see [`Raster`].
+    ///
+    /// # Errors
+    /// The picture cannot be, there is no such slot, or the memory has another size.
+    pub fn picture(&mut self, slot: usize, raster: Raster, bytes: &mut [u8]) -> Result<(), BatchError> {
+        let view = View::Raster(raster);
+        view.check()?;
+        size("the memory for the picture", view.bytes(), bytes.len())?;
+        let slots = self.slots.len();
+        let slot = self.slots.get(slot).ok_or(BatchError::Size { what: "the batch", wanted: slot + 1, got: slots })?;
+        view.prepare(&mut self.scenes[slot.scene]);
+        slot.paint(&self.scenes[slot.scene], raster, bytes);
+        Ok(())
     }
 
     /// Draws the scenes of later episodes by these weights, one for each.

@@ -20,6 +20,7 @@ mod rays;
 mod reward;
 mod scene;
 mod slot;
+mod split;
 mod view;
 
 pub use batch::{Actions, Autoreset, Batch, BatchError, Outputs, Settings};
@@ -29,4 +30,5 @@ pub use raster::{CHANNELS, Raster};
 pub use rays::Rays;
 pub use reward::{Reward, TERMS};
 pub use scene::{Scene, SceneError};
+pub use split::held_out;
 pub use view::{MOST_NEIGHBOURS, View, ViewError};

@@ -1,6 +1,8 @@
 //! One of many runs: an episode after the other.
 
 use crate::batch::{Autoreset, Row, Settings};
+use crate::kinematics::EgoFrame;
+use crate::raster::Raster;
 use crate::reward::{Memory, TERMS};
 use crate::scene::Scene;
 use recrash_lab::judge;
@@ -132,6 +134,12 @@ impl Slot {
             self.begin(shared, None);
         }
         self.show(shared, row.numbers, row.bytes);
+    }
+
+    /// Its picture from above as it is now.
+    pub(crate) fn paint(&self, scene: &Scene, raster: Raster, bytes: &mut [u8]) {
+        let observation = self.run.observe();
+        raster.write(scene, &observation, &EgoFrame::of(&observation), bytes);
     }
 
     fn show(&self, shared: &Shared<'_>, numbers: &mut [f32], bytes: &mut [u8]) {

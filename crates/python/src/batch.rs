@@ -2,8 +2,8 @@
 
 use crate::errors::{input, of_library};
 use crate::run::{Run, STATE};
-use crate::scenario::Scenario;
-use numpy::{PyArray1, PyArray2, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use crate::scenario::{Scenario, system_profile};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use recrash_gym::{
@@ -11,7 +11,6 @@ use recrash_gym::{
     Reward, Scene, Settings, TERMS, View,
 };
 use recrash_model::rollout::TerminationKind;
-use recrash_pipeline::load_profile;
 use std::sync::Arc;
 
 /// Arrays that a batch writes into, made once.
@@ -98,9 +97,9 @@ pub struct Batch {
 
 #[pymethods]
 impl Batch {
-    /// `view` and `handles` are dicts and names as `recrash.gym` documents them; `profile` judges every episode where there is one.
+    /// `view` and `handles` are dicts and names as `recrash.gym` documents them; `profile` judges every episode, where `judges`.
     #[new]
-    #[pyo3(signature = (scenarios, slots, view, handles, reward, autoreset, profile=None, threads=1))]
+    #[pyo3(signature = (scenarios, slots, view, handles, reward, autoreset, profile=None, judges=true, threads=1))]
     #[allow(clippy::too_many_arguments, reason = "one for each argument of the Python class")]
     fn new(
         py: Python<'_>,
@@ -111,6 +110,7 @@ impl Batch {
         reward: [f64; TERMS.len()],
         autoreset: &str,
         profile: Option<&str>,
+        judges: bool,
         threads: usize,
     ) -> PyResult<Self> {
         let settings = Settings {
@@ -134,7 +134,7 @@ impl Batch {
                     return Err(input(py, what));
                 }
             },
-            judged_by: profile.map(load_profile).transpose().map_err(|failed| of_library(py, &failed))?,
+            judged_by: judges.then(|| system_profile(profile)).transpose().map_err(|failed| of_library(py, &failed))?,
             threads,
         };
         let scenes: Result<Vec<Scene>, _> =
@@ -174,6 +174,20 @@ impl Batch {
         let Self { batch, arrays } = self;
         let done = arrays.lend(py, |outputs| batch.step(Actions::Acts(actions), outputs))?;
         done.map_err(|error| input(py, error))
+    }
+
+    /// A slot's picture from above as it is now, (channels, rows, columns).
+    fn picture<'py>(
+        &mut self,
+        py: Python<'py>,
+        slot: usize,
+        pixels: usize,
+        pixel_m: f64,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let picture = PyArray3::zeros(py, [CHANNELS, pixels, pixels], false);
+        let painted = self.batch.picture(slot, Raster { pixels, pixel_m }, picture.try_readwrite()?.as_slice_mut()?);
+        painted.map_err(|error| input(py, error))?;
+        Ok(picture)
     }
 
     /// Draws scenarios by these weights from now on.
@@ -275,6 +289,16 @@ fn view_of(view: &Bound<'_, PyDict>) -> PyResult<View> {
             return Err(input(py, format!("there is no observation \"{other}\"; there are: kinematic, rays, raster")));
         }
     })
+}
+
+/// For each scenario whether it is held out: crash by crash, a share of them.
+#[pyfunction]
+pub fn held_out(py: Python<'_>, scenarios: Vec<Bound<'_, Scenario>>, share: f64) -> PyResult<Vec<bool>> {
+    if !(0.0..=1.0).contains(&share) {
+        return Err(input(py, format!("the share that is held out is {share}; it is 0 to 1")));
+    }
+    let all: Vec<&recrash_roads::Scenario> = scenarios.iter().map(|each| &*each.get().scenario).collect();
+    Ok(recrash_gym::held_out(&all, share))
 }
 
 /// Names of what arrays hold.

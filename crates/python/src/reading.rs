@@ -4,6 +4,7 @@ use crate::errors::{input, of_library, to_python};
 use crate::scenario::Scenario;
 use crate::table::Table;
 use pyo3::prelude::*;
+use recrash_model::account::Account;
 use recrash_pipeline::{
     NoProgress, Options, RecordSource, RetoldStanding, TableRows, account_table, reconstruct_accounts, record_table,
 };
@@ -55,11 +56,11 @@ impl Accounts {
                 let checked = recrash_roads::check(made.draft.clone()).map_err(|_| {
                     input(py, format!("{}: its own reconstruction does not pass the check", account.incident))
                 })?;
-                scenarios.push(Scenario::of(checked.value, made.assumed.clone()));
+                scenarios.push(Scenario::of(checked.value, made.assumed.clone(), crash_type(account)));
             }
             rows.push(serde_json::json!({
                 "incident": account.incident,
-                "crash_type": account.crash_type.as_ref().map(|fact| &fact.value),
+                "crash_type": crash_type(account),
                 "standing": standing,
                 "reason": each.reason(),
                 "scenario": shown.map(|made| &made.draft.id),
@@ -89,6 +90,12 @@ impl Accounts {
         let (reports, incidents, accounts) = (self.reports(), self.incidents(), self.accounts.accounts.len());
         format!("Accounts({accounts} accounts of {incidents} incidents in {reports} reports)")
     }
+}
+
+/// The type of crash as its format writes it.
+fn crash_type(account: &Account) -> Option<String> {
+    let told = serde_json::to_value(account.crash_type.as_ref()?.value).ok()?;
+    Some(told.as_str().map_or_else(|| told.to_string(), str::to_owned))
 }
 
 /// What is read, and how.

@@ -77,6 +77,18 @@ impl Run {
         to_python(py, &self.run.findings)
     }
 
+    /// Kinds of findings, each once, failures first.
+    #[getter]
+    fn finding_kinds(&self) -> Vec<&'static str> {
+        self.run.finding_kinds().into_iter().map(recrash_model::metrics::FindingKind::label).collect()
+    }
+
+    /// Change of the ego's velocity in its first contact; `None` without one. [m/s]
+    #[getter]
+    fn delta_v_mps(&self) -> Option<f64> {
+        severity_of(&self.run.rollout).map(|severity| severity.first.delta_v_mps)
+    }
+
     /// Everything that was measured.
     #[getter]
     fn metrics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

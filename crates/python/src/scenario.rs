@@ -22,6 +22,7 @@ use std::sync::Arc;
 pub struct Scenario {
     pub scenario: Arc<recrash_roads::Scenario>,
     remarks: Vec<String>,
+    crash_type: Option<String>,
 }
 
 #[pymethods]
@@ -37,7 +38,7 @@ impl Scenario {
             let path: PathBuf = source.extract()?;
             py.detach(|| read_scenario(&path))
         };
-        read.map(|(scenario, remarks)| Self::of(scenario, remarks.iter().map(ToString::to_string).collect()))
+        read.map(|(scenario, remarks)| Self::of(scenario, remarks.iter().map(ToString::to_string).collect(), None))
             .map_err(|failed| of_library(py, &failed))
     }
 
@@ -63,6 +64,12 @@ impl Scenario {
     #[getter]
     fn template(&self) -> Option<String> {
         self.scenario.draft().source.template.map(|template| template.slug())
+    }
+
+    /// Type of the crash that it tells: that of the account it was reconstructed from, else its template; `None` where nobody said.
+    #[getter]
+    fn crash_type(&self) -> Option<String> {
+        self.crash_type.clone().or_else(|| self.template())
     }
 
     /// Remarks on its file.
@@ -98,7 +105,7 @@ impl Scenario {
             let what = format!("{} with the seed {seed} is not a scenario that can be run", self.id());
             of_library(py, &PipelineError::BadInput { what, diagnostics })
         })?;
-        Ok(Self::of(checked.value, self.remarks.clone()))
+        Ok(Self::of(checked.value, self.remarks.clone(), self.crash_type.clone()))
     }
 
     /// Runs it and judges the run. `ego` is a name, a command, or an object that drives.
@@ -143,15 +150,23 @@ impl Scenario {
     }
 
     /// Pickled as its JSON, so that it goes from process to process.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {
-        let load = py.get_type::<Self>().getattr("load")?;
-        Ok((load, (self.to_dict(py)?,)))
+    #[allow(clippy::type_complexity, reason = "Python's protocol: a callable and its arguments")]
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, Vec<String>, Option<String>))> {
+        let restore = py.get_type::<Self>().getattr("_restore")?;
+        Ok((restore, (self.to_json(), self.remarks.clone(), self.crash_type.clone())))
+    }
+
+    /// What `pickle` calls.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, json: &str, remarks: Vec<String>, crash_type: Option<String>) -> PyResult<Self> {
+        let (scenario, _) = parse_scenario(json).map_err(|failed| of_library(py, &failed))?;
+        Ok(Self::of(scenario, remarks, crash_type))
     }
 }
 
 impl Scenario {
-    pub fn of(scenario: recrash_roads::Scenario, remarks: Vec<String>) -> Self {
-        Self { scenario: Arc::new(scenario), remarks }
+    pub fn of(scenario: recrash_roads::Scenario, remarks: Vec<String>, crash_type: Option<String>) -> Self {
+        Self { scenario: Arc::new(scenario), remarks, crash_type }
     }
 
     /// A run of it.
