@@ -94,9 +94,7 @@ def observation_fields(observation: View = "kinematic") -> list[tuple[str, str, 
     return fields
 
 
-def split(
-    suite: Source, held_out_share: float = 0.25
-) -> tuple[list[Scenario], list[Scenario]]:
+def split(suite: Source, held_out_share: float = 0.25) -> tuple[list[Scenario], list[Scenario]]:
     """Split scenarios into those for training and those held out, crash by crash: nothing of a crash is in both."""
     scenarios = _scenarios(suite)
     held = _recrash.held_out(scenarios, held_out_share)
@@ -108,7 +106,9 @@ def _scenarios(suite: Source) -> list[Scenario]:
     return suite.scenarios() if isinstance(suite, Suite) else load_scenarios(suite)
 
 
-def _chosen(suite: Source, part: Split | None, held_out_share: float, crash_types: Iterable[str] | None) -> list[Scenario]:
+def _chosen(
+    suite: Source, part: Split | None, held_out_share: float, crash_types: Iterable[str] | None
+) -> list[Scenario]:
     scenarios = _scenarios(suite)
     if part is not None:
         if part not in ("train", "held_out"):
@@ -147,7 +147,9 @@ class _Core:
         if isinstance(reward, Mapping):
             unknown = reward.keys() - weights.keys()
             if unknown:
-                raise InputError(f"the reward has no {', '.join(map(repr, sorted(unknown)))}; it has: {', '.join(TERMS)}")
+                raise InputError(
+                    f"the reward has no {', '.join(map(repr, sorted(unknown)))}; it has: {', '.join(TERMS)}"
+                )
             weights.update(reward)
         handles = {"pedals": "pedals", "guided": "guided", "discrete": "acts"}.get(actions)
         if handles is None:
@@ -196,7 +198,7 @@ class _Core:
     def rewards(self) -> NDArray[np.float64]:
         if self.custom is None:
             return self.batch.rewards.copy()
-        rewards = np.asarray(self.custom(self.batch.terms), np.float64)
+        rewards: NDArray[np.float64] = np.asarray(self.custom(self.batch.terms), np.float64)
         if rewards.shape != (self.slots,) or not np.isfinite(rewards).all():
             shape = f"shape {rewards.shape}" if rewards.shape != (self.slots,) else "numbers that are not finite"
             raise InputError(f"the reward function gave {shape}; wanted are {self.slots} finite numbers")
@@ -214,7 +216,7 @@ class _Core:
 
     def picture(self, slot: int, pixels: int = 320, pixel_m: float = 0.25) -> NDArray[np.uint8]:
         ground, users = self.batch.picture(slot, pixels, pixel_m)
-        image = _GROUND[ground.astype(np.intp) // 127]
+        image: NDArray[np.uint8] = _GROUND[ground.astype(np.intp) // 127]
         image[users == 255] = (232, 160, 60)
         image[users == 128] = (200, 80, 80)
         row, column = int(0.75 * pixels), pixels // 2
@@ -244,7 +246,11 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     :param copy: whether observations are copies. Without, the next step overwrites them.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata: dict[str, Any] = {
+        "render_modes": ["rgb_array"],
+        "render_fps": 10,
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
 
     def __init__(
         self,
@@ -285,7 +291,9 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     def set_curriculum(self, curriculum: Mapping[str, float] | Sequence[float]) -> None:
         """Draw the scenarios of later episodes by weights: of crash types (each shared out evenly), or one for each scenario."""
-        weights = self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
+        weights = (
+            self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
+        )
         self._core.batch.set_weights(weights)
 
     def reset(
@@ -297,7 +305,9 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if unknown:
             raise InputError(f"reset has no option {sorted(unknown)}; it has: reset_mask, scenarios")
         if seed is not None and not isinstance(seed, (int, np.integer)):
-            raise InputError("one seed is for all environments, each of which has a stream of its own; give one whole number")
+            raise InputError(
+                "one seed is for all environments, each of which has a stream of its own; give one whole number"
+            )
         mask, scenes = options.get("reset_mask"), options.get("scenarios")
         if mask is not None:
             mask = np.asarray(mask)
@@ -400,7 +410,8 @@ class CrashEnv(gymnasium.Env[Any, Any]):
         self.observation_space = self._core.observation_space
         self.action_space = self._core.action_space
         self.render_mode = render_mode
-        self._seeded, self._total, self._window = False, 0.0, None
+        self._seeded, self._total = False, 0.0
+        self._window: Any = None
 
     @property
     def scenarios(self) -> list[Scenario]:
@@ -409,7 +420,9 @@ class CrashEnv(gymnasium.Env[Any, Any]):
 
     def set_curriculum(self, curriculum: Mapping[str, float] | Sequence[float]) -> None:
         """Draw the scenarios of later episodes by weights, see :meth:`CrashVectorEnv.set_curriculum`."""
-        weights = self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
+        weights = (
+            self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
+        )
         self._core.batch.set_weights(weights)
 
     def _observation(self) -> Any:
@@ -458,7 +471,7 @@ class CrashEnv(gymnasium.Env[Any, Any]):
             self.render()
         return self._observation(), reward, bool(batch.terminated[0]), bool(batch.truncated[0]), info
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Show the scene from above: as an array of shape (320, 320, 3), or in a window of matplotlib's."""
         if self.render_mode is None:
             return None
@@ -491,7 +504,9 @@ def evaluate(policy: Callable[[Any], Any], suite: Source, **options: Any) -> lis
     scenarios = _chosen(
         suite, options.pop("split", None), options.pop("held_out_share", 0.25), options.pop("crash_types", None)
     )
-    env = CrashVectorEnv(scenarios, len(scenarios), **{"autoreset_mode": AutoresetMode.NEXT_STEP, "judge": True, **options})
+    env = CrashVectorEnv(
+        scenarios, len(scenarios), **{"autoreset_mode": AutoresetMode.NEXT_STEP, "judge": True, **options}
+    )
     observations, _ = env.reset(seed=0, options={"scenarios": np.arange(len(scenarios))})
     runs: list[Run | None] = [None] * len(scenarios)
     while any(run is None for run in runs):

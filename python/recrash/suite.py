@@ -63,12 +63,24 @@ def load_scenarios(source: Location | Iterable[Scenario | Location]) -> list[Sce
             return [Scenario.load(folder)]
         found = {}
         for file in sorted(folder.rglob("*.json")):
-            if file.stat().st_size <= 1 << 20 and '"recrash.scenario/' in file.read_text("utf-8", "replace")[:4096]:
+            if _is_scenario(file):
                 found[file.name] = file
         if not found:
             raise InputError(f"{folder} holds no scenario file; name a suite, or a folder of scenario files")
         return [Scenario.load(file) for file in found.values()]
     return [each if isinstance(each, Scenario) else Scenario.load(each) for each in source]
+
+
+def _is_scenario(file: Path) -> bool:
+    import json
+
+    if file.stat().st_size > 1 << 20:
+        return False
+    try:
+        content = json.loads(file.read_text("utf-8"))
+    except ValueError:
+        return False
+    return isinstance(content, dict) and str(content.get("format", "")).startswith("recrash.scenario/")
 
 
 def runs(scenarios: Sequence[Scenario], ego: object = None, *, profile: str | None = None) -> list[Run | RecrashError]:
@@ -103,7 +115,9 @@ def test(
     An ego that raises fails its scenario, with ``error`` saying what and where; the rest goes on.
     """
     loaded = load_scenarios(scenarios)
-    return Table.of_rows([_row(scenario, result) for scenario, result in zip(loaded, runs(loaded, ego, profile=profile))])
+    return Table.of_rows(
+        [_row(scenario, result) for scenario, result in zip(loaded, runs(loaded, ego, profile=profile))]
+    )
 
 
 test.__test__ = False  # type: ignore[attr-defined]  # pytest takes it for one of its own.
@@ -164,8 +178,16 @@ class Suite:
         return load_scenarios(self.folder)
 
     def test(self, ego: object = None, *, profile: str | None = None) -> Table:
-        """Test an ego in the suite's scenarios, see :func:`test`. Nothing in the folder changes."""
-        return test(self.scenarios(), ego or self.options.get("ego"), profile=profile or self.options["profile"])
+        """Test an ego in the suite's scenarios, see :func:`test`. Nothing in the folder changes.
+
+        Without ``ego`` the suite's own drives; a program that the suite names is not started, since a suite may be anybody's.
+        """
+        own = self.options.get("ego")
+        if ego is None and own is not None and own not in _recrash.EGOS:
+            raise InputError(
+                f"{self.folder}: the suite wants to start {own!r} as the ego; name it yourself if you trust it"
+            )
+        return test(self.scenarios(), own if ego is None else ego, profile=profile or self.options["profile"])
 
     def report(self) -> Path:
         """The page of the suite."""
@@ -201,6 +223,8 @@ def run(
     notebook), or is called with what happens. Ctrl-C stops between two units of work, and nothing is half written.
     """
     chosen = _files(files)
+    # A program is started that the caller names, and none that only the suite's file does.
+    trust = trust or options.get("ego") is not None
     if chosen is not None:
         options["records"] = {"files": [os.fspath(file) for file in chosen]}
     if callable(progress):

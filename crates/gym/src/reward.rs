@@ -1,16 +1,30 @@
 //! What is good and bad in a step: terms that are measured, and weights that people choose.
 
+use crate::kinematics::{others, thing};
 use crate::scene::Scene;
 use recrash_model::rollout::{Event, EventKind, STEP_S, TerminationKind};
 use recrash_model::scenario::Aspect;
-use recrash_sim::Run;
+use recrash_sim::{Observation, Run};
 
 /// Braking harder than this counts. [m/s^2]
 const COMFORTABLE_MPS2: f64 = 3.0;
 
+/// A gap below this is near: the limit of the paper's near misses. [m]
+const NEAR_M: f64 = 2.0;
+
 /// Names of the terms, in the order of their values.
-pub const TERMS: [&str; 9] =
-    ["progress", "braking", "red_light", "contact", "closing_speed", "obstacle", "arrived", "off_road", "stuck"];
+pub const TERMS: [&str; 10] = [
+    "progress",
+    "braking",
+    "red_light",
+    "near",
+    "contact",
+    "closing_speed",
+    "obstacle",
+    "arrived",
+    "off_road",
+    "stuck",
+];
 
 /// Weights of the terms; the reward of a step is their weighted sum.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +35,8 @@ pub struct Reward {
     pub braking: f64,
     /// Of every stop line passed at red.
     pub red_light: f64,
+    /// Of the share by which the gap to the nearest road user falls short of 2 m: 1 at a touch.
+    pub near: f64,
     /// Of the first contact with a road user.
     pub contact: f64,
     /// Of the speed at which the two close on each other in that contact. [1 s/m]
@@ -42,6 +58,7 @@ impl Default for Reward {
             progress: 0.05,
             braking: -0.01,
             red_light: -2.0,
+            near: -0.2,
             contact: -20.0,
             closing_speed: -1.0,
             obstacle: -10.0,
@@ -59,6 +76,7 @@ impl Reward {
             self.progress,
             self.braking,
             self.red_light,
+            self.near,
             self.contact,
             self.closing_speed,
             self.obstacle,
@@ -70,9 +88,22 @@ impl Reward {
 
     /// From weights in the order of [`TERMS`].
     pub const fn of_weights(weights: [f64; TERMS.len()]) -> Self {
-        let [progress, braking, red_light, contact, closing_speed, obstacle, arrived, off_road, stuck] = weights;
-        Self { progress, braking, red_light, contact, closing_speed, obstacle, arrived, off_road, stuck }
+        let [progress, braking, red_light, near, contact, closing_speed, obstacle, arrived, off_road, stuck] = weights;
+        Self { progress, braking, red_light, near, contact, closing_speed, obstacle, arrived, off_road, stuck }
     }
+}
+
+/// The share by which the gap to the nearest road user falls short of [`NEAR_M`].
+fn near(scene: &Scene, observation: &Observation<'_>) -> f64 {
+    let own = thing(scene, observation, 0).outline;
+    let reach_m = own.radius() + NEAR_M;
+    let mut least_m = NEAR_M;
+    others(scene, observation, |bound_m, number| {
+        if bound_m < reach_m && usize::from(number) < scene.outlines.len() {
+            least_m = least_m.min(own.gap(&thing(scene, observation, number).outline));
+        }
+    });
+    1.0 - least_m / NEAR_M
 }
 
 /// What is remembered from step to step.
@@ -107,22 +138,23 @@ impl Memory {
             match *event {
                 Event { kind: EventKind::Contact { a, b, a_state, b_state }, .. } if a == 0 || b == 0 => {
                     if !self.touched {
-                        terms[3] = 1.0;
-                        terms[4] = (a_state.velocity() - b_state.velocity()).length();
+                        terms[4] = 1.0;
+                        terms[5] = (a_state.velocity() - b_state.velocity()).length();
                     }
                     self.touched = true;
                 }
-                Event { kind: EventKind::ObstacleContact { actor: 0, .. }, .. } => terms[5] += 1.0,
+                Event { kind: EventKind::ObstacleContact { actor: 0, .. }, .. } => terms[6] += 1.0,
                 _ => {}
             }
         }
         if !self.touched {
+            terms[3] = near(scene, &observation);
             terms[1] = (deceleration_mps2 - COMFORTABLE_MPS2).max(0.0);
         }
         match run.termination().map(|termination| termination.kind) {
-            Some(TerminationKind::Arrived) => terms[6] = 1.0,
-            Some(TerminationKind::OffRoad) => terms[7] = 1.0,
-            Some(TerminationKind::Stuck) => terms[8] = 1.0,
+            Some(TerminationKind::Arrived) => terms[7] = 1.0,
+            Some(TerminationKind::OffRoad) => terms[8] = 1.0,
+            Some(TerminationKind::Stuck) => terms[9] = 1.0,
             _ => {}
         }
         (self.route_s_m, self.speed_mps) = (observation.route_s_m, speed_mps);

@@ -14,6 +14,12 @@ mod table;
 
 use pyo3::prelude::*;
 
+/// Runs the `recrash` command. Gives the exit code.
+#[pyfunction]
+fn command(py: Python<'_>, words: Vec<std::ffi::OsString>) -> u8 {
+    py.detach(|| recrash_cli::command(words))
+}
+
 #[pymodule]
 fn _recrash(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
@@ -23,6 +29,7 @@ fn _recrash(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<table::Table>()?;
     module.add_class::<reading::Accounts>()?;
     module.add_class::<batch::Batch>()?;
+    module.add_function(wrap_pyfunction!(command, module)?)?;
     module.add_function(wrap_pyfunction!(scenario::run_all, module)?)?;
     module.add_function(wrap_pyfunction!(reading::read_accounts, module)?)?;
     module.add_function(wrap_pyfunction!(reading::read_records, module)?)?;

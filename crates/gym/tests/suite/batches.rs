@@ -238,10 +238,11 @@ fn terms_say_what_happened_and_weights_make_the_reward_of_them() {
     }
     let (_, _, ego, other) = batch.judged(0).unwrap().rollout.first_ego_contact().unwrap();
     let closing = (ego.velocity() - other.velocity()).length();
-    assert_eq!(sums[3], 1.0);
-    assert!((sums[4] - closing).abs() < 1e-6 && closing > 1.0, "{closing}");
+    assert_eq!(sums[4], 1.0);
+    assert!((sums[5] - closing).abs() < 1e-6 && closing > 1.0, "{closing}");
     assert!((total - (-7.0 - 2.0 * closing)).abs() < 1e-6);
     assert!((memory.episode_returns[0] - total).abs() < 1e-12);
+    assert!(sums[3] > 0.0);
     // As far as it came, in shares of the way at the target speed.
     assert!(sums[0] > 5.0);
 }
