@@ -27,9 +27,7 @@ train, held_out = split(scenarios, held_out_share=0.25)
 options = {"actions": "guided", "observation": {"kind": "kinematic", "neighbours": 4}, "threads": 1}
 env = VecNormalize(CrashVecEnv(train, 256, **options), norm_obs=False, clip_reward=20.0)
 net = {"net_arch": [128, 128], "log_std_init": -0.7}
-model = PPO(
-    "MlpPolicy", env, n_steps=64, batch_size=4096, n_epochs=6, ent_coef=0.002, seed=arguments.seed, policy_kwargs=net, device="cpu"
-)  # fmt: skip
+model = PPO("MlpPolicy", env, n_steps=64, batch_size=4096, n_epochs=6, ent_coef=0.002, policy_kwargs=net, seed=arguments.seed)
 
 
 def failures(part):

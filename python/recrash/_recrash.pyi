@@ -2,10 +2,34 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import NDArray
+
+__all__ = [
+    "ACTS",
+    "EGOS",
+    "ENDINGS",
+    "FIELDS_ALWAYS",
+    "FIELDS_OF_OTHER",
+    "STATE",
+    "TERMS",
+    "WEIGHTS",
+    "Accounts",
+    "Batch",
+    "Run",
+    "Scenario",
+    "Table",
+    "__version__",
+    "command",
+    "held_out",
+    "read_accounts",
+    "read_records",
+    "run_all",
+    "run_suite",
+    "suite_options",
+]
 
 __version__: str
 EGOS: list[str]
@@ -17,6 +41,7 @@ FIELDS_ALWAYS: list[tuple[str, str, float]]
 FIELDS_OF_OTHER: list[tuple[str, str, float]]
 ACTS: list[tuple[str, float, float]]
 
+@final
 class Scenario:
     @classmethod
     def load(cls, source: str | PathLike[str] | Mapping[str, Any]) -> Scenario: ...
@@ -38,9 +63,10 @@ class Scenario:
     def to_dict(self) -> dict[str, Any]: ...
     def with_seed(self, seed: int) -> Scenario: ...
     def run(self, ego: object | None = None, *, seed: int | None = None, profile: str | None = None) -> Run: ...
-    def __eq__(self, other: object) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
 
+@final
 class Run:
     @property
     def id(self) -> str: ...
@@ -84,6 +110,7 @@ class Run:
     def drawing(self) -> dict[str, Any] | None: ...
     def to_dict(self) -> dict[str, Any]: ...
 
+@final
 class Table:
     @staticmethod
     def of_rows(rows: list[dict[str, Any]]) -> Table: ...
@@ -97,6 +124,7 @@ class Table:
     def __arrow_c_schema__(self) -> object: ...
     def __len__(self) -> int: ...
 
+@final
 class Accounts:
     @property
     def table(self) -> Table: ...
@@ -108,8 +136,9 @@ class Accounts:
     def remarks(self) -> list[str]: ...
     def reconstruct(self) -> tuple[list[Scenario], Table]: ...
     def __len__(self) -> int: ...
-    def __getitem__(self, number: int) -> dict[str, Any]: ...
+    def __getitem__(self, number: int, /) -> dict[str, Any]: ...
 
+@final
 class Batch:
     def __new__(
         cls,
@@ -161,9 +190,7 @@ class Batch:
 
 def command(words: Sequence[str]) -> int: ...
 def held_out(scenarios: Sequence[Scenario], share: float) -> list[bool]: ...
-def run_all(
-    scenarios: Sequence[Scenario], ego: str | None = None, profile: str | None = None
-) -> list[Run | Exception]: ...
+def run_all(scenarios: Sequence[Scenario], ego: str | None = None, profile: str | None = None) -> list[Run | Exception]: ...
 def read_accounts(
     files: Sequence[str | PathLike[str]] | None = None,
     filter: str | None = None,

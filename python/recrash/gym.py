@@ -1,7 +1,8 @@
 """Environments for learning drivers (needs ``gymnasium``).
 
 After ``import recrash.gym``, ``gymnasium.make("recrash/Crash-v0", suite=...)`` is one environment, and
-``gymnasium.make_vec("recrash/Crash-v0", num_envs=1024, suite=...)`` (or :class:`CrashVectorEnv` itself) steps many in Rust threads, without Python's lock, into arrays that are made once.
+``gymnasium.make_vec("recrash/Crash-v0", num_envs=1024, suite=...)`` (or :class:`CrashVectorEnv` itself) steps many in Rust
+threads, without Python's lock, into arrays that are made once.
 
 An episode is one scenario from its handover on: the recorded driver brings the situation about, then the driver that learns
 decides every 0.1 s. It ends as the simulator's run ends; ``terminated`` is true for every ending but ``timeout``, for which
@@ -106,9 +107,7 @@ def _scenarios(suite: Source) -> list[Scenario]:
     return suite.scenarios() if isinstance(suite, Suite) else load_scenarios(suite)
 
 
-def _chosen(
-    suite: Source, part: Split | None, held_out_share: float, crash_types: Iterable[str] | None
-) -> list[Scenario]:
+def _chosen(suite: Source, part: Split | None, held_out_share: float, crash_types: Iterable[str] | None) -> list[Scenario]:
     scenarios = _scenarios(suite)
     if part is not None:
         if part not in ("train", "held_out"):
@@ -147,9 +146,7 @@ class _Core:
         if isinstance(reward, Mapping):
             unknown = reward.keys() - weights.keys()
             if unknown:
-                raise InputError(
-                    f"the reward has no {', '.join(map(repr, sorted(unknown)))}; it has: {', '.join(TERMS)}"
-                )
+                raise InputError(f"the reward has no {', '.join(map(repr, sorted(unknown)))}; it has: {', '.join(TERMS)}")
             weights.update(reward)
         handles = {"pedals": "pedals", "guided": "guided", "discrete": "acts"}.get(actions)
         if handles is None:
@@ -198,7 +195,8 @@ class _Core:
     def rewards(self) -> NDArray[np.float64]:
         if self.custom is None:
             return self.batch.rewards.copy()
-        rewards: NDArray[np.float64] = np.asarray(self.custom(self.batch.terms), np.float64)
+        given: Any = self.custom(self.batch.terms)
+        rewards: NDArray[np.float64] = np.asarray(given, np.float64)
         if rewards.shape != (self.slots,) or not np.isfinite(rewards).all():
             shape = f"shape {rewards.shape}" if rewards.shape != (self.slots,) else "numbers that are not finite"
             raise InputError(f"the reward function gave {shape}; wanted are {self.slots} finite numbers")
@@ -232,7 +230,8 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     :param num_envs: how many environments.
     :param observation: ``"kinematic"`` (default), ``"rays"``, ``"raster"``, or a dict such as
         ``{"kind": "kinematic", "neighbours": 3}``. Numbers are float32 of shape (num_envs, fields) from -1 to 1, see
-        :func:`observation_fields`; a raster is a dict with ``image``, uint8 of shape (num_envs, 2, pixels, pixels), and ``state``.
+        :func:`observation_fields`; a raster is a dict with ``image``, uint8 of shape (num_envs, 2, rows, columns), and
+        ``state``.
     :param actions: ``"pedals"``: float32 (num_envs, 2) from -1 to 1, steering (left positive) and throttle (negative brakes);
         ``"guided"``: acceleration, and the place beside the route to steer to (1 is 3.5 m to its right); ``"discrete"``: int64
         (num_envs,), positions in :data:`ACTS`.
@@ -246,7 +245,7 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     :param copy: whether observations are copies. Without, the next step overwrites them.
     """
 
-    metadata: dict[str, Any] = {
+    metadata: dict[str, Any] = {  # noqa: RUF012
         "render_modes": ["rgb_array"],
         "render_fps": 10,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
@@ -282,7 +281,7 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._mode, self._copy, self._seeded = mode, copy, False
-        self._totals = np.zeros(num_envs)
+        self._totals, self._begins = np.zeros(num_envs), np.zeros(num_envs, bool)
 
     @property
     def scenarios(self) -> list[Scenario]:
@@ -291,9 +290,7 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     def set_curriculum(self, curriculum: Mapping[str, float] | Sequence[float]) -> None:
         """Draw the scenarios of later episodes by weights: of crash types (each shared out evenly), or one for each scenario."""
-        weights = (
-            self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
-        )
+        weights = self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
         self._core.batch.set_weights(weights)
 
     def reset(
@@ -305,9 +302,7 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         if unknown:
             raise InputError(f"reset has no option {sorted(unknown)}; it has: reset_mask, scenarios")
         if seed is not None and not isinstance(seed, (int, np.integer)):
-            raise InputError(
-                "one seed is for all environments, each of which has a stream of its own; give one whole number"
-            )
+            raise InputError("one seed is for all environments, each of which has a stream of its own; give one whole number")
         mask, scenes = options.get("reset_mask"), options.get("scenarios")
         if mask is not None:
             mask = np.asarray(mask)
@@ -321,22 +316,24 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             seed = int(self.np_random.integers(1 << 62))
         self._seeded = True
         self._core.batch.reset(None if seed is None else int(seed), mask, scenes)
-        self._totals[slice(None) if mask is None else mask] = 0.0
+        begun = slice(None) if mask is None else mask
+        self._totals[begun], self._begins[begun] = 0.0, False
         return self._core.observations(self._copy), {"scenario": self._core.batch.scenes.copy()}
 
-    def step(
-        self, actions: Any
-    ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         """Go on by 0.1 s in every environment."""
         core = self._core
         core.step(actions)
         batch = core.batch
         rewards = core.rewards()
+        if core.custom is not None:
+            # The step that only begins an episode is none of it.
+            rewards = np.where(self._begins, 0.0, rewards)
+            self._totals += rewards
         terminated, truncated = batch.terminated.copy(), batch.truncated.copy()
         infos: dict[str, Any] = {"scenario": batch.scenes.copy(), "reward_terms": batch.terms.copy()}
         ended = batch.endings != 0
-        if core.custom is not None:
-            self._totals += rewards
+        self._begins = ended if self._mode is AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, bool)
         if ended.any():
             final = self._ended(ended)
             if self._mode is AutoresetMode.SAME_STEP:
@@ -420,9 +417,7 @@ class CrashEnv(gymnasium.Env[Any, Any]):
 
     def set_curriculum(self, curriculum: Mapping[str, float] | Sequence[float]) -> None:
         """Draw the scenarios of later episodes by weights, see :meth:`CrashVectorEnv.set_curriculum`."""
-        weights = (
-            self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
-        )
+        weights = self._core.weights_of(curriculum) if isinstance(curriculum, Mapping) else [float(w) for w in curriculum]
         self._core.batch.set_weights(weights)
 
     def _observation(self) -> Any:
@@ -501,12 +496,8 @@ def evaluate(policy: Callable[[Any], Any], suite: Source, **options: Any) -> lis
 
     ``options`` are those of :class:`CrashVectorEnv` but ``num_envs`` and ``autoreset_mode``.
     """
-    scenarios = _chosen(
-        suite, options.pop("split", None), options.pop("held_out_share", 0.25), options.pop("crash_types", None)
-    )
-    env = CrashVectorEnv(
-        scenarios, len(scenarios), **{"autoreset_mode": AutoresetMode.NEXT_STEP, "judge": True, **options}
-    )
+    scenarios = _chosen(suite, options.pop("split", None), options.pop("held_out_share", 0.25), options.pop("crash_types", None))
+    env = CrashVectorEnv(scenarios, len(scenarios), **{"autoreset_mode": AutoresetMode.NEXT_STEP, "judge": True, **options})
     observations, _ = env.reset(seed=0, options={"scenarios": np.arange(len(scenarios))})
     runs: list[Run | None] = [None] * len(scenarios)
     while any(run is None for run in runs):

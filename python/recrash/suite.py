@@ -105,9 +105,7 @@ def _as_result(each: Run | Exception) -> Run | RecrashError:
     raise each
 
 
-def test(
-    scenarios: Location | Iterable[Scenario | Location], ego: object = None, *, profile: str | None = None
-) -> Table:
+def test(scenarios: Location | Iterable[Scenario | Location], ego: object = None, *, profile: str | None = None) -> Table:
     """Test an ego in scenarios. A row each: how its run ended, what it failed of, how near and how bad it was.
 
     ``ego`` is a name (see ``recrash.EGOS``), a command (``"cmd:./my_stack"``), or a Python object: a function of an
@@ -116,7 +114,7 @@ def test(
     """
     loaded = load_scenarios(scenarios)
     return Table.of_rows(
-        [_row(scenario, result) for scenario, result in zip(loaded, runs(loaded, ego, profile=profile))]
+        [_row(scenario, result) for scenario, result in zip(loaded, runs(loaded, ego, profile=profile), strict=True)]
     )
 
 
@@ -184,9 +182,7 @@ class Suite:
         """
         own = self.options.get("ego")
         if ego is None and own is not None and own not in _recrash.EGOS:
-            raise InputError(
-                f"{self.folder}: the suite wants to start {own!r} as the ego; name it yourself if you trust it"
-            )
+            raise InputError(f"{self.folder}: the suite wants to start {own!r} as the ego; name it yourself if you trust it")
         return test(self.scenarios(), own if ego is None else ego, profile=profile or self.options["profile"])
 
     def report(self) -> Path:

@@ -108,9 +108,7 @@ def test_an_unknown_ego_and_an_unknown_profile_are_told_with_what_there_is():
 def test_import_is_quick():
     # The least of five fresh processes: others may be at work on the machine.
     script = "import time; t = time.perf_counter(); import recrash; print(time.perf_counter() - t)"
-    done = [
-        subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True) for _ in range(5)
-    ]
+    done = [subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True) for _ in range(5)]
     assert min(float(each.stdout) for each in done) < 0.1
 
 
