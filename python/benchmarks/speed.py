@@ -3,7 +3,8 @@
     python benchmarks/speed.py --metadrive-python .../bin/python
 
 Everything is measured in turns, and the best turn counts, so that other work on the machine meets all alike. Figures are given
-by the wall clock and by the time that processors spent on it: on a machine that others use too, only the second is a figure per core.
+by the wall clock and by the time that processors spent on it: on a machine that others use too, only the second is a figure
+per core.
 """
 
 from __future__ import annotations

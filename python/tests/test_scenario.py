@@ -50,6 +50,14 @@ def test_a_run_tells_what_happened_in_arrays_and_plain_objects():
     assert run.to_dict()["rollout"]["state_hash"] == run.state_hash
 
 
+def test_a_run_goes_from_process_to_process():
+    run = Scenario.load(case("crashes/32-lead-reverses")).run("idm")
+    same = pickle.loads(pickle.dumps(run))
+    assert same.to_dict() == run.to_dict()
+    assert same.drawing == run.drawing is not None
+    assert copy.deepcopy([run])[0] is run
+
+
 def test_a_run_without_a_contact_has_no_severity():
     run = Scenario.load(case("acts/01-lanes")).run("recorded")
     assert run.severity is None

@@ -1,14 +1,14 @@
 //! Judged runs.
 
-use crate::errors::to_python;
+use crate::errors::{input, of_library, to_python};
 use crate::table::Table;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use recrash_metrics::severity_of;
 use recrash_model::rollout::STEP_S;
 use recrash_model::run::JudgedRun;
-use recrash_pipeline::Column;
-use recrash_roads::Scenario;
+use recrash_pipeline::{Column, parse_scenario};
+use recrash_roads::{Scenario, write_draft};
 use std::sync::Arc;
 
 /// Numbers of a state, in the order of `Run.states`.
@@ -191,6 +191,32 @@ impl Run {
     /// Everything, as the suite's files have it.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &*self.run)
+    }
+
+    /// A run never changes: a copy is itself.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    /// A run never changes: a copy is itself.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
+    /// Pickled as its JSON.
+    #[allow(clippy::type_complexity, reason = "Python's protocol: a callable and its arguments")]
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, Option<String>))> {
+        let restore = py.get_type::<Self>().getattr("_restore")?;
+        let run = serde_json::to_string(&*self.run).map_err(|error| input(py, error))?;
+        Ok((restore, (run, self.scenario.as_ref().map(|scenario| write_draft(scenario.draft())))))
+    }
+
+    /// What `pickle` calls.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, run: &str, scenario: Option<&str>) -> PyResult<Self> {
+        let run = serde_json::from_str(run).map_err(|error| input(py, error))?;
+        let parsed = scenario.map(parse_scenario).transpose().map_err(|failed| of_library(py, &failed))?;
+        Ok(Self::of(run, parsed.map(|(scenario, _)| Arc::new(scenario))))
     }
 
     fn __repr__(&self) -> String {
