@@ -6,7 +6,7 @@ use crate::table::Table;
 use pyo3::prelude::*;
 use recrash_model::account::Account;
 use recrash_pipeline::{
-    NoProgress, Options, RecordSource, RetoldStanding, TableRows, account_table, reconstruct_accounts, record_table,
+    NoProgress, Options, RecordSource, TableRows, account_table, reconstruct_accounts, record_table,
 };
 use std::path::PathBuf;
 
@@ -50,8 +50,12 @@ impl Accounts {
         let mut rows = Vec::new();
         for each in &retold {
             let account = &accounts[each.account];
-            let standing = each.standing();
-            let shown = each.result.as_ref().ok().filter(|_| standing == RetoldStanding::Shown);
+            let shown = each.result.as_ref().ok().filter(|_| each.untold().is_none());
+            let standing = match &each.result {
+                Ok(_) if shown.is_some() => "shown",
+                Ok(_) => "not_shown",
+                Err(_) => "untold",
+            };
             if let Some(made) = shown {
                 let checked = recrash_roads::check(made.draft.clone()).map_err(|_| {
                     input(py, format!("{}: its own reconstruction does not pass the check", account.incident))
