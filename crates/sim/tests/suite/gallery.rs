@@ -40,7 +40,7 @@ struct Case {
 }
 
 /// The folder of the cases.
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
+pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
 
 /// The names of all cases: paths below `cases/` without `.json`.
 pub(crate) fn case_names() -> BTreeSet<String> {

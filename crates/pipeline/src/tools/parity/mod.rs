@@ -274,7 +274,12 @@ fn thresholds(source: &ParitySource, all: &Agreement, refused: &[RefusedScenario
             Threshold::new("least gap within 0.5 m", 0.90, all.same_gap, all.pairs),
             Threshold::new("its time within 0.3 s", 0.85, all.same_time, all.pairs),
             // Nothing on the paper's maps is refused: every other one is a scene.
-            Threshold::new("scenes that MetaDrive can hold", 0.75, (count / 2).saturating_sub(refused.len()), count / 2),
+            Threshold::new(
+                "scenes that MetaDrive can hold",
+                0.75,
+                (count / 2).saturating_sub(refused.len()),
+                count / 2,
+            ),
         ],
         ParitySource::Suite { .. } => {
             vec![Threshold::new("native failures that fail on MetaDrive too", 0.90, all.confirmed, all.failed_natively)]
