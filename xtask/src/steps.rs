@@ -112,7 +112,7 @@ fn browser(tally: &mut Tally) -> Result {
         return missing(tally, "browser", "Chromium is not installed (Debian's package chromium)");
     }
     let suite = target().join("browser-suite");
-    run(Command::new(built()?).args(["run", "--quiet", "--out"]).arg(&suite))?;
+    run(Command::new(built()?).args(["run", "--quiet", "--profile", "paper", "--out"]).arg(&suite))?;
     run(Command::new("node").arg(browser_folder().join("check.mjs")).arg(suite.join("report.html")))
 }
 

@@ -303,9 +303,63 @@ pub enum CheckKind {
     ContactZones,
     /// Kinds of collision the profile excludes.
     ExcludedCollision,
+    /// The first contact of the ego is with the partner.
+    Contact,
+    /// Kind of the partner.
+    Partner,
+    /// Zone of the contact on the ego.
+    SvZones,
+    /// Zone of the contact on the partner.
+    CpZones,
+    /// Whether the ego stood, moved, set off or went backwards at the contact.
+    SvState,
+    /// The same of the partner.
+    CpState,
+    /// Somebody else touched the partner before it touched the ego.
+    PassedOn,
+    /// Lane of the ego when the scene begins.
+    SvLane,
+    /// Lane of the partner when the scene begins.
+    CpLane,
+    /// What the ego's signal or sign showed, and whether it obeyed it.
+    SvControl,
+    /// The same of the partner's.
+    CpControl,
+    /// Why the ego stood.
+    Reason,
+    /// Everybody else in the story.
+    Others,
+    /// A door took part.
+    Door,
+    /// The system under test came into the situation of the record.
+    Situation,
 }
 
 impl CheckKind {
+    /// Those that an account is held to, in the order of tables.
+    pub const OF_ACCOUNTS: [Self; 20] = [
+        Self::Contact,
+        Self::Partner,
+        Self::SvZones,
+        Self::CpZones,
+        Self::SvState,
+        Self::CpState,
+        Self::SvSpeed,
+        Self::CpSpeed,
+        Self::SvMovement,
+        Self::CpMovement,
+        Self::Approach,
+        Self::Order,
+        Self::PassedOn,
+        Self::SvLane,
+        Self::CpLane,
+        Self::SvControl,
+        Self::CpControl,
+        Self::Reason,
+        Self::Others,
+        Self::Door,
+    ];
+
     /// For tables.
     pub fn label(self) -> &'static str {
         match self {
@@ -320,6 +374,21 @@ impl CheckKind {
             Self::Encounter => "encounter",
             Self::ContactZones => "contact zones",
             Self::ExcludedCollision => "excluded collisions",
+            Self::Contact => "contact",
+            Self::Partner => "partner kind",
+            Self::SvZones => "SV zones",
+            Self::CpZones => "CP zones",
+            Self::SvState => "SV state",
+            Self::CpState => "CP state",
+            Self::PassedOn => "thrown by another",
+            Self::SvLane => "SV lane",
+            Self::CpLane => "CP lane",
+            Self::SvControl => "SV signal or sign",
+            Self::CpControl => "CP signal or sign",
+            Self::Reason => "why the SV stood",
+            Self::Others => "others in the story",
+            Self::Door => "door",
+            Self::Situation => "situation met",
         }
     }
 

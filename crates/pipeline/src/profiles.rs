@@ -5,10 +5,11 @@ use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::profile::{PROFILE_FORMAT, SystemProfile};
 use std::path::Path;
 
-const BUILT_IN: [(&str, &str); 1] = [("paper", include_str!("../../../profiles/paper.toml"))];
+const BUILT_IN: [(&str, &str); 2] =
+    [("open", include_str!("../../../profiles/open.toml")), ("paper", include_str!("../../../profiles/paper.toml"))];
 
 /// Names of the built-in profiles.
-pub const PROFILE_NAMES: [&str; 1] = [BUILT_IN[0].0];
+pub const PROFILE_NAMES: [&str; 2] = [BUILT_IN[0].0, BUILT_IN[1].0];
 
 /// A built-in profile by name, or a TOML file by path.
 ///
@@ -102,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_number_that_makes_no_sense_is_named() {
-        let paper = BUILT_IN[0].1;
+        let paper = BUILT_IN[1].1;
         for (key, from, to) in [
             ("min_speed_mps", "min_speed_mps = 1.0", "min_speed_mps = nan"),
             ("min_speed_mps", "min_speed_mps = 1.0", "min_speed_mps = -1.0"),
@@ -121,6 +122,6 @@ mod tests {
 
     #[test]
     fn an_unknown_name_lists_the_known_ones() {
-        assert!(load_profile("papper").unwrap_err().to_string().contains("built in: paper"));
+        assert!(load_profile("papper").unwrap_err().to_string().contains("built in: open, paper"));
     }
 }

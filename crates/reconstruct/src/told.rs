@@ -1,57 +1,20 @@
 //! What an account tells, in the terms of a staging; and what has to be assumed.
 
+use crate::choices::Choices;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind, SpeedMeaning, Striker,
-    told,
+    Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
+    SpeedMeaning, Striker, Untold, told,
 };
+use recrash_model::account::{Control, ControlDevice, LaneWord, Obeyed, SignalState, StandReason};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
 use recrash_model::scenario::Size;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
-use std::fmt;
 
 /// Speed at which a partner that is thrown at the ego meets it, about. [m/s]
 const THROWN_MPS: f64 = 4.0;
-
-/// Why an account cannot be staged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Untold {
-    /// Nobody says what happened: no partner, no contact.
-    NoAccount,
-    /// The two never touched: others crashed.
-    OthersOnly,
-    /// The place cannot be drawn yet: a roundabout, a garage, rails.
-    Place,
-    /// It came from above.
-    FromAbove,
-    /// No way of touching fits the told zones, states and directions.
-    NoContact,
-    /// What fits has no room on the road that is told.
-    NoRoom,
-}
-
-impl Untold {
-    /// For tables.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::NoAccount => "no account of a contact",
-            Self::OthersOnly => "the subject vehicle was not touched",
-            Self::Place => "the place cannot be drawn yet",
-            Self::FromAbove => "it came from above",
-            Self::NoContact => "no contact fits the told zones and directions",
-            Self::NoRoom => "no room on the told road",
-        }
-    }
-}
-
-impl fmt::Display for Untold {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.label())
-    }
-}
-
-impl std::error::Error for Untold {}
 
 /// How somebody turns before the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,8 +40,9 @@ pub(crate) struct Side {
     pub(crate) impact_mps: Option<f64>,
     /// Speed at the contact that is staged. [m/s]
     pub(crate) speed_mps: f64,
-    pub(crate) ran_red: bool,
-    pub(crate) ran_stop: bool,
+    pub(crate) lane: Option<LaneWord>,
+    /// The signal or sign in front of it, where told.
+    pub(crate) control: Option<Control>,
 }
 
 /// An account, in the terms of a staging.
@@ -96,20 +60,39 @@ pub(crate) struct Told {
     /// Somebody threw the partner at the subject vehicle.
     pub(crate) pushed: bool,
     pub(crate) striker: Option<Striker>,
+    /// Lanes in the ego's direction.
+    pub(crate) lanes: Option<u8>,
+    /// Why the ego stood.
+    pub(crate) reasons: Vec<StandReason>,
+    /// Others than the two.
+    pub(crate) others: usize,
+    pub(crate) door: bool,
+    /// Somebody stands ahead of the ego, as the reason why it stood.
+    pub(crate) lead: bool,
+    pub(crate) choices: Choices,
     pub(crate) assumed: Vec<String>,
 }
 
 impl Told {
+    /// # Errors
+    /// Why it cannot be staged.
     pub(crate) fn of(account: &Account) -> Result<Self, Untold> {
-        let partner = account.partner.as_ref().ok_or(Untold::NoAccount)?;
-        let crash_type = told(&account.crash_type).ok_or(Untold::NoAccount)?;
-        if let Some(recrash_model::account::FirstContact::OthersOnly) = told(&account.first_contact) {
+        let this = Self::read(account).ok_or(Untold::NoAccount)?;
+        if told(&account.first_contact) == Some(FirstContact::OthersOnly) {
             return Err(Untold::OthersOnly);
         }
-        let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
-        if matches!(place, PlaceKind::Circle) {
-            return Err(Untold::Place);
+        match (this.place, this.origin) {
+            (PlaceKind::Circle, _) => Err(Untold::Place),
+            (_, Origin::Above) => Err(Untold::FromAbove),
+            _ => Ok(this),
         }
+    }
+
+    /// Whether or not it can be staged; nothing where no partner or no kind of crash is told.
+    pub(crate) fn read(account: &Account) -> Option<Self> {
+        let partner = account.partner.as_ref()?;
+        let crash_type = told(&account.crash_type)?;
+        let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
         let mut assumed = Vec::new();
         let kind = told(&partner.kind);
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
@@ -117,11 +100,7 @@ impl Told {
         let cp = side(partner, kind, &mut assumed, "partner");
         let origin = told(&account.came_from);
         let origin_told = origin.is_some();
-        let origin = match origin {
-            Some(Origin::Above) => return Err(Untold::FromAbove),
-            Some(origin) => origin,
-            None => assumed_origin(crash_type, &sv, &cp).unwrap_or(Origin::Behind),
-        };
+        let origin = origin.or_else(|| assumed_origin(crash_type, &sv, &cp)).unwrap_or(Origin::Behind);
         let striker = told(&account.striker);
         let mut this = Self {
             crash_type,
@@ -136,16 +115,86 @@ impl Told {
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             striker,
+            lanes: told(&account.place.lanes),
+            reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
+            others: account.others.len(),
+            door: account.door.is_some(),
+            lead: false,
+            choices: Choices::default(),
             assumed,
         };
         if this.origin_told {
             this.speeds();
         }
-        Ok(this)
+        Some(this)
+    }
+
+    /// The kinds of facts that are told and can be held against a rollout.
+    pub(crate) fn kinds(&self) -> Vec<CheckKind> {
+        let (sv, cp) = (&self.sv, &self.cp);
+        let moves = !(self.thing.is_some() && cp.state.stands());
+        let straight_or_turn = |side: &Side| side.movement.is_some() && side.turning != Turning::Round;
+        let of = [
+            (CheckKind::Contact, true),
+            (CheckKind::Partner, true),
+            (CheckKind::SvZones, !sv.zones.is_empty()),
+            (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none()),
+            (CheckKind::SvState, sv.state_told),
+            (CheckKind::CpState, cp.state_told && moves),
+            (CheckKind::SvSpeed, sv.impact_mps.is_some()),
+            (CheckKind::CpSpeed, cp.impact_mps.is_some()),
+            (CheckKind::SvMovement, straight_or_turn(sv)),
+            (CheckKind::CpMovement, straight_or_turn(cp) && cp.state != ContactState::Reversing && moves),
+            (CheckKind::Approach, self.origin_told && moves),
+            (CheckKind::Order, self.order.is_some() && moves),
+            (CheckKind::PassedOn, self.pushed),
+            (CheckKind::SvLane, sv.lane.is_some()),
+            (CheckKind::CpLane, cp.lane.is_some() && moves),
+            (CheckKind::SvControl, sv.control.is_some()),
+            (CheckKind::CpControl, cp.control.is_some() && moves),
+            (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),
+            (CheckKind::Others, self.others > 0),
+            (CheckKind::Door, self.door),
+        ];
+        of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
+    }
+
+    /// The same, choosing otherwise.
+    pub(crate) fn choosing(mut self, choices: Choices) -> Self {
+        self.choices = choices;
+        if self.origin_told {
+            self.assumed.retain(|assumed| !assumed.contains("speed at the contact"));
+            self.speeds();
+        }
+        self
+    }
+
+    /// Whether somebody stood ahead of the ego, who is not the partner.
+    fn wants_lead(&self) -> bool {
+        let waits = |reason: &StandReason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle);
+        self.sv.state == ContactState::Stopped
+            && self.reasons.iter().any(waits)
+            && self.thing.is_none()
+            && self.origin != Origin::Ahead
+    }
+
+    /// Whether a signal or sign is told.
+    pub(crate) fn is_controlled(&self) -> bool {
+        self.sv.control.is_some() || self.cp.control.is_some()
+    }
+
+    /// Everything to try: with who stood ahead of the ego, then without.
+    pub(crate) fn variants(self) -> Vec<Self> {
+        let all = self.by_origin().into_iter();
+        let with_lead = |told: Self| {
+            let lead = told.wants_lead().then(|| Self { lead: true, ..told.clone() });
+            lead.into_iter().chain([told])
+        };
+        all.flat_map(with_lead).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
-    pub(crate) fn by_origin(self) -> Vec<Self> {
+    fn by_origin(self) -> Vec<Self> {
         if self.origin_told {
             return vec![self];
         }
@@ -217,6 +266,9 @@ impl Told {
                 _ => {}
             }
         }
+        if self.cp.impact_mps.is_none() && !self.is_thrown() {
+            self.cp.speed_mps *= self.choices.partner_speed;
+        }
         if self.sv.impact_mps.is_none() && !self.sv.state.stands() {
             self.assumed.push(format!("the ego's speed at the contact: {:.1} m/s", self.sv.speed_mps));
         }
@@ -273,9 +325,22 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
             .collect(),
         impact_mps,
         speed_mps: 0.0,
-        ran_red: party.did(Act::RunRed),
-        ran_stop: party.did(Act::RunStop),
+        lane: told(&party.lane),
+        control: control(party),
     }
+}
+
+/// The signal or sign in front of somebody; who is told to have run one had one.
+fn control(party: &Party) -> Option<Control> {
+    let ran = |device, state| Some(Control { device, state, obeyed: Some(Obeyed::No) });
+    if party.did(Act::RunRed) {
+        return ran(ControlDevice::Signal, Some(SignalState::Red));
+    }
+    if party.did(Act::RunStop) {
+        return ran(ControlDevice::StopSign, None);
+    }
+    // What is said last is nearest to the contact.
+    party.controls.last().map(|fact| fact.value)
 }
 
 /// Sizes of kinds that are longer or shorter than the group they belong to; usual ones, assumed. [m]

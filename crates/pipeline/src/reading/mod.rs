@@ -1,6 +1,8 @@
 //! What users give: crash files, scenario files, and what profiles and egos name.
 
+pub(crate) mod accounts;
 pub(crate) mod fetching;
 pub(crate) mod named;
 pub(crate) mod records;
+pub(crate) mod retelling;
 pub(crate) mod scenarios;
