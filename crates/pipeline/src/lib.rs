@@ -71,7 +71,7 @@ pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
 pub use tools::parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
     ParityRequest, ParitySource, ParityTable, RefusedScenario, TIME_TOLERANCE_S, Threshold, open_loop, parity,
-    random_scenario,
+    random_scenario, random_scene,
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
 pub use tools::reconstructing::write_reconstructions;
