@@ -67,9 +67,10 @@ const RULES: [(Cause, Rule); 11] = [
     (Cause::BrakedLate, |_| true),
 ];
 
-/// What led to the first failure of a run; `None` where there is none.
+/// What led to the first crash of a run, or where there is none, to its first failure; `None` where it has not failed.
 pub fn cause(rollout: &Rollout, metrics: &Metrics, findings: &[Finding]) -> Option<Cause> {
-    let first = findings.iter().find(|finding| finding.kind.is_failure())?;
+    let crash = findings.iter().find(|finding| finding.kind.is_crash());
+    let first = crash.or_else(|| findings.iter().find(|finding| finding.kind.is_failure()))?;
     Some(match first.kind {
         FindingKind::Contact => {
             let encounter = Encounter::of(rollout, metrics)?;

@@ -9,6 +9,7 @@
 
 pub mod account;
 pub mod cause;
+pub mod comparison;
 pub mod diagnostic;
 pub mod frozen;
 pub mod geometry;

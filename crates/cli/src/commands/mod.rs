@@ -8,6 +8,7 @@ mod doctor;
 mod eval;
 mod export;
 mod fetch;
+mod freeze;
 mod import;
 mod ledger;
 mod model;
@@ -24,6 +25,7 @@ mod simulate;
 mod stage;
 #[cfg(feature = "parquet")]
 mod sweep;
+mod test;
 
 use crate::options::SuiteArgs;
 use crate::output::Output;
@@ -128,6 +130,12 @@ pub enum Command {
     Read(read::ReadArgs),
     /// Each incident of crash files as a scenario that shows its own crash, with the recorded driver
     Reconstruct(reconstruct::ReconstructArgs),
+    /// Freeze the scenarios of a suite, or scenario files, into a folder of tests that runs anywhere, without the crash file.
+    Freeze(freeze::FreezeArgs),
+    /// Run a frozen suite with an ego: what failed, how bad it is, what led to it, and what changed against a baseline.
+    Test(test::TestArgs),
+    /// Hold two results of frozen suites against each other.
+    Compare(test::CompareArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
@@ -198,6 +206,9 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Import(args) => import::run(args, output),
         Command::Read(args) => read::run(args, output),
         Command::Reconstruct(args) => reconstruct::run(args, output),
+        Command::Freeze(args) => freeze::run(args, output),
+        Command::Test(args) => test::run(args, output),
+        Command::Compare(args) => test::compare(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),
         Command::Ledger(args) => ledger::run(args, output),

@@ -1,5 +1,6 @@
 //! What users give: crash files, scenario files, and what profiles and egos name.
 
+pub(crate) mod documents;
 pub(crate) mod fetching;
 pub(crate) mod named;
 pub(crate) mod records;

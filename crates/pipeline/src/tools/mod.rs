@@ -3,13 +3,16 @@
 pub(crate) mod accounts;
 pub(crate) mod bench_sim;
 pub(crate) mod check_driver;
+pub(crate) mod comparing;
 pub(crate) mod doctor;
 pub(crate) mod embed_bench;
 pub(crate) mod evaluation;
 pub(crate) mod exporting;
+pub(crate) mod freezing;
 pub(crate) mod importing;
 pub(crate) mod parity;
 pub(crate) mod prompting;
 pub(crate) mod reconstructing;
 #[cfg(feature = "parquet")]
 pub(crate) mod sweep;
+pub(crate) mod testing;
