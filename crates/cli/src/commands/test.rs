@@ -270,7 +270,16 @@ fn show_comparison(comparison: &Comparison) {
         Change::ALL.into_iter().filter(|change| comparison.all.changes.contains_key(change)).collect();
     let labels: Vec<&str> = used.iter().map(|change| change.label()).collect();
     let header = [&["crash type", "tests", "failed before", "failed now"], &labels[..], &["p"]].concat();
-    let mut rows = table(&header).without_first(&["same", "failed before", "failed now", "p"]);
+    let mut rows = table(&header).without_first(&[
+        "same",
+        "p",
+        "removed",
+        "added",
+        "failed before",
+        "failed now",
+        "changed",
+        "not run",
+    ]);
     let row = |row: &TypeRow| -> Vec<Cell> {
         let head = [Cell::new(row.crash_type), number(row.tests), number(row.base_failed), number(row.new_failed)];
         let counts = used.iter().map(|change| number(row.changes.get(change).unwrap_or(&0)));
@@ -283,10 +292,10 @@ fn show_comparison(comparison: &Comparison) {
     let changed: Vec<_> =
         used.iter().filter(|change| **change != Change::Same).flat_map(|change| comparison.of(*change)).collect();
     if !changed.is_empty() {
-        let mut rows = table(&["test", "change", "what"]);
+        let mut rows = table(&["test", "what changed"]);
         for test in changed.iter().take(2 * SHOWN) {
             let p = test.p.map_or_else(String::new, |p| format!(" (p {p:.3})"));
-            rows.add_row([Cell::new(&test.id), Cell::new(test.change.label()), Cell::new(format!("{}{p}", test.why))]);
+            rows.add_row([Cell::new(&test.id), Cell::new(format!("{}: {}{p}", test.change.label(), test.why))]);
         }
         println!("{rows}");
         if changed.len() > 2 * SHOWN {

@@ -109,11 +109,12 @@ fn verdict(base: &TestResult, new: &TestResult) -> (Change, String, Option<f64>)
     }
     let counts = |test: &TestResult| [test.failures(), test.runs.len()];
     let (before, now) = (counts(base), counts(new));
-    let told = |[failures, runs]: [usize; 2]| match (failures, runs) {
-        (failed, 1) => if failed == 1 { "failed" } else { "passed" }.to_owned(),
-        (failed, runs) => format!("failed {failed} of {runs}"),
+    let told = |test: &TestResult, [failures, runs]: [usize; 2]| match (failures, telling(test)) {
+        (0, _) => "passed".to_owned(),
+        (_, Some(outcome)) if runs == 1 => failed_how(outcome),
+        _ => format!("failed {failures} of {runs}"),
     };
-    let shares = format!("{}, now {}", told(before), told(now));
+    let shares = format!("{}, now {}", told(base, before), told(new, now));
     let is_random = before[1] > 1 || now[1] > 1;
     let p = is_random.then(|| exact::fisher(before, now));
     let all = |[failures, runs]: [usize; 2]| failures == runs;
@@ -133,11 +134,20 @@ fn verdict(base: &TestResult, new: &TestResult) -> (Change, String, Option<f64>)
     }
 }
 
+fn telling(test: &TestResult) -> Option<&TestOutcome> {
+    test.telling().and_then(|run| run.outcome.as_ref())
+}
+
+/// The failures of a run, and how fast the contact was.
+fn failed_how(outcome: &TestOutcome) -> String {
+    let kinds = outcome.kinds();
+    let labels: Vec<&str> = kinds.iter().filter(|kind| kind.is_failure()).map(|kind| kind.label()).collect();
+    let speed = outcome.contact.as_ref().map(|contact| format!(" at {:.1} m/s", contact.relative_speed_mps));
+    labels.join(", ") + &speed.unwrap_or_default()
+}
+
 /// Whether a test of one verdict is worse or better than it was.
 fn degree(base: &TestResult, new: &TestResult) -> (Change, String) {
-    fn telling(test: &TestResult) -> Option<&TestOutcome> {
-        test.telling().and_then(|run| run.outcome.as_ref())
-    }
     let (Some(before), Some(now)) = (telling(base), telling(new)) else { return (Change::Same, String::new()) };
     let by = |worse: bool, why: String| (if worse { Change::Worse } else { Change::Better }, why);
     let rank = |outcome: &TestOutcome| {
@@ -145,13 +155,8 @@ fn degree(base: &TestResult, new: &TestResult) -> (Change, String) {
         let failures = || kinds.iter().filter(|kind| kind.is_failure());
         if failures().any(|kind| kind.is_crash()) { 2 } else { usize::from(failures().next().is_some()) }
     };
-    let names = |outcome: &TestOutcome| {
-        let kinds = outcome.kinds();
-        let labels: Vec<&str> = kinds.iter().filter(|kind| kind.is_failure()).map(|kind| kind.label()).collect();
-        labels.join(", ")
-    };
     if rank(before) != rank(now) {
-        return by(rank(now) > rank(before), format!("{}, now {}", names(before), names(now)));
+        return by(rank(now) > rank(before), format!("{}, now {}", failed_how(before), failed_how(now)));
     }
     let harm = now.harm_mps() - before.harm_mps();
     if harm.abs() > HARM_MPS {
