@@ -9,7 +9,10 @@ pub mod causes;
 pub mod comparison;
 pub mod evaluation;
 mod judging;
+pub mod minimal;
 pub mod parity;
+pub mod perturb;
+pub mod robustness;
 mod scoring;
 mod triage;
 
