@@ -69,6 +69,9 @@ pub use tools::evaluation::{
     Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate,
 };
 pub use tools::exporting::{ExportReport, ExportRequest, export};
+pub use tools::failing::{
+    FailureRequest, MinimalOf, MinimalReport, RobustnessOf, RobustnessReport, minimal_failures, robustness_of_failures,
+};
 pub use tools::freezing::{FreezeRequest, Freezing, freeze};
 pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
 pub use tools::parity::{

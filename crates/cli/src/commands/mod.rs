@@ -7,6 +7,7 @@ mod check_driver;
 mod doctor;
 mod eval;
 mod export;
+mod failures;
 mod fetch;
 mod freeze;
 mod import;
@@ -136,6 +137,10 @@ pub enum Command {
     Test(test::TestArgs),
     /// Hold two results of frozen suites against each other.
     Compare(test::CompareArgs),
+    /// Tell how robust the failures of a frozen suite are: under small changes, and on MetaDrive.
+    Robustness(failures::RobustnessArgs),
+    /// Strip the failures of a frozen suite to what they need, each with the nearest scenario that passes.
+    Minimise(failures::MinimiseArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
@@ -209,6 +214,8 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Freeze(args) => freeze::run(args, output),
         Command::Test(args) => test::run(args, output),
         Command::Compare(args) => test::compare(args, output),
+        Command::Robustness(args) => failures::robustness(args, output),
+        Command::Minimise(args) => failures::minimise(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),
         Command::Ledger(args) => ledger::run(args, output),

@@ -8,6 +8,7 @@ pub(crate) mod doctor;
 pub(crate) mod embed_bench;
 pub(crate) mod evaluation;
 pub(crate) mod exporting;
+pub(crate) mod failing;
 pub(crate) mod freezing;
 pub(crate) mod importing;
 pub(crate) mod parity;
