@@ -68,6 +68,7 @@ pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_emb
 pub use tools::evaluation::{
     Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate,
 };
+pub use tools::evidence::{Evidence, EvidenceRequest, evidence};
 pub use tools::exporting::{ExportReport, ExportRequest, export};
 pub use tools::failing::{
     FailureRequest, MinimalOf, MinimalReport, RobustnessOf, RobustnessReport, minimal_failures, robustness_of_failures,

@@ -6,6 +6,7 @@ mod bench_sim;
 mod check_driver;
 mod doctor;
 mod eval;
+mod evidence;
 mod export;
 mod failures;
 mod fetch;
@@ -141,6 +142,8 @@ pub enum Command {
     Robustness(failures::RobustnessArgs),
     /// Strip the failures of a frozen suite to what they need, each with the nearest scenario that passes.
     Minimise(failures::MinimiseArgs),
+    /// Write a folder of evidence: claims with numbers, and a checker that works each of them out again.
+    Evidence(evidence::EvidenceArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
@@ -216,6 +219,7 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Compare(args) => test::compare(args, output),
         Command::Robustness(args) => failures::robustness(args, output),
         Command::Minimise(args) => failures::minimise(args, output),
+        Command::Evidence(args) => evidence::run(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),
         Command::Ledger(args) => ledger::run(args, output),

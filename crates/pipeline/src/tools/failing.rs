@@ -2,8 +2,9 @@
 //! and `docs/models/minimal.md`.
 
 use crate::error::PipelineError;
+use crate::files::folders::must_be_free;
 use crate::files::output::Outputs;
-use crate::files::store::{Store, io, to_json, write_suite_file};
+use crate::files::store::{Store, to_json, write_suite_file};
 use crate::progress::{Progress, ProgressEvent};
 use crate::simulators::{SimulatorKind, start_simulator};
 use crate::tools::freezing::Opened;
@@ -232,7 +233,7 @@ pub fn minimal_failures(
         .flat_map(|suite| &suite.scenarios)
         .map(|scenario| (scenario.draft().id.as_str(), scenario.draft()))
         .collect();
-    may_be_filled(folder)?;
+    must_be_free(folder, Some(MINIMAL_FILE))?;
     let failing = failing(&bench, &request.only)?;
     let store = Store::create(folder, write_suite_file)?;
     let of = |each: &Failing| -> Result<MinimalOf, PipelineError> {
@@ -264,18 +265,3 @@ pub fn minimal_failures(
 
 /// The list of a folder of minimal failures.
 const MINIMAL_FILE: &str = "minimal.json";
-
-/// Whether a folder is new, empty, or one of minimal failures.
-fn may_be_filled(folder: &PathBuf) -> Result<(), PipelineError> {
-    match std::fs::read_dir(folder) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
-        Err(source) => Err(io("read", folder, source)),
-        Ok(mut entries) => match entries.next().is_none() || folder.join(MINIMAL_FILE).is_file() {
-            true => Ok(()),
-            false => Err(PipelineError::bad_input(format!(
-                "{}: it holds something else; name another folder, or empty it",
-                folder.display()
-            ))),
-        },
-    }
-}

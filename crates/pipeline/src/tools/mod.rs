@@ -7,6 +7,7 @@ pub(crate) mod comparing;
 pub(crate) mod doctor;
 pub(crate) mod embed_bench;
 pub(crate) mod evaluation;
+pub(crate) mod evidence;
 pub(crate) mod exporting;
 pub(crate) mod failing;
 pub(crate) mod freezing;

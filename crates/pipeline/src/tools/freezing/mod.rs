@@ -6,8 +6,9 @@ mod sources;
 pub(crate) use open::Opened;
 
 use crate::error::PipelineError;
+use crate::files::folders::must_be_free;
 use crate::files::paths;
-use crate::files::store::{Store, io, sha256, to_json, write_suite_file};
+use crate::files::store::{Store, sha256, to_json, write_suite_file};
 use crate::profiles::load_profile;
 use recrash_model::account::Account;
 use recrash_model::frozen::{About, FROZEN_FORMAT, FrozenFile, FrozenSuite, FrozenTest, Provenance, scenario_content};
@@ -182,16 +183,10 @@ fn may_be_made(request: &FreezeRequest) -> Result<(), PipelineError> {
     if request.sources.iter().any(holds) {
         return refused("what is read lies in it; name another folder");
     }
-    match std::fs::read_dir(out) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
-        Err(_) if !out.is_dir() => refused("it is a file; name a folder"),
-        Err(source) => Err(io("read", out, source)),
-        Ok(mut entries) => match (entries.next().is_none(), out.join(FROZEN_FILE).is_file(), request.replace) {
-            (true, ..) | (_, true, true) => Ok(()),
-            (_, true, false) => refused("it holds a frozen suite; name another folder, or say that it is replaced"),
-            (_, false, _) => refused("it holds files but no frozen suite; name another folder, or empty it"),
-        },
+    if out.join(FROZEN_FILE).is_file() && !request.replace {
+        return refused("it holds a frozen suite; name another folder, or say that it is replaced");
     }
+    must_be_free(out, Some(FROZEN_FILE))
 }
 
 /// Removes what a frozen suite that is replaced had, and this one has not.
