@@ -25,6 +25,7 @@ pub use expectation::expectation;
 pub use expressible::inexpressible;
 pub use parameters::parameters;
 pub use rules::Rules;
+pub use rules::telling::tell;
 
 use recrash_model::metrics::{Check, Metrics};
 use recrash_model::narrative::Narrative;

@@ -29,12 +29,29 @@ pub struct SourceArgs {
     pub filter: Option<String>,
 }
 
+/// How many scenarios are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Budget {
+    /// As many as can be told.
+    All,
+    /// No more than this.
+    AtMost(usize),
+}
+
+fn budget(text: &str) -> Result<Budget, String> {
+    match text.parse() {
+        _ if text == "all" => Ok(Budget::All),
+        Ok(number) if (1..=20_000).contains(&number) => Ok(Budget::AtMost(number)),
+        _ => Err("it must be a number from 1 to 20000, or all".to_owned()),
+    }
+}
+
 /// How records are chosen.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ChoiceArgs {
-    /// Scenarios to make. [default: 20]
-    #[arg(long, help_heading = "Selection", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=2000))]
-    pub budget: Option<u16>,
+    /// Scenarios to make, 1 to 20000, or all: one for every crash that can be told. [default: 20]
+    #[arg(long, help_heading = "Selection", value_name = "N|all", value_parser = budget)]
+    pub budget: Option<Budget>,
     /// How the picks are chosen: stratified (every template first), kmeans (the paper's), k-center (no record far from
     /// its pick) or facility-location (near on average). [default: stratified]
     #[arg(long, help_heading = "Selection", value_name = "NAME", value_parser = strategy)]
@@ -183,7 +200,11 @@ impl ChoiceArgs {
     /// What was typed, over `base`.
     pub fn over(&self, base: Options) -> Options {
         Options {
-            budget: self.budget.map_or(base.budget, usize::from),
+            budget: match self.budget {
+                None => base.budget,
+                Some(Budget::All) => None,
+                Some(Budget::AtMost(budget)) => Some(budget),
+            },
             strategy: self.strategy.unwrap_or(base.strategy),
             weighting: self.weighting.unwrap_or(base.weighting),
             template_weight: self.template_weight.unwrap_or(base.template_weight),
@@ -285,11 +306,11 @@ mod tests {
 
     #[test]
     fn what_is_typed_wins_over_what_was_saved() {
-        let saved = Options { budget: 7, seed: 9, dimensions: 4, ..Options::default() };
+        let saved = Options { budget: Some(7), seed: 9, dimensions: 4, ..Options::default() };
         let choice = ChoiceArgs { dimensions: Some(5), ..ChoiceArgs::default() };
         let typed = SuiteArgs { seed: Some(3), choice, ..SuiteArgs::default() };
         let options = typed.options(saved);
-        assert_eq!((options.budget, options.seed, options.dimensions), (7, 3, 5));
+        assert_eq!((options.budget, options.seed, options.dimensions), (Some(7), 3, 5));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Runs of scenarios, judged: whichever simulator gave the rollout, what is measured and said is the same.
 
 use recrash_metrics::{faithfulness, findings, measure};
-use recrash_model::metrics::Expectation;
+use recrash_model::metrics::{Check, CheckKind, CheckResult, Expectation, Timed, Verdict};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::Rollout;
 use recrash_model::run::JudgedRun;
@@ -27,8 +27,49 @@ pub fn judge(
     profile: &SystemProfile,
     expectation: Option<&Expectation>,
 ) -> JudgedRun {
+    let mut run = judge_by(scenario, rollout, profile, Verdict::default());
+    if let Some(expectation) = expectation {
+        run.judgement.verdict = faithfulness(scenario, &run.rollout, &run.metrics, expectation);
+    }
+    run
+}
+
+/// The same, with a verdict from elsewhere.
+pub fn judge_by(scenario: &Scenario, rollout: Rollout, profile: &SystemProfile, verdict: Verdict) -> JudgedRun {
     let metrics = measure(scenario, &rollout, &profile.failure);
     let found = findings(scenario, &rollout, &metrics, &profile.failure);
-    let verdict = expectation.map(|e| faithfulness(scenario, &rollout, &metrics, e)).unwrap_or_default();
     JudgedRun::new(rollout, metrics, found, verdict)
+}
+
+/// Nearer than this to what it crashed with in the record, the ego is in the situation of the record. [m]
+const MET_GAP_M: f64 = 3.0;
+/// So it is with less time than this to a collision. [s]
+const MET_TTC_S: f64 = 4.0;
+
+/// Whether the system under test came into the situation of its record: after the handover at `from_s`, it came so near to what
+/// the recorded driver crashed with, or had so little time to a collision with it, that it had to deal with it.
+pub fn situation(run: &JudgedRun, recorded: &JudgedRun, from_s: f64) -> Check {
+    let partner = recorded.metrics.contact.as_ref().map(|contact| contact.actor);
+    let after = |timed: &Timed| timed.time_s >= from_s;
+    let met = match partner {
+        Some(actor) => {
+            let touched = run.metrics.contact.as_ref().is_some_and(|contact| contact.actor == actor);
+            let of = run.metrics.partners.iter().find(|partner| partner.actor == actor);
+            let near = of.is_some_and(|of| of.min_gap.value <= MET_GAP_M && after(&of.min_gap));
+            let soon = of.and_then(|of| of.min_ttc).is_some_and(|ttc| ttc.value <= MET_TTC_S && after(&ttc));
+            touched || near || soon
+        }
+        None => run.metrics.obstacle_gaps.iter().any(|gap| gap.value <= MET_GAP_M),
+    };
+    let gap = match partner {
+        Some(actor) => run.metrics.partners.iter().find(|of| of.actor == actor).map(|of| of.min_gap),
+        None => run.metrics.obstacle_gaps.iter().min_by(|a, b| a.value.total_cmp(&b.value)).copied(),
+    };
+    let observed = gap.map_or("never near".to_owned(), |gap| format!("{:.1} m apart at the nearest", gap.value));
+    Check {
+        kind: CheckKind::Situation,
+        expected: format!("within {MET_GAP_M:.0} m or {MET_TTC_S:.0} s of what it crashed with"),
+        observed,
+        result: if met { CheckResult::Shown } else { CheckResult::NotShown },
+    }
 }

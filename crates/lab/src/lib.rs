@@ -16,6 +16,6 @@ pub mod robustness;
 mod scoring;
 mod triage;
 
-pub use judging::{judge, run_scenario};
+pub use judging::{judge, judge_by, run_scenario, situation};
 pub use scoring::{Scoring, is_sound_contact};
 pub use triage::triage;

@@ -37,6 +37,25 @@ pub enum PartnerKind {
 }
 
 impl PartnerKind {
+    /// For tables and sentences.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::PassengerCar => "passenger car",
+            Self::Suv => "SUV",
+            Self::Van => "van",
+            Self::PickupTruck => "pickup truck",
+            Self::HeavyTruck => "heavy truck",
+            Self::Bus => "bus",
+            Self::Motorcycle => "motorcycle",
+            Self::Cyclist => "cyclist",
+            Self::Pedestrian => "pedestrian",
+            Self::OtherNonMotorist => "other non-motorist",
+            Self::FirstResponder => "first responder",
+            Self::Animal => "animal",
+            Self::FixedObject => "fixed object",
+        }
+    }
+
     /// Every kind.
     pub const ALL: [Self; 13] = [
         Self::PassengerCar,

@@ -303,9 +303,42 @@ pub enum CheckKind {
     ContactZones,
     /// Kinds of collision the profile excludes.
     ExcludedCollision,
+    /// The first contact of the ego is with the partner.
+    Contact,
+    /// Kind of the partner.
+    Partner,
+    /// Zone of the contact on the ego.
+    SvZones,
+    /// Zone of the contact on the partner.
+    CpZones,
+    /// Whether the ego stood, moved, set off or went backwards at the contact.
+    SvState,
+    /// The same of the partner.
+    CpState,
+    /// Somebody else touched the partner before it touched the ego.
+    PassedOn,
+    /// The system under test came into the situation of the record.
+    Situation,
 }
 
 impl CheckKind {
+    /// Those that an account is held to, in the order of tables.
+    pub const OF_ACCOUNTS: [Self; 13] = [
+        Self::Contact,
+        Self::Partner,
+        Self::SvZones,
+        Self::CpZones,
+        Self::SvState,
+        Self::CpState,
+        Self::SvSpeed,
+        Self::CpSpeed,
+        Self::SvMovement,
+        Self::CpMovement,
+        Self::Approach,
+        Self::Order,
+        Self::PassedOn,
+    ];
+
     /// For tables.
     pub fn label(self) -> &'static str {
         match self {
@@ -320,6 +353,14 @@ impl CheckKind {
             Self::Encounter => "encounter",
             Self::ContactZones => "contact zones",
             Self::ExcludedCollision => "excluded collisions",
+            Self::Contact => "contact",
+            Self::Partner => "partner kind",
+            Self::SvZones => "SV zones",
+            Self::CpZones => "CP zones",
+            Self::SvState => "SV state",
+            Self::CpState => "CP state",
+            Self::PassedOn => "thrown by another",
+            Self::Situation => "situation met",
         }
     }
 

@@ -269,6 +269,17 @@ pub enum FirstMover {
     Both,
 }
 
+impl FirstMover {
+    /// For tables and sentences.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Sv => "the ego",
+            Self::Cp => "the partner",
+            Self::Both => "both at about the same time",
+        }
+    }
+}
+
 /// A sideways move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -38,6 +38,21 @@ pub struct SystemProfile {
 pub struct RecordRules {
     /// Which reports of one incident are merged.
     pub dedupe: Dedupe,
+    /// What scenarios are made of.
+    #[serde(default)]
+    pub tells: Tells,
+}
+
+/// What scenarios are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Tells {
+    /// Templates: the categorical columns of single reports, staged with the system under test (the paper's way).
+    #[default]
+    Templates,
+    /// Accounts: what all reports of an incident tell, reconstructed with the recorded driver, each told fact held against
+    /// the rollout; the system under test takes over before the contact.
+    Accounts,
 }
 
 /// Which reports of one incident are merged.

@@ -1,5 +1,6 @@
 //! Crash records: one version of one report, in SI units, with where it came from.
 
+use crate::account::{CrashType, Role, Untold};
 use crate::kinds::PartnerKind;
 use crate::surroundings::{Lighting, Surface, Weather};
 use crate::template::{Movement, RoadType, Template};
@@ -204,11 +205,33 @@ pub struct CrashRecord {
     pub redaction: Redaction,
     /// Where the record came from.
     pub provenance: Provenance,
+    /// What the account of its incident says, where a profile goes by accounts and this record's narrative speaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reading: Option<Reading>,
+}
+
+/// What an account says of its crash, for choosing and for tables.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reading {
+    /// The incident.
+    pub incident: String,
+    /// Reports of the incident.
+    pub reports: usize,
+    /// Crash type.
+    pub crash_type: CrashType,
+    /// Whose move brought the conflict about.
+    pub role: Option<Role>,
+    /// Road and movements as they are told; where no movement is, as the state at the contact has it.
+    pub template: Template,
 }
 
 impl CrashRecord {
-    /// The record's template, where road type and both movements are known.
+    /// The record's template: as its account has it where there is one, else as the columns, where road type and both
+    /// movements are known.
     pub fn template(&self) -> Option<Template> {
+        if let Some(reading) = &self.reading {
+            return Some(reading.template);
+        }
         Some(Template {
             road: self.road.known()?,
             sv: self.sv_movement.known()?,
@@ -240,6 +263,8 @@ pub enum RejectReason {
     RoadNotExpressible,
     /// A partner kind the profile cannot express.
     PartnerNotExpressible,
+    /// Its crash cannot be told.
+    Untold(Untold),
 }
 
 impl RejectReason {
@@ -255,6 +280,7 @@ impl RejectReason {
             Self::MovementNotExpressible => "movement not expressible",
             Self::RoadNotExpressible => "road type not expressible",
             Self::PartnerNotExpressible => "partner kind not expressible",
+            Self::Untold(why) => why.label(),
         }
     }
 }

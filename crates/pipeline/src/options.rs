@@ -40,8 +40,8 @@ pub struct Options {
     pub mapping: Option<PathBuf>,
     /// Profile: a built-in name or a path.
     pub profile: String,
-    /// Scenarios to make.
-    pub budget: usize,
+    /// Scenarios to make, at most; all that can be told where not given.
+    pub budget: Option<usize>,
     /// How the picks are chosen.
     pub strategy: Strategy,
     /// How much one record counts in sharing out the picks.
@@ -98,7 +98,7 @@ impl Default for Options {
             filter: None,
             mapping: None,
             profile: "paper".into(),
-            budget: 20,
+            budget: Some(20),
             strategy: Strategy::Stratified,
             weighting: Weighting::default(),
             template_weight: default_template_weight(),
@@ -134,7 +134,7 @@ impl Options {
         option("dedupe", self.dedupe.map(dedupe_name).unwrap_or_default(), String::new());
         option("where", self.filter.clone().unwrap_or_default(), String::new());
         option("profile", self.profile.clone(), default.profile);
-        option("budget", self.budget.to_string(), default.budget.to_string());
+        option("budget", budget_name(self.budget), budget_name(default.budget));
         option("strategy", self.strategy.name().into(), default.strategy.name().into());
         option("weighting", self.weighting.name().into(), default.weighting.name().into());
         option("template-weight", self.template_weight.to_string(), default.template_weight.to_string());
@@ -186,6 +186,11 @@ impl Options {
     }
 }
 
+/// A budget as it is typed.
+fn budget_name(budget: Option<usize>) -> String {
+    budget.map_or("all".to_owned(), |budget| budget.to_string())
+}
+
 fn dedupe_name(dedupe: Dedupe) -> String {
     serde_json::to_value(dedupe).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
@@ -201,7 +206,7 @@ mod tests {
             records: RecordSource::Files(vec!["my file.csv".into()]),
             dedupe: Some(Dedupe::Incident),
             filter: Some("road = street".into()),
-            budget: 5,
+            budget: Some(5),
             strategy: Strategy::Kmeans,
             ..Options::default()
         };

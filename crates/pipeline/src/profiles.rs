@@ -5,10 +5,11 @@ use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_model::profile::{PROFILE_FORMAT, SystemProfile};
 use std::path::Path;
 
-const BUILT_IN: [(&str, &str); 1] = [("paper", include_str!("../../../profiles/paper.toml"))];
+const BUILT_IN: [(&str, &str); 2] =
+    [("open", include_str!("../../../profiles/open.toml")), ("paper", include_str!("../../../profiles/paper.toml"))];
 
 /// Names of the built-in profiles.
-pub const PROFILE_NAMES: [&str; 1] = [BUILT_IN[0].0];
+pub const PROFILE_NAMES: [&str; 2] = [BUILT_IN[0].0, BUILT_IN[1].0];
 
 /// A built-in profile by name, or a TOML file by path.
 ///

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 use recrash_model::account::{Account, told};
+use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::profile::SystemProfile;
-use recrash_reconstruct::{FactKind, reconstruct};
+use recrash_reconstruct::reconstruct;
 use recrash_records::{SourceText, ingest};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -35,7 +36,7 @@ fn main() {
     let list = flags.iter().any(|flag| flag == "--list");
     let mut by_type: BTreeMap<String, [usize; 3]> = BTreeMap::new();
     let mut reasons: BTreeMap<&'static str, usize> = BTreeMap::new();
-    let mut facts: BTreeMap<FactKind, [usize; 2]> = BTreeMap::new();
+    let mut facts: BTreeMap<CheckKind, [usize; 2]> = BTreeMap::new();
     for (account, result) in &results {
         let kind = told(&account.crash_type).map_or("none".to_owned(), |kind| format!("{kind:?}"));
         let row = by_type.entry(kind.clone()).or_default();
@@ -44,17 +45,16 @@ fn main() {
             Ok(made) => {
                 row[1] += 1;
                 row[2] += usize::from(made.is_true());
-                for fact in &made.facts {
+                for fact in &made.verdict.checks {
                     let count = facts.entry(fact.kind).or_default();
                     count[0] += 1;
-                    count[1] += usize::from(fact.shown);
+                    count[1] += usize::from(fact.result == CheckResult::Shown);
                 }
                 if !made.is_true() && list && is_developed(account) {
                     let missed: Vec<String> = made
-                        .facts
-                        .iter()
-                        .filter(|fact| !fact.shown)
-                        .map(|fact| format!("{}: {}", fact.kind.label(), fact.sentence))
+                        .verdict
+                        .failures()
+                        .map(|fact| format!("{}: {}, not {}", fact.kind.label(), fact.observed, fact.expected))
                         .collect();
                     println!("{} {kind}: {}", account.report, missed.join("; "));
                 }

@@ -7,6 +7,7 @@ use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::narrative::FirstMover;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout};
 use recrash_model::zones::ContactZone;
@@ -30,86 +31,6 @@ const NEAR_M: f64 = 0.5;
 /// Who come within this time come together. [s]
 const TOGETHER_S: f64 = 1.0;
 
-/// A kind of fact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum FactKind {
-    /// The two touch, and nobody else touches the ego before.
-    Contact,
-    /// The partner's kind.
-    Partner,
-    /// Zone on the ego, within a step.
-    SvZone,
-    /// Zone on the partner, within a step.
-    CpZone,
-    /// The ego's state at the contact.
-    SvState,
-    /// The partner's state at the contact.
-    CpState,
-    /// The ego's speed at the contact.
-    SvSpeed,
-    /// The partner's speed at the contact.
-    CpSpeed,
-    /// The ego's turn, or that it does not turn.
-    SvMovement,
-    /// The partner's turn, or that it does not turn.
-    CpMovement,
-    /// From where the partner comes.
-    Origin,
-    /// Who was at the place of the contact first.
-    Order,
-    /// Somebody else touched the partner before it touched the ego.
-    Pushed,
-}
-
-impl FactKind {
-    /// All of them.
-    pub const ALL: [Self; 13] = [
-        Self::Contact,
-        Self::Partner,
-        Self::SvZone,
-        Self::CpZone,
-        Self::SvState,
-        Self::CpState,
-        Self::SvSpeed,
-        Self::CpSpeed,
-        Self::SvMovement,
-        Self::CpMovement,
-        Self::Origin,
-        Self::Order,
-        Self::Pushed,
-    ];
-
-    /// For tables.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Contact => "contact",
-            Self::Partner => "partner's kind",
-            Self::SvZone => "ego's zone",
-            Self::CpZone => "partner's zone",
-            Self::SvState => "ego's state",
-            Self::CpState => "partner's state",
-            Self::SvSpeed => "ego's impact speed",
-            Self::CpSpeed => "partner's impact speed",
-            Self::SvMovement => "ego's movement",
-            Self::CpMovement => "partner's movement",
-            Self::Origin => "partner's origin",
-            Self::Order => "who was first",
-            Self::Pushed => "partner passed on by another",
-        }
-    }
-}
-
-/// A told fact, and whether the rollout shows it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Shown {
-    /// Which.
-    pub kind: FactKind,
-    /// Whether it is shown.
-    pub shown: bool,
-    /// What is told, and what the rollout shows.
-    pub sentence: String,
-}
-
 struct Touch<'a> {
     time_s: f64,
     ego: ActorState,
@@ -120,47 +41,63 @@ struct Touch<'a> {
 }
 
 /// Every told fact.
-pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Shown> {
+pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Check> {
     let mut list = Vec::new();
-    let mut fact = |kind: FactKind, shown: bool, sentence: String| list.push(Shown { kind, shown, sentence });
+    let mut fact = |kind: CheckKind, shown: bool, expected: String, observed: String| {
+        let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
+        list.push(Check { kind, expected, observed, result });
+    };
     let Some(touch) = first_touch(rollout) else {
-        fact(FactKind::Contact, false, "told: a contact; shown: none".to_owned());
+        for kind in told.kinds() {
+            fact(kind, false, "what is told of the contact".to_owned(), "no contact".to_owned());
+        }
         return list;
     };
     let by_partner = touch.track.is_none_or(|track| track.id == "cp");
-    fact(FactKind::Contact, by_partner, format!("told: a contact with the partner; shown: at {:.2} s", touch.time_s));
-    fact(FactKind::Partner, touch.kind == told.cp.kind, format!("told: {:?}; shown: {:?}", told.cp.kind, touch.kind));
+    let who = if by_partner { "the partner" } else { "somebody else" };
+    fact(
+        CheckKind::Contact,
+        by_partner,
+        "a contact with the partner".to_owned(),
+        format!("with {who} at {:.2} s", touch.time_s),
+    );
+    fact(
+        CheckKind::Partner,
+        touch.kind == told.cp.kind,
+        told.cp.kind.label().to_owned(),
+        touch.kind.label().to_owned(),
+    );
     let ego_track = rollout.ego_track();
     let ego_box = OrientedBox::new(touch.ego.pose(), ego_track.length_m, ego_track.width_m);
     let geometry = contact_geometry(&ego_box, touch.ego.velocity(), &touch.other_box, touch.other.velocity());
     if !told.sv.zones.is_empty() {
         let near = is_near(&told.sv.zones, geometry.ego_zone, &ego_box, geometry.point);
-        fact(FactKind::SvZone, near, format!("told: {:?}; shown: {:?}", told.sv.zones, geometry.ego_zone));
+        fact(CheckKind::SvZones, near, zone_words(&told.sv.zones), geometry.ego_zone.label().to_owned());
     }
     if !told.cp.zones.is_empty() && told.thing.is_none() {
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
-        fact(FactKind::CpZone, near, format!("told: {:?}; shown: {:?}", told.cp.zones, geometry.other_zone));
+        fact(CheckKind::CpZones, near, zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
     }
+    let speed_words = |state: &ActorState| format!("{:.2} m/s", state.speed());
     if told.sv.state_told {
         let shown = state(told.sv.state, ego_track, &touch.ego, touch.time_s);
-        fact(FactKind::SvState, shown, format!("told: {:?}; shown: {:.2} m/s", told.sv.state, touch.ego.speed()));
+        fact(CheckKind::SvState, shown, told.sv.state.label().to_owned(), speed_words(&touch.ego));
     }
     if told.cp.state_told
         && let Some(track) = touch.track
     {
         // Who is pushed moves when it touches.
         let shown = told.pushed || state(told.cp.state, track, &touch.other, touch.time_s);
-        fact(FactKind::CpState, shown, format!("told: {:?}; shown: {:.2} m/s", told.cp.state, touch.other.speed()));
+        fact(CheckKind::CpState, shown, told.cp.state.label().to_owned(), speed_words(&touch.other));
     }
-    if let Some(impact_mps) = told.sv.impact_mps {
-        let speed_mps = touch.ego.velocity().length();
-        let close = (speed_mps - impact_mps).abs() <= 2.0_f64.max(0.25 * impact_mps);
-        fact(FactKind::SvSpeed, close, format!("told: {impact_mps:.1} m/s; shown: {speed_mps:.1} m/s"));
-    }
-    if let Some(impact_mps) = told.cp.impact_mps {
-        let speed_mps = touch.other.velocity().length();
-        let close = (speed_mps - impact_mps).abs() <= 2.0_f64.max(0.25 * impact_mps);
-        fact(FactKind::CpSpeed, close, format!("told: {impact_mps:.1} m/s; shown: {speed_mps:.1} m/s"));
+    for (kind, impact_mps, seen) in
+        [(CheckKind::SvSpeed, told.sv.impact_mps, &touch.ego), (CheckKind::CpSpeed, told.cp.impact_mps, &touch.other)]
+    {
+        if let Some(impact_mps) = impact_mps {
+            let speed_mps = seen.velocity().length();
+            let close = (speed_mps - impact_mps).abs() <= 2.0_f64.max(0.25 * impact_mps);
+            fact(kind, close, format!("{impact_mps:.1} m/s at the contact"), format!("{speed_mps:.1} m/s"));
+        }
     }
     if told.pushed {
         let number = rollout.actors.iter().position(|track| track.id == "cp");
@@ -169,27 +106,33 @@ pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Shown> {
                 EventKind::Contact { a, b, .. } => a != 0 && (Some(a) == number || Some(b) == number),
                 _ => false,
             });
-        fact(FactKind::Pushed, before, format!("told: another touched the partner first; shown: {before}"));
+        let observed = if before { "touched by another before" } else { "touched by nobody before" };
+        fact(CheckKind::PassedOn, before, "another touched the partner first".to_owned(), observed.to_owned());
     }
     if told.sv.movement.is_some() && told.sv.turning != Turning::Round {
         let turned = turned(ego_track, touch.time_s);
-        fact(FactKind::SvMovement, fits(told.sv.turning, turned), turn_sentence(told.sv.turning, turned));
+        fact(CheckKind::SvMovement, fits(told.sv.turning, turned), turn_word(told.sv.turning), turned_words(turned));
     }
     if let Some(track) = touch.track {
         if told.cp.movement.is_some() && told.cp.turning != Turning::Round && told.cp.state != ContactState::Reversing {
             let turned = turned(track, touch.time_s);
-            fact(FactKind::CpMovement, fits(told.cp.turning, turned), turn_sentence(told.cp.turning, turned));
+            let shown = fits(told.cp.turning, turned);
+            fact(CheckKind::CpMovement, shown, turn_word(told.cp.turning), turned_words(turned));
         }
         if told.origin_told {
-            let (shown, sentence) = origin(told.origin, ego_track, track, told.cp.state);
-            fact(FactKind::Origin, shown, sentence);
+            let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
+            fact(CheckKind::Approach, shown, told.origin.words(), observed);
         }
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
-        let (shown, sentence) = order(first, ego_track, track, geometry.point, touch.time_s);
-        fact(FactKind::Order, shown, sentence);
+        let (shown, observed) = order(first, ego_track, track, geometry.point, touch.time_s);
+        fact(CheckKind::Order, shown, first.words().to_owned(), observed);
     }
     list
+}
+
+fn zone_words(zones: &[ContactZone]) -> String {
+    zones.iter().map(|zone| zone.label()).collect::<Vec<_>>().join(" or ")
 }
 
 /// Whether who is told to have been first was at the place of the contact first, and by how much.
@@ -210,7 +153,12 @@ fn order(first: FirstMover, ego: &ActorTrack, other: &ActorTrack, point: Vec2, t
         FirstMover::Cp => earlier_s < -0.1,
         FirstMover::Both => earlier_s.abs() <= TOGETHER_S,
     };
-    (shown, format!("told: {first:?} first; shown: the ego {earlier_s:.1} s before the partner"))
+    let observed = match (ego_s < other_s, earlier_s.abs()) {
+        (_, 0.0) => "both at once".to_owned(),
+        (true, by_s) => format!("the ego, by {by_s:.1} s"),
+        (false, by_s) => format!("the partner, by {by_s:.1} s"),
+    };
+    (shown, observed)
 }
 
 fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
@@ -276,14 +224,23 @@ fn fits(told: Turning, turned: f64) -> bool {
     }
 }
 
-fn turn_sentence(told: Turning, turned: f64) -> String {
+fn turn_word(told: Turning) -> String {
     let word = match told {
         Turning::No => "no turn",
         Turning::Left => "a turn to the left",
         Turning::Right => "a turn to the right",
         Turning::Round => "a U-turn",
     };
-    format!("told: {word}; shown: {:.0} degrees to the left", turned.to_degrees())
+    word.to_owned()
+}
+
+fn turned_words(turned: f64) -> String {
+    let degrees = turned.to_degrees().round();
+    match degrees {
+        d if d >= 1.0 => format!("{d:.0} degrees to the left"),
+        d if d <= -1.0 => format!("{:.0} degrees to the right", -d),
+        _ => "straight on".to_owned(),
+    }
 }
 
 /// Whether the partner comes from where it is told, seen from the ego at the start.
@@ -312,5 +269,8 @@ fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactStat
         }
         Origin::Above => false,
     };
-    (shown, format!("told: {told:?}; shown: {ahead:.0} m ahead, {left:.0} m to the left, facing {facing:.0} degrees"))
+    let along = if ahead < 0.0 { "behind" } else { "ahead" };
+    let aside = if left < 0.0 { "to the right" } else { "to the left" };
+    let seen = format!("{:.0} m {along}, {:.0} m {aside}, facing {facing:.0} degrees", ahead.abs(), left.abs());
+    (shown, seen)
 }

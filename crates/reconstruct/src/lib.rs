@@ -12,10 +12,8 @@ mod ground;
 mod told;
 mod touch;
 
-pub use facts::{FactKind, Shown};
-pub use told::Untold;
-
-use recrash_model::account::Account;
+use recrash_model::account::{Account, Untold};
+use recrash_model::metrics::{Answer, CheckKind, Verdict};
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_sim::Ego;
@@ -31,7 +29,7 @@ pub struct Reconstruction {
     /// What it shows.
     pub rollout: Rollout,
     /// Every told fact, and whether it is shown.
-    pub facts: Vec<Shown>,
+    pub verdict: Verdict,
     /// What nobody told, and was chosen.
     pub assumed: Vec<String>,
 }
@@ -39,16 +37,21 @@ pub struct Reconstruction {
 impl Reconstruction {
     /// Whether every told fact is shown.
     pub fn is_true(&self) -> bool {
-        self.facts.iter().all(|fact| fact.shown)
+        self.verdict.faithful() == Answer::Yes
     }
+}
+
+/// The kinds of facts that an account tells and that can be held against a rollout, whether or not it can be staged.
+pub fn told_kinds(account: &Account) -> Vec<CheckKind> {
+    told::Told::read(account).map(|told| told.kinds()).unwrap_or_default()
 }
 
 /// Told facts of an account, held against a rollout of any scenario.
 ///
 /// # Errors
 /// The account cannot be staged at all.
-pub fn held_against(account: &Account, rollout: &Rollout) -> Result<Vec<Shown>, Untold> {
-    Ok(facts::facts(&told::Told::of(account)?, rollout))
+pub fn held_against(account: &Account, rollout: &Rollout) -> Result<Verdict, Untold> {
+    Ok(Verdict { checks: facts::facts(&told::Told::of(account)?, rollout) })
 }
 
 /// Stages an account: the first staging that shows every told fact, else the one that shows most.
@@ -58,7 +61,6 @@ pub fn held_against(account: &Account, rollout: &Rollout) -> Result<Vec<Shown>, 
 pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
     let mut best: Option<Reconstruction> = None;
     let mut refused = 0;
-    let missed = |facts: &[Shown]| facts.iter().filter(|fact| !fact.shown).count();
     for told in told::Told::of(account)?.by_origin() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
             let draft = came::draft(account, &told, &staging);
@@ -68,10 +70,10 @@ pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
             };
             let scenario = checked.value;
             let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
-            let facts = facts::facts(&told, &rollout);
-            if best.as_ref().is_none_or(|best| missed(&facts) < missed(&best.facts)) {
+            let verdict = Verdict { checks: facts::facts(&told, &rollout) };
+            if best.as_ref().is_none_or(|best| verdict.failures().count() < best.verdict.failures().count()) {
                 let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
-                best = Some(Reconstruction { draft, rollout, facts, assumed });
+                best = Some(Reconstruction { draft, rollout, verdict, assumed });
             }
             if best.as_ref().is_some_and(Reconstruction::is_true) {
                 return best.ok_or(Untold::NoContact);

@@ -1,57 +1,18 @@
 //! What an account tells, in the terms of a staging; and what has to be assumed.
 
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind, SpeedMeaning, Striker,
-    told,
+    Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
+    SpeedMeaning, Striker, Untold, told,
 };
 use recrash_model::kinds::PartnerKind;
+use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
 use recrash_model::scenario::Size;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
-use std::fmt;
 
 /// Speed at which a partner that is thrown at the ego meets it, about. [m/s]
 const THROWN_MPS: f64 = 4.0;
-
-/// Why an account cannot be staged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Untold {
-    /// Nobody says what happened: no partner, no contact.
-    NoAccount,
-    /// The two never touched: others crashed.
-    OthersOnly,
-    /// The place cannot be drawn yet: a roundabout, a garage, rails.
-    Place,
-    /// It came from above.
-    FromAbove,
-    /// No way of touching fits the told zones, states and directions.
-    NoContact,
-    /// What fits has no room on the road that is told.
-    NoRoom,
-}
-
-impl Untold {
-    /// For tables.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::NoAccount => "no account of a contact",
-            Self::OthersOnly => "the subject vehicle was not touched",
-            Self::Place => "the place cannot be drawn yet",
-            Self::FromAbove => "it came from above",
-            Self::NoContact => "no contact fits the told zones and directions",
-            Self::NoRoom => "no room on the told road",
-        }
-    }
-}
-
-impl fmt::Display for Untold {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.label())
-    }
-}
-
-impl std::error::Error for Untold {}
 
 /// How somebody turns before the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,16 +61,25 @@ pub(crate) struct Told {
 }
 
 impl Told {
+    /// # Errors
+    /// Why it cannot be staged.
     pub(crate) fn of(account: &Account) -> Result<Self, Untold> {
-        let partner = account.partner.as_ref().ok_or(Untold::NoAccount)?;
-        let crash_type = told(&account.crash_type).ok_or(Untold::NoAccount)?;
-        if let Some(recrash_model::account::FirstContact::OthersOnly) = told(&account.first_contact) {
+        let this = Self::read(account).ok_or(Untold::NoAccount)?;
+        if told(&account.first_contact) == Some(FirstContact::OthersOnly) {
             return Err(Untold::OthersOnly);
         }
-        let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
-        if matches!(place, PlaceKind::Circle) {
-            return Err(Untold::Place);
+        match (this.place, this.origin) {
+            (PlaceKind::Circle, _) => Err(Untold::Place),
+            (_, Origin::Above) => Err(Untold::FromAbove),
+            _ => Ok(this),
         }
+    }
+
+    /// Whether or not it can be staged; nothing where no partner or no kind of crash is told.
+    pub(crate) fn read(account: &Account) -> Option<Self> {
+        let partner = account.partner.as_ref()?;
+        let crash_type = told(&account.crash_type)?;
+        let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
         let mut assumed = Vec::new();
         let kind = told(&partner.kind);
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
@@ -117,11 +87,7 @@ impl Told {
         let cp = side(partner, kind, &mut assumed, "partner");
         let origin = told(&account.came_from);
         let origin_told = origin.is_some();
-        let origin = match origin {
-            Some(Origin::Above) => return Err(Untold::FromAbove),
-            Some(origin) => origin,
-            None => assumed_origin(crash_type, &sv, &cp).unwrap_or(Origin::Behind),
-        };
+        let origin = origin.or_else(|| assumed_origin(crash_type, &sv, &cp)).unwrap_or(Origin::Behind);
         let striker = told(&account.striker);
         let mut this = Self {
             crash_type,
@@ -141,7 +107,30 @@ impl Told {
         if this.origin_told {
             this.speeds();
         }
-        Ok(this)
+        Some(this)
+    }
+
+    /// The kinds of facts that are told and can be held against a rollout.
+    pub(crate) fn kinds(&self) -> Vec<CheckKind> {
+        let (sv, cp) = (&self.sv, &self.cp);
+        let moves = !(self.thing.is_some() && cp.state.stands());
+        let straight_or_turn = |side: &Side| side.movement.is_some() && side.turning != Turning::Round;
+        let of = [
+            (CheckKind::Contact, true),
+            (CheckKind::Partner, true),
+            (CheckKind::SvZones, !sv.zones.is_empty()),
+            (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none()),
+            (CheckKind::SvState, sv.state_told),
+            (CheckKind::CpState, cp.state_told && moves),
+            (CheckKind::SvSpeed, sv.impact_mps.is_some()),
+            (CheckKind::CpSpeed, cp.impact_mps.is_some()),
+            (CheckKind::SvMovement, straight_or_turn(sv)),
+            (CheckKind::CpMovement, straight_or_turn(cp) && cp.state != ContactState::Reversing && moves),
+            (CheckKind::Approach, self.origin_told && moves),
+            (CheckKind::Order, self.order.is_some() && moves),
+            (CheckKind::PassedOn, self.pushed),
+        ];
+        of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.

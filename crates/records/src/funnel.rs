@@ -1,7 +1,7 @@
 //! From rows to usable records: the paper's filter, in its order, each loss with its reason.
 
 use crate::row::Draft;
-use recrash_model::profile::SystemProfile;
+use recrash_model::profile::{SystemProfile, Tells};
 use recrash_model::record::{FunnelStep, Redaction, RejectReason};
 
 /// A step of the funnel: its name and what it takes away.
@@ -41,6 +41,13 @@ fn foreign(draft: &Draft, profile: &SystemProfile) -> Option<RejectReason> {
     }
 }
 
+/// The only step of a profile that goes by accounts.
+const CRASHES: Step = Step { name: "crash reports", takes: no_crash };
+
+fn no_crash(draft: &Draft, _: &SystemProfile) -> Option<RejectReason> {
+    draft.not_a_crash.then_some(RejectReason::NotACrash)
+}
+
 /// Runs the steps over the drafts that are still in (`fates[i]` is `None`), and fills in the fates of the others.
 pub fn run(
     drafts: &[Draft],
@@ -48,7 +55,11 @@ pub fn run(
     fates: &mut [Option<RejectReason>],
     funnel: &mut Vec<FunnelStep>,
 ) {
-    for step in &STEPS {
+    let steps: &[Step] = match profile.records.tells {
+        Tells::Templates => &STEPS,
+        Tells::Accounts => &[CRASHES],
+    };
+    for step in steps {
         for (draft, fate) in drafts.iter().zip(fates.iter_mut()) {
             if fate.is_none() {
                 *fate = (step.takes)(draft, profile);

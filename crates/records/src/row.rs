@@ -87,6 +87,7 @@ pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes:
         narrative,
         redaction,
         provenance: Provenance { file: file.to_owned(), edition: columns.edition, row: number },
+        reading: None,
         entity,
     };
     let not_a_crash = same_code(&cells.text(columns.report_type), codes::NO_REPORT);

@@ -86,9 +86,22 @@ fn rows(context: &Context) -> Value {
         "impact": numbers(&|case| last(case, |run| Some(run.metrics.contact.as_ref()?.relative_speed_mps))),
         "findings": numbers(&|case| last(case, |run| Some(finding_weight(&run.finding_kinds())))),
         "faithful": numbers(&|case| Some(match case.faithful()? { Answer::Yes => 3.0, Answer::Unchecked => 2.0, Answer::No => 1.0 })),
+        "type": types(context),
         "tags": cases().map(|(_, case)| tags(case)).collect::<Vec<_>>(),
         "words": cases().map(|(i, case)| search::words_of(case, told(i))).collect::<Vec<_>>(),
     })
+}
+
+/// Crash types: their names, and which each case is of.
+fn types(context: &Context) -> Value {
+    let mut names: Vec<String> = Vec::new();
+    let of: Vec<Option<usize>> = context
+        .suite
+        .cases
+        .iter()
+        .map(|case| Some(index_of(&mut names, case.account.as_ref()?.crash_type.label().to_owned())))
+        .collect();
+    json!([names, of])
 }
 
 /// Failures count more than odd behaviour.
@@ -110,6 +123,9 @@ fn tags(case: &CaseRow) -> String {
         ("other", origin == "other"),
         ("invented", origin == "invented"),
         ("refused", case.refused.is_some()),
+        ("parked", case.account.is_some() && case.before.is_some() && case.after.is_none()),
+        ("met", case.situation_met() == Some(true)),
+        ("unmet", case.situation_met() == Some(false)),
         ("edited", !case.edited.is_empty()),
     ];
     holds.iter().filter(|(_, holds)| *holds).map(|(tag, _)| *tag).collect::<Vec<_>>().join(" ")

@@ -1,7 +1,7 @@
 //! JUnit XML, in the form that Jenkins, GitLab and GitHub actions read.
 
 use crate::results::other_egos;
-use crate::view::{CaseRow, RunRow, SuiteView};
+use crate::view::{CaseRow, RunNames, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use quick_xml::Writer;
 use quick_xml::events::attributes::Attribute;
@@ -12,26 +12,19 @@ use recrash_model::triage::Triage;
 
 /// The document.
 pub fn render(suite: &SuiteView) -> String {
-    let tuned: Vec<&CaseRow> = suite.cases.iter().filter(|case| case.after.is_some()).collect();
-    let failed = |run: Option<&RunRow>| usize::from(run.is_some_and(|run| run.failed()));
-    let failed_designed: usize = suite.cases.iter().map(|case| failed(case.before.as_ref())).sum();
-    let failed_tuned: usize = tuned.iter().map(|case| failed(case.after.as_ref())).sum();
-    let skipped = suite.cases.iter().filter(|case| case.before.is_none()).count();
+    let groups = groups(suite);
+    let total = |of: fn(&Group) -> usize| groups.iter().map(of).sum::<usize>().to_string();
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     let written = (|| {
         writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
         let suites = writer.create_element("testsuites").with_attributes(attributes(&[
             ("name", &suite.title),
-            ("tests", &(suite.cases.len() + tuned.len()).to_string()),
-            ("failures", &(failed_designed + failed_tuned).to_string()),
+            ("tests", &total(|group| group.cases.len())),
+            ("failures", &total(|group| group.failed())),
             ("errors", "0"),
-            ("skipped", &skipped.to_string()),
+            ("skipped", &total(|group| group.skipped())),
         ]));
-        suites.write_inner_content(|writer| {
-            let designed: Vec<&CaseRow> = suite.cases.iter().collect();
-            group(writer, suite, "as designed", &designed, [failed_designed, skipped], |case| case.before.as_ref())?;
-            group(writer, suite, "tuned", &tuned, [failed_tuned, 0], |case| case.after.as_ref())
-        })?;
+        suites.write_inner_content(|writer| groups.iter().try_for_each(|group| group.write(writer, suite)))?;
         std::io::Result::Ok(())
     })();
     written.expect("written into memory");
@@ -40,42 +33,64 @@ pub fn render(suite: &SuiteView) -> String {
     text
 }
 
-/// The cases of one kind of run; how many of them failed, and how many were skipped.
-fn group(
-    writer: &mut Writer<Vec<u8>>,
-    suite: &SuiteView,
-    name: &str,
-    cases: &[&CaseRow],
-    [failures, skipped]: [usize; 2],
+/// The cases of one kind of run.
+struct Group<'a> {
+    name: &'static str,
+    cases: Vec<&'a CaseRow>,
     run: fn(&CaseRow) -> Option<&RunRow>,
-) -> std::io::Result<()> {
-    let element = writer.create_element("testsuite").with_attributes(attributes(&[
-        ("name", name),
-        ("tests", &cases.len().to_string()),
-        ("failures", &failures.to_string()),
-        ("errors", "0"),
-        ("skipped", &skipped.to_string()),
-    ]));
-    element.write_inner_content(|writer| {
-        let settings = [
-            ("profile", &suite.profile.name),
-            ("ego", &suite.ego),
-            ("simulator", &suite.simulator),
-            ("agents", &suite.agents),
-            ("seed", &suite.seed.to_string()),
-            ("command", &suite.command),
-            ("generator", &suite.generated_by),
-        ];
-        writer.create_element("properties").write_inner_content(|writer| {
-            for (name, value) in settings {
-                let property = attributes(&[("name", name), ("value", value)]);
-                writer.create_element("property").with_attributes(property).write_empty()?;
-            }
-            Ok(())
+}
+
+/// As designed and as tuned; in a suite that goes by accounts, the runs of the system under test alone.
+fn groups(suite: &SuiteView) -> Vec<Group<'_>> {
+    let all = || suite.cases.iter();
+    if suite.accounts.is_some() {
+        return vec![Group { name: RunNames::RETOLD.after, cases: all().collect(), run: CaseRow::last_run }];
+    }
+    let tuned = all().filter(|case| case.after.is_some()).collect();
+    vec![
+        Group { name: RunNames::DESIGNED.before, cases: all().collect(), run: |case| case.before.as_ref() },
+        Group { name: RunNames::DESIGNED.after, cases: tuned, run: |case| case.after.as_ref() },
+    ]
+}
+
+impl Group<'_> {
+    fn failed(&self) -> usize {
+        self.cases.iter().filter_map(|case| (self.run)(case)).filter(|run| run.failed()).count()
+    }
+
+    fn skipped(&self) -> usize {
+        self.cases.iter().filter(|case| (self.run)(case).is_none()).count()
+    }
+
+    fn write(&self, writer: &mut Writer<Vec<u8>>, suite: &SuiteView) -> std::io::Result<()> {
+        let element = writer.create_element("testsuite").with_attributes(attributes(&[
+            ("name", self.name),
+            ("tests", &self.cases.len().to_string()),
+            ("failures", &self.failed().to_string()),
+            ("errors", "0"),
+            ("skipped", &self.skipped().to_string()),
+        ]));
+        element.write_inner_content(|writer| {
+            let settings = [
+                ("profile", &suite.profile.name),
+                ("ego", &suite.ego),
+                ("simulator", &suite.simulator),
+                ("agents", &suite.agents),
+                ("seed", &suite.seed.to_string()),
+                ("command", &suite.command),
+                ("generator", &suite.generated_by),
+            ];
+            writer.create_element("properties").write_inner_content(|writer| {
+                for (name, value) in settings {
+                    let property = attributes(&[("name", name), ("value", value)]);
+                    writer.create_element("property").with_attributes(property).write_empty()?;
+                }
+                Ok(())
+            })?;
+            self.cases.iter().try_for_each(|case| test_case(writer, suite, case, (self.run)(case), self.name))
         })?;
-        cases.iter().try_for_each(|case| test_case(writer, suite, case, run(case), name))
-    })?;
-    Ok(())
+        Ok(())
+    }
 }
 
 fn test_case(
@@ -94,7 +109,7 @@ fn test_case(
     ]));
     element.write_inner_content(|writer| {
         let Some(run) = run else {
-            let why = case.refused.as_deref().unwrap_or("it was not run");
+            let why = case.refused.as_deref().unwrap_or(words::not_run(case));
             writer.create_element("skipped").with_attributes(attributes(&[("message", why)])).write_empty()?;
             return Ok(());
         };
@@ -139,11 +154,12 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
     let listed = |answer: Answer, checks: Vec<&Check>| {
         format!("{} ({})", answer.label(), checks.into_iter().map(checked).collect::<Vec<_>>().join("; "))
     };
-    let faithful = match case.faithful().map(|_| run.faithful()) {
+    let run_told = case.telling_run().filter(|_| case.account.is_some()).unwrap_or(run);
+    let faithful = match case.faithful().map(|_| run_told.faithful()) {
         None => "there is no record to be true to".to_owned(),
         Some(Answer::Yes) => Answer::Yes.label().to_owned(),
-        Some(Answer::Unchecked) => listed(Answer::Unchecked, run.verdict.unchecked().collect()),
-        Some(Answer::No) => listed(Answer::No, run.verdict.failures().collect()),
+        Some(Answer::Unchecked) => listed(Answer::Unchecked, run_told.verdict.unchecked().collect()),
+        Some(Answer::No) => listed(Answer::No, run_told.verdict.failures().collect()),
     };
     let origin = words::provenance(case.origin.as_ref(), case.told.as_ref());
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
@@ -153,8 +169,12 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         [] => String::new(),
         files => format!("\nedited by hand: {}", files.join(", ")),
     };
+    let what = case.account.as_ref().map_or(String::new(), |account| {
+        let met = case.situation_met().map_or("not looked at", |met| if met { "yes" } else { "no" });
+        format!("crash type: {}\nincident: {}\nsituation met: {met}\n", account.crash_type.label(), account.incident)
+    });
     format!(
-        "template: {}\ntells: {origin}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
+        "{what}template: {}\ntells: {origin}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
         case.template,
         words::name(&run.metrics.termination),
         run.rerun_command

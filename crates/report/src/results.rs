@@ -6,7 +6,7 @@ use recrash_model::metrics::{Check, PartnerMetrics, Timed};
 use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 45] = [
+const HEADER: [&str; 49] = [
     "scenario",
     "run",
     "road",
@@ -52,6 +52,10 @@ const HEADER: [&str; 45] = [
     "refused_because",
     "edited_files",
     "command",
+    "incident",
+    "crash_type",
+    "role",
+    "situation_met",
 ];
 
 /// The table.
@@ -67,7 +71,7 @@ pub fn render(suite: &SuiteView) -> String {
         for (name, run) in case.runs() {
             write(row(suite, case, name, Some(run)));
         }
-        if case.last_run().is_none() {
+        if case.runs().is_empty() {
             write(row(suite, case, "not run", None));
         }
     }
@@ -106,6 +110,11 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(case.refused.clone().unwrap_or_default());
     row.push(case.edited.join("; "));
     row.push(run.map_or_else(String::new, |run| run.rerun_command.clone()));
+    let account = case.account.as_ref();
+    row.push(account.map_or_else(String::new, |account| account.incident.clone()));
+    row.push(account.map_or_else(String::new, |account| words::name(&account.crash_type)));
+    row.push(account.and_then(|account| account.role).map_or_else(String::new, |role| words::name(&role)));
+    row.push(case.situation_met().filter(|_| is_last).map_or_else(String::new, |met| met.to_string()));
     row
 }
 
@@ -121,6 +130,7 @@ pub fn other_egos(triage: &Triage) -> String {
 
 fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
     let m = &run.metrics;
+    let tells = case.account.is_none() || case.telling_run().is_some_and(|told| std::ptr::eq(run, told));
     let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
     let worst = |of: fn(&PartnerMetrics) -> Option<Timed>| m.partners.iter().filter_map(of).map(|timed| timed.value);
     let least = |of| number(worst(of).min_by(f64::total_cmp));
@@ -130,7 +140,7 @@ fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
     vec![
         run.failed().to_string(),
         // Nobody's crash has no record to be true to.
-        case.faithful().map_or("", |_| run.faithful().label()).to_owned(),
+        case.faithful().filter(|_| tells).map_or("", |_| run.faithful().label()).to_owned(),
         named(run.verdict.failures().collect()),
         named(run.verdict.unchecked().collect()),
         kinds.join("; "),

@@ -52,7 +52,13 @@ pub struct Summary {
     pub refused: usize,
     /// Scenarios that tell their own record, another one, and nobody's crash.
     pub origins: [usize; 3],
-    /// Scenarios that tell their own record and whose last run shows every fact told.
+    /// Scenarios with nothing to test: who was parked has nothing to answer for.
+    pub parked: usize,
+    /// Scenarios in which the system under test came into the situation of its record.
+    pub met: usize,
+    /// Of those, the ones it fails.
+    pub failed_met: usize,
+    /// Scenarios that tell their own record and whose run shows every fact told.
     pub own_faithful: usize,
     /// Scenarios that tell their own record and whose last run shows something else.
     pub own_unfaithful: usize,
@@ -78,6 +84,7 @@ impl Summary {
     /// Of a suite.
     pub fn of(suite: &SuiteView) -> Self {
         let count = |holds: &dyn Fn(&CaseRow) -> bool| suite.cases.iter().filter(|case| holds(case)).count();
+        let fails = |case: &CaseRow| case.last_run().is_some_and(|run| run.failed());
         let tells = |case: &CaseRow, name: &str| case.origin.as_ref().is_some_and(|origin| origin.name() == name);
         let answers = |case: &CaseRow, answer| case.faithful() == Some(answer);
         let gaps = |of: &dyn Fn(&CaseRow) -> Option<f64>| median(suite.cases.iter().filter_map(of).collect());
@@ -88,12 +95,15 @@ impl Summary {
             ran: count(&|case| case.last_run().is_some()),
             refused: count(&|case| case.refused.is_some()),
             origins: ["own", "other", "invented"].map(|name| count(&|case| tells(case, name))),
+            parked: count(&|case| case.account.is_some() && case.before.is_some() && case.after.is_none()),
+            met: count(&|case| case.situation_met() == Some(true)),
+            failed_met: count(&|case| case.situation_met() == Some(true) && fails(case)),
             own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
             own_unfaithful: count(&|case| tells(case, "own") && answers(case, Answer::No)),
             other_faithful: count(&|case| tells(case, "other") && answers(case, Answer::Yes)),
             edited: count(&|case| !case.edited.is_empty()),
             failed_before: count(&|case| case.before.as_ref().is_some_and(|run| run.failed())),
-            failed_after: count(&|case| case.last_run().is_some_and(|run| run.failed())),
+            failed_after: count(&fails),
             classes: FailureClass::ALL
                 .into_iter()
                 .map(|class| (class, count(&|case| case.triage.as_ref().is_some_and(|triage| triage.class == class))))

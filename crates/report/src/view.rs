@@ -9,7 +9,8 @@
 use crate::pairs::RunTrace;
 use crate::thumbnail::Thumbnail;
 use recrash_model::Diagnostic;
-use recrash_model::metrics::{Answer, Series};
+use recrash_model::account::{AccountSet, CrashType, Role};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult, Series};
 use recrash_model::narrative::{Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::{CrashRecord, RecordRef, RecordSet};
@@ -53,6 +54,41 @@ pub struct SuiteView {
     pub cases: Vec<CaseRow>,
     /// Remarks of every stage.
     pub diagnostics: Vec<Diagnostic>,
+    /// What became of all incidents, in a suite that goes by accounts. Of [`AccountSet::told`] nothing is read.
+    pub accounts: Option<AccountSet>,
+}
+
+/// What an account says of its crash.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccountRow {
+    /// Incident.
+    pub incident: String,
+    /// Reports of the incident.
+    pub reports: usize,
+    /// Crash type.
+    pub crash_type: CrashType,
+    /// Whose move brought the conflict about.
+    pub role: Option<Role>,
+}
+
+/// What the two runs of a case are called, first and second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RunNames {
+    /// The first.
+    pub before: &'static str,
+    /// The second.
+    pub after: &'static str,
+}
+
+impl RunNames {
+    /// Of a suite that goes by templates: the same ego in the scenario as designed, and as tuned.
+    pub const DESIGNED: Self = Self { before: "as designed", after: "tuned" };
+    /// Of a suite that goes by accounts: the recorded driver, and the system under test.
+    pub const RETOLD: Self = Self { before: "as told", after: "tested" };
+
+    fn of(account: Option<&AccountRow>) -> Self {
+        if account.is_some() { Self::RETOLD } else { Self::DESIGNED }
+    }
 }
 
 /// What the tables say of one scenario.
@@ -72,9 +108,14 @@ pub struct CaseRow {
     pub told: Option<RecordRef>,
     /// Text of the narrative, to search in; empty where none was written.
     pub narrative: String,
-    /// The scenario as designed. `None` only where it was refused before it could run.
+    /// What the account says, in a suite that goes by accounts.
+    #[serde(default)]
+    pub account: Option<AccountRow>,
+    /// The scenario as designed; in a suite that goes by accounts, the recorded driver's run. `None` only where it was refused
+    /// before it could run.
     pub before: Option<RunRow>,
-    /// The scenario as tuned, where tuning kept another point.
+    /// The scenario as tuned, where tuning kept another point; in a suite that goes by accounts, the run of the system under
+    /// test, where there is something to test.
     pub after: Option<RunRow>,
     /// How the other egos fare in the last run's scenario, where the ego under test fails it.
     pub triage: Option<Triage>,
@@ -102,11 +143,15 @@ pub struct CaseView {
     pub scenario_id: String,
     /// The narrative, where one was written.
     pub narrative: Option<Narrative>,
-    /// The road, to draw under the replay. Before and after tuning share it.
+    /// What the account says, in a suite that goes by accounts: the row's.
+    pub account: Option<AccountRow>,
+    /// What nobody told, and was chosen.
+    pub assumed: Vec<String>,
+    /// The road, to draw under the replay. Both runs share it.
     pub drawing: RoadDrawing,
-    /// The scenario as designed. `None` only where it was refused before it could run.
+    /// As [`CaseRow::before`].
     pub before: Option<RunView>,
-    /// The scenario as tuned, where tuning kept another point.
+    /// As [`CaseRow::after`].
     pub after: Option<RunView>,
     /// How the other egos fare in the last run's scenario, where the ego under test fails it.
     pub triage: Option<Triage>,
@@ -168,38 +213,60 @@ impl<'a> CaseContext<'a> {
 }
 
 impl CaseRow {
-    /// The run the verdict is about: the tuned one, or the scenario as designed where tuning kept it.
+    /// The run of the system under test that counts: the tuned one, or the scenario as designed where tuning kept it.
     pub fn last_run(&self) -> Option<&RunRow> {
-        self.after.as_ref().or(self.before.as_ref())
+        self.after.as_ref().or(self.before.as_ref().filter(|_| self.account.is_none()))
+    }
+
+    /// What its two runs are called.
+    pub fn names(&self) -> RunNames {
+        RunNames::of(self.account.as_ref())
     }
 
     /// The runs with their names.
     pub fn runs(&self) -> Vec<(&'static str, &RunRow)> {
-        named(&self.before, &self.after)
+        named(self.names(), &self.before, &self.after)
     }
 
-    /// Whether the last run is true to the record that is told. There is no answer where the scenario did not run, and none
-    /// where nobody's crash is told: an invented course has no record to be true to.
+    /// Whether the run that tells the record is true to it: the recorded driver's, or the last one where there is none. There
+    /// is no answer where the scenario did not run, and none where nobody's crash is told: an invented course has no record to
+    /// be true to.
     pub fn faithful(&self) -> Option<Answer> {
         let invented = matches!(self.origin, Some(Origin::Invented { .. }));
-        self.last_run().filter(|_| !invented).map(|run| run.faithful())
+        self.telling_run().filter(|_| !invented).map(|run| run.faithful())
+    }
+
+    /// The run that is held against the record.
+    pub fn telling_run(&self) -> Option<&RunRow> {
+        if self.account.is_some() { self.before.as_ref() } else { self.last_run() }
+    }
+
+    /// Whether the system under test came into the situation of its record; nothing where that was not looked at.
+    pub fn situation_met(&self) -> Option<bool> {
+        let checks = self.account.as_ref().and(self.after.as_ref())?.verdict.checks.iter();
+        checks.filter(|check| check.kind == CheckKind::Situation).map(|check| check.result == CheckResult::Shown).next()
     }
 }
 
 impl CaseView {
-    /// The run the verdict is about: the tuned one, or the scenario as designed where tuning kept it.
+    /// As [`CaseRow::last_run`].
     pub fn last_run(&self) -> Option<&RunView> {
-        self.after.as_ref().or(self.before.as_ref())
+        self.after.as_ref().or(self.before.as_ref().filter(|_| self.account.is_none()))
+    }
+
+    /// What its two runs are called.
+    pub fn names(&self) -> RunNames {
+        RunNames::of(self.account.as_ref())
     }
 
     /// The runs with their names.
     pub fn runs(&self) -> Vec<(&'static str, &RunView)> {
-        named(&self.before, &self.after)
+        named(self.names(), &self.before, &self.after)
     }
 }
 
-fn named<'a, T>(before: &'a Option<T>, after: &'a Option<T>) -> Vec<(&'static str, &'a T)> {
-    let named = [("as designed", before), ("tuned", after)];
+fn named<'a, T>(names: RunNames, before: &'a Option<T>, after: &'a Option<T>) -> Vec<(&'static str, &'a T)> {
+    let named = [(names.before, before), (names.after, after)];
     named.into_iter().filter_map(|(name, run)| Some((name, run.as_ref()?))).collect()
 }
 

@@ -1,5 +1,6 @@
 //! From nouns to words and numbers to text, the same everywhere on the page.
 
+use crate::view::CaseRow;
 use recrash_model::narrative::{FactSource, FactValue, Origin};
 use recrash_model::record::{Coded, MPS_PER_MPH, RecordRef};
 use recrash_model::template::Template;
@@ -162,6 +163,14 @@ pub fn template(template: &Template) -> String {
 /// Time of day from minutes after midnight.
 pub fn clock(minutes: u16) -> String {
     format!("{:02}:{:02}", minutes / 60 % 24, minutes % 60)
+}
+
+/// Why the system under test was not run in a scenario that was not refused.
+pub fn not_run(case: &CaseRow) -> &'static str {
+    match &case.account {
+        Some(_) if case.before.is_some() => "it was parked: there is nothing to test",
+        _ => "it was not run",
+    }
 }
 
 #[cfg(test)]

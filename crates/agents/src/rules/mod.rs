@@ -9,6 +9,7 @@ mod reading;
 mod rehearsal;
 mod retry;
 mod staging;
+pub(crate) mod telling;
 mod text;
 mod timing;
 mod writing;

@@ -5,10 +5,11 @@ use crate::output::{self, Output, title};
 use crate::screen::println;
 use crate::table::{Cell, number, table};
 use clap::Args;
-use recrash_model::account::{Account, CrashType, told};
+use recrash_model::account::{Account, CrashType, FactShare, TypeShare, told};
+use recrash_model::metrics::CheckResult;
 use recrash_pipeline::{
-    Accounts, Options, PipelineError, Retold, RetoldStanding, fact_shares, read_accounts, reconstruct_accounts,
-    record_outputs, write_reconstructions,
+    Accounts, Options, PipelineError, Retold, fact_shares, read_accounts, reconstruct_accounts, record_outputs,
+    type_shares, write_reconstructions,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -85,7 +86,7 @@ pub fn run(args: &ReconstructArgs, output: Output) -> Result<(), PipelineError> 
     } else {
         types(&read, &retold);
         reasons(&retold);
-        facts(&retold);
+        fact_table(&fact_shares(&read.accounts, &retold));
     }
     if let Some(folder) = &args.to_dir {
         println!("{} scenarios in {}", files.len(), folder.display());
@@ -96,22 +97,13 @@ pub fn run(args: &ReconstructArgs, output: Output) -> Result<(), PipelineError> 
 fn json(read: &Accounts, retold: &[Retold]) -> serde_json::Value {
     let of = |each: &Retold| {
         let account = &read.accounts[each.account];
-        let facts: Vec<serde_json::Value> = each.result.as_ref().map_or_else(
-            |_| Vec::new(),
-            |made| {
-                let fact = |fact: &recrash_pipeline::ShownFact| {
-                    serde_json::json!({ "fact": fact.kind.label(), "shown": fact.shown, "sentence": fact.sentence })
-                };
-                made.facts.iter().map(fact).collect()
-            },
-        );
         serde_json::json!({
             "incident": account.incident,
             "report": account.report.to_string(),
             "crash_type": told(&account.crash_type),
-            "standing": each.standing(),
+            "told": each.untold().is_none(),
             "reason": each.reason(),
-            "facts": facts,
+            "facts": each.result.as_ref().map_or(&[][..], |made| &made.verdict.checks),
             "assumed": each.result.as_ref().map_or(&[][..], |made| &made.assumed),
         })
     };
@@ -119,34 +111,35 @@ fn json(read: &Accounts, retold: &[Retold]) -> serde_json::Value {
         "incidents": read.incidents.len(),
         "accounts": read.accounts.len(),
         "reconstructions": retold.iter().map(of).collect::<Vec<_>>(),
-        "facts": fact_shares(retold),
+        "types": type_shares(&read.accounts, retold),
+        "facts": fact_shares(&read.accounts, retold),
     })
 }
 
 /// Prints, by crash type, how many crashes are shown as they are told.
 fn types(read: &Accounts, retold: &[Retold]) {
-    title("Crashes whose every checked fact is shown");
-    let mut table = table(&["type", "incidents", "staged", "every checked fact shown", "share"]);
-    let kind_of = |each: &&Retold| told(&read.accounts[each.account].crash_type);
-    let mut row = |label: &str, of: &[&Retold]| {
-        let staged = of.iter().filter(|each| each.result.is_ok()).count();
-        let shown = of.iter().filter(|each| each.standing() == RetoldStanding::Shown).count();
-        let share = format!("{:.1} %", 100.0 * shown as f64 / of.len().max(1) as f64);
-        let cells = vec![Cell::new(label), number(of.len()), number(staged), number(shown), number(share)];
-        table.add_row(cells);
-    };
-    for kind in CrashType::ALL.into_iter().map(Some).chain([None]) {
-        let of: Vec<&Retold> = retold.iter().filter(|each| kind_of(each) == kind).collect();
-        if !of.is_empty() {
-            row(kind.map_or("not told", CrashType::label), &of);
-        }
-    }
-    row("all", &retold.iter().collect::<Vec<_>>());
-    println!("{table}");
+    type_table(&type_shares(&read.accounts, retold));
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
     println!(
         "not checked yet: lanes, signals and signs, others in the story but who throws the partner, doors, why somebody stood"
     );
+}
+
+/// Prints how much of each crash type is told.
+pub fn type_table(types: &[TypeShare]) {
+    title("Readable incidents whose every checked fact is shown");
+    let mut table = table(&["type", "incidents", "told", "share", "facts per 100 words"]);
+    let mut row = |label: &str, incidents: usize, told: usize, facts: String| {
+        let share = format!("{:.1} %", 100.0 * told as f64 / incidents.max(1) as f64);
+        table.add_row(vec![Cell::new(label), number(incidents), number(told), number(share), number(facts)]);
+    };
+    for share in types {
+        let label = share.crash_type.map_or("not told", CrashType::label);
+        row(label, share.incidents, share.told, format!("{:.1}", share.facts_per_100_words));
+    }
+    let sum = |of: fn(&TypeShare) -> usize| types.iter().map(of).sum();
+    row("all", sum(|share| share.incidents), sum(|share| share.told), String::new());
+    println!("{table}");
 }
 
 /// Prints why crashes are not told.
@@ -169,11 +162,12 @@ fn reasons(retold: &[Retold]) {
 }
 
 /// Prints the share of told facts that are shown.
-fn facts(retold: &[Retold]) {
-    title("Told facts, over everything that was staged");
-    let mut table = table(&["fact", "told", "shown"]);
-    for share in fact_shares(retold) {
-        table.add_row(vec![Cell::new(share.fact), number(share.told), number(share.shown)]);
+pub fn fact_table(facts: &[FactShare]) {
+    title("Told facts, over all readable incidents");
+    let mut table = table(&["fact", "told", "shown", "share"]);
+    for share in facts.iter().filter(|share| share.told > 0) {
+        let percent = format!("{:.1} %", 100.0 * share.shown as f64 / share.told as f64);
+        table.add_row(vec![Cell::new(share.fact.label()), number(share.told), number(share.shown), number(percent)]);
     }
     println!("{table}");
 }
@@ -186,10 +180,11 @@ fn one(read: &Accounts, retold: &[Retold]) {
         title(&format!("Incident {}, report {}, {kind}", account.incident, account.report));
         match &each.result {
             Ok(made) => {
-                let mut table = table(&["fact", "shown", "told, and what the rollout shows"]);
-                for fact in &made.facts {
-                    let shown = if fact.shown { "yes" } else { "no" };
-                    table.add_row(vec![Cell::new(fact.kind.label()), Cell::new(shown), Cell::new(&fact.sentence)]);
+                let mut table = table(&["fact", "shown", "told", "what the rollout shows"]);
+                for fact in &made.verdict.checks {
+                    let shown = if fact.result == CheckResult::Shown { "yes" } else { "no" };
+                    let cells = [fact.kind.label(), shown, &fact.expected, &fact.observed];
+                    table.add_row(cells.into_iter().map(Cell::new).collect::<Vec<_>>());
                 }
                 println!("{table}");
                 for assumed in &made.assumed {

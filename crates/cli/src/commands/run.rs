@@ -1,15 +1,18 @@
 //! `recrash run` and `recrash report`: everything, and what came of it in tables.
 
+use super::reconstruct::{fact_table, type_table};
 use super::records::funnel;
 use super::select::{coverage, tables};
 use crate::options::SuiteArgs;
 use crate::output::{self, Output, title};
 use crate::screen::{bold, eprintln, one_line, println, yellow};
 use crate::table::{Cell, number, table};
+use recrash_model::account::CrashType;
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
 use recrash_pipeline::{
-    ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage,
+    AccountSummary, CaseSummary, ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary,
+    check_choices, run_stage,
 };
 use std::path::Path;
 
@@ -69,7 +72,7 @@ fn heading(suite: &Suite) {
         env!("CARGO_PKG_VERSION"),
         suite.profile().name,
         suite.ego(),
-        options.budget,
+        options.budget.map_or("all".to_owned(), |budget| budget.to_string()),
         options.seed,
         suite.store().dir().display()
     );
@@ -122,9 +125,85 @@ fn models(models: &[ModelSummary]) {
     }
 }
 
+/// Prints a run of a suite that goes by accounts.
+fn show_accounts(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
+    type_table(&accounts.types);
+    if !accounts.untold.is_empty() {
+        title("Why the others are not told");
+        let mut rows = table(&["reason", "incidents"]);
+        for (why, count) in &accounts.untold {
+            rows.add_row(vec![Cell::new(why.label()), number(*count)]);
+        }
+        println!("{rows}");
+    }
+    fact_table(&accounts.facts);
+    title("Scenarios");
+    let mut rows = table(&["scenario", "crash type", "as told", "situation", "least gap", "failure", "findings"])
+        .without_first(&["findings", "crash type", "failure"]);
+    for case in summary.cases.iter().take(CASES_SHOWN) {
+        let as_told = match case.faithful() {
+            Some(Answer::Yes) => "yes",
+            Some(Answer::Unchecked) => "not all checked",
+            Some(Answer::No) => "NO",
+            None => "NOT RUN",
+        };
+        let situation = match (case.situation_met, &case.recorded) {
+            (Some(true), _) => "met",
+            (Some(false), _) => "not met",
+            (None, Some(_)) => "parked",
+            (None, None) => "-",
+        };
+        rows.add_row(vec![
+            Cell::new(&case.id),
+            Cell::new(case.crash_type.map_or("", CrashType::label)),
+            Cell::new(as_told),
+            Cell::new(situation),
+            Cell::new(gap(case.tuned.as_ref())),
+            Cell::new(case.triage.as_ref().map_or("", |triage| triage.class.label())),
+            Cell::new(case.tuned.as_ref().map_or_else(String::new, |run| run.findings.join(", "))),
+        ]);
+    }
+    println!("{rows}");
+    if summary.cases.len() > CASES_SHOWN {
+        println!("  and {} more, in results.csv and on the page", summary.cases.len() - CASES_SHOWN);
+    }
+    for case in &summary.cases {
+        if let Some(failure) = &case.failure {
+            println!("  {} {}: {failure}", yellow("not run:"), case.id);
+        } else if case.faithful() == Some(Answer::No) {
+            let why = case.recorded.as_ref().map_or_else(String::new, |run| run.unfaithful.join("; "));
+            println!("  {} {}: {why}", yellow("not as told:"), case.id);
+        }
+    }
+    let count = |holds: &dyn Fn(&CaseSummary) -> bool| summary.cases.iter().filter(|case| holds(case)).count();
+    let fails = |case: &CaseSummary| case.tuned.as_ref().is_some_and(|run| run.failed);
+    let met = count(&|case| case.situation_met == Some(true));
+    println!(
+        "\n{} {} of {} readable incidents are told with every checked fact shown, {} of them in this suite; invented: 0",
+        bold("result:"),
+        accounts.told,
+        accounts.readable,
+        summary.cases.len(),
+    );
+    println!(
+        "  {} drove {} of them ({} were parked: nothing to test), came into the situation of the record in {met} and fails {} of those {met}",
+        summary.ego,
+        summary.run(),
+        count(&|case| case.recorded.is_some() && case.tuned.is_none()),
+        count(&|case| case.situation_met == Some(true) && fails(case)),
+    );
+    ending(summary, dir);
+}
+
+/// Scenarios that the terminal lists; the page and results.csv have all.
+const CASES_SHOWN: usize = 100;
+
 /// Prints a whole run in tables.
 fn show(summary: &Summary, dir: &Path) {
     funnel(&summary.funnel);
+    if let Some(accounts) = &summary.accounts {
+        return show_accounts(summary, accounts, dir);
+    }
     tables(&summary.tables);
     coverage(&summary.coverage, &summary.templates);
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
@@ -187,6 +266,11 @@ fn show(summary: &Summary, dir: &Path) {
             "  of the {count} of {name}: {yes} show every fact told, {no} do not, {unchecked} could not all be checked"
         );
     }
+    ending(summary, dir);
+}
+
+/// What every run says last.
+fn ending(summary: &Summary, dir: &Path) {
     let edited = summary.cases.iter().filter(|case| !case.edited.is_empty()).count();
     if edited > 0 {
         println!("  {edited} edited by hand, and kept");

@@ -92,7 +92,7 @@ fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {
         PartnerKind::FixedObject => {
             misc_object("object", "obstacle", [spec.length_m, spec.width_m, height_m(kind)], description)
         }
-        _ => vehicle(kind_name(kind), kind, description),
+        _ => vehicle(kind.label(), kind, description),
     }
 }
 
@@ -181,23 +181,5 @@ fn category(kind: PartnerKind) -> &'static str {
         PartnerKind::Motorcycle => "motorbike",
         PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => "bicycle",
         _ => "car",
-    }
-}
-
-fn kind_name(kind: PartnerKind) -> &'static str {
-    match kind {
-        PartnerKind::PassengerCar => "passenger car",
-        PartnerKind::Suv => "SUV",
-        PartnerKind::Van => "van",
-        PartnerKind::PickupTruck => "pickup truck",
-        PartnerKind::HeavyTruck => "heavy truck",
-        PartnerKind::Bus => "bus",
-        PartnerKind::Motorcycle => "motorcycle",
-        PartnerKind::Cyclist => "cyclist",
-        PartnerKind::OtherNonMotorist => "other non-motorist",
-        PartnerKind::FirstResponder => "first responder",
-        PartnerKind::Pedestrian => "pedestrian",
-        PartnerKind::Animal => "animal",
-        PartnerKind::FixedObject => "fixed object",
     }
 }

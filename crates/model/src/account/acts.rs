@@ -120,6 +120,17 @@ pub enum ContactState {
 }
 
 impl ContactState {
+    /// For tables and sentences.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Moving => "moving",
+            Self::SettingOff => "setting off",
+            Self::Stopped => "stopped",
+            Self::Parked => "parked",
+            Self::Reversing => "reversing",
+        }
+    }
+
     /// Whether it stood.
     pub fn stands(self) -> bool {
         matches!(self, Self::Stopped | Self::Parked)

@@ -6,18 +6,23 @@
 
 mod acts;
 mod place;
+mod set;
 mod types;
+mod untold;
 
 pub use acts::{Act, ActFact, ContactState, LeftRight, Speed, SpeedMeaning, StandReason, Standing};
 pub use place::{Compass, Control, ControlDevice, LaneWord, Obeyed, Place, PlaceKind, RoadFeature, SignalState};
+pub use set::{ACCOUNTS_FORMAT, AccountSet, FactShare, TypeShare, UntoldIncident};
 pub use types::{
     CrashType, Driver, FirstContact, Kind, KindGroup, MatrixCell, MatrixEvent, MatrixObject, Origin, PrecrashScenario,
     Role, Striker,
 };
 
+pub use untold::Untold;
+
 use crate::narrative::FirstMover;
 use crate::record::RecordRef;
-use crate::template::Movement;
+use crate::template::{Movement, RoadType, Template};
 use crate::zones::ContactZone;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -134,6 +139,34 @@ pub struct Account {
     pub partner_left: Option<Fact<bool>>,
     /// Where words and columns, or two facts, cannot both be true.
     pub contradictions: Vec<Contradiction>,
+}
+
+impl Account {
+    /// Road and movements as the categorical columns would have them: as told, else as the state at the contact has it.
+    pub fn template(&self) -> Template {
+        let movement = |party: &Party| {
+            told(&party.movement).unwrap_or(match told(&party.state) {
+                Some(ContactState::Stopped) => Movement::Stopped,
+                Some(ContactState::Parked) => Movement::Parked,
+                Some(ContactState::Reversing) => Movement::Backing,
+                Some(ContactState::SettingOff | ContactState::Moving) | None => Movement::Straight,
+            })
+        };
+        let road = match told(&self.place.kind) {
+            Some(PlaceKind::Intersection) => RoadType::Intersection,
+            Some(PlaceKind::Highway) => RoadType::Highway,
+            Some(PlaceKind::Circle) => RoadType::TrafficCircle,
+            Some(PlaceKind::ParkingLot) => RoadType::ParkingLot,
+            Some(PlaceKind::Garage) => RoadType::ParkingGarage,
+            Some(PlaceKind::Street | PlaceKind::Alley | PlaceKind::Driveway | PlaceKind::Other) | None => {
+                RoadType::Street
+            }
+        };
+        let work_zone = self.place.features.iter().any(|feature| feature.value == RoadFeature::WorkZone);
+        // A thing stands.
+        let cp = self.partner.as_ref().map_or(Movement::Parked, movement);
+        Template { road, sv: movement(&self.sv), cp, work_zone }
+    }
 }
 
 /// One of the two sides.

@@ -370,6 +370,29 @@ pub enum Origin {
     Above,
 }
 
+impl Origin {
+    /// For tables and sentences: where it is, seen from the subject vehicle.
+    pub fn words(self) -> String {
+        let sided = |place: &str, side: Option<LeftRight>| match side {
+            Some(LeftRight::Left) => format!("{place} on the left"),
+            Some(LeftRight::Right) => format!("{place} on the right"),
+            None => place.to_owned(),
+        };
+        match self {
+            Self::Behind => "from behind".to_owned(),
+            Self::Ahead => "from ahead".to_owned(),
+            Self::Opposite => "from the opposite direction".to_owned(),
+            Self::Beside { side } => sided("from beside,", Some(side)),
+            Self::Cross { side } => sided("from a crossing road", Some(side)),
+            Self::Stall { side } => sided("out of a stall", side),
+            Self::Driveway { side } => sided("out of a driveway", side),
+            Self::Parked { side } => sided("from the kerb", side),
+            Self::Sidewalk { side } => sided("from a sidewalk", side),
+            Self::Above => "from above".to_owned(),
+        }
+    }
+}
+
 /// The 37 pre-crash scenarios of NHTSA (Najm, Smith and Yanagisawa 2007, DOT HS 810 767), in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -94,6 +94,11 @@ impl RecordInput {
         all
     }
 
+    /// The filter of the options.
+    pub fn filter(&self) -> Option<&Filter> {
+        self.filter.as_ref()
+    }
+
     /// The records. In memory is what is kept of the files.
     ///
     /// # Errors

@@ -7,8 +7,10 @@ use crate::suite::names;
 use crate::suite::{Stage, Suite};
 use recrash_agents::{Brief, expectation};
 use recrash_model::Seed;
+use recrash_model::account::{Account, AccountSet};
 use recrash_model::metrics::Expectation;
 use recrash_model::narrative::Narrative;
+use recrash_model::profile::Tells;
 use recrash_model::record::{CrashRecord, Provenance, RecordRef, RecordSet};
 use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
@@ -24,6 +26,8 @@ pub(crate) struct Cases {
     pub records: RecordSet,
     /// Which were picked.
     pub selection: Selection,
+    /// Accounts, in a suite that goes by them.
+    pub accounts: Option<AccountSet>,
 }
 
 impl Cases {
@@ -37,7 +41,16 @@ impl Cases {
         if selection.clusters.iter().any(|c| !named(c) || c.members.iter().any(|&m| m >= bound)) {
             return Err(suite.stale(Stage::Select));
         }
-        Ok(Self { records, selection })
+        let accounts = match suite.profile().records.tells {
+            Tells::Templates => None,
+            Tells::Accounts => Some(suite.store().read_json(names::ACCOUNTS)?),
+        };
+        Ok(Self { records, selection, accounts })
+    }
+
+    /// The account of a cluster's pick, in a suite that goes by accounts.
+    pub fn account(&self, cluster: &Cluster) -> Option<&Account> {
+        self.accounts.as_ref()?.of(&cluster.pick)
     }
 
     /// Where the records stand that a case shows: the pick first, then a few members of its cluster.
@@ -70,6 +83,7 @@ impl Cases {
             let nowhere = Provenance { file: String::new(), row: 0, ..record.provenance.clone() };
             inputs.push(text_of(&CrashRecord { provenance: nowhere, ..record.clone() }));
         }
+        inputs.extend(self.account(cluster).map(text_of));
         inputs
     }
 
@@ -126,7 +140,7 @@ pub(crate) fn scenario(suite: &Suite, id: &str, file: &str) -> Result<Scenario, 
 }
 
 /// What one case's file is no good for stops that case and no other.
-fn of_case(id: &str, error: PipelineError) -> PipelineError {
+pub(super) fn of_case(id: &str, error: PipelineError) -> PipelineError {
     match error {
         PipelineError::BadInput { what, diagnostics } => {
             let told: Vec<String> = std::iter::once(what).chain(diagnostics.iter().map(ToString::to_string)).collect();

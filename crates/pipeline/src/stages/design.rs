@@ -78,6 +78,9 @@ pub struct DesignLog {
     pub taken: usize,
     /// Designers that did not come to a faithful scenario, and why.
     pub gave_up: Vec<String>,
+    /// What nobody told, and was chosen.
+    #[serde(default)]
+    pub assumed: Vec<String>,
 }
 
 /// One try.
@@ -92,6 +95,12 @@ pub struct DesignAttempt {
 }
 
 impl DesignLog {
+    /// Of the rules alone, at the first try.
+    pub(super) fn by_rules(attempt: DesignAttempt) -> Self {
+        let attempts = vec![attempt];
+        Self { asked: RULES.into(), repairs: 0, attempts, taken: 0, gave_up: Vec::new(), assumed: Vec::new() }
+    }
+
     /// One word for tables: `rules`, `first answer`, `after repair` or `fallback`.
     pub fn outcome(&self) -> &'static str {
         match self.attempts.get(self.taken).map(|attempt| &attempt.draft.source.author) {
@@ -143,7 +152,8 @@ fn design_case(
     simulator: &dyn Simulator,
 ) -> Result<(ScenarioDraft, DesignLog), PipelineError> {
     let asked = designers.first().map_or(RULES, |designer| designer.name).to_owned();
-    let mut log = DesignLog { asked, repairs: 0, attempts: Vec::new(), taken: 0, gave_up: Vec::new() };
+    let mut log =
+        DesignLog { asked, repairs: 0, attempts: Vec::new(), taken: 0, gave_up: Vec::new(), assumed: Vec::new() };
     for designer in designers {
         match design_by(designer, brief, narrative, expectation, simulator, &mut log.attempts)? {
             Course::Faithful => break,

@@ -1,6 +1,6 @@
 //! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
 
-use super::CASE_STAGES;
+use super::case_stages;
 use super::summary::RunSummary;
 use crate::error::PipelineError;
 use crate::files::store::to_json;
@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use recrash_model::Diagnostic;
 use recrash_model::diagnostic::{Location, Severity};
 use recrash_model::metrics::Answer;
+use recrash_model::profile::Tells;
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::Selection;
 use serde::{Deserialize, Serialize};
@@ -43,7 +44,7 @@ pub(crate) fn keep(stage: Stage, id: &str, result: Result<Files, PipelineError>)
 
 /// Where a scenario failed, in the stages before `end`.
 pub(crate) fn before(suite: &Suite, id: &str, end: Stage) -> Option<Failure> {
-    CASE_STAGES
+    case_stages(suite)
         .iter()
         .map(|declared| declared.stage)
         .filter(|stage| *stage < end)
@@ -63,9 +64,11 @@ pub(crate) fn at(suite: &Suite, id: &str, stage: Stage) -> Option<Failure> {
 /// # Errors
 /// A file of the suite cannot be read.
 pub fn unfaithful(suite: &Suite, stage: Stage) -> Result<Vec<Diagnostic>, PipelineError> {
-    let file: fn(&str) -> String = match stage {
-        Stage::Simulate => names::first_run,
-        Stage::Triage => names::tuned_run,
+    let file: fn(&str) -> String = match (stage, suite.profile().records.tells) {
+        (Stage::Simulate, Tells::Templates) => names::first_run,
+        (Stage::Triage, Tells::Templates) => names::tuned_run,
+        // What was recorded is held against the account; what the system under test does is its own.
+        (Stage::Simulate, Tells::Accounts) => names::recorded_run,
         _ => return Ok(Vec::new()),
     };
     let selection: Selection = suite.store().read_json(names::SELECTION)?;

@@ -10,6 +10,7 @@ mod failures;
 mod narrate;
 mod records;
 mod report;
+mod retold;
 mod select;
 mod simulate;
 mod summary;
@@ -21,7 +22,7 @@ pub(crate) use cases::{Cases, brief};
 pub use design::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
 pub use select::{SelectionStudy, StrategyStudy};
-pub use summary::{CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+pub use summary::{AccountSummary, CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
 
 use crate::error::PipelineError;
 use crate::models::cast::RULES;
@@ -31,12 +32,17 @@ use crate::simulators::external;
 use crate::suite::{Course, Files, Stage, Suite, Work};
 use rayon::prelude::*;
 use recrash_agents::llm::prompts_version;
+use recrash_model::profile::Tells;
 use recrash_model::selection::Cluster;
 use recrash_model::{Diagnostic, Location, Severity};
 
-/// The stages that work case by case, in order.
-pub(crate) const CASE_STAGES: [CaseStage; 5] =
-    [narrate::DECLARED, design::DECLARED, simulate::DECLARED, tune::DECLARED, triage::DECLARED];
+/// The stages that work case by case, in order: of a suite that goes by templates, or by accounts.
+pub(crate) fn case_stages(suite: &Suite) -> [CaseStage; 5] {
+    match suite.profile().records.tells {
+        Tells::Templates => [narrate::DECLARED, design::DECLARED, simulate::DECLARED, tune::DECLARED, triage::DECLARED],
+        Tells::Accounts => retold::DECLARED,
+    }
+}
 
 /// A stage that works case by case.
 #[derive(Clone, Copy)]
@@ -96,8 +102,8 @@ fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         Stage::Select => select::run(work),
         Stage::Report => report::run(work),
         _ => {
-            let declared = CASE_STAGES.iter().find(|declared| declared.stage == work.stage);
-            per_case(work, declared.unwrap_or_else(|| unreachable!("every other stage works case by case")))
+            let declared = case_stages(work.suite).into_iter().find(|declared| declared.stage == work.stage);
+            per_case(work, &declared.unwrap_or_else(|| unreachable!("every other stage works case by case")))
         }
     }
 }
@@ -236,7 +242,7 @@ fn player(suite: &Suite, name: &str) -> String {
 
 /// Files of a case that a person edited, of all stages.
 pub(crate) fn edited_files(suite: &Suite, id: &str) -> Vec<String> {
-    CASE_STAGES
+    case_stages(suite)
         .iter()
         .flat_map(|declared| suite.edited(&unit_name(declared.stage, id), &(declared.editable)(id)))
         .collect()

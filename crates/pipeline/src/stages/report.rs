@@ -2,8 +2,8 @@
 
 use super::summary::{CaseSummary, summarise};
 use super::{
-    CASE_STAGES, Cases, DesignLog, Failure, StageReport, StageWork, case_inputs, cases, edited_files, failures,
-    records, unit_name, view,
+    Cases, DesignLog, Failure, StageReport, StageWork, case_inputs, case_stages, cases, edited_files, failures,
+    records, retold, unit_name, view,
 };
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
@@ -11,6 +11,7 @@ use crate::models::cast::AgentLog;
 use crate::reading::records::RecordInput;
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite, Work};
+use recrash_agents::tell;
 use recrash_model::Diagnostic;
 use recrash_model::narrative::Narrative;
 use recrash_model::record::RecordRef;
@@ -18,7 +19,7 @@ use recrash_model::run::JudgedRun;
 use recrash_model::selection::Cluster;
 use recrash_model::triage::Triage;
 use recrash_model::tuning::TuneLog;
-use recrash_report::CaseRow;
+use recrash_report::{AccountRow, CaseRow};
 use recrash_roads::Scenario;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,10 @@ pub(super) struct Case<'a> {
     pub narrative: Option<(Narrative, AgentLog)>,
     /// How the scenario was designed.
     pub design: Option<DesignLog>,
+    /// What the account says, in a suite that goes by accounts.
+    pub account: Option<AccountRow>,
+    /// The recorded driver's run, in a suite that goes by accounts.
+    pub recorded: Option<Ran>,
     /// As designed.
     pub first: Option<Ran>,
     /// As tuned.
@@ -128,7 +133,7 @@ fn refuse_stale(suite: &Suite, cases: &Cases) -> Result<(), PipelineError> {
         let work = Work { name: Stage::Records.name(), inputs: &inputs, editable: &[] };
         suite.must_be_current(Stage::Records, &work)?;
     }
-    for declared in &CASE_STAGES {
+    for declared in &case_stages(suite) {
         for cluster in cases.up_to(suite, declared.stage) {
             let id = &cluster.scenario_id;
             let inputs = case_inputs(suite, declared, cases, cluster)?;
@@ -146,9 +151,9 @@ fn inputs(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>
     let members: Vec<&RecordRef> = cluster.members.iter().map(|&at| &cases.records.records[at].id).collect();
     inputs.push(cases::text_of(&(members, cluster.number)));
     inputs.push(cases::text_of(suite.profile()));
-    inputs.push(view::rerun_command(suite, ""));
+    inputs.push(view::rerun_command(suite, "", suite.ego()));
     inputs.push(cases::text_of(&edited_files(suite, id)));
-    for declared in &CASE_STAGES {
+    for declared in &case_stages(suite) {
         if let Some(failure) = failures::at(suite, id, declared.stage) {
             inputs.push(failure.to_string());
             break;
@@ -159,7 +164,7 @@ fn inputs(suite: &Suite, cases: &Cases, cluster: &Cluster) -> Result<Vec<String>
 }
 
 fn case_files(suite: &Suite, cases: &Cases, position: usize, cluster: &Cluster) -> Result<Files, PipelineError> {
-    let case = read_case(suite, cluster)?;
+    let case = read_case(suite, cases, cluster)?;
     let report = CaseReport { row: view::row(suite, cases, position, &case), summary: CaseSummary::of(&case) };
     let context =
         recrash_report::CaseContext { ego: suite.ego(), records: &cases.records.records, cluster: Some(cluster) };
@@ -168,29 +173,51 @@ fn case_files(suite: &Suite, cases: &Cases, position: usize, cluster: &Cluster) 
     Ok(vec![(recrash_report::case_file_name(id), page.into_bytes()), (row_file(id), to_compact_json(&report))])
 }
 
-fn read_case<'a>(suite: &Suite, cluster: &'a Cluster) -> Result<Case<'a>, PipelineError> {
+fn read_case<'a>(suite: &Suite, cases: &Cases, cluster: &'a Cluster) -> Result<Case<'a>, PipelineError> {
     let id = &cluster.scenario_id;
     let store = suite.store();
     let failure = failures::before(suite, id, Stage::Report);
     let made = |stage: Stage| failures::before(suite, id, stage).is_none() && failures::at(suite, id, stage).is_none();
+    let by_account = cases.accounts.is_some();
     let narrative = made(Stage::Narrate)
         .then(|| -> Result<_, PipelineError> {
-            Ok((store.read_json(&names::narrative(id))?, store.read_json(&names::narrative_log(id))?))
+            let narrative = match by_account {
+                true => tell(&retold::account(suite, id)?, id, cluster.template),
+                false => store.read_json(&names::narrative(id))?,
+            };
+            Ok((narrative, store.read_json(&names::narrative_log(id))?))
         })
         .transpose()?;
+    let reading = cases.records.records[cluster.pick_index].reading.as_ref();
+    let account = reading.map(|reading| AccountRow {
+        incident: reading.incident.clone(),
+        reports: reading.reports,
+        crash_type: reading.crash_type,
+        role: reading.role,
+    });
     let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
-    let first =
-        made(Stage::Simulate).then(|| ran(suite, id, &names::scenario(id), &names::first_run(id))).transpose()?;
-    let tuned = made(Stage::Triage)
-        .then(|| -> Result<_, PipelineError> {
-            let (log, agent) = (store.read_json(&names::tune_log(id))?, store.read_json(&names::tune_agent(id))?);
-            Ok(Tuned { ran: ran(suite, id, &names::tuned(id), &names::tuned_run(id))?, log, agent })
-        })
-        .transpose()?;
+    // Who was parked is not tested: those runs are not there.
+    let run = |stage: Stage, scenario: String, run: String| -> Result<Option<Ran>, PipelineError> {
+        let there = made(stage) && (!by_account || store.stamp(&run).is_some());
+        there.then(|| ran(suite, id, &scenario, &run)).transpose()
+    };
+    let recorded = match by_account {
+        true => run(Stage::Simulate, names::scenario(id), names::recorded_run(id))?,
+        false => None,
+    };
+    let first = run(Stage::Simulate, names::scenario(id), names::first_run(id))?;
+    let tuned = match run(Stage::Triage, names::tuned(id), names::tuned_run(id))? {
+        None => None,
+        Some(ran) => Some(Tuned {
+            ran,
+            log: store.read_json(&names::tune_log(id))?,
+            agent: store.read_json(&names::tune_agent(id))?,
+        }),
+    };
     let triage = optional(suite, &names::triage(id), tuned.is_some())?;
     let reference = optional(suite, &names::reference_run(id), triage.is_some())?;
     let edited = edited_files(suite, id);
-    Ok(Case { cluster, narrative, design, first, tuned, triage, reference, failure, edited })
+    Ok(Case { cluster, narrative, design, account, recorded, first, tuned, triage, reference, failure, edited })
 }
 
 /// Reads a file that not every unit writes; a stage removes what an earlier run left.

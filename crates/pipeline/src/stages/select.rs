@@ -67,7 +67,7 @@ impl<'a> Choice<'a> {
         let (embeds, remarks) = Embeds::choose(chosen.embedding, chosen.model_dir.as_deref(), suite.python())?;
         let options = SelectOptions {
             strategy: chosen.strategy,
-            budget: chosen.budget,
+            budget: chosen.budget.unwrap_or(usize::MAX),
             seed: suite.seed().child("select"),
             dimensions: chosen.dimensions,
             template_weight: chosen.template_weight,
@@ -101,6 +101,15 @@ struct Groups {
 }
 
 impl Choice<'_> {
+    /// The options, where all are asked for with as many picks as there are records.
+    fn within(&self, records: &RecordSet) -> SelectOptions {
+        let budget = match self.suite.options().budget {
+            Some(budget) => budget,
+            None => records.usable.len().max(1),
+        };
+        SelectOptions { budget, ..self.options.clone() }
+    }
+
     /// Profile and options.
     fn chosen_by(&self) -> String {
         sha256(self.inputs[1..].join("\n").as_bytes())
@@ -159,7 +168,8 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         let (records, embedding, kept) = choice.read()?;
         let embedding = for_strategy(&embedding, &records, choice.options.strategy);
         let earlier = choice.earlier(&records);
-        let outcome = select_onward(&records, work.suite.profile(), &choice.options, &embedding, &earlier);
+        let options = choice.within(&records);
+        let outcome = select_onward(&records, work.suite.profile(), &options, &embedding, &earlier);
         let Outcome { value, diagnostics } = outcome.map_err(bad_choice)?;
         let mut files = vec![
             (names::SELECTION.into(), to_json(&value)),
@@ -199,9 +209,10 @@ impl Choice<'_> {
     fn study(&self, seeds: usize) -> Result<SelectionStudy, PipelineError> {
         let (records, plain, _) = self.read()?;
         let profile = self.suite.profile();
+        let within = self.within(&records);
         let of_strategy = |&strategy: &Strategy| {
             let embedding = for_strategy(&plain, &records, strategy);
-            let options = SelectOptions { strategy, ..self.options.clone() };
+            let options = SelectOptions { strategy, ..within.clone() };
             let stability = stability(&records, profile, &options, &embedding, seeds)?;
             Ok(StrategyStudy { strategy, stability })
         };
@@ -209,7 +220,7 @@ impl Choice<'_> {
 
         let embedding = for_strategy(&plain, &records, self.options.strategy);
         let mut tried: Vec<usize> = BUDGETS.into_iter().filter(|&budget| budget < records.usable.len()).collect();
-        tried.push(self.options.budget);
+        tried.push(within.budget);
         tried.sort_unstable();
         tried.dedup();
         let rows =

@@ -6,7 +6,8 @@ use super::{Cases, DesignLog};
 use crate::models::cast::{AgentLog, Cast, RULES};
 use crate::options::RecordSource;
 use crate::suite::Suite;
-use recrash_model::metrics::{Answer, Check};
+use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
+use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
 use recrash_model::narrative::Origin;
 use recrash_model::record::{FunnelStep, RecordRef};
 use recrash_model::run::JudgedRun;
@@ -14,6 +15,7 @@ use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, T
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A whole run in numbers (`summary.json`, and `recrash run --json`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,8 +51,47 @@ pub struct Summary {
     /// How the models did, one entry for each role that one plays; empty where the rules play all.
     #[serde(default)]
     pub models: Vec<ModelSummary>,
+    /// How much of the incidents is told, in a suite that goes by accounts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accounts: Option<AccountSummary>,
     /// One entry per scenario.
     pub cases: Vec<CaseSummary>,
+}
+
+/// What became of all incidents.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AccountSummary {
+    /// Incidents.
+    pub incidents: usize,
+    /// With a narrative that can be read.
+    pub readable: usize,
+    /// Of those, told as they happened: every checked fact is shown.
+    pub told: usize,
+    /// By crash type.
+    pub types: Vec<TypeShare>,
+    /// By kind of fact.
+    pub facts: Vec<FactShare>,
+    /// Why the others are not, most frequent first.
+    pub untold: Vec<(Untold, usize)>,
+}
+
+impl AccountSummary {
+    fn of(set: &AccountSet) -> Self {
+        let mut counts: BTreeMap<Untold, usize> = BTreeMap::new();
+        for incident in &set.untold {
+            *counts.entry(incident.why).or_default() += 1;
+        }
+        let mut untold: Vec<(Untold, usize)> = counts.into_iter().collect();
+        untold.sort_by_key(|(why, count)| (std::cmp::Reverse(*count), *why));
+        Self {
+            incidents: set.incidents,
+            readable: set.readable,
+            told: set.told.len(),
+            types: set.types.clone(),
+            facts: set.facts.clone(),
+            untold,
+        }
+    }
 }
 
 /// How a model did in a role.
@@ -131,6 +172,15 @@ pub struct CaseSummary {
     pub told: Option<RecordRef>,
     /// Files that a person edited.
     pub edited: Vec<String>,
+    /// Crash type, in a suite that goes by accounts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crash_type: Option<CrashType>,
+    /// The recorded driver's run, in a suite that goes by accounts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<RunSummary>,
+    /// Whether the system under test came into the situation of its record; absent where that was not looked at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub situation_met: Option<bool>,
     /// As designed.
     pub first: Option<RunSummary>,
     /// As tuned.
@@ -227,9 +277,10 @@ impl CaseSummary {
         self.origin.as_ref().is_some_and(|origin| origin.name() == name)
     }
 
-    /// Whether the tuned run is true to the record that is told; no answer where it was not run, or nobody's crash is told.
+    /// Whether the run that tells the record is true to it: the recorded driver's, or the tuned one where there is none; no
+    /// answer where it was not run, or nobody's crash is told.
     pub fn faithful(&self) -> Option<Answer> {
-        self.tuned.as_ref().filter(|_| !self.is_told("invented")).map(|run| run.faithful)
+        self.recorded.as_ref().or(self.tuned.as_ref()).filter(|_| !self.is_told("invented")).map(|run| run.faithful)
     }
 
     /// Of a case.
@@ -250,6 +301,9 @@ impl CaseSummary {
             origin: case.narrative.as_ref().map(|(narrative, _)| narrative.origin.clone()),
             told: case.narrative.as_ref().and_then(|(narrative, _)| narrative.told_record().cloned()),
             edited: case.edited.clone(),
+            crash_type: case.account.as_ref().map(|account| account.crash_type),
+            recorded: case.recorded.as_ref().map(|ran| RunSummary::new(&ran.run)),
+            situation_met: case.tuned.as_ref().and_then(|tuned| situation_met(&tuned.ran.run)),
             first: case.first.as_ref().map(|ran| RunSummary::new(&ran.run)),
             tuned: case.tuned.as_ref().map(|tuned| RunSummary::new(&tuned.ran.run)),
             triage: case.triage.clone(),
@@ -257,6 +311,11 @@ impl CaseSummary {
             points: case.tuned.as_ref().map_or(0, |tuned| tuned.log.points.len()),
         }
     }
+}
+
+fn situation_met(run: &JudgedRun) -> Option<bool> {
+    let check = run.verdict.checks.iter().find(|check| check.kind == CheckKind::Situation)?;
+    Some(check.result == CheckResult::Shown)
 }
 
 /// Puts a run in numbers.
@@ -278,6 +337,7 @@ pub(super) fn summarise(suite: &Suite, cases: &Cases, summaries: Vec<CaseSummary
         templates: selection.templates.clone(),
         coverage: selection.coverage.clone(),
         models: models(&suite.options().cast, &summaries),
+        accounts: cases.accounts.as_ref().map(AccountSummary::of),
         cases: summaries,
     }
 }

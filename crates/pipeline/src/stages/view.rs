@@ -11,6 +11,7 @@ use crate::suite::names;
 use recrash_metrics::series;
 use recrash_model::diagnostic::{Diagnostic, Location, Severity};
 use recrash_report::{CaseRow, CaseView, RunRow, RunTrace, RunView, SuiteView, Thumbnail};
+use recrash_sim::Ego;
 
 /// The suite with all its rows.
 pub(super) fn suite(
@@ -34,6 +35,7 @@ pub(super) fn suite(
         sample: options.records == RecordSource::Sample,
         records: cases.records,
         selection: cases.selection,
+        accounts: cases.accounts,
         cases: rows,
         diagnostics: model_remarks(summary).into_iter().chain(remarks).collect(),
     }
@@ -64,8 +66,8 @@ fn model_remarks(summary: &Summary) -> Vec<Diagnostic> {
 pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) -> CaseRow {
     let id = &case.cluster.scenario_id;
     let narrative = case.narrative.as_ref().map(|(narrative, _)| narrative);
-    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0 || !case.edited.is_empty());
-    let last = moved.map(|tuned| &tuned.ran).or(case.first.as_ref());
+    let [before, after] = runs(case);
+    let last = after.or(before).map(|(ran, _)| ran);
     let mut row = CaseRow {
         scenario_id: id.clone(),
         template: case.cluster.template,
@@ -74,8 +76,9 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
         origin: narrative.map(|narrative| narrative.origin.clone()),
         told: narrative.and_then(|narrative| narrative.told_record().cloned()),
         narrative: narrative.map_or_else(String::new, |narrative| narrative.text.clone()),
-        before: case.first.as_ref().map(|ran| run_row(suite, ran, &names::scenario(id))),
-        after: moved.map(|tuned| run_row(suite, &tuned.ran, &names::tuned(id))),
+        account: case.account.clone(),
+        before: before.map(|(ran, file)| run_row(suite, ran, &file(id))),
+        after: after.map(|(ran, file)| run_row(suite, ran, &file(id))),
         triage: case.triage.clone(),
         refused: case.failure.as_ref().map(ToString::to_string),
         edited: case.edited.clone(),
@@ -83,6 +86,21 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
     };
     place(cases, position, &mut row);
     row
+}
+
+/// A run, and the scenario file it is of.
+type RunOf<'a> = (&'a Ran, fn(&str) -> String);
+
+/// The two runs of a case that the page shows: as designed and as tuned; or, in a suite that goes by accounts, the recorded
+/// driver's and the last one of the system under test.
+fn runs<'a>(case: &'a Case) -> [Option<RunOf<'a>>; 2] {
+    let first = case.first.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String));
+    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0 || !case.edited.is_empty());
+    let tuned = moved.map(|tuned| (&tuned.ran, names::tuned as fn(&str) -> String));
+    match case.account {
+        None => [first, tuned],
+        Some(_) => [case.recorded.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String)), tuned.or(first)],
+    }
 }
 
 /// Where a case's cluster and records stand in the suite.
@@ -93,19 +111,21 @@ pub(super) fn place(cases: &Cases, position: usize, row: &mut CaseRow) {
 }
 
 fn run_row(suite: &Suite, ran: &Ran, file: &str) -> RunRow {
-    RunRow { judgement: ran.run.judgement.clone(), rerun_command: rerun_command(suite, file) }
+    RunRow { judgement: ran.run.judgement.clone(), rerun_command: rerun_command(suite, file, &ran.run.ego) }
 }
 
 /// The heavy part of a case.
 pub(super) fn case(suite: &Suite, case: &Case) -> CaseView {
     let id = &case.cluster.scenario_id;
-    let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0 || !case.edited.is_empty());
+    let [before, after] = runs(case);
     CaseView {
         scenario_id: id.clone(),
         narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
-        drawing: case.first.as_ref().map(|ran| ran.scenario.drawing()).unwrap_or_default(),
-        before: case.first.as_ref().map(|ran| run_view(suite, ran, &names::scenario(id))),
-        after: moved.map(|tuned| run_view(suite, &tuned.ran, &names::tuned(id))),
+        account: case.account.clone(),
+        assumed: case.design.as_ref().map_or_else(Vec::new, |log| log.assumed.clone()),
+        drawing: before.or(after).map(|(ran, _)| ran.scenario.drawing()).unwrap_or_default(),
+        before: before.map(|(ran, file)| run_view(suite, ran, &file(id))),
+        after: after.map(|(ran, file)| run_view(suite, ran, &file(id))),
         triage: case.triage.clone(),
         reference: case.reference.as_ref().map(|run| RunTrace { run: run.clone(), series: series(&run.rollout) }),
         tune_log: case.tuned.as_ref().map(|tuned| tuned.log.clone()),
@@ -118,12 +138,12 @@ fn run_view(suite: &Suite, Ran { scenario, run }: &Ran, file: &str) -> RunView {
         scenario: scenario.draft().clone(),
         run: run.clone(),
         series: series(&run.rollout),
-        rerun_command: rerun_command(suite, file),
+        rerun_command: rerun_command(suite, file, &run.ego),
     }
 }
 
 /// The command that gives the run again, from the suite's folder.
-pub(super) fn rerun_command(suite: &Suite, file: &str) -> String {
+pub(super) fn rerun_command(suite: &Suite, file: &str, driver: &str) -> String {
     let (options, default) = (suite.options(), Options::default());
     let mut command = format!("recrash simulate {file}");
     if options.profile != default.profile {
@@ -133,5 +153,7 @@ pub(super) fn rerun_command(suite: &Suite, file: &str) -> String {
     if options.simulator != default.simulator {
         command += &format!(" --sim {}", options.simulator.name());
     }
-    command + &format!(" --ego {}", quoted(&named::ego_from_folder(suite.store().dir(), suite.ego())))
+    // The recorded driver is no system under test: no suite names it.
+    let ego = if driver == Ego::Recorded.name() { driver } else { suite.ego() };
+    command + &format!(" --ego {}", quoted(&named::ego_from_folder(suite.store().dir(), ego)))
 }

@@ -4,6 +4,8 @@ use super::Stage;
 
 /// Records.
 pub const RECORDS: &str = "1-records.json";
+/// Accounts of the incidents, in a suite that goes by accounts.
+pub const ACCOUNTS: &str = "1-accounts.json";
 /// Remarks on the records.
 pub const RECORD_REMARKS: &str = "1-records.diagnostics.json";
 /// Selection.
@@ -48,6 +50,10 @@ pub fn failure(stage: Stage, id: &str) -> String {
 pub fn narrative(id: &str) -> String {
     format!("3-narratives/{id}.json")
 }
+/// Account of an incident, in a suite that goes by accounts.
+pub fn account(id: &str) -> String {
+    format!("3-narratives/{id}.account.json")
+}
 /// Who wrote the narrative.
 pub fn narrative_log(id: &str) -> String {
     format!("3-narratives/{id}.agent.json")
@@ -59,6 +65,10 @@ pub fn scenario(id: &str) -> String {
 /// How it was designed.
 pub fn design_log(id: &str) -> String {
     format!("4-scenarios/{id}.design.json")
+}
+/// Judged run of the recorded driver.
+pub fn recorded_run(id: &str) -> String {
+    format!("5-runs/{id}.recorded.json")
 }
 /// Judged run of the scenario as designed.
 pub fn first_run(id: &str) -> String {

@@ -1,70 +1,13 @@
-//! Crash files into accounts: one an incident, and as a table.
+//! Accounts as a table of their main facts.
 
 use crate::error::PipelineError;
 use crate::files::output::Output;
 use crate::files::store::io;
-use crate::options::Options;
-use crate::reading::records::{RecordInput, TableFormat, read_filter};
-use recrash_model::Diagnostic;
+use crate::reading::accounts::coded;
+use crate::reading::records::TableFormat;
 use recrash_model::account::{Account, Fact, LeftRight, Origin, Party};
-use recrash_model::incident::Incident;
-use recrash_model::profile::Dedupe;
-use recrash_model::record::SourceFile;
 use recrash_records::{Column, RecordTable};
 use serde::Serialize;
-use serde_json::Value;
-
-/// Everything that crash files tell.
-#[derive(Debug, Clone)]
-pub struct Accounts {
-    /// Files read.
-    pub files: Vec<SourceFile>,
-    /// Rows that are crash reports.
-    pub reports: usize,
-    /// Incidents, by id.
-    pub incidents: Vec<Incident>,
-    /// Accounts of those incidents with a narrative that can be read, by id.
-    pub accounts: Vec<Account>,
-    /// Remarks on the files.
-    pub diagnostics: Vec<Diagnostic>,
-}
-
-/// One fact of an account that stands in the narrative.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ToldFact {
-    /// Path of the fact in the account: `sv.state`.
-    pub path: String,
-    /// Its value, in JSON.
-    pub value: String,
-    /// First byte in the narrative. [byte]
-    pub start: usize,
-    /// Byte behind. [byte]
-    pub end: usize,
-}
-
-/// Reads crash files, groups their rows into incidents, and reads each.
-///
-/// # Errors
-/// A file cannot be read or is no crash file, or the filter or the mapping cannot be used.
-pub fn read_accounts(options: &Options) -> Result<Accounts, PipelineError> {
-    let mut profile = options.system_profile()?;
-    // Incidents are made of every row.
-    profile.records.dedupe = Dedupe::None;
-    let filter = read_filter(options)?;
-    let read = RecordInput::read(options)?.ingest(&profile)?;
-    let mut incidents = recrash_reader::incidents(&read.value.records);
-    if let Some(filter) = filter {
-        incidents.retain(|incident| incident.leading().is_some_and(|report| filter.keeps(&report.record)));
-    }
-    let accounts = incidents.iter().filter_map(recrash_reader::account).collect();
-    Ok(Accounts {
-        files: read.value.files,
-        reports: read.value.records.len(),
-        incidents,
-        accounts,
-        diagnostics: read.diagnostics,
-    })
-}
 
 /// Writes accounts as a table of their main facts, a row an incident. Gives the number of rows.
 ///
@@ -123,15 +66,6 @@ fn table(accounts: &[Account]) -> RecordTable {
     RecordTable { columns, rows: accounts.len() }
 }
 
-/// A coded value as its format writes it.
-fn coded<T: Serialize>(value: &T) -> String {
-    match serde_json::to_value(value) {
-        Ok(Value::String(text)) => text,
-        Ok(other) => other.to_string(),
-        Err(_) => String::new(),
-    }
-}
-
 fn name<T: Serialize>(fact: &Option<Fact<T>>) -> Option<String> {
     fact.as_ref().map(|fact| coded(&fact.value))
 }
@@ -168,35 +102,5 @@ fn origin(origin: Origin) -> String {
         Origin::Parked { side } => sided("parked", side),
         Origin::Sidewalk { side } => sided("sidewalk", side),
         plain => coded(&plain),
-    }
-}
-
-/// Every fact of an account that stands in the narrative, in the order of the words.
-pub fn told_facts(account: &Account) -> Vec<ToldFact> {
-    let mut all = Vec::new();
-    if let Ok(value) = serde_json::to_value(account) {
-        collect("", &value, &mut all);
-    }
-    all.sort_by(|one, other| (one.start, one.end, &one.path).cmp(&(other.start, other.end, &other.path)));
-    all
-}
-
-fn collect(path: &str, value: &Value, all: &mut Vec<ToldFact>) {
-    match value {
-        Value::Object(fields) => {
-            let words = fields.get("source").and_then(|source| source.get("words"));
-            let place = words.and_then(|words| Some((words.get("start")?.as_u64()?, words.get("end")?.as_u64()?)));
-            if let Some((start, end)) = place {
-                let said = ["value", "act"].iter().find_map(|name| fields.get(*name)).map_or_else(String::new, coded);
-                let (start, end) = (usize::try_from(start).unwrap_or(0), usize::try_from(end).unwrap_or(0));
-                all.push(ToldFact { path: path.to_owned(), value: said, start, end });
-            }
-            for (name, inner) in fields {
-                let inner_path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-                collect(&inner_path, inner, all);
-            }
-        }
-        Value::Array(values) => values.iter().for_each(|inner| collect(path, inner, all)),
-        _ => {}
     }
 }

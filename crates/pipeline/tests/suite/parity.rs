@@ -44,7 +44,7 @@ fn a_folder_that_is_no_suite_and_a_suite_with_another_ego_are_refused() {
     assert!(error.to_string().contains("it holds no suite.json"), "{error}");
 
     let dir = folder.path().join("suite");
-    let options = Options { ego: Some("idm".into()), budget: 1, tune_budget: 1, ..Options::default() };
+    let options = Options { ego: Some("idm".into()), budget: Some(1), tune_budget: 1, ..Options::default() };
     suite(&dir, options);
     let source = ParitySource::Suite { dir };
     let error = parity(&request(source, "python3".into(), folder.path()), &NoProgress).expect_err("another ego");
@@ -112,7 +112,7 @@ fn failures_of_a_suite_are_confirmed() {
     let Some(python) = metadrive() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let dir = folder.path().join("suite");
-    suite(&dir, Options { budget: 6, tune_budget: 60, ..Options::default() });
+    suite(&dir, Options { budget: Some(6), tune_budget: 60, ..Options::default() });
     let out = folder.path().join("parity");
     let result = parity(&request(ParitySource::Suite { dir }, python, &out), &NoProgress).expect("MetaDrive runs");
     println!("{}", shown(&result));

@@ -33,6 +33,7 @@ pub fn record(id: &str, version: u32, narrative: &str) -> CrashRecord {
         narrative: narrative.to_owned(),
         redaction: if narrative.is_empty() { Redaction::Empty } else { Redaction::Open },
         provenance: Provenance { file: "made.csv".to_owned(), edition: Edition::Second, row: 1 },
+        reading: None,
     }
 }
 

@@ -3,16 +3,17 @@
 use crate::stories::shown;
 use recrash_model::account::{Account, ContactState, told};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::metrics::Answer;
 use recrash_model::scenario::{Deed, Leg, Place, ScenarioDraft};
 use recrash_model::zones::ContactZone;
-use recrash_reconstruct::{Shown, held_against};
+use recrash_reconstruct::held_against;
 use recrash_sim::{Ego, simulate};
 
 /// Whether the sabotaged draft is refused, or at least one told fact is not shown.
 fn is_caught(account: &Account, draft: ScenarioDraft) -> bool {
     let Ok(checked) = recrash_roads::check(draft) else { return true };
-    let facts = held_against(account, &simulate(&checked.value, Ego::Recorded)).expect("it was staged");
-    !facts.iter().all(|fact: &Shown| fact.shown)
+    let verdict = held_against(account, &simulate(&checked.value, Ego::Recorded)).expect("it was staged");
+    verdict.faithful() != Answer::Yes
 }
 
 /// Applies a sabotage to every reconstruction that it can be applied to; all of them are caught, and there are some.

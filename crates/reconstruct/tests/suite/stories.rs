@@ -35,7 +35,7 @@ fn most_mini_narratives_are_shown_as_told() {
     let share = shown.len() as f64 / all.len() as f64;
     assert!(share >= 0.75, "{} of {}", shown.len(), all.len());
     for (name, _, made) in &shown {
-        assert!(made.facts.len() >= 3, "{name}: {:?}", made.facts);
+        assert!(made.verdict.checks.len() >= 3, "{name}: {:?}", made.verdict);
         assert!(made.rollout.ego == "recorded");
     }
 }

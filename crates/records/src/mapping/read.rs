@@ -272,6 +272,7 @@ impl MappedRow<'_> {
             narrative,
             redaction,
             provenance: Provenance { file: file.to_owned(), edition: Edition::Mapped, row: self.number },
+            reading: None,
         };
         Some(Draft { record, not_a_crash: false, operator_reports: true })
     }

@@ -100,6 +100,7 @@ fn record(index: usize, template: Template, seed: Seed) -> CrashRecord {
         narrative,
         redaction: Redaction::Open,
         provenance: Provenance { file: "made-up.csv".into(), edition: Edition::Second, row: 1 + index as u64 },
+        reading: None,
     }
 }
 
@@ -202,7 +203,7 @@ fn profile() -> SystemProfile {
         name: "paper".into(),
         description: "3 road types, 3 x 3 movements, work zone or not; MetaDrive's IDM as the system under test".into(),
         ego: "metadrive-idm".into(),
-        records: RecordRules { dedupe: Dedupe::None },
+        records: RecordRules { dedupe: Dedupe::None, tells: Tells::Templates },
         expresses: Expressible {
             road_types: vec![RoadType::Intersection, RoadType::Highway, RoadType::TrafficCircle],
             sv_movements: Movement::PAPER.to_vec(),
@@ -428,6 +429,7 @@ fn row(case: &CaseView, cluster: &Cluster, position: usize) -> CaseRow {
     records.truncate(4);
     let narrative = case.narrative.as_ref();
     CaseRow {
+        account: None,
         scenario_id: case.scenario_id.clone(),
         template: cluster.template,
         cluster: Some(position),
@@ -486,6 +488,7 @@ pub fn demo_of(count: usize) -> Demo {
     }
     let usable = records.len();
     let suite = SuiteView {
+        accounts: None,
         title: "demo suite".into(),
         generated_by: "recrash 0.1.0".into(),
         generated_at: None,
@@ -539,6 +542,8 @@ fn driven_case(cluster: &Cluster, records: &[CrashRecord]) -> CaseView {
     let failed = after.as_ref().or(before.as_ref()).is_some_and(|run| run.failed());
     let careful = failed.then(|| run(cluster, &plan, designed + 3.0, "6-tuned"));
     CaseView {
+        account: None,
+        assumed: Vec::new(),
         scenario_id: cluster.scenario_id.clone(),
         narrative: Some(narrative(cluster, &records[cluster.pick_index], records, &plan)),
         drawing: plan.drawing(),

@@ -48,8 +48,9 @@ fn inside(case: Case) -> Markup {
         @if let Some(why) = &view.refused {
             p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
         }
-        @if view.last_run().is_some() {
-            (stage(["As designed", "Tuned"], [view.before.is_some(), view.after.is_some()], view.reference.is_some()))
+        @if view.before.is_some() || view.after.is_some() {
+            @let names = view.names();
+            (stage([&words::capital(names.before), &words::capital(names.after)], [view.before.is_some(), view.after.is_some()], view.reference.is_some()))
             (numbers(view))
         }
         .tabs {
@@ -74,12 +75,14 @@ fn head(case: Case, anchor: &str) -> Markup {
             .chips {
                 (parts::result_chip(Result::of(last.map(|run| &run.run.judgement))))
                 @if let Some(triage) = &view.triage { (parts::class_chip(triage.class)) }
-                (parts::faithful_chip(last.map(|run| &run.run.judgement), row.origin.as_ref()))
+                (parts::faithful_chip(row.telling_run().map(|run| &run.judgement), row.origin.as_ref()))
+                @match row.situation_met() { Some(true) => span.chip.none { "situation met" }, Some(false) => span.chip.odd { "situation not met" }, None => "" }
                 @for kind in last.map(|run| run.finding_kinds()).unwrap_or_default() { (parts::finding_chip(kind)) }
                 (parts::origin_chip(row.origin.as_ref(), row.told.as_ref()))
                 (parts::edited_chip(&row.edited))
             }
             p.case-what {
+                @if let Some(account) = &row.account { b { (account.crash_type.label()) } ", incident " span.mono { (words::clean(&account.incident, 40)) } " with " (words::count(account.reports, "report")) ", " }
                 b { (words::template(&row.template)) }
                 @if let Some(cluster) = case.context.cluster { ", cluster " (cluster.number) " of " (words::count(cluster.members.len(), "record")) }
                 ". Tells " (words::clean(&words::provenance(row.origin.as_ref(), row.told.as_ref()), 400)) "."

@@ -13,10 +13,13 @@ pub fn checks(case: Case) -> Markup {
     html! {
         p.muted { "What record and template say, against what was driven. It is computed from the paths, never from the scenario's labels." }
         @if runs.is_empty() { p.empty { "It was not run." } }
+        @if !case.view.assumed.is_empty() {
+            p { "Nobody tells, and so chosen: " (case.view.assumed.iter().map(|assumed| words::clean(assumed, 200).into_owned()).collect::<Vec<_>>().join("; ")) "." }
+        }
         .columns {
             @for (name, run) in &runs {
                 div {
-                    h2 { (words::capital(name)) " " (parts::faithful_chip(Some(&run.run.judgement), case.row.origin.as_ref())) }
+                    h2 { (words::capital(name)) @if is_held(case, name) { " " (parts::faithful_chip(Some(&run.run.judgement), case.row.origin.as_ref())) } }
                     .table-wrap { table.plain {
                         thead { tr { th scope="col" { "Check" } th scope="col" { "Expected" } th scope="col" { "Observed" } th scope="col" { "Result" } } }
                         tbody { @for check in &run.verdict.checks { (check_row(check)) } }
@@ -27,6 +30,11 @@ pub fn checks(case: Case) -> Markup {
             }
         }
     }
+}
+
+/// Whether this run is held against the record; what the system under test does is its own.
+fn is_held(case: Case, name: &str) -> bool {
+    case.row.account.is_none() || name == case.row.names().before
 }
 
 fn check_row(check: &Check) -> Markup {

@@ -34,7 +34,7 @@ pub fn coverage(context: &Context) -> Markup {
             }
         }
         p.muted { "Distances have no unit: they are lengths in the space the clusters were made in. Smaller is better." }
-        (grids(context))
+        @if context.suite.accounts.is_none() { (grids(context)) }
         .two {
             (holes("Holes that records show: templates with records and no pick", &c.holes_observed, true))
             (holes("Holes no record shows: templates the profile can express and no record has", &c.holes_possible, false))

@@ -15,6 +15,7 @@ mod records;
 mod scenario;
 mod story;
 mod triage;
+mod types;
 mod zones;
 
 use crate::search::ToldRecords;

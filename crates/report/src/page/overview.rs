@@ -1,12 +1,13 @@
 //! The first view: what this is, the headline numbers, and the table of scenarios.
 
 use super::parts::{self, missing};
-use super::{Context, icon};
+use super::{Context, icon, types};
 use crate::summary::Result;
 use crate::view::{CaseRow, RunRow};
 use crate::words::{self, fixed, thousands};
 use crate::{anchor, search, thumbnail};
 use maud::{Markup, html};
+use recrash_model::account::{AccountSet, TypeShare};
 use recrash_model::narrative::Origin;
 use std::fmt::Write;
 
@@ -17,7 +18,7 @@ pub fn section(context: &Context) -> Markup {
         section.page.current #overview aria-labelledby="overview-title" {
             .page-head {
                 h1 #overview-title { (words::clean(&suite.title, 200)) }
-                p.lead { (sentence(context)) }
+                p.lead { @match &suite.accounts { Some(accounts) => (account_sentence(context, accounts)), None => (sentence(context)) } }
             }
             @if suite.sample {
                 p.banner role="note" {
@@ -25,10 +26,11 @@ pub fn section(context: &Context) -> Markup {
                     span { strong { "Built-in sample. " } "These records were written for recrash, with the paper's template counts. No real crash is shown. Give " code { "--records FILE" } " to use NHTSA's file." }
                 }
             }
-            (tiles(context))
+            @match &suite.accounts { Some(accounts) => (account_tiles(context, accounts)), None => (tiles(context)) }
+            @if let Some(accounts) = &suite.accounts { (types::types(context, accounts)) }
             h2 { "Scenarios" }
             noscript { p.banner { "A scenario opens with scripts only. This table, results.csv and the scenario files of the suite need none." } }
-            @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls()) (table(context)) }
+            @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls(suite.accounts.is_some())) (table(context)) }
             .two {
                 div { h3 { "Make this suite again" } (parts::command(&suite.command)) }
                 div {
@@ -60,20 +62,90 @@ fn sentence(context: &Context) -> Markup {
     }
 }
 
+/// The same of a suite that goes by accounts.
+fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
+    let (suite, s) = (context.suite, &context.summary);
+    html! {
+        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with every checked fact shown; "
+        @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "all of them are here. " }
+        b { (words::clean(&suite.ego, 60)) } " came into the situation of its record in " b { (thousands(s.met)) " of the " (thousands(s.ran)) } " that it drove, and fails "
+        b { (thousands(s.failed_met)) " of those " (thousands(s.met)) }
+        @if s.failed_after > s.failed_met { " and " (thousands(s.failed_after - s.failed_met)) " more" }
+        @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
+        ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
+        "\u{a0}m, leaving the road, or getting stuck."
+    }
+}
+
+fn share(part: usize, whole: usize) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
+fn tile(name: &str, value: Markup, note: Markup, bar: Option<(f64, &str)>) -> Markup {
+    html! {
+        .tile {
+            dt { (name) }
+            dd.value { (value) }
+            @if let Some((share, class)) = bar { dd.tile-bar { (parts::bar(share, class)) } }
+            dd.note { (note) }
+        }
+    }
+}
+
+fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
+    let s = &context.summary;
+    let types = |of: fn(&TypeShare) -> bool| {
+        accounts.types.iter().filter(|share| share.crash_type.is_some() && of(share)).count()
+    };
+    html! {
+        dl.tiles {
+            (tile(
+                "Incidents",
+                html! { (thousands(s.rows)) " \u{2192} " (thousands(accounts.incidents)) },
+                html! { "rows read, incidents; " (thousands(accounts.readable)) " with a narrative that can be read" },
+                Some((share(accounts.readable, accounts.incidents), "plain")),
+            ))
+            (tile(
+                "Own crash told",
+                html! { (thousands(accounts.told.len())) span.of { " of " (thousands(accounts.readable)) } },
+                html! { "readable incidents, every checked fact shown; invented: 0" },
+                Some((share(accounts.told.len(), accounts.readable), "good")),
+            ))
+            (tile(
+                "Crash types told",
+                html! { (types(|share| share.told > 0)) span.of { " of " (types(|_| true)) } },
+                html! { "that occur" },
+                None,
+            ))
+            (tile(
+                "Situation met",
+                html! { (thousands(s.met)) span.of { " of " (thousands(s.ran)) } },
+                html! { "driven by the system under test" @if s.parked > 0 { "; " (thousands(s.parked)) " parked, not tested" } },
+                Some((share(s.met, s.ran), "plain")),
+            ))
+            (tile(
+                "Ego fails",
+                html! { (thousands(s.failed_met)) span.of { " of " (thousands(s.met)) } },
+                html! {
+                    "where the situation was met"
+                    @if !s.classes.is_empty() { ": " }
+                    @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
+                },
+                Some((share(s.failed_met, s.met), "bad")),
+            ))
+            (tile(
+                "Median least gap",
+                html! { (s.median_after_m.and_then(|value| fixed(value, 2)).unwrap_or_else(|| "\u{2013}".to_owned())) span.of { "\u{a0}m" } },
+                html! { "of the system under test" },
+                None,
+            ))
+        }
+    }
+}
+
 fn tiles(context: &Context) -> Markup {
     let (s, coverage) = (&context.summary, &context.suite.selection.coverage);
     let gap = |value: Option<f64>| value.and_then(|value| fixed(value, 2)).unwrap_or_else(|| "\u{2013}".to_owned());
-    let share = |part: usize, whole: usize| if whole == 0 { 0.0 } else { part as f64 / whole as f64 };
-    let tile = |name: &str, value: Markup, note: Markup, bar: Option<(f64, &str)>| {
-        html! {
-            .tile {
-                dt { (name) }
-                dd.value { (value) }
-                @if let Some((share, class)) = bar { dd.tile-bar { (parts::bar(share, class)) } }
-                dd.note { (note) }
-            }
-        }
-    };
     let arrow = || html! { " " span.arrow { "\u{2192}" } " " };
     html! {
         dl.tiles {
@@ -142,8 +214,8 @@ const SORTS: [(&str, &str); 10] = [
     ("faithful", "True to its record"),
 ];
 
-fn controls() -> Markup {
-    let filters = [
+fn controls(accounts: bool) -> Markup {
+    let by_template = [
         ("all", "All"),
         ("failed", "Fails"),
         ("passed", "Passes"),
@@ -155,6 +227,18 @@ fn controls() -> Markup {
         ("refused", "Refused"),
         ("edited", "Edited"),
     ];
+    let by_account = [
+        ("all", "All"),
+        ("failed", "Fails"),
+        ("passed", "Passes"),
+        ("met", "Situation met"),
+        ("unmet", "Situation not met"),
+        ("parked", "Parked"),
+        ("unfaithful", "Not as told"),
+        ("refused", "Refused"),
+        ("edited", "Edited"),
+    ];
+    let filters: &[(&str, &str)] = if accounts { &by_account } else { &by_template };
     html! {
         .controls {
             label { span.hidden-text { "Search scenarios" } input #case-search type="search" placeholder="Search id, record, operator, city, kind, words  ( / )"; }
@@ -162,6 +246,7 @@ fn controls() -> Markup {
             @for (key, name) in [("operator", "Operator"), ("city", "City"), ("kind", "Partner"), ("injury", "Injury")] {
                 label.field { span { (name) } select data-only=(key) { option value="" { "any" } } }
             }
+            @if accounts { label.field { span { "Crash type" } select data-only="type" { option value="" { "any" } } } }
             label.field { span { "Sort by" } select #case-sort { @for (key, name) in SORTS { option value=(key) { (name) } } } }
             button.small #case-direction type="button" aria-pressed="false" title="Turn the order round" { "\u{2191}" span.hidden-text { " turn the order round" } }
             span #case-count.muted role="status" {}
@@ -204,13 +289,14 @@ fn table(context: &Context) -> Markup {
 fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
     let last = case.last_run();
     let anchor = anchor::anchor(&case.scenario_id);
-    let not_run = if case.refused.is_some() { "refused" } else { "not run" };
+    let not_run = if case.refused.is_some() { "refused" } else { words::not_run(case) };
     let contact = last.and_then(|run| run.metrics.contact.as_ref());
     html! {
         tr data-row=(position) {
             td.scene { (scene(case)) }
             th.what scope="row" {
                 a.case-link href={ "#" (anchor) } { (words::clean(&case.scenario_id, 80)) }
+                @if let Some(account) = &case.account { div { (account.crash_type.label()) @if let Some(role) = account.role { ", ego " (words::name(&role)) } } }
                 .muted { (words::template(&case.template)) }
                 @if let Some(why) = &case.refused { .refused-why { (icon::cross()) "refused: " (words::clean(why, 200)) } }
                 (parts::edited_chip(&case.edited))
@@ -218,8 +304,10 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
             td.crash { (crash(context, position, case)) }
             td.gap {
                 @if last.is_none() { (missing(not_run)) } @else {
-                    (metres(case.before.as_ref()))
-                    @if let Some(after) = &case.after { " \u{2192} " b { (metres(Some(after))) } }
+                    @if case.account.is_some() { b { (metres(last)) } } @else {
+                        (metres(case.before.as_ref()))
+                        @if let Some(after) = &case.after { " \u{2192} " b { (metres(Some(after))) } }
+                    }
                 }
             }
             td.impact {
@@ -233,7 +321,10 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
             }
             td.injury { @match context.told.at(position) { Some(record) => (search::injury(record)), None => (missing("no record is told")) } }
             td.ego { (ego(case, not_run)) }
-            td.true { (parts::faithful_chip(last.map(|run| &run.judgement), case.origin.as_ref())) }
+            td.true {
+                (parts::faithful_chip(case.telling_run().map(|run| &run.judgement), case.origin.as_ref()))
+                @if case.situation_met() == Some(false) { " " span.chip.odd { "situation not met" } }
+            }
         }
     }
 }
@@ -265,7 +356,8 @@ fn crash(context: &Context, position: usize, case: &CaseRow) -> Markup {
 fn ego(case: &CaseRow, not_run: &str) -> Markup {
     let Some(last) = case.last_run() else { return missing(not_run) };
     let result = |run: &RunRow| Result::of(Some(&run.judgement));
-    let first = case.before.as_ref().filter(|first| case.after.is_some() && result(first) != result(last));
+    let designed = case.before.as_ref().filter(|_| case.account.is_none());
+    let first = designed.filter(|first| case.after.is_some() && result(first) != result(last));
     html! {
         @if let Some(first) = first { span.muted { (result(first).label()) " \u{2192}" } " " }
         (parts::result_chip(result(last)))

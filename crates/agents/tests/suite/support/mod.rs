@@ -42,6 +42,7 @@ pub fn record(template: Template, narrative: &str) -> CrashRecord {
         narrative: narrative.into(),
         redaction: Redaction::Open,
         provenance: Provenance { file: "test.csv".into(), edition: Edition::Second, row: 1 },
+        reading: None,
     }
 }
 

@@ -47,6 +47,7 @@ pub fn record_set(records: &[(Template, &str)]) -> RecordSet {
             narrative: (*narrative).to_owned(),
             redaction: Redaction::Open,
             provenance: Provenance { file: "t.csv".to_owned(), edition: Edition::Second, row: i as u64 + 1 },
+            reading: None,
         })
         .collect();
     let usable = (0..records.len()).collect();

@@ -1,0 +1,208 @@
+//! Accounts retold: a reconstruction each, and what becomes of every incident of crash files.
+
+use crate::progress::{Progress, ProgressEvent};
+use crate::reading::accounts::told_facts;
+use rayon::prelude::*;
+use recrash_model::account::{
+    ACCOUNTS_FORMAT, Account, AccountSet, CrashType, FactShare, TypeShare, Untold, UntoldIncident, told,
+};
+use recrash_model::incident::Incident;
+use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::record::{CrashRecord, FunnelStep, Reading, RecordSet, Redaction, Reject, RejectReason};
+use recrash_reconstruct::{Reconstruction, reconstruct, told_kinds};
+use recrash_records::Filter;
+use std::collections::BTreeMap;
+
+/// Name of the work in progress bars.
+const STAGE: &str = "reconstruct";
+
+/// What became of one account.
+pub struct Retold {
+    /// Position in the list of accounts.
+    pub account: usize,
+    /// Its scenario, or why there is none.
+    pub result: Result<Reconstruction, Untold>,
+}
+
+impl Retold {
+    /// Why its crash is not told; nothing where every told fact is shown.
+    pub fn untold(&self) -> Option<Untold> {
+        match &self.result {
+            Ok(made) => (!made.is_true()).then_some(Untold::NotShown),
+            Err(why) => Some(*why),
+        }
+    }
+
+    /// The same, with the fact that is not shown.
+    pub fn reason(&self) -> Option<String> {
+        match &self.result {
+            Ok(made) => {
+                let missed = made.verdict.failures().next()?;
+                Some(format!("{} is not shown: {}, not {}", missed.kind.label(), missed.observed, missed.expected))
+            }
+            Err(reason) => Some(reason.label().to_owned()),
+        }
+    }
+}
+
+/// Reconstructs every account, on all threads, in the order given.
+pub fn reconstruct_accounts(accounts: &[Account], progress: &dyn Progress) -> Vec<Retold> {
+    progress.event(ProgressEvent::Started { stage: STAGE, units: accounts.len() });
+    let retell = |(position, account): (usize, &Account)| {
+        let retold = Retold { account: position, result: reconstruct(account) };
+        progress.event(ProgressEvent::Advanced { stage: STAGE, unit: &account.incident, skipped: false });
+        retold
+    };
+    let all = accounts.par_iter().enumerate().map(retell).collect();
+    progress.event(ProgressEvent::Finished { stage: STAGE });
+    all
+}
+
+/// The share of told facts that are shown, by kind, over all accounts.
+pub fn fact_shares(accounts: &[Account], retold: &[Retold]) -> Vec<FactShare> {
+    let told_by: Vec<Vec<CheckKind>> = accounts.par_iter().map(told_kinds).collect();
+    let share = |fact: CheckKind| {
+        let tells = |each: &&Retold| told_by[each.account].contains(&fact);
+        let shows = |each: &&Retold| {
+            let checks = each.result.as_ref().map_or(&[][..], |made| &made.verdict.checks);
+            checks.iter().any(|check| check.kind == fact && check.result == CheckResult::Shown)
+        };
+        FactShare {
+            fact,
+            told: retold.iter().filter(tells).count(),
+            shown: retold.iter().filter(tells).filter(shows).count(),
+        }
+    };
+    CheckKind::OF_ACCOUNTS.into_iter().map(share).collect()
+}
+
+/// How much of every type that occurs is told.
+pub fn type_shares(accounts: &[Account], retold: &[Retold]) -> Vec<TypeShare> {
+    let facts: Vec<usize> = accounts.par_iter().map(|account| told_facts(account).len()).collect();
+    let share = |crash_type: Option<CrashType>| {
+        let of: Vec<&Retold> =
+            retold.iter().filter(|each| told(&accounts[each.account].crash_type) == crash_type).collect();
+        let words: usize = of.iter().map(|each| accounts[each.account].words as usize).sum();
+        let facts: usize = of.iter().map(|each| facts[each.account]).sum();
+        TypeShare {
+            crash_type,
+            incidents: of.len(),
+            told: of.iter().filter(|each| each.untold().is_none()).count(),
+            facts_per_100_words: 100.0 * facts as f64 / words.max(1) as f64,
+        }
+    };
+    let all = CrashType::ALL.into_iter().map(Some).chain([None]).map(share);
+    all.filter(|share| share.incidents > 0).collect()
+}
+
+/// Where a record stands: file, row and narrative tell it apart from every other.
+type Place<'a> = (&'a str, u64);
+
+fn place(record: &CrashRecord) -> Place<'_> {
+    (&record.provenance.file, record.provenance.row)
+}
+
+/// Groups reports into incidents, reads and reconstructs each, and leaves those usable whose every told fact is shown: the
+/// report that speaks stands for its incident.
+pub(crate) fn tell(mut set: RecordSet, filter: Option<&Filter>, progress: &dyn Progress) -> (RecordSet, AccountSet) {
+    let incidents = recrash_reader::incidents(&set.records);
+    let leading: BTreeMap<Place, &Incident> =
+        incidents.iter().filter_map(|incident| Some((place(&incident.leading()?.record), incident))).collect();
+    let kept = |incident: &&Incident| {
+        incident.leading().is_some_and(|report| filter.is_none_or(|filter| filter.keeps(&report.record)))
+    };
+    let read: Vec<&Incident> = incidents.iter().filter(kept).collect();
+    let accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
+    let retold = reconstruct_accounts(&accounts, progress);
+    let of_incident: BTreeMap<&str, (&Account, &Retold)> =
+        accounts.iter().zip(&retold).map(|(account, retold)| (account.incident.as_str(), (account, retold))).collect();
+
+    // What becomes of each report that is left: merged, filtered out, unreadable, untold, or told.
+    type Fate = Result<Reading, RejectReason>;
+    let fate = |record: &CrashRecord| -> Fate {
+        let incident = leading.get(&place(record)).ok_or(RejectReason::Merged)?;
+        if !kept(incident) {
+            return Err(RejectReason::FilteredOut);
+        }
+        let Some((account, retold)) = of_incident.get(incident.id.as_str()) else {
+            return Err(match record.redaction {
+                Redaction::Redacted => RejectReason::RedactedNarrative,
+                Redaction::Empty => RejectReason::EmptyNarrative,
+                Redaction::Open => RejectReason::Untold(Untold::NoAccount),
+            });
+        };
+        match (retold.untold(), told(&account.crash_type)) {
+            (None, Some(crash_type)) => Ok(Reading {
+                incident: incident.id.clone(),
+                reports: account.reports.len(),
+                crash_type,
+                role: told(&account.role),
+                template: account.template(),
+            }),
+            (why, _) => Err(RejectReason::Untold(why.unwrap_or(Untold::NoAccount))),
+        }
+    };
+    let fates: Vec<Fate> = set.usable.iter().map(|&at| fate(&set.records[at])).collect();
+    let shares = (type_shares(&accounts, &retold), fact_shares(&accounts, &retold));
+    let untold = |(account, retold): (&Account, &Retold)| {
+        Some(UntoldIncident {
+            incident: account.incident.clone(),
+            report: account.report.clone(),
+            crash_type: told(&account.crash_type),
+            why: retold.untold()?,
+            reason: retold.reason().unwrap_or_default(),
+        })
+    };
+    let untold = accounts.iter().zip(&retold).filter_map(untold).collect();
+    let is_told: Vec<bool> = retold.iter().map(|retold| retold.untold().is_none()).collect();
+    let (all, readable) = (incidents.len(), accounts.len());
+    let mut is_told = is_told.into_iter();
+    let mut told_accounts = accounts;
+    told_accounts.retain(|_| is_told.next().unwrap_or(false));
+
+    let usable = std::mem::take(&mut set.usable);
+    for (&at, fate) in usable.iter().zip(&fates) {
+        match fate {
+            Ok(reading) => {
+                set.records[at].reading = Some(reading.clone());
+                set.usable.push(at);
+            }
+            Err(reason) => {
+                let record = &set.records[at];
+                let (file, row) = (record.provenance.file.clone(), record.provenance.row);
+                set.rejects.push(Reject { file, row, record: Some(record.id.clone()), reason: *reason });
+            }
+        }
+    }
+    let lost_at = |step: fn(&RejectReason) -> bool| {
+        let mut counts: BTreeMap<RejectReason, usize> = BTreeMap::new();
+        for reason in fates.iter().filter_map(|fate| fate.as_ref().err()).filter(|reason| step(reason)) {
+            *counts.entry(*reason).or_default() += 1;
+        }
+        counts.into_iter().collect::<Vec<_>>()
+    };
+    let mut remaining = usable.len();
+    let mut step = |name: &str, lost: Vec<(RejectReason, usize)>| {
+        remaining -= lost.iter().map(|(_, count)| count).sum::<usize>();
+        set.funnel.push(FunnelStep { name: name.to_owned(), remaining, lost });
+    };
+    step("one report an incident", lost_at(|reason| *reason == RejectReason::Merged));
+    if let Some(filter) = filter {
+        step(&format!("where {}", filter.text()), lost_at(|reason| *reason == RejectReason::FilteredOut));
+    }
+    let unreadable =
+        |reason: &RejectReason| matches!(reason, RejectReason::RedactedNarrative | RejectReason::EmptyNarrative);
+    step("narrative readable", lost_at(unreadable));
+    step("told as it happened", lost_at(|reason| matches!(reason, RejectReason::Untold(_))));
+
+    let accounts = AccountSet {
+        format: ACCOUNTS_FORMAT.to_owned(),
+        incidents: all,
+        readable,
+        types: shares.0,
+        facts: shares.1,
+        told: told_accounts,
+        untold,
+    };
+    (set, accounts)
+}

@@ -1,0 +1,170 @@
+//! The stages of a suite that goes by accounts: each case is the crash of one incident, reconstructed with the recorded
+//! driver; the system under test takes over before the contact.
+
+use super::cases::{case_seed, of_case, scenario, text_of};
+use super::{Bench, CaseStage};
+use crate::error::PipelineError;
+use crate::files::store::{to_compact_json, to_json};
+use crate::models::cast::AgentLog;
+use crate::simulators::{Simulator, built_in};
+use crate::stages::design::{DesignAttempt, DesignLog};
+use crate::suite::names;
+use crate::suite::{Files, Stage, Suite};
+use recrash_lab::{judge_by, run_scenario, situation, triage};
+use recrash_model::account::{Account, Untold};
+use recrash_model::metrics::Verdict;
+use recrash_model::run::JudgedRun;
+use recrash_model::selection::Cluster;
+use recrash_model::triage::TRIAGE_FORMAT;
+use recrash_model::tuning::{Score, TUNE_FORMAT, TuneLog, TunePoint};
+use recrash_reconstruct::{held_against, reconstruct};
+use recrash_roads::Scenario;
+use recrash_sim::{Ego, Native};
+
+/// The stages, in order.
+pub(super) const DECLARED: [CaseStage; 5] = [
+    CaseStage {
+        stage: Stage::Narrate,
+        reads: |_| Vec::new(),
+        editable: |id| vec![names::account(id)],
+        decides: |_| Ok(Vec::new()),
+        runs_ego: false,
+        work: narrate,
+    },
+    CaseStage {
+        stage: Stage::Design,
+        reads: |id| vec![(Stage::Narrate, names::account(id))],
+        editable: |id| vec![names::scenario(id)],
+        decides: |_| Ok(Vec::new()),
+        runs_ego: false,
+        work: design,
+    },
+    CaseStage {
+        stage: Stage::Simulate,
+        reads: |id| vec![(Stage::Narrate, names::account(id)), (Stage::Design, names::scenario(id))],
+        editable: |_| Vec::new(),
+        decides: |_| Ok(Vec::new()),
+        runs_ego: true,
+        work: simulate,
+    },
+    CaseStage {
+        stage: Stage::Tune,
+        reads: |id| vec![(Stage::Design, names::scenario(id)), (Stage::Simulate, names::recorded_run(id))],
+        editable: |id| vec![names::tuned(id)],
+        decides: |suite| Ok(vec![text_of(&suite.options().seed)]),
+        runs_ego: false,
+        work: tune,
+    },
+    CaseStage {
+        stage: Stage::Triage,
+        reads: |id| vec![(Stage::Simulate, names::recorded_run(id)), (Stage::Tune, names::tuned(id))],
+        editable: |_| Vec::new(),
+        decides: |_| Ok(vec![TRIAGE_FORMAT.to_owned()]),
+        runs_ego: true,
+        work: judge,
+    },
+];
+
+/// The account of a case, as it stands in its file: a person may have edited it.
+pub(super) fn account(suite: &Suite, id: &str) -> Result<Account, PipelineError> {
+    suite.store().read_json(&names::account(id)).map_err(|error| of_case(id, error))
+}
+
+fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let id = &cluster.scenario_id;
+    let account = bench.cases.account(cluster).ok_or_else(|| bench.suite.stale(Stage::Records))?;
+    Ok(vec![(names::account(id), to_json(account)), (names::narrative_log(id), to_json(&AgentLog::rules()))])
+}
+
+fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let id = &cluster.scenario_id;
+    let refused = |why: String| PipelineError::scenario(id, why);
+    let made = reconstruct(&account(bench.suite, id)?).map_err(|why| refused(why.label().to_owned()))?;
+    if let Some(missed) = made.verdict.failures().next() {
+        let (what, seen, told) = (missed.kind.label(), &missed.observed, &missed.expected);
+        return Err(refused(format!("{}: {what} is {seen}, not {told}", Untold::NotShown.label())));
+    }
+    let mut draft = made.draft;
+    draft.id.clone_from(id);
+    draft.source.template = Some(cluster.template);
+    draft.source.seed = case_seed(bench.suite, cluster).0;
+    let attempt = DesignAttempt { draft: draft.clone(), diagnostics: Vec::new(), unfaithful: Some(Vec::new()) };
+    let log = DesignLog { assumed: made.assumed, ..DesignLog::by_rules(attempt) };
+    Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
+}
+
+/// The recorded driver's run, which is held against the account; and the run of the system under test.
+fn simulate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let (suite, id) = (bench.suite, &cluster.scenario_id);
+    let scenario = scenario(suite, id, &names::scenario(id))?;
+    let recorded = recorded_run(suite, id, &scenario)?;
+    let mut files = vec![(names::recorded_run(id), to_compact_json(&recorded))];
+    if is_tested(&scenario) {
+        let run = tested_run(suite, &scenario, bench.simulator(), &recorded)?;
+        files.push((names::first_run(id), to_compact_json(&run)));
+    }
+    Ok(files)
+}
+
+/// Whether there is something to test: who was parked has nothing to answer for.
+fn is_tested(scenario: &Scenario) -> bool {
+    let ego = &scenario.draft().ego;
+    ego.recorded.is_none() || ego.handover_s.is_some()
+}
+
+fn recorded_run(suite: &Suite, id: &str, scenario: &Scenario) -> Result<JudgedRun, PipelineError> {
+    let rollout = Native::new(Ego::Recorded).run(scenario)?;
+    let verdict = held_against(&account(suite, id)?, &rollout)
+        .map_err(|why| PipelineError::scenario(id, format!("the account cannot be staged: {why}")))?;
+    Ok(judge_by(scenario, rollout, suite.profile(), verdict))
+}
+
+fn tested_run(
+    suite: &Suite,
+    scenario: &Scenario,
+    simulator: &dyn Simulator,
+    recorded: &JudgedRun,
+) -> Result<JudgedRun, PipelineError> {
+    let mut run = run_scenario(scenario, simulator, suite.profile(), None)?;
+    let from_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
+    run.judgement.verdict = Verdict { checks: vec![situation(&run, recorded, from_s)] };
+    Ok(run)
+}
+
+/// What the account leaves open is searched; of a case that is not tested nothing is.
+fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let (suite, id) = (bench.suite, &cluster.scenario_id);
+    let scenario = scenario(suite, id, &names::scenario(id))?;
+    let score = Score { objective: 0.0, min_gap: None, findings: Vec::new(), failed: false, refused: Vec::new() };
+    let log = TuneLog {
+        format: TUNE_FORMAT.to_owned(),
+        scenario_id: id.clone(),
+        searcher: "none".to_owned(),
+        seed: case_seed(suite, cluster).child("tune").0,
+        parameters: Vec::new(),
+        points: vec![TunePoint { number: 0, proposed_by: "start".to_owned(), values: Vec::new(), score }],
+        best: 0,
+    };
+    Ok(vec![
+        (names::tuned(id), to_json(scenario.draft())),
+        (names::tune_log(id), to_compact_json(&log)),
+        (names::tune_agent(id), to_json(&AgentLog::rules())),
+    ])
+}
+
+fn judge(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
+    let (suite, id) = (bench.suite, &cluster.scenario_id);
+    let scenario = scenario(suite, id, &names::tuned(id))?;
+    if !is_tested(&scenario) {
+        return Ok(Vec::new());
+    }
+    let recorded: JudgedRun = suite.store().read_json(&names::recorded_run(id))?;
+    let run = tested_run(suite, &scenario, bench.simulator(), &recorded)?;
+    let mut files = vec![(names::tuned_run(id), to_compact_json(&run))];
+    if run.failed() {
+        let (triage, reference) = triage(&scenario, suite.ego(), &run.findings, suite.profile(), &built_in())?;
+        files.push((names::triage(id), to_json(&triage)));
+        files.extend(reference.map(|run| (names::reference_run(id), to_compact_json(&run))));
+    }
+    Ok(files)
+}

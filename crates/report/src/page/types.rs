@@ -1,0 +1,61 @@
+//! Crash types: how much of each is told and tested, and why the others are not.
+
+use super::{Context, parts};
+use crate::words::{self, fixed, thousands};
+use maud::{Markup, html};
+use recrash_model::account::{AccountSet, CrashType, Untold};
+use std::collections::BTreeMap;
+
+/// Two tables: by crash type, and by reason; and by kind of fact.
+pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
+    let cases = &context.suite.cases;
+    let of = |kind: Option<CrashType>| {
+        let in_type = cases.iter().filter(move |case| case.account.as_ref().map(|account| account.crash_type) == kind);
+        let met = in_type.clone().filter(|case| case.situation_met() == Some(true));
+        let failed = met.clone().filter(|case| case.last_run().is_some_and(|run| run.failed())).count();
+        (in_type.count(), met.count(), failed)
+    };
+    let percent = |part: usize, whole: usize| fixed(100.0 * part as f64 / whole.max(1) as f64, 0).unwrap_or_default();
+    let mut reasons: BTreeMap<Untold, usize> = BTreeMap::new();
+    for untold in &accounts.untold {
+        *reasons.entry(untold.why).or_default() += 1;
+    }
+    let mut reasons: Vec<(Untold, usize)> = reasons.into_iter().collect();
+    reasons.sort_by_key(|(why, count)| (std::cmp::Reverse(*count), *why));
+    html! {
+        h2 { "Crash types" }
+        .table-wrap { table.plain {
+            caption.hidden-text { "Readable incidents by crash type" }
+            thead { tr {
+                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" { "Told as they happened" }
+                th.number scope="col" title="facts that stand in the narratives, for every 100 words" { "Facts per 100 words" }
+                th.number scope="col" { "Scenarios here" } th.number scope="col" { "Situation met" } th.number scope="col" { "Ego fails" }
+            } }
+            tbody { @for share in &accounts.types {
+                @let (scenarios, met, failed) = of(share.crash_type);
+                tr {
+                    th scope="row" { (share.crash_type.map_or("not told", CrashType::label)) }
+                    td.number { (thousands(share.incidents)) }
+                    td.number { (thousands(share.told)) span.muted { " (" (percent(share.told, share.incidents)) "\u{a0}%)" } }
+                    td.number { (parts::quantity(Some(share.facts_per_100_words), 1, "", "")) }
+                    @if share.crash_type.is_some() { td.number { (thousands(scenarios)) } td.number { (thousands(met)) } td.number { (thousands(failed)) } }
+                    @else { td {} td {} td {} }
+                }
+            } }
+        } }
+        .two {
+            div {
+                h3 { "Why the others are not told" }
+                @if reasons.is_empty() { p.empty { "All are." } } @else {
+                    table.plain { tbody { @for (why, count) in reasons { tr { th scope="row" { (words::capital(why.label())) } td.number { (thousands(count)) } } } } }
+                }
+            }
+            div {
+                h3 { "Told facts that are shown, over all readable incidents" }
+                table.plain { tbody { @for share in accounts.facts.iter().filter(|share| share.told > 0) {
+                    tr { th scope="row" { (words::capital(share.fact.label())) } td.number { (thousands(share.shown)) " of " (thousands(share.told)) span.muted { " (" (percent(share.shown, share.told)) "\u{a0}%)" } } }
+                } } }
+            }
+        }
+    }
+}
