@@ -110,6 +110,8 @@ pub struct TestOutcome {
     pub cause: Option<Cause>,
     /// Whether it shows its record's crash, where what to show is known.
     pub faithful: Option<Answer>,
+    /// Whether the ego came into the situation of its record; absent where no recorded driver crashes in the scenario.
+    pub met: Option<bool>,
 }
 
 impl TestOutcome {

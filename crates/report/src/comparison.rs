@@ -160,6 +160,9 @@ fn case(
         if let Some(bracket) = outcome.and_then(|outcome| outcome.bracket()) {
             told.push(("preventability", bracket.label()));
         }
+        if let Some(met) = outcome.and_then(|outcome| outcome.met) {
+            told.push(("situation", if met { "met" } else { "not met" }));
+        }
         properties(writer, &told)?;
         let kinds = outcome.map_or_else(String::new, |outcome| {
             let kinds = outcome.kinds();

@@ -17,6 +17,9 @@ Examples:
 
 What is in the folder: docs/nightly.md.";
 
+/// Scenarios left out that the screen tells one by one.
+const SHOWN: usize = 5;
+
 /// Options of `freeze`.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = EXAMPLES)]
@@ -64,8 +67,11 @@ pub fn run(args: &FreezeArgs, output: Output) -> Result<(), PipelineError> {
         let whose = frozen.provenance.iter().map(|(whose, count)| format!("{count} {}", whose.label()));
         println!("{} tests in {} ({})", frozen.tests, frozen.folder.display(), whose.collect::<Vec<_>>().join(", "));
         println!("crash type known of {}; content {}", frozen.typed, frozen.content);
-        for id in &frozen.left_out {
-            println!("{} {id} has no scenario file", yellow("left out:"));
+        for left_out in frozen.left_out.iter().take(SHOWN) {
+            println!("{} {left_out}", yellow("left out:"));
+        }
+        if frozen.left_out.len() > SHOWN {
+            println!("and {} more, told by --json", frozen.left_out.len() - SHOWN);
         }
     }
     Ok(())

@@ -182,6 +182,14 @@ fn show_results(results: &TestResults) {
         rows.add_row([Cell::new(kind)].into_iter().chain(counts.map(number)));
     }
     println!("{rows}");
+    let never_met = |test: &&TestResult| {
+        let met = test.telling().and_then(|run| run.outcome.as_ref()).and_then(|outcome| outcome.met);
+        test.verdict() == TestVerdict::Passed && met == Some(false)
+    };
+    let never = results.tests.iter().filter(never_met).count();
+    if never > 0 {
+        println!("{never} of the passed tests never came into the situation of their record: they say nothing of it");
+    }
     show_causes(results);
     show_failures(results);
     show_brackets(results);

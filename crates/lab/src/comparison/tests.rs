@@ -17,6 +17,7 @@ fn outcome(kinds: &[FindingKind], gap_m: f64) -> TestOutcome {
         preventability: None,
         cause: None,
         faithful: None,
+        met: None,
     }
 }
 

@@ -55,7 +55,7 @@ pub struct Freezing {
     /// The folder.
     #[serde(serialize_with = "paths::as_text")]
     pub folder: PathBuf,
-    /// Scenarios of the suite that were left out, because there is no file of them.
+    /// Scenarios that were left out, each with the reason.
     pub left_out: Vec<String>,
 }
 

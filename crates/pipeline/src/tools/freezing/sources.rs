@@ -7,8 +7,8 @@ use crate::reading::scenarios::read_scenario;
 use crate::suite::Suite;
 use crate::suite::names;
 use recrash_agents::expectation;
-use recrash_model::account::CrashType;
-use recrash_model::frozen::About;
+use recrash_model::account::{Account, CrashType, told};
+use recrash_model::frozen::{About, Provenance};
 use recrash_model::narrative::Narrative;
 use recrash_model::record::{RecordRef, RecordSet};
 use recrash_model::selection::Selection;
@@ -41,7 +41,7 @@ pub(super) fn gather(request: &FreezeRequest) -> Result<Gathered, PipelineError>
             for file in files {
                 let (scenario, _) = read_scenario(&file)?;
                 let about = About::of(&scenario.draft().source);
-                gathered.tests.push(Test { scenario, about, expectation: None, account: None });
+                gathered.add(Test { scenario, about, expectation: None, account: None });
             }
         }
     }
@@ -70,19 +70,48 @@ fn of_suite(dir: &Path, tuned: bool, gathered: &mut Gathered) -> Result<(), Pipe
         let id = &cluster.scenario_id;
         let file = if tuned { names::tuned(id) } else { names::scenario(id) };
         if !store.path(&file).exists() {
-            gathered.left_out.push(id.clone());
+            gathered.left_out.push(format!("{id}: it has no scenario file"));
             continue;
         }
         store.must_be_a_file(&file)?;
         let (scenario, _) = read_scenario(&store.path(&file))?;
+        if store.path(&names::account(id)).exists() {
+            let account: Account = store.read_json(&names::account(id))?;
+            gathered.add(Test { scenario, about: about_account(&account), expectation: None, account: Some(account) });
+            continue;
+        }
         let narrative: Narrative = store.read_json(&names::narrative(id))?;
         let about = About::of(&scenario.draft().source);
         let told = narrative.told_record().unwrap_or(&cluster.pick);
         let record = records.records.iter().find(|record| record.id == *told);
         let expectation = record.map(|record| expectation(&narrative, record, suite.profile()));
-        gathered.tests.push(Test { scenario, about, expectation, account: None });
+        gathered.add(Test { scenario, about, expectation, account: None });
     }
     Ok(())
+}
+
+/// Whose crash an account tells.
+fn about_account(account: &Account) -> About {
+    About {
+        provenance: Provenance::Own,
+        told: Some(account.report.clone()),
+        incident: Some(account.incident.clone()),
+        reports: account.reports.clone(),
+        crash_type: told(&account.crash_type),
+    }
+}
+
+impl Gathered {
+    /// Takes a test, unless there is nothing to test: of a record whose ego was parked, nobody takes over.
+    fn add(&mut self, test: Test) {
+        let draft = test.scenario.draft();
+        let of_record = test.account.is_some() || draft.source.origin.is_some();
+        if of_record && draft.ego.recorded.is_some() && draft.ego.handover_s.is_none() {
+            self.left_out.push(format!("{}: its ego was parked, so there is nothing to test", draft.id));
+        } else {
+            self.tests.push(test);
+        }
+    }
 }
 
 /// A scenario file, or all that a folder holds, in the order of their names. Links are not followed.

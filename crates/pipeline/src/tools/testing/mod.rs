@@ -13,15 +13,17 @@ use crate::tools::freezing::Opened;
 use rayon::prelude::*;
 use recrash_drivers::preventability;
 use recrash_lab::causes::cause;
-use recrash_lab::run_scenario;
+use recrash_lab::{run_scenario, situation};
 use recrash_metrics::severity_of;
 use recrash_model::Seed;
 use recrash_model::frozen::FrozenTest;
+use recrash_model::metrics::{CheckResult, FindingKind};
 use recrash_model::profile::SystemProfile;
 use recrash_model::results::{RESULTS_FORMAT, TestOutcome, TestResult, TestResults, TestRun, TestVerdict};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_roads::Scenario;
+use recrash_sim::{Ego, Native};
 use std::path::{Path, PathBuf};
 
 /// Name of what is done, for progress.
@@ -144,8 +146,9 @@ pub fn read_results(path: &Path) -> Result<TestResults, PipelineError> {
 
 /// Runs one test with each seed.
 fn run_test(test: &FrozenTest, scenario: &Scenario, bench: &Bench, seeds: u32) -> TestResult {
+    let recorded = recorded_crash(scenario, bench.profile());
     let run = |number: u32| match seeded(scenario, number) {
-        Ok(scenario) => run_of(test, &scenario, bench),
+        Ok(scenario) => run_of(test, &scenario, recorded.as_ref(), bench),
         Err(why) => not_run(scenario.draft().source.seed, why),
     };
     let runs = (0..seeds.max(1)).map(run).collect();
@@ -167,18 +170,34 @@ fn seeded(scenario: &Scenario, number: u32) -> Result<Scenario, String> {
     recrash_roads::check(draft).map(|checked| checked.value).map_err(refused)
 }
 
-fn run_of(test: &FrozenTest, scenario: &Scenario, bench: &Bench) -> TestRun {
+/// The recorded driver's run, where it crashes: the situation that the ego is to come into.
+fn recorded_crash(scenario: &Scenario, profile: &SystemProfile) -> Option<JudgedRun> {
+    scenario.draft().ego.recorded.as_ref()?;
+    let run = run_scenario(scenario, &Native::new(Ego::Recorded), profile, None).ok()?;
+    run.finding_kinds().into_iter().any(FindingKind::is_crash).then_some(run)
+}
+
+fn run_of(test: &FrozenTest, scenario: &Scenario, recorded: Option<&JudgedRun>, bench: &Bench) -> TestRun {
     let seed = scenario.draft().source.seed;
     match run_scenario(scenario, &bench.simulator, bench.profile(), test.expectation.as_ref()) {
         Ok(run) => TestRun {
             seed,
             verdict: if run.failed() { TestVerdict::Failed } else { TestVerdict::Passed },
             why: None,
-            outcome: Some(outcome(&run, test.expectation.is_some())),
+            outcome: Some(TestOutcome {
+                met: recorded.map(|recorded| met(&run, recorded, scenario)),
+                ..outcome(&run, test.expectation.is_some())
+            }),
         },
         // What a program says of itself may hold a key.
         Err(error) => not_run(seed, crate::secrets::scrubber().scrub(&error.why.to_string())),
     }
+}
+
+/// Whether the ego came into the situation of the recorded crash.
+fn met(run: &JudgedRun, recorded: &JudgedRun, scenario: &Scenario) -> bool {
+    let from_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
+    situation(run, recorded, from_s).result == CheckResult::Shown
 }
 
 fn not_run(seed: u64, why: String) -> TestRun {
@@ -198,5 +217,6 @@ pub(crate) fn outcome(run: &JudgedRun, is_known: bool) -> TestOutcome {
         preventability: preventability(&run.rollout),
         cause: cause(&run.rollout, &run.metrics, &run.findings),
         faithful: is_known.then(|| run.faithful()),
+        met: None,
     }
 }
