@@ -164,7 +164,7 @@ impl EgoArgs {
 }
 
 /// How long a program is waited for that may take so long for an answer. [s]
-fn patience(answer_s: u16) -> Patience {
+pub fn patience(answer_s: u16) -> Patience {
     let answer = Duration::from_secs(u64::from(answer_s));
     Patience { start: 6 * answer, answer }
 }

@@ -1,6 +1,6 @@
 //! `recrash test` and `recrash compare`: a frozen suite run with an ego, and held against a baseline.
 
-use crate::options::{EgoArgs, one_change};
+use crate::options::{EgoArgs, one_change, patience};
 use crate::output::{self, Output};
 use crate::screen::{self, println};
 use crate::table::{Cell, number, table};
@@ -9,11 +9,11 @@ use recrash_model::comparison::{Change, Comparison, TypeRow};
 use recrash_model::preventability::Bracket;
 use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict};
 use recrash_pipeline::{
-    CiFiles, Outputs, PipelineError, TestRequest, by_cause, compare_files, compare_with, comparison_sentence,
-    github_annotations, hold_to, test,
+    CiFiles, Outputs, PageRequest, PipelineError, SimulatorKind, TestRequest, by_cause, compare_files, compare_with,
+    comparison_sentence, github_annotations, hold_to, test, write_page,
 };
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const TEST_EXAMPLES: &str = "\
 Examples:
@@ -28,6 +28,7 @@ const COMPARE_EXAMPLES: &str = "\
 Examples:
   recrash compare main.json tonight.json                 fixed, broken, worse, better, same, flaky
   recrash compare main.json tonight.json --fail-on broken,worse --markdown summary.md --github
+  recrash compare main.json tonight.json --suite nightly --page changes.html
 
 Exit code 5: a change of --fail-on happened. What each word means: docs/models/comparison.md.";
 
@@ -97,6 +98,37 @@ pub struct CompareArgs {
     /// Write the comparison as JSON.
     #[arg(long, short, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write a page on which both egos play what changed, in one scene; they drive it again.
+    #[arg(long, value_name = "FILE", requires = "suite")]
+    pub page: Option<PathBuf>,
+    /// The frozen suite that both results are of, for the page.
+    #[arg(long, value_name = "FROZEN")]
+    pub suite: Option<PathBuf>,
+    /// The ego of BASE where it is a program, for the page: what only a results file names is not started.
+    #[arg(long, value_name = "cmd:PROGRAM")]
+    pub base_ego: Option<String>,
+    /// The ego of NEW likewise.
+    #[arg(long, value_name = "cmd:PROGRAM")]
+    pub new_ego: Option<String>,
+    /// Seconds such a program may take for an answer; six times that to start.
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600), default_value_t = 10)]
+    pub ego_timeout: u16,
+}
+
+impl CompareArgs {
+    fn page_request(&self, suite: &Path) -> PageRequest {
+        let test = TestRequest {
+            frozen: suite.to_owned(),
+            ego: None,
+            simulator: SimulatorKind::Native,
+            python: PathBuf::new(),
+            patience: patience(self.ego_timeout),
+            seeds: 1,
+            threads: None,
+            out: None,
+        };
+        PageRequest { test, egos: [self.base_ego.clone(), self.new_ego.clone()] }
+    }
 }
 
 /// Runs a frozen suite.
@@ -144,10 +176,14 @@ pub fn run(args: &TestArgs, output: Output) -> Result<(), PipelineError> {
 /// # Errors
 /// A file cannot be read or written, or a change of `--fail-on` happened.
 pub fn compare(args: &CompareArgs, output: Output) -> Result<(), PipelineError> {
-    let mut outputs = Outputs::of_inputs([args.base.clone(), args.new.clone()]);
+    let mut outputs = Outputs::of_inputs([args.base.clone(), args.new.clone()].into_iter().chain(args.suite.clone()));
     let files = CiFiles { json: args.out.clone(), ..args.ci.files() }.claim(&mut outputs)?;
+    let page = args.page.as_ref().map(|page| outputs.claim(page)).transpose()?;
     let (results, comparison) = compare_files(&args.base, &args.new)?;
     files.write(&results, Some(&comparison))?;
+    if let (Some(page), Some(suite)) = (&page, &args.suite) {
+        write_page(&args.page_request(suite), &comparison, page)?;
+    }
     if output.json {
         output::json(&comparison);
     } else if output.tables() {

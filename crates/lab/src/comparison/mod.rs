@@ -141,9 +141,12 @@ fn telling(test: &TestResult) -> Option<&TestOutcome> {
 /// The failures of a run, and how fast the contact was.
 fn failed_how(outcome: &TestOutcome) -> String {
     let kinds = outcome.kinds();
-    let labels: Vec<&str> = kinds.iter().filter(|kind| kind.is_failure()).map(|kind| kind.label()).collect();
     let speed = outcome.contact.as_ref().map(|contact| format!(" at {:.1} m/s", contact.relative_speed_mps));
-    labels.join(", ") + &speed.unwrap_or_default()
+    let told = |kind: &FindingKind| match (kind, &speed) {
+        (FindingKind::Contact, Some(speed)) => format!("{}{speed}", kind.label()),
+        _ => kind.label().to_owned(),
+    };
+    kinds.iter().filter(|kind| kind.is_failure()).map(told).collect::<Vec<_>>().join(", ")
 }
 
 /// Whether a test of one verdict is worse or better than it was.

@@ -1,5 +1,9 @@
 //! Results against a baseline, and what continuous integration reads of them. Described in `docs/nightly.md`.
 
+mod page;
+
+pub use page::{PageRequest, write_page};
+
 use crate::error::PipelineError;
 use crate::files::output::{Output, Outputs};
 use crate::files::store::to_json;
