@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import random
 import re
 import shutil
@@ -130,3 +131,26 @@ def test_a_verdict_changed_with_its_hash_is_found_by_the_rollout(night: Path, tm
     rehash(folder, runs)
     found = check(folder)
     assert found.returncode == 1 and "runs.json has passed" in found.stdout, found.stdout
+
+
+def test_the_workflow_of_the_documentation_runs_as_it_stands(recrash: str, tmp_path: Path) -> None:
+    """Its shell steps, two nights in a row; what GitHub itself provides (checkout, cache, the build) is given."""
+    workflow = (ROOT / "docs" / "examples" / "nightly.yml").read_text()
+    blocks = re.findall(r"^ {8}run: \|\n((?: {10}.*\n|\n)+)", workflow, flags=re.MULTILINE)
+    steps = [re.sub(r"^ {10}", "", block, flags=re.MULTILINE) for block in blocks]
+    assert len(steps) == 4 and steps[0].startswith("cargo build"), steps
+    ego = re.search(r"^  EGO: (.*)$", workflow, flags=re.MULTILINE)
+    assert ego
+    shutil.copytree(ROOT / "docs" / "examples", tmp_path / "docs" / "examples")
+    binaries = tmp_path / "bin"
+    binaries.mkdir()
+    (binaries / "recrash").symlink_to(recrash)
+    summary = tmp_path / "summary.md"
+    given = {"PATH": f"{binaries}:{os.environ['PATH']}", "EGO": ego.group(1), "GITHUB_STEP_SUMMARY": str(summary)}
+    for night in (1, 2):
+        for step in steps[1:]:
+            command = ["bash", "-e", "-c", step]
+            done = subprocess.run(command, cwd=tmp_path, env={**os.environ, **given}, check=False, capture_output=True, text=True)
+            assert done.returncode == 0, f"night {night}: {step}\n{done.stdout}\n{done.stderr}"
+    assert re.search(r"\n(\d+) tests: \1 same\.\n", summary.read_text()), summary.read_text()
+    assert junitparser.JUnitXml.fromfile(str(tmp_path / "junit.xml")).failures == 0

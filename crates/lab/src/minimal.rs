@@ -285,18 +285,18 @@ fn own_settings(document: &Value, owner: &str, all: &mut Vec<Element>) {
 
 /// The least move of one other that makes the scenario pass.
 fn moved_twin(draft: &ScenarioDraft, trial: &mut Trial) -> Result<Option<Twin>, RunError> {
-    let kinds: [(fn(f64) -> Nudge, &str, f64); 4] = [
-        (Nudge::Along, "farther along its way", 1.0),
-        (Nudge::Along, "farther back", -1.0),
-        (Nudge::Across, "farther to its right", 1.0),
-        (Nudge::Across, "farther to its left", -1.0),
+    let ways = [
+        (Nudge::Along(1.0), "farther along its way"),
+        (Nudge::Along(-1.0), "farther back"),
+        (Nudge::Across(1.0), "farther to its right"),
+        (Nudge::Across(-1.0), "farther to its left"),
     ];
     let everyone = others(draft);
     let mut before_m = 0.0;
     for by_m in MOVES_M {
         for &who in &everyone {
-            for (nudge, how, sign) in kinds {
-                let at = |by_m: f64| nudged(draft, who, nudge(sign * by_m));
+            for (way, how) in ways {
+                let at = |by_m: f64| nudged(draft, who, way.times(by_m));
                 if trial.fails(&at(by_m))? != Some(false) {
                     continue;
                 }

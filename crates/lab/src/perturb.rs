@@ -31,6 +31,19 @@ pub enum Nudge {
     Faster(f64),
 }
 
+impl Nudge {
+    /// The same, so many times as large.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        match self {
+            Self::Along(by_m) => Self::Along(by_m * factor),
+            Self::Across(by_m) => Self::Across(by_m * factor),
+            Self::Later(by_s) => Self::Later(by_s * factor),
+            Self::Faster(by) => Self::Faster(1.0 + (by - 1.0) * factor),
+        }
+    }
+}
+
 /// Everybody and everything of a scenario that can be moved, the ego first.
 pub fn everybody(draft: &ScenarioDraft) -> Vec<Who> {
     std::iter::once(Who::Ego).chain(others(draft)).collect()

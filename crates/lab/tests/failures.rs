@@ -7,7 +7,7 @@ use recrash_lab::run_scenario;
 use recrash_model::Seed;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::profile::{
-    Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile,
+    Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
 };
 use recrash_model::scenario::ScenarioDraft;
 use recrash_sim::{Ego, Native};
@@ -21,7 +21,7 @@ fn profile() -> SystemProfile {
         name: "test".to_owned(),
         description: String::new(),
         ego: "metadrive-idm".to_owned(),
-        records: RecordRules { dedupe: Dedupe::None },
+        records: RecordRules { dedupe: Dedupe::None, tells: Tells::Templates },
         expresses: Expressible {
             road_types: Vec::new(),
             sv_movements: Vec::new(),

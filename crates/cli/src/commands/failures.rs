@@ -163,7 +163,7 @@ fn show_robustness(report: &RobustnessReport) {
 /// The suite cannot be opened, the ego or a simulator fails, or a file cannot be written.
 pub fn minimise(args: &MinimiseArgs, output: Output) -> Result<(), PipelineError> {
     let request = args.failures.request(None);
-    let report = minimal_failures(&request, args.record.as_ref(), &args.out, &*output.progress())?;
+    let report = minimal_failures(&request, args.record.as_deref(), &args.out, &*output.progress())?;
     if output.json {
         output::json(&report);
     } else if output.tables() {

@@ -294,3 +294,81 @@ fn a_folder_that_holds_something_else_is_left_alone() {
     let (code, _, errors) = place.run(&["freeze", text(&source), text(&source), "--out", "twice"]);
     assert!(code == 3 && errors.contains("two scenarios have the id"), "{errors}");
 }
+
+#[test]
+fn robustness_is_told_for_every_failure_and_repeats() {
+    let place = frozen();
+    let report = |out: &str| {
+        let (code, shown, errors) = place.run(&["robustness", "frozen", "--ego", "idm", "--tries", "5", "--out", out]);
+        assert_eq!(code, 0, "{errors}");
+        assert!(shown.contains("still fails") && shown.contains("are robust"), "{shown}");
+        std::fs::read_to_string(place.path(out)).unwrap()
+    };
+    assert_eq!(report("one.json"), report("two.json"));
+    let robust = json(&place.path("one.json"));
+    assert_eq!(test(&place, &["--ego", "idm", "--out", "r.json", "--quiet"]).0, 0);
+    let results = json(&place.path("r.json"));
+    let failed: Vec<&Value> = results["tests"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|test| test["runs"][0]["verdict"] == "failed")
+        .map(|test| &test["id"])
+        .collect();
+    let told: Vec<&Value> = robust["failures"].as_array().unwrap().iter().map(|each| &each["id"]).collect();
+    assert_eq!(told, failed);
+}
+
+#[test]
+fn a_minimal_failure_fails_and_its_twin_passes() {
+    let place = frozen();
+    let id = "crashes-18-cyclist-from-behind";
+    let (code, shown, errors) = place.run(&["minimise", "frozen", "--ego", "idm", "--only", id, "--out", "minimal"]);
+    assert_eq!(code, 0, "{errors}");
+    assert!(shown.contains("nearest that passes") && shown.contains("1 failures in minimal"), "{shown}");
+    let fails = |file: &str| {
+        let (code, shown, errors) = place.run(&["simulate", file, "--ego", "idm"]);
+        assert_eq!(code, 0, "{errors}");
+        shown.contains("FAIL")
+    };
+    assert!(fails(&format!("minimal/{id}.json")) && !fails(&format!("minimal/{id}.passes.json")));
+    let (code, _, errors) = place.run(&["minimise", "frozen", "--ego", "idm", "--only", "nobody", "--out", "m"]);
+    assert!(code == 3 && errors.contains("no test nobody"), "{errors}");
+}
+
+#[test]
+fn evidence_is_of_the_runs_that_are_given() {
+    let place = frozen();
+    assert_eq!(test(&place, &["--ego", "idm", "--out", "idm.json", "--quiet"]).0, 0);
+    let evidence = |ego: &str, out: &str| {
+        place.run(&["evidence", "frozen", "--ego", ego, "--results", "idm.json", "--out", out, "--quiet"])
+    };
+    let (code, _, errors) = evidence("idm", "evidence");
+    assert_eq!(code, 0, "{errors}");
+    let checked = std::process::Command::new("python3").arg(place.path("evidence/check.py")).output().unwrap();
+    let shown = String::from_utf8_lossy(&checked.stdout).into_owned();
+    assert!(checked.status.success() && shown.contains("numbers come out as they are told"), "{shown}");
+    let (code, _, errors) = evidence("metadrive-idm", "other");
+    assert!(code == 3 && errors.contains("the results are no evidence"), "{errors}");
+    let (code, _, errors) = evidence("idm", "evidence");
+    assert!(code == 3 && errors.contains("it holds something else"), "{errors}");
+}
+
+#[test]
+fn a_page_plays_what_changed_and_starts_no_program_that_only_a_file_names() {
+    let place = frozen();
+    for (ego, out) in [("idm", "base.json"), ("metadrive-idm", "new.json")] {
+        assert_eq!(test(&place, &["--ego", ego, "--out", out, "--quiet"]).0, 0);
+    }
+    let page =
+        |base: &str| place.run(&["compare", base, "new.json", "--suite", "frozen", "--page", "page.html", "--quiet"]);
+    let (code, _, errors) = page("base.json");
+    assert_eq!(code, 0, "{errors}");
+    let shown = std::fs::read_to_string(place.path("page.html")).unwrap();
+    assert!(shown.contains("metadrive-idm against idm") && shown.contains("Side by side"));
+    let stranger = std::fs::read_to_string(place.path("base.json")).unwrap().replace("\"idm\"", "\"cmd:touch owned\"");
+    std::fs::write(place.path("stranger.json"), stranger).unwrap();
+    let (code, _, errors) = page("stranger.json");
+    assert!(code == 2 && errors.contains("touch owned"), "{errors}");
+    assert!(!place.path("owned").exists());
+}

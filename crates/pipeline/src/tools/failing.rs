@@ -22,7 +22,7 @@ use recrash_model::scenario::ScenarioDraft;
 use recrash_roads::{Scenario, Simulator};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::Path;
 
 /// Failures to look at.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -177,7 +177,7 @@ pub fn robustness_of_failures(
     let of = |each: &Failing| -> Result<RobustnessOf, PipelineError> {
         let draft = each.scenario.draft();
         let found = robustness(draft, &bench.simulator, bench.profile(), tries, Seed(seed))?;
-        let again = |other: &Box<dyn Simulator>| run_scenario(each.scenario, other, bench.profile(), None).ok();
+        let again = |other: &dyn Simulator| run_scenario(each.scenario, other, bench.profile(), None).ok();
         Ok(RobustnessOf {
             id: each.test.id.clone(),
             crash_type: each.test.about.crash_type,
@@ -187,7 +187,7 @@ pub fn robustness_of_failures(
             marginal: found.is_marginal(),
             robust: found.is_robust(),
             robustness: found,
-            confirmed: second.as_ref().and_then(again).map(|run| run.failed()),
+            confirmed: second.as_deref().and_then(again).map(|run| run.failed()),
         })
     };
     let failures = on_each(&bench, &failing, "robustness", progress, of)?;
@@ -222,12 +222,12 @@ fn second_simulator(bench: &Bench, request: &TestRequest) -> Result<Box<dyn Simu
 /// The suite cannot be opened, an ego or a simulator fails, or a file cannot be written.
 pub fn minimal_failures(
     request: &FailureRequest,
-    record: Option<&PathBuf>,
-    folder: &PathBuf,
+    record: Option<&Path>,
+    folder: &Path,
     progress: &dyn Progress,
 ) -> Result<MinimalReport, PipelineError> {
     let bench = Bench::set_up(&request.test)?;
-    let told = record.map(|dir| Opened::read(dir)).transpose()?;
+    let told = record.map(Opened::read).transpose()?;
     let told: BTreeMap<&str, &ScenarioDraft> = told
         .iter()
         .flat_map(|suite| &suite.scenarios)
