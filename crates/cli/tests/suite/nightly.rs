@@ -84,6 +84,33 @@ fn no_word_of_a_narrative_is_frozen_unless_it_is_asked_for() {
 }
 
 #[test]
+fn accounts_go_along_without_the_words_and_say_whether_the_situation_was_met() {
+    let place = Place::new();
+    let (code, _, errors) = place.run(&["run", "--profile", "open", "--budget", "8", "--quiet"]);
+    assert!([0, 5].contains(&code), "{errors}");
+    let freeze = |out: &str, extra: &[&str]| {
+        let (code, _, errors) = place.run(&[&["freeze", "suite", "--out", out, "--quiet"], extra].concat());
+        assert_eq!(code, 0, "{errors}");
+    };
+    freeze("frozen", &[]);
+    freeze("told", &["--with-narratives"]);
+    let accounts = |folder: &str| -> Vec<String> {
+        let files = std::fs::read_dir(place.path(folder).join("accounts")).unwrap();
+        files.map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap()).collect()
+    };
+    let words =
+        |text: &String| text.contains("\"text\": \"") && !text.replace("\"text\": \"\"", "").contains("\"text\": \"");
+    assert!(!accounts("frozen").is_empty() && accounts("frozen").iter().all(words));
+    assert!(!accounts("told").iter().any(words), "the words stand there where they are asked for");
+    assert_eq!(test(&place, &["--ego", "idm", "--out", "r.json", "--quiet"]).0, 0);
+    let results = json(&place.path("r.json"));
+    for test in results["tests"].as_array().unwrap() {
+        assert!(test["about"]["crash_type"].is_string() && test["about"]["incident"].is_string(), "{test}");
+        assert!(test["runs"][0]["outcome"]["met"].is_boolean(), "{test}");
+    }
+}
+
+#[test]
 fn incidents_and_crash_types_go_along() {
     let place = Place::new();
     let (code, told, errors) = place.run(&["reconstruct", "--to-dir", "scenes", "--json"]);

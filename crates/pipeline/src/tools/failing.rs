@@ -8,8 +8,9 @@ use crate::files::store::{Store, to_json, write_suite_file};
 use crate::progress::{Progress, ProgressEvent};
 use crate::simulators::{SimulatorKind, start_simulator};
 use crate::tools::freezing::Opened;
-use crate::tools::testing::{Bench, TestRequest, outcome};
+use crate::tools::testing::{Bench, TestRequest};
 use rayon::prelude::*;
+use recrash_lab::causes::cause;
 use recrash_lab::minimal::{Needed, minimal};
 use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::run_scenario;
@@ -131,8 +132,8 @@ fn failing<'a>(bench: &'a Bench, only: &[String]) -> Result<Vec<Failing<'a>>, Pi
             Ok(run) => run,
             Err(error) => return Some(Err(PipelineError::not_run(&error))),
         };
-        let outcome = outcome(&run, false);
-        run.failed().then(|| Ok(Failing { test, scenario, findings: outcome.kinds(), cause: outcome.cause }))
+        let cause = cause(&run.rollout, &run.metrics, &run.findings);
+        run.failed().then(|| Ok(Failing { test, scenario, findings: run.finding_kinds(), cause }))
     };
     bench.threads.install(|| bench.tests().filter_map(fails).collect())
 }

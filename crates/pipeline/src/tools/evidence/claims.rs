@@ -116,7 +116,7 @@ pub fn all(
     all.add(
         "G3",
         "goal",
-        "The share of failed tests is {failed_share}, between {failed_share, at least} and {failed_share, at most} for tests drawn as these were (95 %).",
+        "The share of failed tests is {failed_share}, between {failed_share, at least} and {failed_share, at most} for tests drawn as these were (95 %). {passed, not met} of the passed ones never came into the situation of their record and say nothing of it.",
         &["Sn1"],
         &[],
     );
@@ -157,7 +157,7 @@ fn groups(all: &mut Structure, runs: &Runs) {
     }
     let under: Vec<&str> = under.iter().map(String::as_str).collect();
     all.add("S2", "strategy", "Over groups of tests: by crash type, whose crash it is, what led to the failure, and what reference drivers make of it.", &under, &["A2"]);
-    all.add("A2", "assumption", "Cause and preventability are told by rules and models (docs/models/causes.md, docs/models/reference-drivers.md); the checker counts them and does not run the models.", &[], &[]);
+    all.add("A2", "assumption", "Cause, preventability and whether the situation of a record was met are told by rules and models (docs/models/causes.md, docs/models/reference-drivers.md, docs/nightly.md); the checker counts them and does not run the models.", &[], &[]);
     all.add("Sn2", "solution", "runs.json: what is said of each test.", &[], &[]);
 }
 

@@ -11,7 +11,7 @@ use crate::files::store::{Store, io, read_bytes, sha256, to_compact_json, to_jso
 use crate::progress::{Progress, ProgressEvent};
 use crate::suite::SUITE_FILE;
 use crate::tools::freezing::{FROZEN_FILE, FreezeRequest, Opened, freeze};
-use crate::tools::testing::{Bench, TestRequest, outcome, read_results};
+use crate::tools::testing::{Bench, TestRequest, outcome, read_results, recorded_crash};
 use rayon::prelude::*;
 use recrash_lab::run_scenario;
 use recrash_model::frozen::FrozenTest;
@@ -86,6 +86,7 @@ struct TestFacts {
     report: Option<String>,
     cause: Option<&'static str>,
     preventability: Option<&'static str>,
+    met: Option<bool>,
     #[serde(skip)]
     outcome: Option<TestOutcome>,
 }
@@ -198,6 +199,7 @@ fn run(bench: &Bench, files: &mut Files, progress: &dyn Progress) -> Result<Vec<
             report: about.told.as_ref().map(ToString::to_string),
             cause: None,
             preventability: None,
+            met: None,
             outcome: None,
         };
         match ran {
@@ -211,9 +213,11 @@ fn run(bench: &Bench, files: &mut Files, progress: &dyn Progress) -> Result<Vec<
                 let folder = path.parent().unwrap_or(Path::new("."));
                 std::fs::create_dir_all(folder).map_err(|source| io("create", folder, source))?;
                 write_suite_file(&path, &content).map_err(|source| io("write", &path, source))?;
-                let outcome = outcome(&run, test.expectation.is_some());
+                let recorded = recorded_crash(scenario, bench.profile());
+                let outcome = outcome(&run, test, scenario, recorded.as_ref());
                 facts.verdict = if run.failed() { TestVerdict::Failed } else { TestVerdict::Passed }.label();
                 facts.rollout = Some(name);
+                facts.met = outcome.met;
                 facts.cause = outcome.cause.map(|cause| cause.label());
                 facts.preventability = outcome.bracket().map(|bracket| bracket.label());
                 facts.outcome = Some(outcome);

@@ -39,6 +39,7 @@ pub fn all(tests: &[TestFacts], reports: &BTreeMap<&'static str, Value>) -> Vec<
     for (id, verdict) in [("passed", "passed"), ("failed", "failed"), ("not_run", "not run")] {
         list.count(id, runs(json!({ "verdict": verdict })));
     }
+    list.count("passed, not met", runs(json!({ "verdict": "passed", "met": false })));
     list.share("failed_share", "failed", "tests");
     for (field, of) in [
         ("crash_type", (|test: &TestFacts| Some(test.crash_type)) as fn(&TestFacts) -> Option<&'static str>),

@@ -171,7 +171,7 @@ fn seeded(scenario: &Scenario, number: u32) -> Result<Scenario, String> {
 }
 
 /// The recorded driver's run, where it crashes: the situation that the ego is to come into.
-fn recorded_crash(scenario: &Scenario, profile: &SystemProfile) -> Option<JudgedRun> {
+pub(crate) fn recorded_crash(scenario: &Scenario, profile: &SystemProfile) -> Option<JudgedRun> {
     scenario.draft().ego.recorded.as_ref()?;
     let run = run_scenario(scenario, &Native::new(Ego::Recorded), profile, None).ok()?;
     run.finding_kinds().into_iter().any(FindingKind::is_crash).then_some(run)
@@ -184,10 +184,7 @@ fn run_of(test: &FrozenTest, scenario: &Scenario, recorded: Option<&JudgedRun>, 
             seed,
             verdict: if run.failed() { TestVerdict::Failed } else { TestVerdict::Passed },
             why: None,
-            outcome: Some(TestOutcome {
-                met: recorded.map(|recorded| met(&run, recorded, scenario)),
-                ..outcome(&run, test.expectation.is_some())
-            }),
+            outcome: Some(outcome(&run, test, scenario, recorded)),
         },
         // What a program says of itself may hold a key.
         Err(error) => not_run(seed, crate::secrets::scrubber().scrub(&error.why.to_string())),
@@ -204,8 +201,13 @@ fn not_run(seed: u64, why: String) -> TestRun {
     TestRun { seed, verdict: TestVerdict::NotRun, why: Some(why), outcome: None }
 }
 
-/// What is kept of a run.
-pub(crate) fn outcome(run: &JudgedRun, is_known: bool) -> TestOutcome {
+/// What is kept of a run of a test.
+pub(crate) fn outcome(
+    run: &JudgedRun,
+    test: &FrozenTest,
+    scenario: &Scenario,
+    recorded: Option<&JudgedRun>,
+) -> TestOutcome {
     TestOutcome {
         state_hash: run.state_hash.clone(),
         termination: run.metrics.termination,
@@ -216,7 +218,7 @@ pub(crate) fn outcome(run: &JudgedRun, is_known: bool) -> TestOutcome {
         severity: severity_of(&run.rollout),
         preventability: preventability(&run.rollout),
         cause: cause(&run.rollout, &run.metrics, &run.findings),
-        faithful: is_known.then(|| run.faithful()),
-        met: None,
+        faithful: test.expectation.is_some().then(|| run.faithful()),
+        met: recorded.map(|recorded| met(run, recorded, scenario)),
     }
 }
