@@ -317,13 +317,27 @@ pub enum CheckKind {
     CpState,
     /// Somebody else touched the partner before it touched the ego.
     PassedOn,
+    /// Lane of the ego when the scene begins.
+    SvLane,
+    /// Lane of the partner when the scene begins.
+    CpLane,
+    /// What the ego's signal or sign showed, and whether it obeyed it.
+    SvControl,
+    /// The same of the partner's.
+    CpControl,
+    /// Why the ego stood.
+    Reason,
+    /// Everybody else in the story.
+    Others,
+    /// A door took part.
+    Door,
     /// The system under test came into the situation of the record.
     Situation,
 }
 
 impl CheckKind {
     /// Those that an account is held to, in the order of tables.
-    pub const OF_ACCOUNTS: [Self; 13] = [
+    pub const OF_ACCOUNTS: [Self; 20] = [
         Self::Contact,
         Self::Partner,
         Self::SvZones,
@@ -337,6 +351,13 @@ impl CheckKind {
         Self::Approach,
         Self::Order,
         Self::PassedOn,
+        Self::SvLane,
+        Self::CpLane,
+        Self::SvControl,
+        Self::CpControl,
+        Self::Reason,
+        Self::Others,
+        Self::Door,
     ];
 
     /// For tables.
@@ -360,6 +381,13 @@ impl CheckKind {
             Self::SvState => "SV state",
             Self::CpState => "CP state",
             Self::PassedOn => "thrown by another",
+            Self::SvLane => "SV lane",
+            Self::CpLane => "CP lane",
+            Self::SvControl => "SV signal or sign",
+            Self::CpControl => "CP signal or sign",
+            Self::Reason => "why the SV stood",
+            Self::Others => "others in the story",
+            Self::Door => "door",
             Self::Situation => "situation met",
         }
     }

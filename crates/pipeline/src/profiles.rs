@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_number_that_makes_no_sense_is_named() {
-        let paper = BUILT_IN[0].1;
+        let paper = BUILT_IN[1].1;
         for (key, from, to) in [
             ("min_speed_mps", "min_speed_mps = 1.0", "min_speed_mps = nan"),
             ("min_speed_mps", "min_speed_mps = 1.0", "min_speed_mps = -1.0"),
@@ -122,6 +122,6 @@ mod tests {
 
     #[test]
     fn an_unknown_name_lists_the_known_ones() {
-        assert!(load_profile("papper").unwrap_err().to_string().contains("built in: paper"));
+        assert!(load_profile("papper").unwrap_err().to_string().contains("built in: open, paper"));
     }
 }

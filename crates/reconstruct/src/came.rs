@@ -1,13 +1,14 @@
 //! How both came to where they touch: courses and speeds, told backwards from the contact.
 
+use crate::control;
 use crate::told::{Side, Told, Turning};
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{Account, ContactState, Origin};
+use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::scenario::{
-    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, ObjectSpec, ObstacleKind, Place,
+    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Place,
     SCENARIO_FORMAT, ScenarioDraft, Size, Source, Trigger,
 };
 use recrash_roads::Course;
@@ -17,6 +18,15 @@ pub(crate) const CONTACT_S: f64 = 9.0;
 
 /// The system under test takes over this long before the contact, or before the ego began to stop. [s]
 const HANDOVER_BEFORE_S: f64 = 5.0;
+
+/// Before it began to brake for its stop, the ego still rolls for so long under the system under test. [s]
+const ROLLS_S: f64 = 1.0;
+
+/// Name of who stands ahead of the ego, as the reason why it stood.
+pub(crate) const LEAD: &str = "lead";
+
+/// From the ego's front to the rear of who stands ahead of it. [m]
+const LEAD_GAP_M: f64 = 2.5;
 
 /// Deceleration of who comes to a stop before it is hit. [m/s^2]
 const STOPPING_MPS2: f64 = 2.0;
@@ -47,6 +57,9 @@ const LONGEST_START_S: f64 = 6.0;
 const PUSH_MPS: f64 = 10.0;
 const THROW_S: f64 = 0.25;
 const THROW_M: f64 = 1.0;
+
+/// Who touches the partner on its way is faster than it by so much. [m/s]
+const NUDGE_MPS: f64 = 2.0;
 
 /// A course goes on behind the place of the contact, so far that nobody slows for its end before it. [m]
 fn beyond_m(speed_mps: f64) -> f64 {
@@ -149,13 +162,46 @@ fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
     }
 }
 
+/// Who stopped at a stop line, and is past it at the contact, sets off from that line.
+fn from_line(told: &Told, staging: &Staging) -> Option<Pace> {
+    let (sv, ground) = (&told.sv, &staging.ground);
+    let said = sv.control.filter(|said| said.obeyed != Some(Obeyed::No))?;
+    let stops = sv.state == ContactState::SettingOff
+        || sv.state == ContactState::Moving && said.device == ControlDevice::StopSign;
+    let driven_m = staging.sv_s_m - (ground.first_m() - 0.5 * size_of(sv).0 - AT_LINE_M);
+    if !stops || !ground.junction || driven_m < 0.3 {
+        return None;
+    }
+    // It gains its speed on the way, or earlier and keeps it.
+    let rate_mps2 = (0.5 * sv.speed_mps * sv.speed_mps / driven_m).max(SETS_OFF_MPS2);
+    let gaining_s = sv.speed_mps / rate_mps2;
+    let moving_s = gaining_s + (driven_m - 0.5 * sv.speed_mps * gaining_s) / sv.speed_mps;
+    if moving_s > CONTACT_S - 1.0 || rate_mps2 > STRONGEST_START_MPS2 {
+        return None;
+    }
+    // It sets off at a step.
+    let from_s = ((CONTACT_S - moving_s) * 10.0).round() / 10.0;
+    let go = Deed::Speed { to_mps: sv.speed_mps, rate_mps2 };
+    Some(Pace { speed_mps: 0.0, acts: vec![when(from_s, go)], driven_m })
+}
+
+/// Nobody sets off harder. [m/s^2]
+const STRONGEST_START_MPS2: f64 = 5.0;
+
+/// Who stops at a line stops so far before it. [m]
+const AT_LINE_M: f64 = 0.5;
+
 /// The scenario of a staging.
 pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> ScenarioDraft {
     let ground = &staging.ground;
     let recorded = ego_plan(told, staging);
-    let (actors, objects) = partner(told, staging);
+    let (mut actors, objects) = partner(told, staging);
+    actors.extend(told.lead.then(|| lead(told, staging)));
+    let control = control::devices(told, ground);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
+        // While it still rolls.
+        ContactState::Stopped => Some((first_time(&recorded.acts) - ROLLS_S).clamp(0.0, CONTACT_S - HANDOVER_BEFORE_S)),
         _ => Some((CONTACT_S - HANDOVER_BEFORE_S).max(0.0)),
     };
     let wanted_mps = told.sv.speed_mps.max(if told.sv.state.stands() { ROLLING_MPS } else { 2.0 });
@@ -180,8 +226,10 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             route: ground.route.clone(),
             recorded: Some(recorded),
             handover_s,
+            stops: mission_stop(told, staging),
             ..EgoSpec::default()
         },
+        control,
         actors,
         objects,
         duration_s: 14.0,
@@ -189,9 +237,28 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     }
 }
 
+/// Where the task of the system under test has it stop: where it stood, unless something in the scene makes it stop there. What
+/// made the recorded driver stop is then part of the task.
+fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
+    let at_line = staging.ground.junction && told.sv.control.is_some();
+    if told.sv.state != ContactState::Stopped || told.lead || at_line {
+        return Vec::new();
+    }
+    vec![MissionStop { s_m: staging.sv_s_m, t_m: 0.0, for_s: None }]
+}
+
+/// Somebody who stands ahead of the ego where it comes to its stop.
+fn lead(told: &Told, staging: &Staging) -> Actor {
+    let car_m = recrash_model::vehicle::VehicleSpec::of(PartnerKind::PassengerCar).length_m;
+    let ahead_m = 0.5 * (size_of(&told.sv).0 + car_m) + LEAD_GAP_M;
+    let at = staging.sv.position + Vec2::from_heading(staging.sv.heading) * ahead_m;
+    let plan = ActorPlan::standing(Place::at(at.x, at.y, staging.sv.heading.to_degrees()));
+    Actor { id: LEAD.to_owned(), kind: PartnerKind::PassengerCar, size: None, parts: Vec::new(), plan }
+}
+
 fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
     let ground = &staging.ground;
-    let pace = ego_pace(told);
+    let pace = from_line(told, staging).unwrap_or_else(|| ego_pace(told));
     let lane = |s_m: f64| Place::Lane {
         road: ground.route[0].clone(),
         lane: ground.lane,
@@ -245,7 +312,28 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
     }
-    (vec![actor(course_to(told, staging, pace, at))], Vec::new())
+    let mut actors = vec![actor(course_to(told, staging, pace, at))];
+    actors.extend(told.pushed.then(|| nudger(told, staging)));
+    (actors, Vec::new())
+}
+
+/// Who touched the partner on its way: it comes up from behind and runs into it, right before the contact. What is told of that
+/// first contact beside that there was one is not shown.
+fn nudger(told: &Told, staging: &Staging) -> Actor {
+    let (cp, gear) = (&told.cp, if told.cp.state == ContactState::Reversing { -1.0 } else { 1.0 });
+    let way = Vec2::from_heading(staging.cp.heading) * gear;
+    let car_m = recrash_model::vehicle::VehicleSpec::of(PartnerKind::PassengerCar).length_m;
+    let speed_mps = cp.speed_mps + NUDGE_MPS;
+    let touches = staging.cp.position - way * (cp.speed_mps * THROW_S + 0.5 * (size_of(cp).0 + car_m));
+    let start = touches - way * (speed_mps * (CONTACT_S - THROW_S));
+    let degrees = staging.cp.heading.to_degrees() + if gear < 0.0 { 180.0 } else { 0.0 };
+    let place = |point: Vec2| Place::at(point.x, point.y, degrees);
+    let plan = ActorPlan {
+        speed_mps,
+        course: vec![Leg::Curve { to: place(touches + way * beyond_m(speed_mps)), reverse: false }],
+        ..ActorPlan::standing(place(start))
+    };
+    Actor { id: "pusher".to_owned(), kind: PartnerKind::PassengerCar, size: None, parts: Vec::new(), plan }
 }
 
 /// The line by which the partner comes to the contact, as long as its pace needs.
@@ -272,7 +360,7 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
     }
     let mut begin = start_at(back_m);
     let fits = length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02);
-    if !fits || (!bent && !matches!(told.origin, Origin::Beside { .. })) {
+    if !fits || (!bent && beside(told).is_none()) {
         // Straight on.
         begin = Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
     }
@@ -293,12 +381,21 @@ fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Ve
         position = staging.cp.position
             - way * (along + (back_m - radius * turn.abs()).max(0.0))
             - way.left() * (gain * turn.signum());
-    } else if let Origin::Beside { side } = told.origin {
-        let right = if side == recrash_model::account::LeftRight::Left { -1.0 } else { 1.0 };
+    } else if let Some(side) = beside(told) {
+        let right = if side == LeftRight::Left { -1.0 } else { 1.0 };
         let lane_y = staging.sv.position.y - right * crate::ground::LANE_M;
         position.y = lane_y;
     }
     Pose { position, heading: came }
+}
+
+/// On which side of the ego's lane the partner comes along.
+fn beside(told: &Told) -> Option<LeftRight> {
+    match told.origin {
+        Origin::Beside { side } => Some(side),
+        Origin::Behind if told.cp.lane == Some(LaneWord::Opposing) => Some(LeftRight::Left),
+        _ => None,
+    }
 }
 
 /// The partner stands behind the ego, or comes along behind it, and another runs into it: a car at [`PUSH_MPS`] over its speed.

@@ -1,16 +1,21 @@
 //! Told facts, held against a rollout. Nothing here reads the scenario: only who was where.
 
+use crate::came::LEAD;
+use crate::control;
 use crate::told::{Told, Turning};
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::account::{
+    ContactState, Control as Said, ControlDevice, LaneWord, LeftRight, Obeyed, Origin, StandReason,
+};
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::narrative::FirstMover;
-use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout};
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout};
 use recrash_model::zones::ContactZone;
+use recrash_roads::Scenario;
 
 /// Slower than this is standing. [m/s]
 const STANDS_MPS: f64 = 0.1;
@@ -41,7 +46,7 @@ struct Touch<'a> {
 }
 
 /// Every told fact.
-pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Check> {
+pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<Check> {
     let mut list = Vec::new();
     let mut fact = |kind: CheckKind, shown: bool, expected: String, observed: String| {
         let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
@@ -128,7 +133,110 @@ pub(crate) fn facts(told: &Told, rollout: &Rollout) -> Vec<Check> {
         let (shown, observed) = order(first, ego_track, track, geometry.point, touch.time_s);
         fact(CheckKind::Order, shown, first.words().to_owned(), observed);
     }
+    let mut held = |kind: CheckKind, expected: String, (result, observed): (CheckResult, String)| {
+        list.push(Check { kind, expected, observed, result });
+    };
+    for (kind, side, track) in
+        [(CheckKind::SvLane, &told.sv, Some(ego_track)), (CheckKind::CpLane, &told.cp, touch.track)]
+    {
+        if let (Some(word), Some(track)) = (side.lane, track) {
+            held(kind, lane_words(word).to_owned(), lane(word, scenario, ego_track, track));
+        }
+    }
+    for (kind, side, track) in
+        [(CheckKind::SvControl, &told.sv, Some(ego_track)), (CheckKind::CpControl, &told.cp, touch.track)]
+    {
+        if let (Some(said), Some(track)) = (side.control, track) {
+            held(kind, control::words(said), control::check(said, scenario, track, touch.time_s));
+        }
+    }
+    if told.sv.state.stands() && !told.reasons.is_empty() {
+        let said: Vec<String> = told.reasons.iter().map(|reason| format!("{reason:?}").to_lowercase()).collect();
+        held(CheckKind::Reason, said.join(", "), reason(told, scenario, rollout, touch.time_s));
+    }
+    if told.others > 0 {
+        let drawn = rollout.actors.iter().filter(|track| track.role == Role::Partner).count().saturating_sub(1);
+        let result = if drawn >= told.others { CheckResult::Shown } else { CheckResult::CannotBeShown };
+        held(CheckKind::Others, format!("{} more", told.others), (result, format!("{drawn} more")));
+    }
+    if told.door {
+        let seen = (CheckResult::CannotBeShown, "doors of reconstructions stay shut".to_owned());
+        held(CheckKind::Door, "a door took part".to_owned(), seen);
+    }
     list
+}
+
+fn lane_words(word: LaneWord) -> &'static str {
+    match word {
+        LaneWord::Left => "the left lane",
+        LaneWord::Center => "a lane in the middle",
+        LaneWord::Right => "the right lane",
+        LaneWord::LeftTurn => "a lane for left turns",
+        LaneWord::RightTurn => "a lane for right turns",
+        LaneWord::Bike => "the bicycle lane",
+        LaneWord::Bus => "the bus lane",
+        LaneWord::Shoulder => "the shoulder",
+        LaneWord::Curb => "at the kerb",
+        LaneWord::Opposing => "the opposite side",
+    }
+}
+
+/// Whether somebody begins in the told lane of its road.
+fn lane(word: LaneWord, scenario: &Scenario, ego: &ActorTrack, track: &ActorTrack) -> (CheckResult, String) {
+    let network = scenario.network();
+    let first = &track.states[0];
+    let Some(id) = network.lane_at(first.position(), first.heading) else {
+        return (CheckResult::CannotBeShown, "on no lane".to_owned());
+    };
+    let lanes = &network.road(network.lane(id).road).lanes;
+    let number = lanes.iter().position(|lane| *lane == id).unwrap_or(0);
+    let last = lanes.len() - 1;
+    let shown = match word {
+        LaneWord::Left | LaneWord::LeftTurn => number == 0,
+        LaneWord::Right | LaneWord::RightTurn => number == last,
+        LaneWord::Center => number > 0 && number < last,
+        LaneWord::Opposing => {
+            let heading = network.lane(id).heading(0.0) - ego.states[0].heading;
+            math::wrap_angle(heading).abs() > math::FRAC_PI_2
+        }
+        LaneWord::Bike | LaneWord::Bus | LaneWord::Shoulder | LaneWord::Curb => {
+            return (CheckResult::CannotBeShown, "no such lane is drawn".to_owned());
+        }
+    };
+    let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
+    (result, format!("lane {} of {}, from the left", number + 1, lanes.len()))
+}
+
+/// Who stands behind somebody is no farther from it. [m]
+const BEHIND_M: f64 = 8.0;
+
+/// Whether the scene holds what the ego stood for.
+fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (CheckResult, String) {
+    let (draft, ego) = (scenario.draft(), rollout.ego_track());
+    let controlled = |device: ControlDevice| {
+        let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
+        control::check(said, scenario, ego, time_s).0 == CheckResult::Shown
+    };
+    let ahead = || {
+        let step = ((time_s * 10.0) as usize).min(ego.states.len() - 1);
+        let state = &ego.states[step];
+        rollout.actors.iter().filter(|track| track.id == LEAD).any(|track| {
+            let way = track.states[step.min(track.states.len() - 1)].position() - state.position();
+            way.dot(Vec2::from_heading(state.heading)) > 0.0 && way.length() < BEHIND_M + ego.length_m
+        })
+    };
+    let holds = |reason: &StandReason| match reason {
+        StandReason::RedLight => controlled(ControlDevice::Signal),
+        StandReason::StopSign => controlled(ControlDevice::StopSign),
+        StandReason::Queue | StandReason::LeadVehicle => ahead(),
+        StandReason::PickupDropoff => !draft.ego.stops.is_empty(),
+        StandReason::Parked => told.sv.state == ContactState::Parked,
+        _ => false,
+    };
+    match told.reasons.iter().any(holds) {
+        true => (CheckResult::Shown, "in the scene".to_owned()),
+        false => (CheckResult::CannotBeShown, "not in the scene".to_owned()),
+    }
 }
 
 fn zone_words(zones: &[ContactZone]) -> String {

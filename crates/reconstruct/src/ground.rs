@@ -1,7 +1,7 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
 use crate::told::{Told, Turning};
-use recrash_model::account::{ContactState, Origin, PlaceKind};
+use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::Pose;
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_roads::{LanePath, RoadNetwork};
@@ -71,20 +71,22 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
         || told.cp.turning != Turning::No;
     let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley);
-    if crossing && !lot || told.place == PlaceKind::Intersection {
+    let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
+    if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
         return junction(told, crossing);
     }
     let (right, left) = match told.place {
-        PlaceKind::Highway => (strips(3, &[StripKind::Shoulder]), Vec::new()),
+        PlaceKind::Highway => (strips(lanes_for(told, 3), &[StripKind::Shoulder]), Vec::new()),
         _ if lot => (strips(1, &[StripKind::Stalls]), strips(1, &[StripKind::Stalls])),
         _ => (
-            strips(2, &[StripKind::Parking, StripKind::Sidewalk]),
+            strips(lanes_for(told, 2), &[StripKind::Parking, StripKind::Sidewalk]),
             strips(1, &[StripKind::Parking, StripKind::Sidewalk]),
         ),
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     // The rightmost lane, but for a partner that comes by on the right.
-    let lane = if lanes > 1 && passes_right(told) { lanes - 2 } else { lanes - 1 };
+    let usual = if lanes > 1 && passes_right(told) { lanes - 2 } else { lanes - 1 };
+    let lane = told_lane(told, lanes).unwrap_or(usual);
     let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * LANE_M, heading_deg: 0.0 };
     let map = GraphMap {
         roads: vec![straight("main", start, 2.0 * APPROACH_M, right, left)],
@@ -94,9 +96,44 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     with_way(map, vec!["main+".to_owned()], lane as u8, vec![APPROACH_M], false)
 }
 
+/// Lanes in the ego's direction: as told, and at least as many as the told lanes need.
+fn lanes_for(told: &Told, usual: usize) -> usize {
+    // Who comes by on the opposite side comes by beside the only lane.
+    let usual = if told.cp.lane == Some(LaneWord::Opposing) && told.sv.lane.is_none() { 1 } else { usual };
+    let needed = [told.sv.lane, told.cp.lane].into_iter().flatten().map(|word| match word {
+        LaneWord::Center => 3,
+        LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn => 2,
+        _ => 1,
+    });
+    told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)).clamp(1, MOST_LANES)
+}
+
+/// No road has more lanes in one direction.
+const MOST_LANES: usize = 5;
+
+/// The ego's lane, where it is told, 0 is the leftmost.
+fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
+    let number = |word: LaneWord| match word {
+        LaneWord::Left | LaneWord::LeftTurn => Some(0),
+        LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
+        LaneWord::Center => Some(lanes / 2),
+        _ => None,
+    };
+    if let Some(word) = told.sv.lane {
+        return number(word);
+    }
+    // The partner's lane tells the ego's, where the two go one way.
+    let other = number(told.cp.lane?)?;
+    match told.origin {
+        Origin::Behind | Origin::Ahead => Some(other),
+        Origin::Beside { side: LeftRight::Left } => (other + 1 < lanes).then_some(other + 1),
+        Origin::Beside { side: LeftRight::Right } => other.checked_sub(1),
+        _ => None,
+    }
+}
+
 fn passes_right(told: &Told) -> bool {
-    use recrash_model::account::LeftRight::Right;
-    matches!(told.origin, Origin::Beside { side: Right })
+    matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || told.origin == Origin::Behind
             && told.cp.state == ContactState::Moving
             && told.sv.zones.iter().any(|zone| {
@@ -106,12 +143,19 @@ fn passes_right(told: &Told) -> bool {
 
 /// Four arms; the ego comes along the one that lies behind it.
 fn junction(told: &Told, crossing: bool) -> Ground {
+    let lanes = lanes_for(told, 2);
+    let corner_m = CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M;
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
-        let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: CORNER_M };
-        straight(id, start, length_m, strips(2, &[StripKind::Sidewalk]), strips(2, &[StripKind::Sidewalk]))
+        let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
+        straight(id, start, length_m, strips(lanes, &[StripKind::Sidewalk]), strips(lanes, &[StripKind::Sidewalk]))
     };
-    // The ego's lane, the outer of two, lies on the x axis.
-    let centre_y = 1.5 * LANE_M;
+    let (exit, lane) = match told.sv.turning {
+        Turning::Left => ("left+", told_lane(told, lanes).unwrap_or(0)),
+        Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
+        Turning::No | Turning::Round => ("ahead+", told_lane(told, lanes).unwrap_or(lanes - 1)),
+    };
+    // The ego's lane lies on the x axis, or beside it.
+    let centre_y = (lanes as f64 - 0.5) * LANE_M;
     let map = GraphMap {
         roads: vec![
             arm("own", 180.0, APPROACH_M),
@@ -128,21 +172,25 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         }],
         areas: Vec::new(),
     };
-    let (exit, lane) = match told.sv.turning {
-        Turning::Left => ("left+", 0),
-        Turning::Right => ("right+", 1),
-        Turning::No | Turning::Round => ("ahead+", 1),
-    };
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
-    let places = if told.sv.turning != Turning::No {
-        inside(&[10.0, 14.0, 6.0, 18.0, 3.0, 22.0, 28.0])
-    } else if crossing {
-        inside(&[12.0, 8.0, 16.0, 5.0, 20.0])
-    } else {
-        // Before the line, in front of it.
-        vec![APPROACH_M - 5.0]
+    let at_line: &[f64] = match told.sv.state {
+        ContactState::Stopped if told.sv.control.is_some() => &[-5.0, -8.0],
+        ContactState::SettingOff if told.sv.control.is_some() => &[3.0, 1.0, 5.0, -3.0],
+        _ => &[],
     };
-    with_way(map, vec!["own-".to_owned(), exit.to_owned()], lane, places, true)
+    let places = if crossing || told.sv.turning != Turning::No {
+        let mut all = inside(at_line);
+        all.extend(if told.sv.turning != Turning::No {
+            inside(&[10.0, 14.0, 6.0, 18.0, 3.0, 22.0, 28.0])
+        } else {
+            inside(&[12.0, 8.0, 16.0, 5.0, 20.0])
+        });
+        all
+    } else {
+        // At the line, or behind who stands there.
+        vec![APPROACH_M - if told.lead { 13.0 } else { 5.0 }]
+    };
+    with_way(map, vec!["own-".to_owned(), exit.to_owned()], lane as u8, places, true)
 }
 
 fn with_way(map: GraphMap, route: Vec<String>, lane: u8, places: Vec<f64>, junction: bool) -> Ground {

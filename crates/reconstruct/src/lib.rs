@@ -7,6 +7,7 @@
 //! `docs/models/reconstruction.md`.
 
 mod came;
+mod control;
 mod facts;
 mod ground;
 mod told;
@@ -16,6 +17,7 @@ use recrash_model::account::{Account, Untold};
 use recrash_model::metrics::{Answer, CheckKind, Verdict};
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
+use recrash_roads::Scenario;
 use recrash_sim::Ego;
 
 /// Stagings that are tried for one account, at most.
@@ -35,9 +37,9 @@ pub struct Reconstruction {
 }
 
 impl Reconstruction {
-    /// Whether every told fact is shown.
+    /// Whether no told fact is missed; some may be beyond what can be shown yet.
     pub fn is_true(&self) -> bool {
-        self.verdict.faithful() == Answer::Yes
+        self.verdict.faithful() != Answer::No
     }
 }
 
@@ -46,12 +48,12 @@ pub fn told_kinds(account: &Account) -> Vec<CheckKind> {
     told::Told::read(account).map(|told| told.kinds()).unwrap_or_default()
 }
 
-/// Told facts of an account, held against a rollout of any scenario.
+/// Told facts of an account, held against a rollout of any scenario. Of the scenario its roads, signals and stops are looked at.
 ///
 /// # Errors
 /// The account cannot be staged at all.
-pub fn held_against(account: &Account, rollout: &Rollout) -> Result<Verdict, Untold> {
-    Ok(Verdict { checks: facts::facts(&told::Told::of(account)?, rollout) })
+pub fn held_against(account: &Account, scenario: &Scenario, rollout: &Rollout) -> Result<Verdict, Untold> {
+    Ok(Verdict { checks: facts::facts(&told::Told::of(account)?, scenario, rollout) })
 }
 
 /// Stages an account: the first staging that shows every told fact, else the one that shows most.
@@ -61,7 +63,7 @@ pub fn held_against(account: &Account, rollout: &Rollout) -> Result<Verdict, Unt
 pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
     let mut best: Option<Reconstruction> = None;
     let mut refused = 0;
-    for told in told::Told::of(account)?.by_origin() {
+    for told in told::Told::of(account)?.variants() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
             let draft = came::draft(account, &told, &staging);
             let Ok(checked) = recrash_roads::check(draft) else {
@@ -70,7 +72,7 @@ pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
             };
             let scenario = checked.value;
             let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
-            let verdict = Verdict { checks: facts::facts(&told, &rollout) };
+            let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
             if best.as_ref().is_none_or(|best| verdict.failures().count() < best.verdict.failures().count()) {
                 let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
                 best = Some(Reconstruction { draft, rollout, verdict, assumed });

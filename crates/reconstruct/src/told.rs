@@ -4,6 +4,7 @@ use recrash_model::account::{
     Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     SpeedMeaning, Striker, Untold, told,
 };
+use recrash_model::account::{Control, ControlDevice, LaneWord, Obeyed, SignalState, StandReason};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
@@ -38,8 +39,9 @@ pub(crate) struct Side {
     pub(crate) impact_mps: Option<f64>,
     /// Speed at the contact that is staged. [m/s]
     pub(crate) speed_mps: f64,
-    pub(crate) ran_red: bool,
-    pub(crate) ran_stop: bool,
+    pub(crate) lane: Option<LaneWord>,
+    /// The signal or sign in front of it, where told.
+    pub(crate) control: Option<Control>,
 }
 
 /// An account, in the terms of a staging.
@@ -57,6 +59,15 @@ pub(crate) struct Told {
     /// Somebody threw the partner at the subject vehicle.
     pub(crate) pushed: bool,
     pub(crate) striker: Option<Striker>,
+    /// Lanes in the ego's direction.
+    pub(crate) lanes: Option<u8>,
+    /// Why the ego stood.
+    pub(crate) reasons: Vec<StandReason>,
+    /// Others than the two.
+    pub(crate) others: usize,
+    pub(crate) door: bool,
+    /// Somebody stands ahead of the ego, as the reason why it stood.
+    pub(crate) lead: bool,
     pub(crate) assumed: Vec<String>,
 }
 
@@ -102,6 +113,11 @@ impl Told {
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             striker,
+            lanes: told(&account.place.lanes),
+            reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
+            others: account.others.len(),
+            door: account.door.is_some(),
+            lead: false,
             assumed,
         };
         if this.origin_told {
@@ -129,12 +145,43 @@ impl Told {
             (CheckKind::Approach, self.origin_told && moves),
             (CheckKind::Order, self.order.is_some() && moves),
             (CheckKind::PassedOn, self.pushed),
+            (CheckKind::SvLane, sv.lane.is_some()),
+            (CheckKind::CpLane, cp.lane.is_some() && moves),
+            (CheckKind::SvControl, sv.control.is_some()),
+            (CheckKind::CpControl, cp.control.is_some() && moves),
+            (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),
+            (CheckKind::Others, self.others > 0),
+            (CheckKind::Door, self.door),
         ];
         of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
     }
 
+    /// Whether somebody stood ahead of the ego, who is not the partner.
+    fn wants_lead(&self) -> bool {
+        let waits = |reason: &StandReason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle);
+        self.sv.state == ContactState::Stopped
+            && self.reasons.iter().any(waits)
+            && self.thing.is_none()
+            && self.origin != Origin::Ahead
+    }
+
+    /// Whether a signal or sign is told.
+    pub(crate) fn is_controlled(&self) -> bool {
+        self.sv.control.is_some() || self.cp.control.is_some()
+    }
+
+    /// Everything to try: with who stood ahead of the ego, then without.
+    pub(crate) fn variants(self) -> Vec<Self> {
+        let all = self.by_origin().into_iter();
+        let with_lead = |told: Self| {
+            let lead = told.wants_lead().then(|| Self { lead: true, ..told.clone() });
+            lead.into_iter().chain([told])
+        };
+        all.flat_map(with_lead).collect()
+    }
+
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
-    pub(crate) fn by_origin(self) -> Vec<Self> {
+    fn by_origin(self) -> Vec<Self> {
         if self.origin_told {
             return vec![self];
         }
@@ -262,9 +309,22 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
             .collect(),
         impact_mps,
         speed_mps: 0.0,
-        ran_red: party.did(Act::RunRed),
-        ran_stop: party.did(Act::RunStop),
+        lane: told(&party.lane),
+        control: control(party),
     }
+}
+
+/// The signal or sign in front of somebody; who is told to have run one had one.
+fn control(party: &Party) -> Option<Control> {
+    let ran = |device, state| Some(Control { device, state, obeyed: Some(Obeyed::No) });
+    if party.did(Act::RunRed) {
+        return ran(ControlDevice::Signal, Some(SignalState::Red));
+    }
+    if party.did(Act::RunStop) {
+        return ran(ControlDevice::StopSign, None);
+    }
+    // What is said last is nearest to the contact.
+    party.controls.last().map(|fact| fact.value)
 }
 
 /// Sizes of kinds that are longer or shorter than the group they belong to; usual ones, assumed. [m]

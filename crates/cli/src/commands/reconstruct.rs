@@ -24,8 +24,9 @@ Examples:
   recrash simulate scenes/incident-X.json --ego idm        another driver in its place, from the handover on
 
 The ego is the recorded driver. Checked are: contact, kind of partner, zones of both within a step, state of both at the
-contact, the ego's impact speed, turns of both, from where the partner comes, who was first, and whether another threw the partner at the ego. Not yet checked: lanes,
-signals, others, doors, and why somebody stood. docs/models/reconstruction.md says how each is checked.";
+contact, impact speeds, turns of both, lanes of both, signals and signs and whether they were obeyed, why the ego stood, from
+where the partner comes, who was first, and whether another threw the partner at the ego. A told fact that no scene can show yet
+(a door) counts as not checked. docs/models/reconstruction.md says how each is checked.";
 
 /// Options of `reconstruct`.
 #[derive(Debug, Clone, Args)]
@@ -121,24 +122,31 @@ fn types(read: &Accounts, retold: &[Retold]) {
     type_table(&type_shares(&read.accounts, retold));
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
     println!(
-        "not checked yet: lanes, signals and signs, others in the story but who throws the partner, doors, why somebody stood"
+        "not checked yet: doors, lanes for bicycles and buses, most of the others in the story, acts beside turns, stops and lanes"
     );
 }
 
 /// Prints how much of each crash type is told.
 pub fn type_table(types: &[TypeShare]) {
     title("Readable incidents whose every checked fact is shown");
-    let mut table = table(&["type", "incidents", "told", "share", "facts per 100 words"]);
-    let mut row = |label: &str, incidents: usize, told: usize, facts: String| {
+    let mut table = table(&["type", "incidents", "told", "share", "of it all checked", "facts per 100 words"]);
+    let mut row = |label: &str, incidents: usize, told: usize, whole: usize, facts: String| {
         let share = format!("{:.1} %", 100.0 * told as f64 / incidents.max(1) as f64);
-        table.add_row(vec![Cell::new(label), number(incidents), number(told), number(share), number(facts)]);
+        table.add_row(vec![
+            Cell::new(label),
+            number(incidents),
+            number(told),
+            number(share),
+            number(whole),
+            number(facts),
+        ]);
     };
     for share in types {
         let label = share.crash_type.map_or("not told", CrashType::label);
-        row(label, share.incidents, share.told, format!("{:.1}", share.facts_per_100_words));
+        row(label, share.incidents, share.told, share.whole, format!("{:.1}", share.facts_per_100_words));
     }
     let sum = |of: fn(&TypeShare) -> usize| types.iter().map(of).sum();
-    row("all", sum(|share| share.incidents), sum(|share| share.told), String::new());
+    row("all", sum(|share| share.incidents), sum(|share| share.told), sum(|share| share.whole), String::new());
     println!("{table}");
 }
 
@@ -182,7 +190,12 @@ fn one(read: &Accounts, retold: &[Retold]) {
             Ok(made) => {
                 let mut table = table(&["fact", "shown", "told", "what the rollout shows"]);
                 for fact in &made.verdict.checks {
-                    let shown = if fact.result == CheckResult::Shown { "yes" } else { "no" };
+                    let shown = match fact.result {
+                        CheckResult::Shown => "yes",
+                        CheckResult::NotShown => "no",
+                        CheckResult::CannotBeShown => "not checked",
+                        CheckResult::NotTold => "not told",
+                    };
                     let cells = [fact.kind.label(), shown, &fact.expected, &fact.observed];
                     table.add_row(cells.into_iter().map(Cell::new).collect::<Vec<_>>());
                 }

@@ -185,6 +185,8 @@ fn show_accounts(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
         accounts.readable,
         summary.cases.len(),
     );
+    let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
+    println!("  of {whole} of those {} no told fact is beyond what is checked", accounts.told);
     println!(
         "  {} drove {} of them ({} were parked: nothing to test), came into the situation of the record in {met} and fails {} of those {met}",
         summary.ego,

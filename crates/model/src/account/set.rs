@@ -26,8 +26,10 @@ pub struct TypeShare {
     pub crash_type: Option<CrashType>,
     /// Incidents with a narrative that can be read.
     pub incidents: usize,
-    /// Of those, the ones whose reconstruction shows every told fact.
+    /// Of those, the ones whose reconstruction shows every told fact that is checked.
     pub told: usize,
+    /// Of those, the ones of which every told fact is checked.
+    pub whole: usize,
     /// Facts that stand in the narratives, for every 100 words of them: so that silence does not pass for truth.
     pub facts_per_100_words: f64,
 }

@@ -7,7 +7,7 @@ use recrash_model::account::{
     ACCOUNTS_FORMAT, Account, AccountSet, CrashType, FactShare, TypeShare, Untold, UntoldIncident, told,
 };
 use recrash_model::incident::Incident;
-use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult};
 use recrash_model::record::{CrashRecord, FunnelStep, Reading, RecordSet, Redaction, Reject, RejectReason};
 use recrash_reconstruct::{Reconstruction, reconstruct, told_kinds};
 use recrash_records::Filter;
@@ -31,6 +31,11 @@ impl Retold {
             Ok(made) => (!made.is_true()).then_some(Untold::NotShown),
             Err(why) => Some(*why),
         }
+    }
+
+    /// Whether every told fact is checked, and shown.
+    pub fn is_whole(&self) -> bool {
+        self.result.as_ref().is_ok_and(|made| made.verdict.faithful() == Answer::Yes)
     }
 
     /// The same, with the fact that is not shown.
@@ -88,6 +93,7 @@ pub fn type_shares(accounts: &[Account], retold: &[Retold]) -> Vec<TypeShare> {
             crash_type,
             incidents: of.len(),
             told: of.iter().filter(|each| each.untold().is_none()).count(),
+            whole: of.iter().filter(|each| each.is_whole()).count(),
             facts_per_100_words: 100.0 * facts as f64 / words.max(1) as f64,
         }
     };

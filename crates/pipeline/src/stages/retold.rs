@@ -114,7 +114,7 @@ fn is_tested(scenario: &Scenario) -> bool {
 
 fn recorded_run(suite: &Suite, id: &str, scenario: &Scenario) -> Result<JudgedRun, PipelineError> {
     let rollout = Native::new(Ego::Recorded).run(scenario)?;
-    let verdict = held_against(&account(suite, id)?, &rollout)
+    let verdict = held_against(&account(suite, id)?, scenario, &rollout)
         .map_err(|why| PipelineError::scenario(id, format!("the account cannot be staged: {why}")))?;
     Ok(judge_by(scenario, rollout, suite.profile(), verdict))
 }

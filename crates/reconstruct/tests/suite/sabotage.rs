@@ -12,8 +12,9 @@ use recrash_sim::{Ego, simulate};
 /// Whether the sabotaged draft is refused, or at least one told fact is not shown.
 fn is_caught(account: &Account, draft: ScenarioDraft) -> bool {
     let Ok(checked) = recrash_roads::check(draft) else { return true };
-    let verdict = held_against(account, &simulate(&checked.value, Ego::Recorded)).expect("it was staged");
-    verdict.faithful() != Answer::Yes
+    let verdict =
+        held_against(account, &checked.value, &simulate(&checked.value, Ego::Recorded)).expect("it was staged");
+    verdict.faithful() == Answer::No
 }
 
 /// Applies a sabotage to every reconstruction that it can be applied to; all of them are caught, and there are some.

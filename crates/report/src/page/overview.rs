@@ -66,8 +66,9 @@ fn sentence(context: &Context) -> Markup {
 fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
     html! {
-        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with every checked fact shown; "
-        @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "all of them are here. " }
+        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with every checked fact shown, and "
+        "of " (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them no told fact is beyond what is checked. "
+        @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         b { (words::clean(&suite.ego, 60)) } " came into the situation of its record in " b { (thousands(s.met)) " of the " (thousands(s.ran)) } " that it drove, and fails "
         b { (thousands(s.failed_met)) " of those " (thousands(s.met)) }
         @if s.failed_after > s.failed_met { " and " (thousands(s.failed_after - s.failed_met)) " more" }

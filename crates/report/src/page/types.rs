@@ -27,7 +27,8 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
         .table-wrap { table.plain {
             caption.hidden-text { "Readable incidents by crash type" }
             thead { tr {
-                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" { "Told as they happened" }
+                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="every told fact that is checked is shown" { "Told as they happened" }
+                th.number scope="col" title="no told fact is beyond what is checked" { "Of those, all facts checked" }
                 th.number scope="col" title="facts that stand in the narratives, for every 100 words" { "Facts per 100 words" }
                 th.number scope="col" { "Scenarios here" } th.number scope="col" { "Situation met" } th.number scope="col" { "Ego fails" }
             } }
@@ -37,6 +38,7 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
                     th scope="row" { (share.crash_type.map_or("not told", CrashType::label)) }
                     td.number { (thousands(share.incidents)) }
                     td.number { (thousands(share.told)) span.muted { " (" (percent(share.told, share.incidents)) "\u{a0}%)" } }
+                    td.number { (thousands(share.whole)) }
                     td.number { (parts::quantity(Some(share.facts_per_100_words), 1, "", "")) }
                     @if share.crash_type.is_some() { td.number { (thousands(scenarios)) } td.number { (thousands(met)) } td.number { (thousands(failed)) } }
                     @else { td {} td {} td {} }

@@ -1,0 +1,238 @@
+//! Signals and signs: drawn as they are told, and held against who drove past them when.
+
+use crate::came::CONTACT_S;
+use crate::ground::Ground;
+use crate::told::{Side, Told};
+use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState};
+use recrash_model::geometry::Vec2;
+use recrash_model::metrics::CheckResult;
+use recrash_model::rollout::{ActorTrack, STEP_S};
+use recrash_model::scenario::{Aspect, Control, Device, Phase};
+use recrash_roads::{ControlPlacement, Scenario};
+
+/// Longest phase. [s]
+const ALWAYS_S: f64 = 600.0;
+
+/// What has just changed has changed for so long at the contact: where the other waits for it, and where it drives on. [s]
+const CHANGED_S: f64 = 3.0;
+const CHANGED_BEFORE_DRIVING_S: f64 = 7.5;
+
+/// What changed within this time has just changed. [s]
+const JUST_S: f64 = 10.0;
+
+/// A yellow light. [s]
+const YELLOW_S: f64 = 4.0;
+
+/// Who stands no farther before a line stands at it. [m]
+const AT_LINE_M: f64 = 8.0;
+
+/// Slower than this is standing. [m/s]
+const STANDS_MPS: f64 = 0.1;
+
+/// A line is taken to be so much longer on both sides. [m]
+const BESIDE_M: f64 = 1.5;
+
+/// The devices that are told, and on the other arms what goes with them.
+pub(crate) fn devices(told: &Told, ground: &Ground) -> Vec<Control> {
+    if !ground.junction {
+        return Vec::new();
+    }
+    let cp_arm = match told.origin {
+        Origin::Cross { side: LeftRight::Left } => "left-",
+        Origin::Cross { side: LeftRight::Right } => "right-",
+        Origin::Opposite => "ahead-",
+        _ => "own-",
+    };
+    let crosses = matches!(cp_arm, "left-" | "right-");
+    let at = |arm: &str, device: Device| Control { at: arm.to_owned(), set_back_m: 0.0, lanes: Vec::new(), device };
+    let said = [("own-", &told.sv), (cp_arm, &told.cp)].map(|(arm, side)| side.control.map(|said| (arm, side, said)));
+    let mut list: Vec<Control> = Vec::new();
+    for (arm, _, said) in said.iter().flatten() {
+        let device = match said.device {
+            ControlDevice::Signal => continue,
+            ControlDevice::StopSign => Device::StopSign {},
+            ControlDevice::YieldSign => Device::YieldSign {},
+        };
+        if !list.iter().any(|control| control.at == *arm) {
+            list.push(at(arm, device));
+        }
+    }
+    let signal = |said: &Option<(&'static str, &Side, Said)>| {
+        let (_, side, said) = said.as_ref().filter(|(_, _, said)| said.device == ControlDevice::Signal)?;
+        Some(program(said.state, side))
+    };
+    let (own, other) = (signal(&said[0]), signal(&said[1]));
+    if own.is_none() && other.is_none() {
+        return list;
+    }
+    // Two arms that face each other show the same, and the other two the opposite.
+    let along = own.clone().or_else(|| other.clone().map(|of| if crosses { opposite(&of) } else { of }));
+    let across = other.filter(|_| crosses).or_else(|| along.as_deref().map(opposite));
+    for (arms, program) in [(["own-", "ahead-"], along), (["left-", "right-"], across)] {
+        for arm in arms {
+            if let Some(program) = program.clone().filter(|_| !list.iter().any(|control| control.at == arm)) {
+                list.push(at(arm, Device::Signal { program, offset_s: 0.0 }));
+            }
+        }
+    }
+    list
+}
+
+/// A program that shows at the contact what is told.
+fn program(state: Option<SignalState>, side: &Side) -> Vec<Phase> {
+    let phase = |show: Aspect, for_s: f64| Phase { show, for_s };
+    let changed_s = CONTACT_S - if side.state.stands() { CHANGED_S } else { CHANGED_BEFORE_DRIVING_S };
+    match state {
+        Some(SignalState::Red) => vec![phase(Aspect::Red, ALWAYS_S)],
+        Some(SignalState::Green) => vec![phase(Aspect::Green, ALWAYS_S)],
+        Some(SignalState::TurnedGreen) => vec![phase(Aspect::Red, changed_s), phase(Aspect::Green, ALWAYS_S)],
+        Some(SignalState::Yellow) => vec![
+            phase(Aspect::Green, CONTACT_S - 0.5 * YELLOW_S),
+            phase(Aspect::Yellow, YELLOW_S),
+            phase(Aspect::Red, ALWAYS_S),
+        ],
+        Some(SignalState::TurnedRed) => vec![
+            phase(Aspect::Green, (changed_s - YELLOW_S).max(0.1)),
+            phase(Aspect::Yellow, YELLOW_S),
+            phase(Aspect::Red, ALWAYS_S),
+        ],
+        None if side.state.stands() => vec![phase(Aspect::Red, ALWAYS_S)],
+        None => vec![phase(Aspect::Green, ALWAYS_S)],
+    }
+}
+
+/// Red for green and the other way round.
+fn opposite(program: &[Phase]) -> Vec<Phase> {
+    let turned =
+        |phase: &Phase| Phase { show: if phase.show == Aspect::Red { Aspect::Green } else { Aspect::Red }, ..*phase };
+    program.iter().map(turned).collect()
+}
+
+/// A told signal or sign, for sentences.
+pub(crate) fn words(said: Said) -> String {
+    let device = match said.device {
+        ControlDevice::Signal => "signal",
+        ControlDevice::StopSign => "stop sign",
+        ControlDevice::YieldSign => "yield sign",
+    };
+    let state = match said.state {
+        None => "",
+        Some(SignalState::Red) => "red ",
+        Some(SignalState::Yellow) => "yellow ",
+        Some(SignalState::Green) => "green ",
+        Some(SignalState::TurnedGreen) => "just green ",
+        Some(SignalState::TurnedRed) => "just red ",
+    };
+    let obeyed = match said.obeyed {
+        None => "",
+        Some(Obeyed::Yes) => ", obeyed",
+        Some(Obeyed::No) => ", not obeyed",
+    };
+    format!("{state}{device}{obeyed}")
+}
+
+/// Whether a told signal or sign stood before somebody, showed what is told, and was obeyed or not as told.
+pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> (CheckResult, String) {
+    let until = ((contact_s / STEP_S).floor() as usize).min(track.states.len() - 1);
+    if scenario.draft().control.is_empty() {
+        return (CheckResult::CannotBeShown, "none is drawn here".to_owned());
+    }
+    let all = scenario.draft().control.iter().zip(scenario.control());
+    let met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?)));
+    let found = met.filter_map(|(control, line)| Some((control, passage(track, &line, until)?))).next();
+    let Some((control, passage)) = found else {
+        return (CheckResult::NotShown, "none on its way".to_owned());
+    };
+    let is_device = match (&control.device, said.device) {
+        (Device::Signal { .. }, ControlDevice::Signal) => true,
+        (Device::StopSign {}, ControlDevice::StopSign) | (Device::YieldSign {}, ControlDevice::YieldSign) => true,
+        _ => false,
+    };
+    if !is_device {
+        return (CheckResult::NotShown, "another device".to_owned());
+    }
+    let time_s = passage.crossed_s.unwrap_or(contact_s);
+    let shows = |at_s: f64| control.device.aspect(at_s);
+    let just = |was: &[Aspect]| {
+        let back = |tenth: i32| shows((contact_s - 0.1 * f64::from(tenth)).max(0.0));
+        (0..=(JUST_S * 10.0) as i32).any(|tenth| back(tenth).is_some_and(|seen| was.contains(&seen)))
+    };
+    let state = match said.state {
+        None => true,
+        Some(SignalState::Red) => shows(time_s) == Some(Aspect::Red),
+        Some(SignalState::Green) => shows(time_s) == Some(Aspect::Green),
+        Some(SignalState::Yellow) => shows(time_s) == Some(Aspect::Yellow),
+        Some(SignalState::TurnedGreen) => shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]),
+        Some(SignalState::TurnedRed) => shows(contact_s) == Some(Aspect::Red) && just(&[Aspect::Green, Aspect::Yellow]),
+    };
+    let kept = match control.device {
+        Device::StopSign {} => passage.crossed_s.is_none() || passage.stood,
+        Device::YieldSign {} => true,
+        Device::Signal { .. } => passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red)),
+    };
+    let obeyed = match said.obeyed {
+        None => true,
+        Some(Obeyed::Yes) => kept,
+        Some(Obeyed::No) => !kept,
+    };
+    let color = shows(time_s).map_or(String::new(), |aspect| format!("{} ", format!("{aspect:?}").to_lowercase()));
+    let did = match passage.crossed_s {
+        None => "it stayed before the line".to_owned(),
+        Some(at_s) => format!("it crossed the line at {at_s:.1} s"),
+    };
+    let result = if state && obeyed { CheckResult::Shown } else { CheckResult::NotShown };
+    (result, format!("{color}at {time_s:.1} s, {did}"))
+}
+
+/// How somebody came by a stop line.
+struct Passage {
+    /// When its front crossed the line. [s]
+    crossed_s: Option<f64>,
+    /// It stood at the line before.
+    stood: bool,
+}
+
+/// A stop line, and the direction across it.
+struct Line {
+    from: Vec2,
+    to: Vec2,
+    ahead: Vec2,
+}
+
+fn line_of(scenario: &Scenario, control: &Control, placed: &ControlPlacement) -> Option<Line> {
+    let network = scenario.network();
+    let [one, other] = *network.stop_lines(std::slice::from_ref(control)).first()?;
+    let &(lane, at_m) = placed.lines.first()?;
+    let along = (other - one) * (1.0 / (other - one).length().max(1e-9));
+    let ahead = Vec2::from_heading(network.lane(lane).heading(at_m));
+    Some(Line { from: one - along * BESIDE_M, to: other + along * BESIDE_M, ahead })
+}
+
+/// Whether somebody came along to this line until a step: it crossed it, or it is right before it.
+fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
+    let front = |step: usize| {
+        let state = &track.states[step];
+        state.position() + Vec2::from_heading(state.heading) * (0.5 * track.length_m)
+    };
+    let along = line.to - line.from;
+    let length = along.length();
+    let on = |point: Vec2| {
+        let share = (point - line.from).dot(along) / (length * length);
+        ((0.0..=1.0).contains(&share), (point - line.from).dot(line.ahead))
+    };
+    let mut stood = false;
+    for step in 0..=until {
+        let (beside, past_m) = on(front(step));
+        stood |= beside && (-AT_LINE_M..=0.5).contains(&past_m) && track.states[step].velocity().length() < STANDS_MPS;
+        if step > 0 {
+            let (was_beside, was_m) = on(front(step - 1));
+            if was_m <= 0.0 && past_m > 0.0 && (beside || was_beside) {
+                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood });
+            }
+        }
+    }
+    let state = &track.states[until];
+    let (beside, past_m) = on(front(until));
+    let heads_there = Vec2::from_heading(state.heading).dot(line.ahead) > 0.5;
+    (beside && heads_there && (-40.0..=0.5).contains(&past_m)).then_some(Passage { crossed_s: None, stood })
+}
