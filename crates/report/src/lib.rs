@@ -8,6 +8,7 @@
 //! runs nor when the page is looked at.
 
 mod anchor;
+pub mod comparison;
 mod data;
 mod junit;
 mod page;
