@@ -81,6 +81,19 @@ pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), Pipelin
     }
 }
 
+/// Reads and checks the JSON of a scenario that stands in no file.
+///
+/// # Errors
+/// It is no scenario: every problem with its place.
+pub fn parse_scenario(json: &str) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
+    match scenario_from(json) {
+        Ok(read) => Ok((read.value, read.diagnostics)),
+        Err(diagnostics) => {
+            Err(PipelineError::BadInput { what: "this is not a scenario that can be run".to_owned(), diagnostics })
+        }
+    }
+}
+
 /// Reads and checks a scenario's JSON: recrash's own, or the paper's dialect.
 pub(crate) fn scenario_from(json: &str) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
     let draft = recrash_roads::read_draft(json)?;

@@ -8,7 +8,7 @@ pub(crate) mod names;
 
 use crate::error::PipelineError;
 use crate::models::cast::RULES;
-use crate::simulators::external::{EGO_COMMAND_PREFIX, Patience};
+use crate::simulators::external::{EgoCommand, Patience};
 
 use crate::files::store::{Store, WriteFile, sha256, to_json, write_suite_file};
 use crate::models::{AnswerMode, ModelAccess, Models};
@@ -489,7 +489,7 @@ impl Suite {
 /// # Errors
 /// The ego is a program, and the caller neither named it nor trusts the suite.
 pub(crate) fn refuse_untrusted(ego: &str, trust: bool) -> Result<(), PipelineError> {
-    if trust || !ego.starts_with(EGO_COMMAND_PREFIX) {
+    if trust || matches!(EgoCommand::parse(ego), Ok(None)) {
         return Ok(());
     }
     Err(PipelineError::Untrusted { program: ego.to_owned() })
