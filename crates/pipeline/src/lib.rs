@@ -64,7 +64,7 @@ pub use tools::check_driver::{
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{
-    Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate,
+    Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, TwoReaders, evaluate,
 };
 pub use tools::exporting::{ExportReport, ExportRequest, export};
 pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
