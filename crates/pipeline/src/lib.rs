@@ -70,7 +70,7 @@ pub use tools::comparing::{CiFiles, CiOutputs, PageRequest, compare_files, compa
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{
-    Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate,
+    Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, TwoReaders, evaluate,
 };
 pub use tools::evidence::{Evidence, EvidenceRequest, evidence};
 pub use tools::exporting::{ExportReport, ExportRequest, export};
