@@ -44,10 +44,12 @@ pub use recrash_child::end_all as end_programs;
 pub use recrash_drivers::preventability;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
+pub use recrash_lab::causes::{CauseGroup, by_cause};
 pub use recrash_lab::run_scenario;
 pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Column, Distribution, FILTER_HELP, RecordTable, TableRows, distributions, record_table};
+pub use recrash_report::comparison::{github as github_annotations, sentence as comparison_sentence};
 pub use recrash_roads::scenario_schema as schema;
 pub use simulators::external::{
     EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience, told_at_reset, told_at_step,
@@ -63,20 +65,27 @@ pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use tools::check_driver::{
     AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,
 };
+pub use tools::comparing::{CiFiles, CiOutputs, PageRequest, compare_files, compare_with, hold_to, write_page};
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{
-    Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, evaluate,
+    Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, TwoReaders, evaluate,
 };
+pub use tools::evidence::{Evidence, EvidenceRequest, evidence};
 pub use tools::exporting::{ExportReport, ExportRequest, export};
+pub use tools::failing::{
+    FailureRequest, MinimalOf, MinimalReport, RobustnessOf, RobustnessReport, minimal_failures, robustness_of_failures,
+};
+pub use tools::freezing::{FreezeRequest, Freezing, freeze};
 pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
 pub use tools::parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
     ParityRequest, ParitySource, ParityTable, RefusedScenario, TIME_TOLERANCE_S, Threshold, open_loop, parity,
-    random_scenario,
+    random_scenario, random_scene,
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
 pub use tools::reconstructing::write_reconstructions;
 pub use tools::running::run_many;
 #[cfg(feature = "parquet")]
 pub use tools::sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};
+pub use tools::testing::{TestRequest, read_results, test};

@@ -30,7 +30,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// The suite files' format tag.
 const SUITE_FORMAT: &str = "recrash.suite/2";
 /// The file that makes a folder a suite.
-const SUITE_FILE: &str = "suite.json";
+pub(crate) const SUITE_FILE: &str = "suite.json";
 
 /// The stages, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -78,7 +78,7 @@ fn scenarios_that_metadrive_fails_on_count_as_disagreeing_and_the_results_are_wr
     assert_eq!((result.agreement.pairs, result.agreement.errors, result.agreement.same_verdict), (2, 2, 0));
     let told = result.pairs[0].error.as_deref().unwrap_or_default();
     assert!(told.contains("random-0000") && told.contains("no memory"), "{told}");
-    for file in ["parity.json", "parity.csv", "parity.html", "worst/random-0001.json"] {
+    for file in ["parity.json", "parity.csv", "parity.html", "worst/scene-0000.json"] {
         assert!(out.join(file).is_file(), "{file}");
     }
     let csv = std::fs::read_to_string(out.join("parity.csv")).expect("text");

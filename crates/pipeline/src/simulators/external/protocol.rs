@@ -30,6 +30,8 @@ pub(crate) enum Said<'a> {
 #[derive(Debug, Serialize)]
 pub(crate) struct Reset<'a> {
     scenario: &'a str,
+    /// Of whatever is random in the ego.
+    seed: u64,
     dt_s: f64,
     duration_s: f64,
     surface: Surface,
@@ -205,6 +207,7 @@ impl<'a> Reset<'a> {
         });
         Self {
             scenario: &draft.id,
+            seed: draft.source.seed,
             dt_s: STEP_S,
             duration_s: draft.duration_s,
             surface: draft.environment.surface,
