@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 /// Longest file of code, tests excepted. [lines]
 const MAX_LINES: usize = 800;
 /// Folders that hold nothing of ours.
-const FOREIGN: [&str; 7] = ["target", ".git", ".venv", ".oracles", ".pytest_cache", "node_modules", "suite"];
+const FOREIGN: [&str; 9] =
+    ["target", ".git", ".venv", ".oracles", ".pytest_cache", ".mypy_cache", ".ruff_cache", "node_modules", "suite"];
 /// Folders that need no line in the map.
 const UNMAPPED: [&str; 3] = ["crates", ".cargo", ".ci"];
 
