@@ -87,8 +87,9 @@ pub struct SuiteArgs {
     /// Where crash records come from.
     #[command(flatten)]
     pub source: SourceArgs,
-    /// System profile: a built-in name or a TOML file. [default: paper]
-    #[arg(long, value_name = "NAME|FILE")]
+    /// System profile: open (every crash that can be told, by its incident's account), paper (the published method: templates),
+    /// or a TOML file. [default: open]
+    #[arg(long, value_name = "NAME|FILE", env = "RECRASH_PROFILE")]
     pub profile: Option<String>,
     /// How records are chosen.
     #[command(flatten)]

@@ -1,6 +1,7 @@
-//! What a labelled or scored account says of one record: in the terms of the labels in `eval/labels.csv`. What suites are
-//! built from is [`crate::account::Account`].
+//! What a labelled or scored account says of one record: in the terms of the labels in `eval/labels.csv` and
+//! `eval/accounts.csv`. What suites are built from is [`crate::account::Account`].
 
+use crate::account::{ContactState, CrashType, Driver, FirstContact, LeftRight, Origin, Role, Standing, Striker};
 use crate::metrics::CollisionKind;
 use crate::narrative::FirstMover;
 use crate::scenario::Approach;
@@ -30,6 +31,118 @@ pub struct LabelledAccount {
     pub collision: Option<CollisionKind>,
     /// Whether that kind is one the profile excludes.
     pub excluded: Option<bool>,
+    /// Crash type.
+    pub crash_type: Option<CrashType>,
+    /// Whose move brought the conflict about.
+    pub role: Option<Role>,
+    /// Who moved into whom.
+    pub striker: Option<Striker>,
+    /// Whether the subject vehicle stood at the contact.
+    pub sv_state: Option<Stance>,
+    /// Since when it stood or moved.
+    pub sv_since: Option<Since>,
+    /// Who drove it at the contact.
+    pub driver: Option<Driver>,
+    /// The partner is a thing or an animal, of which no movement is asked.
+    pub cp_unmoved: bool,
+    /// From where the partner came, finer than `approach`.
+    pub came_from: Option<CameFrom>,
+    /// First harmful contact.
+    pub first_contact: Option<FirstContact>,
+    /// Speed of the subject vehicle at the contact. [m/s]
+    pub sv_impact_mps: Option<f64>,
+}
+
+/// Whether somebody stood at the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stance {
+    /// It stood.
+    Standing,
+    /// It moved.
+    Moving,
+}
+
+impl From<ContactState> for Stance {
+    fn from(state: ContactState) -> Self {
+        if state.stands() { Self::Standing } else { Self::Moving }
+    }
+}
+
+/// Since when somebody stood or moved at the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Since {
+    /// It was parked.
+    Parked,
+    /// It had stood for a while.
+    Long,
+    /// It had only just come to a stop.
+    Just,
+    /// It had only just begun to move.
+    SettingOff,
+    /// It moved, and had done so for a while.
+    UnderWay,
+}
+
+impl Since {
+    /// What the state at the contact and the time of standing say together.
+    pub fn of(state: ContactState, standing: Option<Standing>) -> Option<Self> {
+        match (state, standing) {
+            (ContactState::Parked, _) => Some(Self::Parked),
+            (ContactState::Stopped, Some(Standing::FromTheStart)) => Some(Self::Long),
+            (ContactState::Stopped, Some(Standing::CameToStop | Standing::Stopping)) => Some(Self::Just),
+            (ContactState::Stopped, None) => None,
+            (ContactState::SettingOff, _) => Some(Self::SettingOff),
+            (ContactState::Moving | ContactState::Reversing, _) => Some(Self::UnderWay),
+        }
+    }
+}
+
+/// From where somebody came, seen from the subject vehicle before any turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CameFrom {
+    /// From behind, in its lane.
+    Behind,
+    /// From ahead, going or facing the same way, or standing there.
+    Ahead,
+    /// From the next lane on the left.
+    BesideLeft,
+    /// From the next lane on the right.
+    BesideRight,
+    /// From the opposite direction.
+    Opposite,
+    /// From a crossing road, a driveway, a stall or the kerb on the left.
+    Left,
+    /// From a crossing road, a driveway, a stall or the kerb on the right.
+    Right,
+}
+
+impl CameFrom {
+    /// Where an account has it; absent where no side is told, and from above.
+    pub fn of(origin: Origin) -> Option<Self> {
+        Some(match origin {
+            Origin::Behind => Self::Behind,
+            Origin::Ahead => Self::Ahead,
+            Origin::Opposite => Self::Opposite,
+            Origin::Beside { side: LeftRight::Left } => Self::BesideLeft,
+            Origin::Beside { side: LeftRight::Right } => Self::BesideRight,
+            Origin::Cross { side } => Self::from_side(side),
+            Origin::Stall { side }
+            | Origin::Driveway { side }
+            | Origin::Parked { side }
+            | Origin::Sidewalk { side } => Self::from_side(side?),
+            Origin::Above => return None,
+        })
+    }
+
+    fn from_side(side: LeftRight) -> Self {
+        match side {
+            LeftRight::Left => Self::Left,
+            LeftRight::Right => Self::Right,
+        }
+    }
 }
 
 /// Kinds of road that a reader of a narrative can tell apart.

@@ -19,7 +19,7 @@ fn select(criterion: &mut Criterion) {
     let profile = load_profile("paper").unwrap();
     let files = [SourceText { name: SAMPLE_NAME, bytes: SAMPLE_CSV.as_bytes() }];
     let records = recrash_records::ingest(&files, &profile).unwrap().value;
-    let options = SelectOptions::default();
+    let options = SelectOptions { profile: "paper".into(), ..Options::default() };
     criterion.bench_function("select 20 of the sample", |b| {
         b.iter(|| recrash_select::select(black_box(&records), &profile, &options).unwrap());
     });

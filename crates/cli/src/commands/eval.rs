@@ -11,7 +11,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   recrash eval                                      the rules on the built-in labels and the downloaded crash files
-  recrash eval --agent reader                       the accounts of recrash read
+  recrash eval --agent reader                       the accounts that suites are made of
   recrash eval --half dev                           the developed half alone, with its disagreements
   recrash eval --records archive.csv --records current.csv --json
   recrash eval --agent gpt-5-mini --out eval-mini   a model, with its questions and answers in that folder
@@ -26,7 +26,7 @@ pub struct EvalArgs {
     /// Who reads: rules, reader (the accounts of recrash read), or a language model by name.
     #[arg(long, value_name = "rules|reader|MODEL", default_value = "rules")]
     pub agent: String,
-    /// Label file (CSV). [default: the built-in labels, eval/labels.csv]
+    /// Label file (CSV). [default: the built-in ones: eval/accounts.csv for the reader, else eval/labels.csv]
     #[arg(long, value_name = "FILE")]
     pub labels: Option<PathBuf>,
     /// SGO crash file (CSV), or the name of a downloaded one; may be given several times. [default: the downloaded ones,
@@ -108,16 +108,23 @@ fn show_half(half: &HalfScore, agent: &str) {
         Half::Dev => "the rules were written on it",
     };
     title(&format!("{agent} on {} {} records ({remark})", half.records, half.half.label()));
-    let mut rows = table(&["field", "right", "of", "share", "95 % interval", "label unknown"]);
+    let readers = half.fields.iter().any(|score| score.readers.is_some());
+    let mut columns = vec!["field", "right", "of", "share", "95 % interval", "label unknown"];
+    columns.extend(readers.then_some("two readers agree"));
+    let mut rows = table(&columns);
     for score in &half.fields {
-        rows.add_row(vec![
+        let mut row = vec![
             Cell::new(score.field.label()),
             number(score.right),
             number(score.scored),
             number(score.share.map_or_else(|| "-".into(), percent)),
             number(interval(score)),
             number(score.unknown),
-        ]);
+        ];
+        row.extend(readers.then(|| {
+            number(score.readers.map_or_else(|| "-".into(), |two| format!("{}/{}", two.agreed, two.both_told)))
+        }));
+        rows.add_row(row);
     }
     println!("{rows}");
 }

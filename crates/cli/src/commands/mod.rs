@@ -40,7 +40,7 @@ Examples:
   recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
   recrash simulate suite/6-tuned/intersection-straight-straight-90102-28.json --ego idm
   recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
-  recrash run --agent gpt-5-mini --max-cost 2            a language model in the roles; recrash prompt shows its questions
+  recrash run --profile paper --agent gpt-5-mini --max-cost 2    a language model in the roles; recrash prompt shows its questions
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
@@ -52,10 +52,13 @@ Exit codes: 0 done; 1 a file that is there could not be read, or one could not b
 const RUN_EXAMPLES: &str = "\
 Examples:
   recrash run                                            the built-in sample, into suite/
+  recrash run --records archive.csv --records current.csv --budget all --out corpus
+                                                         every crash that can be told
   recrash run --records ads.csv --profile paper --out paper-suite
+                                                         the published method
   recrash run --where 'road = intersection' --budget 10 --out crossings
   recrash run --ego 'cmd:python3 my_ego.py'              a system of yours
-  recrash run --agent gpt-5-mini --max-cost 2            a language model in the roles
+  recrash run --profile paper --agent gpt-5-mini --max-cost 2    a language model in the roles
 
 The same command goes on where it was stopped.";
 const NARRATE_EXAMPLES: &str = "\

@@ -5,7 +5,7 @@ mod labels;
 mod told;
 
 pub use labels::{Half, Label};
-pub use recrash_lab::evaluation::{Field, FieldScore};
+pub use recrash_lab::evaluation::{Field, FieldScore, TwoReaders};
 
 use crate::error::PipelineError;
 use crate::files::store::{Store, read_bytes, read_text, write_file_whole};
@@ -13,7 +13,7 @@ use crate::models::cast::{Cast, RULES, unusable};
 use crate::models::{ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::reading::fetching::cached;
-use labels::read_labels;
+use labels::{ACCOUNTS, RECORDS, Sheet, agreement, read_labels};
 use recrash_agents::{Brief, Paraphrase, Rules, account_of};
 use recrash_model::labelled::LabelledAccount;
 use recrash_model::profile::{Dedupe, SystemProfile};
@@ -25,10 +25,6 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The labels that come with recrash.
-const BUILT_IN_LABELS: &str = include_str!("../../../../eval/labels.csv");
-/// Their name in messages.
-const BUILT_IN_NAME: &str = "eval/labels.csv";
 /// Label files larger than this are refused. [bytes]
 const MAX_LABELS: u64 = 1 << 24;
 /// Crash files larger than this are refused. [bytes]
@@ -111,9 +107,11 @@ pub struct Disagreement {
 /// Labels or crash files that cannot be used; questions that wait for a batch.
 pub fn evaluate(request: &EvaluationRequest) -> Result<Evaluation, PipelineError> {
     let profile = load_profile(&request.profile)?;
+    // The reader is held against accounts, who reads records against what a template asks of them.
+    let sheet = if request.agent == READER { &ACCOUNTS } else { &RECORDS };
     let labels = match &request.labels {
-        None => read_labels(BUILT_IN_NAME, BUILT_IN_LABELS)?,
-        Some(path) => read_labels(&path.to_string_lossy(), &read_text(path, MAX_LABELS)?)?,
+        None => read_labels(sheet.name, sheet.built_in, sheet)?,
+        Some(path) => read_labels(&path.to_string_lossy(), &read_text(path, MAX_LABELS)?, sheet)?,
     };
     let labels: Vec<Label> =
         labels.into_iter().filter(|label| request.half.is_none_or(|half| half == label.half)).collect();
@@ -132,42 +130,47 @@ pub fn evaluate(request: &EvaluationRequest) -> Result<Evaluation, PipelineError
     let mut unread = Vec::new();
     let accounts = match request.agent.as_str() {
         RULES => found.iter().map(|(_, record)| Rules.account(record, &profile)).collect(),
-        READER => told_accounts(&records, &found, &profile),
+        READER => told_accounts(&records, &found),
         _ => model_accounts(request, &profile, &found, &mut unread)?,
     };
-    Ok(compare(request, &found, &accounts, missing, unread))
+    Ok(compare(request, sheet, &found, &accounts, missing, unread))
 }
 
 /// Scores by half, and the disagreements that may be shown: those of the held-out half only where it is asked for by name,
 /// because rules that are tuned on what it shows make its figures worthless.
 fn compare(
     request: &EvaluationRequest,
+    sheet: &Sheet,
     found: &[(&Label, &CrashRecord)],
     accounts: &[LabelledAccount],
     missing: Vec<RecordRef>,
     unread: Vec<(RecordRef, String)>,
 ) -> Evaluation {
-    let pairs = || found.iter().map(|(label, _)| *label).zip(accounts);
+    let pairs = || found.iter().copied().zip(accounts);
+    // How far two readers agree is known of the built-in accounts alone.
+    let two_readers = request.labels.is_none() && request.agent == READER;
     let mut halves = Vec::new();
     for half in [Half::HeldOut, Half::Dev] {
-        let of_half: Vec<(&Label, &LabelledAccount)> = pairs().filter(|(label, _)| label.half == half).collect();
+        let of_half: Vec<(&Label, &LabelledAccount)> =
+            pairs().filter(|((label, _), _)| label.half == half).map(|((label, _), said)| (label, said)).collect();
         if of_half.is_empty() {
             continue;
         }
-        let fields = Field::ALL.map(|field| {
+        let fields = sheet.fields.iter().map(|&field| {
             let verdicts: Vec<Option<bool>> =
                 of_half.iter().map(|(label, said)| field.agrees(&label.account, said)).collect();
-            FieldScore::of(field, &verdicts)
+            let readers = if two_readers { agreement(half, field) } else { None };
+            FieldScore::of(field, &verdicts, readers)
         });
-        halves.push(HalfScore { half, records: of_half.len(), fields: fields.to_vec() });
+        halves.push(HalfScore { half, records: of_half.len(), fields: fields.collect() });
     }
     let shown = request.half.unwrap_or(Half::Dev);
     let mut disagreements = Vec::new();
-    for (label, said) in pairs().filter(|(label, _)| label.half == shown) {
-        for field in Field::ALL.into_iter().filter(|field| field.agrees(&label.account, said) == Some(false)) {
+    for ((label, record), said) in pairs().filter(|((label, _), _)| label.half == shown) {
+        for &field in sheet.fields.iter().filter(|field| field.agrees(&label.account, said) == Some(false)) {
             disagreements.push(Disagreement {
                 record: label.record.clone(),
-                entity: label.entity.clone(),
+                entity: record.entity.clone(),
                 half: label.half,
                 field,
                 label: field.text(&label.account),
@@ -186,14 +189,10 @@ fn compare(
 }
 
 /// The reader reads incidents, and so may tell of a record what another report of it tells.
-fn told_accounts(
-    records: &[CrashRecord],
-    found: &[(&Label, &CrashRecord)],
-    profile: &SystemProfile,
-) -> Vec<LabelledAccount> {
+fn told_accounts(records: &[CrashRecord], found: &[(&Label, &CrashRecord)]) -> Vec<LabelledAccount> {
     let mut by_report = BTreeMap::new();
     for account in recrash_reader::incidents(records).iter().filter_map(recrash_reader::account) {
-        let said = told::in_labels(&account, profile);
+        let said = told::in_labels(&account);
         for report in account.reports {
             by_report.insert(report.report_id, said.clone());
         }

@@ -15,6 +15,7 @@ pub(crate) mod importing;
 pub(crate) mod parity;
 pub(crate) mod prompting;
 pub(crate) mod reconstructing;
+pub(crate) mod running;
 #[cfg(feature = "parquet")]
 pub(crate) mod sweep;
 pub(crate) mod testing;

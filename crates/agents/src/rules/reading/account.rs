@@ -58,6 +58,7 @@ pub fn account(record: &CrashRecord, profile: &SystemProfile) -> LabelledAccount
         excluded: Some(collision.is_some_and(|kind| profile.excludes.collisions.contains(&kind))),
         sv_zones,
         cp_zones,
+        ..LabelledAccount::default()
     };
     account.approach = told_approach(record, relation).or_else(|| likely_approach(record, &account));
     account.order = first(&Met {

@@ -154,6 +154,20 @@ pub(crate) enum Control {
     Motion { acceleration_mps2: f64, wheel_angle_rad: f64 },
 }
 
+/// What an ego is told when a run begins, for one that lives in this process: JSON.
+pub fn told_at_reset(scenario: &Scenario, cast: &[CastMember]) -> String {
+    json(&Said::Reset(Box::new(Reset::new(scenario, cast))))
+}
+
+/// What it is told before every decision: JSON. `ids` are the names of all but the ego, in the order of the cast.
+pub fn told_at_step(observation: &Observation<'_>, ids: &[String]) -> String {
+    json(&Said::Step(Step::new(observation, ids)))
+}
+
+fn json(said: &Said<'_>) -> String {
+    serde_json::to_string(said).unwrap_or_else(|_| unreachable!("numbers and texts serialise"))
+}
+
 impl Control {
     pub(crate) fn controls(&self, spec: &VehicleSpec) -> Controls {
         match *self {

@@ -1,6 +1,7 @@
 //! The labels: read, and checked row by row.
 
 use crate::error::PipelineError;
+use recrash_lab::evaluation::{Field, TwoReaders};
 use recrash_model::labelled::LabelledAccount;
 use recrash_model::record::RecordRef;
 use recrash_model::{Diagnostic, Location, Severity};
@@ -8,24 +9,95 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// The header of a label file.
-pub const COLUMNS: [&str; 15] = [
-    "half",
-    "report",
-    "version",
-    "file",
-    "entity",
-    "road",
-    "sv_movement",
-    "cp_movement",
-    "approach",
-    "order",
-    "sv_zones",
-    "cp_zones",
-    "collision",
-    "excluded",
-    "note",
-];
+/// A kind of label file: what it asks, and the one that comes with recrash.
+#[derive(Debug)]
+pub struct Sheet {
+    /// Name of the built-in labels in messages.
+    pub name: &'static str,
+    /// The built-in labels.
+    pub built_in: &'static str,
+    /// Header.
+    pub columns: &'static [&'static str],
+    /// What is scored, in the order of tables.
+    pub fields: &'static [Field],
+}
+
+/// Labels of records, for who reads them one by one.
+pub const RECORDS: Sheet = Sheet {
+    name: "eval/labels.csv",
+    built_in: include_str!("../../../../../eval/labels.csv"),
+    columns: &[
+        "half",
+        "report",
+        "version",
+        "file",
+        "entity",
+        "road",
+        "sv_movement",
+        "cp_movement",
+        "approach",
+        "order",
+        "sv_zones",
+        "cp_zones",
+        "collision",
+        "excluded",
+        "note",
+    ],
+    fields: &Field::OF_RECORDS,
+};
+
+/// Labels of accounts, by two readers each, for the reader that suites use.
+pub const ACCOUNTS: Sheet = Sheet {
+    name: "eval/accounts.csv",
+    built_in: include_str!("../../../../../eval/accounts.csv"),
+    columns: &[
+        "half",
+        "report",
+        "version",
+        "file",
+        "crash_type",
+        "role",
+        "striker",
+        "sv_state",
+        "sv_since",
+        "driver",
+        "sv_movement",
+        "cp_movement",
+        "came_from",
+        "order",
+        "first_contact",
+        "sv_zones",
+        "cp_zones",
+        "sv_impact_mps",
+        "note",
+    ],
+    fields: &Field::OF_ACCOUNTS,
+};
+
+impl Sheet {
+    /// A cell of a row; absent where this kind of file has no such column.
+    fn cell<'a>(&self, cells: &'a csv::StringRecord, column: &str) -> Option<&'a str> {
+        let position = self.columns.iter().position(|name| *name == column)?;
+        cells.get(position).map(str::trim)
+    }
+}
+
+/// How often the two readers of `eval/accounts.csv` agree, by half and field.
+const AGREEMENT: &str = include_str!("../../../../../eval/agreement.csv");
+
+/// How often the two readers of the built-in accounts agree on a field.
+pub fn agreement(half: Half, field: Field) -> Option<TwoReaders> {
+    #[derive(Deserialize)]
+    struct Row {
+        half: Half,
+        field: Field,
+        agreed: usize,
+        both_told: usize,
+    }
+    let mut reader = csv::Reader::from_reader(AGREEMENT.as_bytes());
+    let row = reader.deserialize::<Row>().flatten().find(|row| (row.half, row.field) == (half, field))?;
+    Some(TwoReaders { agreed: row.agreed, both_told: row.both_told })
+}
 
 /// Which half of the records a label belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -61,8 +133,6 @@ pub struct Label {
     pub half: Half,
     /// Record.
     pub record: RecordRef,
-    /// Who reported it.
-    pub entity: String,
     /// What a person who read it says; absent where a careful reader cannot tell.
     pub account: LabelledAccount,
 }
@@ -71,24 +141,26 @@ pub struct Label {
 ///
 /// # Errors
 /// Every cell that is no label, with its row and column.
-pub fn read_labels(name: &str, text: &str) -> Result<Vec<Label>, PipelineError> {
-    let mut rows = Rows { name, labels: Vec::new(), problems: Vec::new() };
+pub fn read_labels(name: &str, text: &str, sheet: &Sheet) -> Result<Vec<Label>, PipelineError> {
+    let mut rows = Rows { name, sheet, labels: Vec::new(), problems: Vec::new() };
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
     let header: Vec<String> = match reader.headers() {
         Ok(header) => header.iter().map(str::to_owned).collect(),
         Err(error) => vec![error.to_string()],
     };
-    if header != COLUMNS {
+    if header != sheet.columns {
         return Err(PipelineError::bad_input(format!(
             "{name} is no label file: its header is \"{}\"; it must be \"{}\"",
             header.join(","),
-            COLUMNS.join(",")
+            sheet.columns.join(",")
         )));
     }
     for (number, record) in (1..).zip(reader.records()) {
         match record {
-            Ok(cells) if cells.len() == COLUMNS.len() => rows.row(number, &cells),
-            Ok(cells) => rows.problem(number, None, format!("{} cells; {} are wanted", cells.len(), COLUMNS.len())),
+            Ok(cells) if cells.len() == sheet.columns.len() => rows.row(number, &cells),
+            Ok(cells) => {
+                rows.problem(number, None, format!("{} cells; {} are wanted", cells.len(), sheet.columns.len()))
+            }
             Err(error) => rows.problem(number, None, error.to_string()),
         }
     }
@@ -103,6 +175,7 @@ pub fn read_labels(name: &str, text: &str) -> Result<Vec<Label>, PipelineError> 
 
 struct Rows<'a> {
     name: &'a str,
+    sheet: &'a Sheet,
     labels: Vec<Label>,
     problems: Vec<Diagnostic>,
 }
@@ -115,16 +188,13 @@ impl Rows<'_> {
 
     fn row(&mut self, row: u64, cells: &csv::StringRecord) {
         let before = self.problems.len();
-        let cell = |column: &str| {
-            let position = COLUMNS.iter().position(|name| *name == column);
-            position.and_then(|position| cells.get(position)).unwrap_or_default().trim().to_owned()
-        };
-        let half = self.value::<Half>(row, "half", &cell("half"));
-        let version = cell("version").parse();
-        if version.is_err() {
-            self.problem(row, Some("version"), format!("\"{}\" is not a whole number", cell("version")));
+        let cell = |column| self.sheet.cell(cells, column).unwrap_or_default();
+        let (half, version) = (cell("half"), cell("version"));
+        let record = RecordRef { report_id: cell("report").to_owned(), version: version.parse().unwrap_or_default() };
+        if version.parse::<u32>().is_err() {
+            self.problem(row, Some("version"), format!("\"{version}\" is not a whole number"));
         }
-        let record = RecordRef { report_id: cell("report"), version: version.unwrap_or_default() };
+        let half = self.value::<Half>(row, "half", half);
         if record.report_id.is_empty() {
             self.problem(row, Some("report"), "there is no report id".into());
         }
@@ -136,22 +206,41 @@ impl Rows<'_> {
         if self.labels.iter().any(|label| label.record == record) {
             self.problem(row, Some("report"), format!("{record} is labelled twice"));
         }
-        let collision = cell("collision");
+        let cp_unmoved = self.sheet.cell(cells, "cp_movement") == Some("none");
         let account = LabelledAccount {
-            road: self.value(row, "road", &cell("road")),
-            sv_movement: self.value(row, "sv_movement", &cell("sv_movement")),
-            cp_movement: self.value(row, "cp_movement", &cell("cp_movement")),
-            approach: self.value(row, "approach", &cell("approach")),
-            order: self.value(row, "order", &cell("order")),
-            sv_zones: self.zones(row, "sv_zones", &cell("sv_zones")),
-            cp_zones: self.zones(row, "cp_zones", &cell("cp_zones")),
+            road: self.coded(row, cells, "road"),
+            sv_movement: self.coded(row, cells, "sv_movement"),
+            cp_movement: if cp_unmoved { None } else { self.coded(row, cells, "cp_movement") },
+            approach: self.coded(row, cells, "approach"),
+            order: self.coded(row, cells, "order"),
+            sv_zones: self.zones(row, cells, "sv_zones"),
+            cp_zones: self.zones(row, cells, "cp_zones"),
             // Kinds beyond ours are told apart from unknown ones by `excluded` alone.
-            collision: if collision == "other" { None } else { self.value(row, "collision", &collision) },
-            excluded: self.yes_or_no(row, &cell("excluded")),
+            collision: match self.sheet.cell(cells, "collision") {
+                Some("other") => None,
+                _ => self.coded(row, cells, "collision"),
+            },
+            excluded: self.yes_or_no(row, cells),
+            crash_type: self.coded(row, cells, "crash_type"),
+            role: self.coded(row, cells, "role"),
+            striker: self.coded(row, cells, "striker"),
+            sv_state: self.coded(row, cells, "sv_state"),
+            sv_since: self.coded(row, cells, "sv_since"),
+            driver: self.coded(row, cells, "driver"),
+            cp_unmoved,
+            came_from: self.coded(row, cells, "came_from"),
+            first_contact: self.coded(row, cells, "first_contact"),
+            sv_impact_mps: self.speed(row, cells),
         };
         if let (Some(half), true) = (half, self.problems.len() == before) {
-            self.labels.push(Label { half, record, entity: cell("entity"), account });
+            self.labels.push(Label { half, record, account });
         }
+    }
+
+    /// The value of a cell, where these labels ask it.
+    fn coded<T: DeserializeOwned>(&mut self, row: u64, cells: &csv::StringRecord, column: &str) -> Option<T> {
+        let text = self.sheet.cell(cells, column)?;
+        self.value(row, column, text)
     }
 
     /// A value as JSON spells it; `unknown` is none.
@@ -168,13 +257,14 @@ impl Rows<'_> {
         }
     }
 
-    fn zones<T: DeserializeOwned>(&mut self, row: u64, column: &str, text: &str) -> Vec<T> {
+    fn zones<T: DeserializeOwned>(&mut self, row: u64, cells: &csv::StringRecord, column: &str) -> Vec<T> {
+        let text = self.sheet.cell(cells, column).unwrap_or_default();
         let names = text.split(';').map(str::trim).filter(|name| !name.is_empty());
         names.filter_map(|name| self.value(row, column, name)).collect()
     }
 
-    fn yes_or_no(&mut self, row: u64, text: &str) -> Option<bool> {
-        match text {
+    fn yes_or_no(&mut self, row: u64, cells: &csv::StringRecord) -> Option<bool> {
+        match self.sheet.cell(cells, "excluded")? {
             "yes" => Some(true),
             "no" => Some(false),
             "unknown" => None,
@@ -183,6 +273,15 @@ impl Rows<'_> {
                 None
             }
         }
+    }
+
+    fn speed(&mut self, row: u64, cells: &csv::StringRecord) -> Option<f64> {
+        let text = self.sheet.cell(cells, "sv_impact_mps").filter(|text| *text != "unknown")?;
+        let speed = text.parse::<f64>().ok().filter(|mps| (0.0..100.0).contains(mps));
+        if speed.is_none() {
+            self.problem(row, Some("sv_impact_mps"), format!("\"{text}\" is no speed in m/s, or unknown"));
+        }
+        speed
     }
 }
 
@@ -200,7 +299,7 @@ mod tests {
     }
 
     fn read(rows: &[String]) -> Result<Vec<Label>, PipelineError> {
-        read_labels("labels.csv", &format!("{}\n{}\n", COLUMNS.join(","), rows.join("\n")))
+        read_labels("labels.csv", &format!("{}\n{}\n", RECORDS.columns.join(","), rows.join("\n")), &RECORDS)
     }
 
     fn row() -> String {
@@ -242,12 +341,55 @@ mod tests {
     fn short_rows_doubles_and_other_files_are_refused() {
         assert!(read(&["dev,1-1".into()]).is_err());
         assert!(read(&[row(), row()]).unwrap_err().to_string().contains("1 labels"));
-        assert!(read_labels("x", "a,b\n1,2\n").unwrap_err().to_string().contains("header"));
+        assert!(read_labels("x", "a,b\n1,2\n", &RECORDS).unwrap_err().to_string().contains("header"));
     }
 
     #[test]
     fn both_halves_hold_about_half() {
         let dev = (0..1000).filter(|n| Half::of(&format!("30270-{n}")) == Half::Dev).count();
         assert!((440..560).contains(&dev), "{dev}");
+    }
+
+    #[test]
+    fn the_built_in_labels_are_read_and_the_readers_agreement_is_known_of_every_field() {
+        for sheet in [&RECORDS, &ACCOUNTS] {
+            assert!(read_labels(sheet.name, sheet.built_in, sheet).unwrap().len() > 150, "{}", sheet.name);
+        }
+        for (half, field) in
+            [Half::Dev, Half::HeldOut].into_iter().flat_map(|half| ACCOUNTS.fields.iter().map(move |f| (half, *f)))
+        {
+            let told = agreement(half, field).unwrap();
+            assert!(told.agreed <= told.both_told && told.both_told > 100, "{field:?} {told:?}");
+        }
+        assert_eq!(agreement(Half::Dev, Field::Road), None);
+    }
+
+    #[test]
+    fn a_row_of_accounts_is_read_and_its_wrong_cells_are_told() {
+        let row = format!(
+            "dev,{},1,a.csv,single_vehicle,initiator,sv,moving,under_way,system,straight,none,ahead,cp,object,front,,4.5,",
+            dev_id()
+        );
+        let read =
+            |row: &str| read_labels("accounts.csv", &format!("{}\n{row}\n", ACCOUNTS.columns.join(",")), &ACCOUNTS);
+        let labels = read(&row).unwrap();
+        let account = &labels[0].account;
+        assert!(account.cp_unmoved && account.road.is_none() && account.excluded.is_none());
+        assert_eq!(
+            (account.sv_impact_mps, account.sv_since),
+            (Some(4.5), Some(recrash_model::labelled::Since::UnderWay))
+        );
+        assert_eq!(read(&row.replace("4.5", "unknown")).unwrap()[0].account.sv_impact_mps, None);
+        for (from, to, column) in [
+            ("4.5", "fast", "sv_impact_mps"),
+            ("under_way", "lately", "sv_since"),
+            ("ahead", "same", "came_from"),
+            ("none", "nothing", "cp_movement"),
+        ] {
+            let Err(PipelineError::BadInput { diagnostics, .. }) = read(&row.replacen(from, to, 1)) else {
+                panic!("{to} is taken")
+            };
+            assert_eq!(diagnostics[0].location.column.as_deref(), Some(column), "{diagnostics:?}");
+        }
     }
 }
