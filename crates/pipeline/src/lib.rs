@@ -48,9 +48,8 @@ pub use recrash_lab::causes::{CauseGroup, by_cause};
 pub use recrash_lab::run_scenario;
 pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
-pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
-pub use recrash_report::comparison::{github as github_annotations, sentence as comparison_sentence};
 pub use recrash_records::{Column, Distribution, FILTER_HELP, RecordTable, TableRows, distributions, record_table};
+pub use recrash_report::comparison::{github as github_annotations, sentence as comparison_sentence};
 pub use recrash_roads::scenario_schema as schema;
 pub use simulators::external::{
     EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience, told_at_reset, told_at_step,
