@@ -3,7 +3,7 @@
 use crate::common::recrash;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 const SMALL: [&str; 6] = ["--budget", "6", "--tune-budget", "24", "--seed", "5"];
