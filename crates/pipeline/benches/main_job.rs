@@ -19,7 +19,7 @@ fn select(criterion: &mut Criterion) {
     let profile = load_profile("paper").unwrap();
     let files = [SourceText { name: SAMPLE_NAME, bytes: SAMPLE_CSV.as_bytes() }];
     let records = recrash_records::ingest(&files, &profile).unwrap().value;
-    let options = SelectOptions { profile: "paper".into(), ..Options::default() };
+    let options = SelectOptions::default();
     criterion.bench_function("select 20 of the sample", |b| {
         b.iter(|| recrash_select::select(black_box(&records), &profile, &options).unwrap());
     });
@@ -42,7 +42,8 @@ fn whole_run(criterion: &mut Criterion) {
     group.bench_function("the sample, defaults", |b| {
         b.iter(|| {
             let folder = tempfile::tempdir().unwrap();
-            let suite = Suite::open(folder.path(), Options::default(), Resources::default()).unwrap();
+            let options = Options { profile: "paper".into(), ..Options::default() };
+            let suite = Suite::open(folder.path(), options, Resources::default()).unwrap();
             for stage in Stage::ALL {
                 run_stage(&suite, stage, &NoProgress).unwrap();
             }

@@ -144,11 +144,12 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
     let Some((control, passage)) = found else {
         return (CheckResult::NotShown, "none on its way".to_owned());
     };
-    let is_device = match (&control.device, said.device) {
-        (Device::Signal { .. }, ControlDevice::Signal) => true,
-        (Device::StopSign {}, ControlDevice::StopSign) | (Device::YieldSign {}, ControlDevice::YieldSign) => true,
-        _ => false,
-    };
+    let is_device = matches!(
+        (&control.device, said.device),
+        (Device::Signal { .. }, ControlDevice::Signal)
+            | (Device::StopSign {}, ControlDevice::StopSign)
+            | (Device::YieldSign {}, ControlDevice::YieldSign)
+    );
     if !is_device {
         return (CheckResult::NotShown, "another device".to_owned());
     }
