@@ -583,12 +583,7 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         {
             Some(ContactState::Stopped)
         }
-        (Some(ContactState::Stopped), Some(Movement::Parked))
-            if account.sv.did(Act::Park)
-                || account.sv.reasons.iter().all(|reason| reason.value != StandReason::PickupDropoff) =>
-        {
-            Some(ContactState::Parked)
-        }
+        (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
         (None, Some(Movement::Parked)) => Some(ContactState::Parked),
         (None, Some(Movement::Stopped)) => Some(ContactState::Stopped),
         (None, Some(Movement::Backing)) => Some(ContactState::Reversing),
@@ -659,6 +654,14 @@ fn kind_of(kind: PartnerKind) -> Kind {
 /// Movement of both sides just before the conflict.
 pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     account.sv.movement = movement(&account.sv, reading.record.sv_movement.known(), "SV Pre-Crash Movement");
+    // Who stops in the lane for passengers is parked by the column, and stopped by the words.
+    let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
+    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
+    if let (Some(Movement::Parked), true, false, Some(reason)) =
+        (told(&account.sv.movement), by_column, account.sv.did(Act::Park), riders)
+    {
+        account.sv.movement = Some(Fact { value: Movement::Stopped, source: reason.source.clone() });
+    }
     if let Some(partner) = &mut account.partner {
         let group = partner.kind.as_ref().map(|kind| kind.value.group());
         partner.movement = if group == Some(KindGroup::Object) {

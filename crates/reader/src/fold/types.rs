@@ -7,7 +7,7 @@ use crate::lexicon::Sense;
 use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, Fact, FirstContact, Kind, KindGroup, LeftRight, MatrixCell, MatrixEvent,
-    MatrixObject, Origin, Party, PrecrashScenario, Role, Striker, told,
+    MatrixObject, Origin, Party, PrecrashScenario, Role, Source, Striker, told,
 };
 use recrash_model::narrative::FirstMover;
 use recrash_model::template::Movement;
@@ -57,18 +57,6 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     if cp_stands && !sv_stands {
         return rule(Striker::Sv, "one stood");
     }
-    let partner = account.partner.as_ref()?;
-    let fronts = has_zone(&account.sv, |zone| zone.is_front()) && has_zone(partner, |zone| zone.is_front());
-    let moves = |state| state == Some(ContactState::Moving);
-    if told(&account.came_from) == Some(Origin::Opposite)
-        && fronts
-        && moves(sv)
-        && moves(cp)
-        && !turning(partner)
-        && !turning(&account.sv)
-    {
-        return rule(Striker::Both, "front to front, both moving");
-    }
     let Some(number) = reading.contacts.first else { return by_fronts(account) };
     let frame = &reading.story.frames[number];
     let value = match (frame.who, frame.object) {
@@ -85,6 +73,9 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     Some(Fact { value, source: reading.of(frame) })
 }
 
+/// Rule of a striker of whom the words say nothing.
+const BY_FRONTS: &str = "whose front took part";
+
 /// Whose front alone took part moved into the other.
 fn by_fronts(account: &Account) -> Option<Fact<Striker>> {
     let partner = account.partner.as_ref()?;
@@ -94,7 +85,7 @@ fn by_fronts(account: &Account) -> Option<Fact<Striker>> {
         (false, true) => Striker::Cp,
         _ => return None,
     };
-    Some(Fact::by_rule(value, "whose front took part"))
+    Some(Fact::by_rule(value, BY_FRONTS))
 }
 
 /// Whether a turn of this side is under way at the contact: told last but for slowing and stopping.
@@ -448,7 +439,9 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     if told(&account.crash_type) == Some(CrashType::Intersection) && own_way && across {
         return rule(Role::Responder, "the other turned or came out across its way");
     }
-    if matches!(striker, Some(Striker::Sv)) && told(&account.crash_type) != Some(CrashType::Other) {
+    // What zones alone say of it is not enough to blame it.
+    let by_zones = matches!(&account.striker, Some(Fact { source: Source::Rule { name }, .. }) if name == BY_FRONTS);
+    if striker == Some(Striker::Sv) && !by_zones && told(&account.crash_type) != Some(CrashType::Other) {
         return if cp_moves {
             rule(Role::Both, "both moved")
         } else {
