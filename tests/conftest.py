@@ -31,9 +31,9 @@ def pytest_terminal_summary(terminalreporter) -> None:
 
 @pytest.fixture(scope="session")
 def suite(recrash: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The suite of the built-in sample with all defaults."""
+    """The suite of the built-in sample, by the published method."""
     folder = tmp_path_factory.mktemp("suite") / "suite"
-    subprocess.run([recrash, "run", "--quiet", "--out", str(folder)], check=True)
+    subprocess.run([recrash, "run", "--quiet", "--profile", "paper", "--out", str(folder)], check=True)
     return folder
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from exports import ROOT, run
-from oracles import answers, environment
+from oracles import answers, netconvert
 
 NETWORKS = ROOT / "crates" / "export" / "tests" / "networks"
 
@@ -58,7 +58,7 @@ def test_asam_checkers_find_nothing(maps: dict[str, Path]) -> None:
 def test_netconvert_drives_where_the_map_leads(maps: dict[str, Path], tmp_path: Path) -> None:
     for name, path in maps.items():
         net = tmp_path / f"{name}.net.xml"
-        run(environment("sumo") / "netconvert", "--no-turnarounds", "--xml-validation", "never", "--opendrive-files", path, "-o", net)
+        netconvert(path, net, "--no-turnarounds")
         root = ElementTree.parse(net).getroot()
         roads = json.loads((NETWORKS / f"{name}.json").read_text())["map"]["roads"]
 

@@ -18,8 +18,7 @@ UNSEEN = {"OTHER", "TRAFFIC_OBJECT"}
 
 def test_files_load_and_replay_what_was_driven(exports: list[Export], scenes: list[Export], tmp_path: Path) -> None:
     assert scenes
-    found = check(exports, tmp_path / "exported")
-    found.update(check(scenes, tmp_path / "drawn"))
+    found = check(exports + scenes, tmp_path / "files")
     seen = {track["type"] for report in found.values() for track in report["tracks"].values()}
     assert {"VEHICLE", "PEDESTRIAN", "CYCLIST", "TRAFFIC_CONE"} <= seen
     features = {kind for report in found.values() for kind in report["features"]}

@@ -52,6 +52,12 @@ def install(folder: Path, programs: Path, requirements: Path) -> None:
         call([*pip, "-r", str(requirements)])
 
 
+def netconvert(source: Path, target: Path, *options: str) -> None:
+    """SUMO's reader of OpenDRIVE: the program itself, as the one on the path is a Python script that starts it."""
+    program = next(environment("sumo").parent.glob("**/site-packages/sumo/bin/netconvert*"))
+    call([str(program), *options, "--xml-validation", "never", "--opendrive-files", str(source), "-o", str(target)])
+
+
 def call(command: list[str]) -> None:
     subprocess.run(command, check=True, capture_output=True, text=True, timeout=600)
 

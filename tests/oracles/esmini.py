@@ -13,6 +13,8 @@ from osc_player import play
 
 #: Columns of an object in esmini's CSV log, and those that are read.
 COLUMNS, TO_CENTRE, X, Y, HEADING = 31, 5, 11, 12, 24
+#: A line of its log that tells of a contact.
+COLLISION = r"\[([\d.]+)\] \[warn\] Collision between (.*) and (.*)"
 
 
 @dataclass(frozen=True)
@@ -41,18 +43,82 @@ def version(esmini: str) -> str:
     return found.group(0) if found else "of an unnamed build"
 
 
-def play_with_our_ego(esmini: str, export: Export, scenario: Path, folder: Path) -> Played:
-    # Beside the original, because it names its map by a relative path.
-    source = scenario.with_name(f"{export.id}.played.xosc")
-    put_in_the_slot(export, scenario, source)
+@dataclass(frozen=True)
+class Scene:
+    """A scene with plans, played to its end as it was recorded."""
+
+    exit_code: int
+    errors: list[str]
+    #: The greatest distance of a road user's centre from ours, until its first contact. [m]
+    off_m: float
+    #: When the whole recording ended here, and there. [s]
+    our_end_s: float
+    end_s: float
+    #: The ego's first contact, a part counted as what it is a part of: when [s] and with whom.
+    contact: tuple[float, str] | None
+    our_contact: tuple[float, str] | None
+
+
+def play_scene(esmini: str, export: Export, folder: Path) -> Scene:
+    exit_code, text, states = run_to_the_end(esmini, export.path("openscenario", ".xosc"), folder)
+    tracks = read_states(states)
+    off = [
+        distance
+        for actor in export.rollout["actors"]
+        for _, distance in distances(export, actor, tracks[actor["id"]], len(actor["states"]))
+    ]
+    return Scene(
+        exit_code,
+        [line for line in text.splitlines() if "[error]" in line],
+        max(off),
+        0.1 * (len(export.rollout["actors"][0]["states"]) - 1),
+        max(tracks["ego"]) / 100,
+        next(iter(contacts_of_ego(export, text)), None),
+        next(iter(our_contacts_of_ego(export)), None),
+    )
+
+
+def contacts_of_ego(export: Export, log: str) -> list[tuple[float, str]]:
+    """What esmini says, in order; a touch of one's own parts is none."""
+    actors = export.rollout["actors"]
+    host = {actor["id"]: actors[actor.get("part_of", number)]["id"] for number, actor in enumerate(actors)}
+    found = []
+    for time, *pair in re.findall(COLLISION, log):
+        a, b = sorted((host.get(name, name) for name in pair), key=lambda name: name != "ego")
+        if a == "ego" != b:
+            found.append((float(time), b))
+    return found
+
+
+def our_contacts_of_ego(export: Export) -> list[tuple[float, str]]:
+    """The same in our rollout."""
+    found = []
+    for event in export.rollout["events"]:
+        kind = event["kind"]
+        if 0 in (kind.get("a"), kind.get("b")):
+            other = kind["b"] if kind["a"] == 0 else kind["a"]
+            found.append((event["time_s"], export.rollout["actors"][other]["id"]))
+        elif kind.get("actor") == 0 and "obstacle" in kind:
+            found.append((event["time_s"], f"obstacle.{kind['obstacle'] + 1}"))
+    return found
+
+
+def run_to_the_end(esmini: str, source: Path, folder: Path) -> tuple[int, str, Path]:
+    """The exit code, the text of the log, and the file with all states."""
     log, states = folder / "esmini.log", folder / "esmini.csv"
     command = [esmini, "--osc", str(source), "--headless", "--fixed_timestep", "0.01", "--collision", "--disable_stdout",
                "--csv_logger", str(states), "--logfile_path", str(log), "--seed", "1"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    return done.returncode, log.read_text(), states
+
+
+def play_with_our_ego(esmini: str, export: Export, scenario: Path, folder: Path) -> Played:
+    # Beside the original, because it names its map by a relative path.
+    source = scenario.with_name(f"{export.id}.played.xosc")
+    put_in_the_slot(export, scenario, source)
+    exit_code, text, states = run_to_the_end(esmini, source, folder)
     source.unlink()
-    text = log.read_text()
-    contacts = re.findall(r"\[([\d.]+)\] \[warn\] Collision between (.*) and (.*)", text)
-    theirs = [float(time) for time, a, b in contacts if "ego" in (a, b) and "obstacle." not in a + b]
+    theirs = [float(time) for time, a, b in re.findall(COLLISION, text) if "ego" in (a, b) and "obstacle." not in a + b]
     ours = [event["time_s"] for event in export.rollout["events"] if 0 in (event["kind"].get("a"), event["kind"].get("b"))]
     until_s = min(theirs[0] if theirs else math.inf, 0.1 * (len(export.rollout["actors"][0]["states"]) - 1))
     tracks, until_road_ends = read_states(states), play(scenario, until_s)
@@ -62,7 +128,7 @@ def play_with_our_ego(esmini: str, export: Export, scenario: Path, folder: Path)
         for distance in distances(export, actor, tracks[actor["id"]], len(until_road_ends[actor["id"]]))
     ]
     return Played(
-        done.returncode,
+        exit_code,
         [line for line in text.splitlines() if "[error]" in line],
         max(distance for _, distance in off),
         max(distance for time, distance in off if time <= 5),
@@ -161,4 +227,28 @@ def table(esmini: str, rows: list[tuple[Export, Played, Played]]) -> str:
             f"| {export.suite} | {export.id} | {kinds} | {acting.off_5_s_m:.2f} | {acting.off_m:.2f} | {recorded.off_m:.2f} "
             f"| {time(acting.our_contact_s)} | {time(acting.contact_s)} | {time(recorded.contact_s)} |"
         )
+    return "\n".join(lines) + "\n"
+
+
+def alike(scene: Scene) -> bool:
+    """Whether the ego first touches the same, a tenth of a second (a step of ours) apart at most; or nobody in both."""
+    if scene.contact is None or scene.our_contact is None:
+        return scene.contact == scene.our_contact
+    return scene.contact[1] == scene.our_contact[1] and abs(scene.contact[0] - scene.our_contact[0]) <= 0.1 + 1e-6
+
+
+def table_of_scenes(rows: list[tuple[Export, Scene]]) -> str:
+    """How the scenes were played, in words, and those with a contact as a table."""
+    same = sum(alike(scene) for _, scene in rows)
+    lines = [
+        f"{len(rows)} scenes: each played to its end; the farthest road user {max(scene.off_m for _, scene in rows):.2f} m off before its "
+        f"first contact; the ego's first contact, or that there is none, agrees in {same} ({100 * same / len(rows):.1f} %).",
+        "",
+        "| scene | farthest [m] | contact here | contact in esmini |",
+        "|---|---|---|---|",
+    ]
+    told = lambda contact: "-" if contact is None else f"{contact[1]} at {contact[0]:.2f} s"
+    for export, scene in rows:
+        if scene.contact or scene.our_contact:
+            lines.append(f"| {export.id} | {scene.off_m:.2f} | {told(scene.our_contact)} | {told(scene.contact)} |")
     return "\n".join(lines) + "\n"

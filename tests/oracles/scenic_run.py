@@ -3,6 +3,7 @@
 Runs in the environment of requirements/scenic.txt: scenic_run.py newtonian|metadrive|compile STEPS FILE...
 """
 
+import ast
 import json
 import os
 import random
@@ -16,12 +17,37 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 import metadrive
 import numpy
 import scenic
+from scenic.syntax import translator
 
 MODELS = {
     "newtonian": "scenic.simulators.newtonian.driving_model",
     "metadrive": "scenic.simulators.metadrive.model",
     "compile": "scenic.simulators.newtonian.driving_model",
 }
+
+
+def parsed_once(parse):
+    """Scenic parses its own library again for every file, which takes longer than anything else here. What it makes of a syntax
+    tree changes the tree, so each gets one of its own."""
+    trees = {}
+
+    def parsed(source, mode, filename):
+        if (source, filename) not in trees:
+            trees[source, filename] = parse(source, mode, filename=filename)
+        return copied(trees[source, filename])
+
+    return parsed
+
+
+def copied(part):
+    """A syntax tree, node by node; those of Scenic are not made for the module copy."""
+    if isinstance(part, (list, tuple)):
+        return type(part)(copied(each) for each in part)
+    if not isinstance(part, ast.AST):
+        return part
+    node = type(part).__new__(type(part))
+    node.__dict__.update((name, copied(value)) for name, value in part.__dict__.items())
+    return node
 
 
 def without_pictures():
@@ -59,6 +85,7 @@ def run(path, simulator, steps, params):
 
 if __name__ == "__main__":
     chosen, count, *files = sys.argv[1:]
+    translator.parse_string = parsed_once(translator.parse_string)
     if chosen == "metadrive":
         without_pictures()
     extra = dict(item.split("=") for item in files if "=" in item and not item.endswith(".scenic"))

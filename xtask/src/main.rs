@@ -5,6 +5,7 @@ mod fuzz;
 mod steps;
 mod tally;
 mod tidy;
+mod wheel;
 
 use std::process::ExitCode;
 use tally::Tally;
@@ -19,6 +20,7 @@ usage: cargo xtask COMMAND
   test       all Rust tests; those on a real MetaDrive where it is set up
   docs       rustdoc, warnings denied
   python     the Python tests
+  wheel      lint, types and tests of the Python package, in a wheel that it builds
   browser    makes a suite and clicks through its report in headless Chromium
   fuzz       20 s of fuzzing for each reader of untrusted files
   fuzz-keep  keeps what fuzzing found, as few inputs as reach the same code
@@ -42,7 +44,7 @@ fn main() -> ExitCode {
             }
         },
     };
-    let counts = ["ci", "prepare", "test", "python", "browser"].contains(&command.as_str());
+    let counts = ["ci", "prepare", "test", "python", "wheel", "browser"].contains(&command.as_str());
     if counts {
         println!("{}", tally.closing());
     }

@@ -1,7 +1,7 @@
 //! The steps of CI. Each is a few commands, run in the project's folder.
 
 use crate::tally::Tally;
-use crate::{fuzz, tidy};
+use crate::{fuzz, tidy, wheel};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -14,7 +14,7 @@ pub type Result<T = ()> = std::result::Result<T, String>;
 type Step = (&'static str, fn(&mut Tally) -> Result);
 
 /// The steps of [`ci`]: first what is cheap. What tests need is set up before them, so that each runs once.
-pub const STEPS: [Step; 9] = [
+pub const STEPS: [Step; 10] = [
     ("format", format),
     ("tidy", tidy::run),
     ("lint", lint),
@@ -22,6 +22,7 @@ pub const STEPS: [Step; 9] = [
     ("test", test),
     ("docs", docs),
     ("python", python),
+    ("wheel", wheel::step),
     ("browser", browser),
     ("fuzz", fuzz::run),
 ];
@@ -112,12 +113,12 @@ fn browser(tally: &mut Tally) -> Result {
         return missing(tally, "browser", "Chromium is not installed (Debian's package chromium)");
     }
     let suite = target().join("browser-suite");
-    run(Command::new(built()?).args(["run", "--quiet", "--out"]).arg(&suite))?;
+    run(Command::new(built()?).args(["run", "--quiet", "--profile", "paper", "--out"]).arg(&suite))?;
     run(Command::new("node").arg(browser_folder().join("check.mjs")).arg(suite.join("report.html")))
 }
 
 /// What cannot run here: an error in CI, a named skip elsewhere.
-fn missing(tally: &mut Tally, step: &str, what: &str) -> Result {
+pub fn missing(tally: &mut Tally, step: &str, what: &str) -> Result {
     if std::env::var_os("CI").is_some() {
         return Err(what.to_owned());
     }
@@ -125,7 +126,7 @@ fn missing(tally: &mut Tally, step: &str, what: &str) -> Result {
     Ok(())
 }
 
-fn find_python() -> Option<&'static str> {
+pub fn find_python() -> Option<&'static str> {
     ["python3.11", "python3", "python"].into_iter().find(|name| {
         let check = "import sys; sys.exit(sys.version_info < (3, 11))";
         Command::new(name).args(["-c", check]).status().is_ok_and(|status| status.success())
@@ -146,7 +147,7 @@ fn browser_folder() -> PathBuf {
 }
 
 /// The program as the Rust tests run it: one build serves all. Nothing is built right after them.
-fn built() -> Result<PathBuf> {
+pub fn built() -> Result<PathBuf> {
     cargo(&["test", "--workspace", "--no-run", "--quiet"], &[])?;
     Ok(target().join(if cfg!(windows) { "debug/recrash.exe" } else { "debug/recrash" }))
 }
@@ -186,7 +187,7 @@ pub fn run(command: &mut Command) -> Result {
 }
 
 /// The same with a runner of tests, whose lines are shown and counted.
-fn counted(command: &mut Command, tally: &mut Tally) -> Result {
+pub fn counted(command: &mut Command, tally: &mut Tally) -> Result {
     in_project(command);
     let status = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().and_then(|mut child| {
         let (said, warned) = (child.stdout.take(), child.stderr.take());

@@ -2,6 +2,7 @@
 
 use crate::model_options::ModelArgs;
 use clap::Args;
+use recrash_model::comparison::Change;
 use recrash_model::profile::Dedupe;
 use recrash_model::selection::{Strategy, Weighting};
 use recrash_pipeline::{
@@ -86,8 +87,9 @@ pub struct SuiteArgs {
     /// Where crash records come from.
     #[command(flatten)]
     pub source: SourceArgs,
-    /// System profile: a built-in name or a TOML file. [default: paper]
-    #[arg(long, value_name = "NAME|FILE")]
+    /// System profile: open (every crash that can be told, by its incident's account), paper (the published method: templates),
+    /// or a TOML file. [default: open]
+    #[arg(long, value_name = "NAME|FILE", env = "RECRASH_PROFILE")]
     pub profile: Option<String>,
     /// How records are chosen.
     #[command(flatten)]
@@ -132,6 +134,48 @@ pub struct SuiteArgs {
     /// Agents and models.
     #[command(flatten)]
     pub models: ModelArgs,
+}
+
+/// Who drives, and in which simulator.
+#[derive(Debug, Clone, Args)]
+pub struct EgoArgs {
+    /// System under test: metadrive-idm, idm, reference, or a program of yours as 'cmd:PROGRAM ARGS', which speaks JSON
+    /// lines as docs/ego-protocol.md says. [default: the profile's]
+    #[arg(long, value_name = "NAME|cmd:PROGRAM")]
+    pub ego: Option<String>,
+    /// Seconds such a program may take for an answer; six times that to start.
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600), default_value_t = 10)]
+    pub ego_timeout: u16,
+    /// Simulator: native, or metadrive (needs Python with metadrive-simulator 0.4.3). [default: native]
+    #[arg(long, value_name = "NAME")]
+    pub sim: Option<SimulatorKind>,
+    /// Python interpreter for MetaDrive.
+    #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
+    pub python: PathBuf,
+    /// Worker threads; the results do not depend on it. [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+impl EgoArgs {
+    /// How long a program that is the ego is waited for.
+    pub fn patience(&self) -> Patience {
+        patience(self.ego_timeout)
+    }
+}
+
+/// How long a program is waited for that may take so long for an answer. [s]
+pub fn patience(answer_s: u16) -> Patience {
+    let answer = Duration::from_secs(u64::from(answer_s));
+    Patience { start: 6 * answer, answer }
+}
+
+/// A change of a test by its name.
+///
+/// # Errors
+/// There is no such change.
+pub fn one_change(name: &str) -> Result<Change, String> {
+    name.parse()
 }
 
 impl SourceArgs {
@@ -231,8 +275,7 @@ impl SuiteArgs {
 
     /// How long a program that is the ego is waited for.
     pub fn patience(&self) -> Patience {
-        let answer = Duration::from_secs(u64::from(self.ego_timeout));
-        Patience { start: 6 * answer, answer }
+        patience(self.ego_timeout)
     }
 }
 

@@ -9,7 +9,7 @@ use recrash_model::rollout::{ActorState, Role, Rollout, STEP_S};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::{Parameter, Score, apply};
-use recrash_roads::Simulator;
+use recrash_roads::{RunError, Scenario, Simulator};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A least gap before this time says more about the start than about the ego. [s]
@@ -34,20 +34,19 @@ const MAX_FAULTS: usize = 3;
 /// Worth of each kind of odd behaviour. [m]
 const ODD_BEHAVIOUR_WORTH_M: f64 = 0.1;
 
+/// Makes the scenario of a point.
+type Make<'a> = Box<dyn Fn(&[f64]) -> Result<Scenario, String> + 'a>;
+/// Runs and judges it.
+type Judge<'a> = Box<dyn Fn(&Scenario) -> Result<JudgedRun, RunError> + 'a>;
+
 /// Everything a score depends on but the values.
 pub struct Scoring<'a> {
-    /// Scenario as designed.
-    pub draft: &'a ScenarioDraft,
     /// What may move.
     pub parameters: &'a [Parameter],
-    /// What the rollout must show.
-    pub expectation: &'a Expectation,
-    /// Failure criteria.
-    pub profile: &'a SystemProfile,
-    /// Simulator with the ego in it.
-    pub simulator: &'a dyn Simulator,
+    make: Make<'a>,
+    judge: Judge<'a>,
     /// Hardest braking of partners as designed, which the narrative asks for. [m/s^2]
-    pub designed_braking_mps2: f64,
+    designed_braking_mps2: f64,
     /// Points that could not be run.
     faults: AtomicUsize,
 }
@@ -62,12 +61,29 @@ impl<'a> Scoring<'a> {
         simulator: &'a dyn Simulator,
         first: &JudgedRun,
     ) -> Self {
-        let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
-        let faults = AtomicUsize::new(0);
-        Self { draft, parameters, expectation, profile, simulator, designed_braking_mps2, faults }
+        let make = |values: &[f64]| {
+            let checked = recrash_roads::check(apply(draft, parameters, values)?);
+            checked.map(|checked| checked.value).map_err(|diagnostics| {
+                diagnostics.iter().find(|d| d.is_error()).map(ToString::to_string).unwrap_or_default()
+            })
+        };
+        let judge = |scenario: &Scenario| run_scenario(scenario, simulator, profile, Some(expectation));
+        Self::of(parameters, make, judge, first)
     }
 
-    /// Applies the values, checks, runs, measures and judges.
+    /// Scoring of scenarios that are made and judged otherwise.
+    pub fn of(
+        parameters: &'a [Parameter],
+        make: impl Fn(&[f64]) -> Result<Scenario, String> + 'a,
+        judge: impl Fn(&Scenario) -> Result<JudgedRun, RunError> + 'a,
+        first: &JudgedRun,
+    ) -> Self {
+        let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
+        let (make, judge) = (Box::new(make), Box::new(judge));
+        Self { parameters, make, judge, designed_braking_mps2, faults: AtomicUsize::new(0) }
+    }
+
+    /// Makes the scenario of the values, runs, measures and judges it.
     pub fn score(&self, values: &[f64]) -> Score {
         let refused = |why: String| Score {
             objective: f64::MAX,
@@ -76,18 +92,14 @@ impl<'a> Scoring<'a> {
             failed: false,
             refused: vec![why],
         };
-        let scenario = match apply(self.draft, self.parameters, values).map(recrash_roads::check) {
+        let scenario = match (self.make)(values) {
             Err(why) => return refused(format!("not runnable: {why}")),
-            Ok(Err(diagnostics)) => {
-                let first = diagnostics.iter().find(|d| d.is_error()).map(ToString::to_string);
-                return refused(format!("not runnable: {}", first.unwrap_or_default()));
-            }
-            Ok(Ok(checked)) => checked.value,
+            Ok(scenario) => scenario,
         };
         if self.faults.load(Ordering::Relaxed) >= MAX_FAULTS {
             return refused(format!("not run: the simulator or the ego failed {MAX_FAULTS} times here"));
         }
-        let run = match run_scenario(&scenario, self.simulator, self.profile, Some(self.expectation)) {
+        let run = match (self.judge)(&scenario) {
             Ok(run) => run,
             Err(why) => {
                 self.faults.fetch_add(1, Ordering::Relaxed);

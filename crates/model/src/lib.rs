@@ -8,7 +8,10 @@
 //! and stand in the field's name or at the end of its documentation.
 
 pub mod account;
+pub mod cause;
+pub mod comparison;
 pub mod diagnostic;
+pub mod frozen;
 pub mod geometry;
 pub mod hash;
 pub mod incident;
@@ -20,6 +23,7 @@ pub mod narrative;
 pub mod preventability;
 pub mod profile;
 pub mod record;
+pub mod results;
 pub mod rollout;
 pub mod run;
 pub mod scenario;

@@ -42,7 +42,8 @@ fn whole_run(criterion: &mut Criterion) {
     group.bench_function("the sample, defaults", |b| {
         b.iter(|| {
             let folder = tempfile::tempdir().unwrap();
-            let suite = Suite::open(folder.path(), Options::default(), Resources::default()).unwrap();
+            let options = Options { profile: "paper".into(), ..Options::default() };
+            let suite = Suite::open(folder.path(), options, Resources::default()).unwrap();
             for stage in Stage::ALL {
                 run_stage(&suite, stage, &NoProgress).unwrap();
             }

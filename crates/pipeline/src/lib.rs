@@ -38,42 +38,54 @@ pub use reading::accounts::{Accounts, ToldFact, read_accounts, told_facts};
 pub use reading::fetching::{CrashKind, FetchRequest, Fetched, PublishedEdition, fetch};
 pub use reading::records::{TableFormat, read_records, record_outputs, write_records};
 pub use reading::retelling::{Retold, fact_shares, reconstruct_accounts, type_shares};
-pub use reading::scenarios::{FileRequest, FileRun, read_scenario, simulate_file};
+pub use reading::scenarios::{FileRequest, FileRun, parse_scenario, read_scenario, simulate_file};
 pub use recrash_agents::llm::{Caps, Role, Spent};
 pub use recrash_child::end_all as end_programs;
 pub use recrash_drivers::preventability;
 pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
+pub use recrash_lab::causes::{CauseGroup, by_cause};
 pub use recrash_lab::run_scenario;
 pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
-pub use recrash_records::{Distribution, FILTER_HELP, TableRows, distributions};
+pub use recrash_records::{Column, Distribution, FILTER_HELP, RecordTable, TableRows, distributions, record_table};
+pub use recrash_report::comparison::{github as github_annotations, sentence as comparison_sentence};
 pub use recrash_roads::scenario_schema as schema;
-pub use simulators::external::{EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience};
+pub use simulators::external::{
+    EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience, told_at_reset, told_at_step,
+};
 pub use simulators::{Simulator, SimulatorKind, start_simulator};
 pub use stages::{
     AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary,
     SelectionStudy, StageReport, StrategyStudy, Summary, run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
-pub use tools::accounts::write_accounts;
+pub use tools::accounts::{account_table, write_accounts};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use tools::check_driver::{
     AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,
 };
+pub use tools::comparing::{CiFiles, CiOutputs, PageRequest, compare_files, compare_with, hold_to, write_page};
 pub use tools::doctor::{DoctorItem, DoctorRequest, State as DoctorState, doctor};
 pub use tools::embed_bench::{BenchSide, EmbedBench, EmbedBenchRequest, bench_embedding};
 pub use tools::evaluation::{
     Disagreement, Evaluation, EvaluationRequest, Field, FieldScore, Half, HalfScore, TwoReaders, evaluate,
 };
+pub use tools::evidence::{Evidence, EvidenceRequest, evidence};
 pub use tools::exporting::{ExportReport, ExportRequest, export};
+pub use tools::failing::{
+    FailureRequest, MinimalOf, MinimalReport, RobustnessOf, RobustnessReport, minimal_failures, robustness_of_failures,
+};
+pub use tools::freezing::{FreezeRequest, Freezing, freeze};
 pub use tools::importing::{ImportRequest, Imported, SourceFormat, import};
 pub use tools::parity::{
     Agreement, Apart, GAP_TOLERANCE_M, OpenLoop, OpenLoopLimit, OpenLoopRequest, Pair, PairOutcome, Parity,
     ParityRequest, ParitySource, ParityTable, RefusedScenario, TIME_TOLERANCE_S, Threshold, open_loop, parity,
-    random_scenario,
+    random_scenario, random_scene,
 };
 pub use tools::prompting::{Prompt, PromptRequest, prompt};
 pub use tools::reconstructing::write_reconstructions;
+pub use tools::running::run_many;
 #[cfg(feature = "parquet")]
 pub use tools::sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};
+pub use tools::testing::{TestRequest, read_results, test};

@@ -97,7 +97,7 @@ impl Default for Options {
             dedupe: None,
             filter: None,
             mapping: None,
-            profile: "paper".into(),
+            profile: "open".into(),
             budget: Some(20),
             strategy: Strategy::Stratified,
             weighting: Weighting::default(),

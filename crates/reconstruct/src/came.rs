@@ -31,13 +31,13 @@ const LEAD_GAP_M: f64 = 2.5;
 /// Deceleration of who comes to a stop before it is hit. [m/s^2]
 const STOPPING_MPS2: f64 = 2.0;
 
-/// How long who was stopped has stood when it is hit. [s]
+/// How long others who stopped have stood when they are hit. [s]
 const STOOD_S: f64 = 2.0;
 
 /// Acceleration of who sets off. [m/s^2]
 const SETS_OFF_MPS2: f64 = 1.2;
 
-/// Speed of the ego on its way to a stop, where nobody says it. [m/s]
+/// Speed of others on their way to a stop. [m/s]
 const ROLLING_MPS: f64 = 7.0;
 
 /// Who stood behind the ego before it set off has stood for so long. [s]
@@ -84,7 +84,7 @@ fn next(deed: Deed) -> Act {
 /// How the ego's speed comes to what it is at the contact.
 fn ego_pace(told: &Told) -> Pace {
     let waits_behind = told.origin == Origin::Behind && told.cp.state == ContactState::SettingOff;
-    pace(&told.sv, ROLLING_MPS, if waits_behind { STOOD_LONG_S } else { STOOD_S })
+    pace(&told.sv, told.choices.rolling_mps, if waits_behind { STOOD_LONG_S } else { told.choices.stood_s })
 }
 
 /// How the partner's does.
@@ -204,7 +204,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         ContactState::Stopped => Some((first_time(&recorded.acts) - ROLLS_S).clamp(0.0, CONTACT_S - HANDOVER_BEFORE_S)),
         _ => Some((CONTACT_S - HANDOVER_BEFORE_S).max(0.0)),
     };
-    let wanted_mps = told.sv.speed_mps.max(if told.sv.state.stands() { ROLLING_MPS } else { 2.0 });
+    let wanted_mps = told.sv.speed_mps.max(if told.sv.state.stands() { told.choices.rolling_mps } else { 2.0 });
     let target_speed_mps = wanted_mps.min(FASTEST_EGO_MPS);
     let id: String =
         account.incident.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).take(40).collect();

@@ -7,7 +7,7 @@ use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, 
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
-use recrash_model::scenario::{Aspect, Control, Device, Phase};
+use recrash_model::scenario::{Aspect, Control, Device, MapSpec, Phase};
 use recrash_roads::{ControlPlacement, Scenario};
 
 /// Longest phase. [s]
@@ -134,8 +134,9 @@ pub(crate) fn words(said: Said) -> String {
 /// Whether a told signal or sign stood before somebody, showed what is told, and was obeyed or not as told.
 pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> (CheckResult, String) {
     let until = ((contact_s / STEP_S).floor() as usize).min(track.states.len() - 1);
-    if scenario.draft().control.is_empty() {
-        return (CheckResult::CannotBeShown, "none is drawn here".to_owned());
+    let junction = matches!(&scenario.draft().map, MapSpec::G(map) if !map.junctions.is_empty());
+    if scenario.draft().control.is_empty() && !junction {
+        return (CheckResult::CannotBeShown, "there is no junction to draw it at".to_owned());
     }
     let all = scenario.draft().control.iter().zip(scenario.control());
     let met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?)));
@@ -143,11 +144,12 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
     let Some((control, passage)) = found else {
         return (CheckResult::NotShown, "none on its way".to_owned());
     };
-    let is_device = match (&control.device, said.device) {
-        (Device::Signal { .. }, ControlDevice::Signal) => true,
-        (Device::StopSign {}, ControlDevice::StopSign) | (Device::YieldSign {}, ControlDevice::YieldSign) => true,
-        _ => false,
-    };
+    let is_device = matches!(
+        (&control.device, said.device),
+        (Device::Signal { .. }, ControlDevice::Signal)
+            | (Device::StopSign {}, ControlDevice::StopSign)
+            | (Device::YieldSign {}, ControlDevice::YieldSign)
+    );
     if !is_device {
         return (CheckResult::NotShown, "another device".to_owned());
     }

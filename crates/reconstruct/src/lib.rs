@@ -7,16 +7,21 @@
 //! `docs/models/reconstruction.md`.
 
 mod came;
+mod choices;
 mod control;
 mod facts;
 mod ground;
 mod told;
 mod touch;
 
+pub use choices::open_choices;
+
+use choices::Choices;
 use recrash_model::account::{Account, Untold};
 use recrash_model::metrics::{Answer, CheckKind, Verdict};
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
+use recrash_model::tuning::Parameter;
 use recrash_roads::Scenario;
 use recrash_sim::Ego;
 
@@ -61,9 +66,22 @@ pub fn held_against(account: &Account, scenario: &Scenario, rollout: &Rollout) -
 /// # Errors
 /// Why there is none.
 pub fn reconstruct(account: &Account) -> Result<Reconstruction, Untold> {
+    staged(told::Told::of(account)?, account)
+}
+
+/// The same with these values for what the account leaves open ([`open_choices`]).
+///
+/// # Errors
+/// Why there is none.
+pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -> Result<Reconstruction, Untold> {
+    let told = told::Told::of(account)?;
+    staged(told.choosing(Choices::of(open, values)), account)
+}
+
+fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
     let mut best: Option<Reconstruction> = None;
     let mut refused = 0;
-    for told in told::Told::of(account)?.variants() {
+    for told in told.variants() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
             let draft = came::draft(account, &told, &staging);
             let Ok(checked) = recrash_roads::check(draft) else {

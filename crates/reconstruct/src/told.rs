@@ -1,5 +1,6 @@
 //! What an account tells, in the terms of a staging; and what has to be assumed.
 
+use crate::choices::Choices;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     SpeedMeaning, Striker, Untold, told,
@@ -68,6 +69,7 @@ pub(crate) struct Told {
     pub(crate) door: bool,
     /// Somebody stands ahead of the ego, as the reason why it stood.
     pub(crate) lead: bool,
+    pub(crate) choices: Choices,
     pub(crate) assumed: Vec<String>,
 }
 
@@ -118,6 +120,7 @@ impl Told {
             others: account.others.len(),
             door: account.door.is_some(),
             lead: false,
+            choices: Choices::default(),
             assumed,
         };
         if this.origin_told {
@@ -154,6 +157,16 @@ impl Told {
             (CheckKind::Door, self.door),
         ];
         of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
+    }
+
+    /// The same, choosing otherwise.
+    pub(crate) fn choosing(mut self, choices: Choices) -> Self {
+        self.choices = choices;
+        if self.origin_told {
+            self.assumed.retain(|assumed| !assumed.contains("speed at the contact"));
+            self.speeds();
+        }
+        self
     }
 
     /// Whether somebody stood ahead of the ego, who is not the partner.
@@ -252,6 +265,9 @@ impl Told {
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
                 _ => {}
             }
+        }
+        if self.cp.impact_mps.is_none() && !self.is_thrown() {
+            self.cp.speed_mps *= self.choices.partner_speed;
         }
         if self.sv.impact_mps.is_none() && !self.sv.state.stands() {
             self.assumed.push(format!("the ego's speed at the contact: {:.1} m/s", self.sv.speed_mps));

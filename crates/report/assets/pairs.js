@@ -9,6 +9,7 @@ const observer = new IntersectionObserver((entries) => {
     if (!isIntersecting || replays.has(target)) continue;
     const replay = new Replay(target);
     replays.set(target, replay);
+    replay.ghosts = true;
     replay.show('both');
     replay.plots.forEach((plot) => plot.draw());
   }

@@ -222,7 +222,8 @@ class Replay {
         camera.y += ego.y;
       }
       this.lastCamera = camera;
-      drawScene(canvas, this.kase, run, Math.min(this.time, run.end), camera);
+      const ghost = this.ghosts ? this.kase[view.dataset.run === 'before' ? 'after' : 'before'] : undefined;
+      drawScene(canvas, this.kase, run, Math.min(this.time, run.end), camera, ghost);
     }
     this.scrub.value = this.time;
     this.scrub.setAttribute('aria-valuetext', `${fixed(this.time, 1)} seconds`);

@@ -33,7 +33,7 @@ function interesting(run, time) {
   return points;
 }
 
-function drawScene(canvas, kase, run, time, camera) {
+function drawScene(canvas, kase, run, time, camera, ghost) {
   const ratio = window.devicePixelRatio || 1;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -55,6 +55,7 @@ function drawScene(canvas, kase, run, time, camera) {
   run.obstacles.forEach((obstacle) => drawObstacle(pen, obstacle, toX(obstacle.x), toY(obstacle.y), k));
   const order = [...run.actors.keys()].reverse();
   for (const i of order) if (run.actors[i].role !== 'traffic') drawTrail(pen, run, run.actors[i], time, trace, k);
+  if (ghost) drawGhost(pen, ghost, Math.min(time, ghost.end), toX, toY, k);
   for (const i of order) drawActor(pen, run.actors[i], stateAt(run.actors[i], run, time), toX, toY, k);
   run.contacts.filter((contact) => contact.time <= time + 0.051).forEach((contact) => drawContact(pen, toX(contact.x), toY(contact.y), k));
   drawEncounter(pen, run, time, toX, toY, k);
@@ -215,6 +216,15 @@ function drawActor(pen, actor, state, toX, toY, k) {
     pen.fillRect(-l / 2 - 1, -w / 2, Math.max(2, l * 0.06), size);
     pen.fillRect(-l / 2 - 1, w / 2 - size, Math.max(2, l * 0.06), size);
   }
+  pen.restore();
+}
+
+/** The ego of another run of the same scene, as an outline. */
+function drawGhost(pen, run, time, toX, toY, k) {
+  const [ego] = run.actors;
+  pen.save();
+  pen.globalAlpha = 0.4;
+  drawActor(pen, ego, stateAt(ego, run, time), toX, toY, k);
   pen.restore();
 }
 

@@ -131,7 +131,7 @@ fn test_case(
 }
 
 /// Attributes whose values are cleaned; the library escapes them.
-fn attributes<'a>(pairs: &[(&'a str, &str)]) -> Vec<Attribute<'a>> {
+pub(crate) fn attributes<'a>(pairs: &[(&'a str, &str)]) -> Vec<Attribute<'a>> {
     let attribute = |(name, value): &(&'a str, &str)| {
         let value = quick_xml::escape::escape(safe(value)).into_owned();
         Attribute { key: QName(name), value: value.into() }
@@ -182,6 +182,6 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
 }
 
 /// Text of characters that XML 1.0 can hold.
-fn safe(text: &str) -> String {
+pub(crate) fn safe(text: &str) -> String {
     words::clean(text, words::LONGEST_TEXT).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

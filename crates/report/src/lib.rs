@@ -8,10 +8,12 @@
 //! runs nor when the page is looked at.
 
 mod anchor;
+pub mod comparison;
 mod data;
 mod junit;
 mod page;
 mod pairs;
+mod picture;
 mod results;
 mod search;
 mod summary;
@@ -20,6 +22,7 @@ mod view;
 mod words;
 
 pub use pairs::{PairView, PairsView, RunTrace, TableView};
+pub use picture::picture;
 pub use recrash_roads::{DrawnArea, GroundShape, LineKind, RoadDrawing, RoadLine};
 pub use thumbnail::Thumbnail;
 pub use view::{AccountRow, CaseContext, CaseRow, CaseView, RunRow, RunView, SuiteView};

@@ -26,9 +26,16 @@ fn busy_roundabout() -> Scenario {
     common::checked(draft)
 }
 
+/// A junction with signals, which six road users with plans obey, two of them behind another, one behind the ego; and somebody
+/// on foot. At least a million agent-steps per second are asked for.
+fn signals() -> Scenario {
+    let draft = recrash_roads::read_draft(include_str!("signals.json")).expect("a scenario file").value;
+    common::checked(draft)
+}
+
 fn rollouts(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("rollout");
-    for (name, scenario) in [("crossing", crossing()), ("busy_roundabout", busy_roundabout())] {
+    for (name, scenario) in [("crossing", crossing()), ("busy_roundabout", busy_roundabout()), ("signals", signals())] {
         for ego in Ego::DRIVERS {
             let mut runner = Runner::new();
             let mut recorder = SummaryRecorder::new();

@@ -1,4 +1,4 @@
-//! Runs one scenario again and again, for a profiler: `throughput crossing|roundabout RUNS`.
+//! Runs one scenario again and again, for a profiler: `throughput crossing|roundabout|FILE RUNS`.
 
 use recrash_model::scenario::{Approach, Start, Turn};
 use recrash_sim::{Ego, Runner, SummaryRecorder};
@@ -9,7 +9,10 @@ mod common;
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let runs: u64 = arguments.get(1).and_then(|runs| runs.parse().ok()).unwrap_or(1000);
-    let draft = if arguments.first().is_some_and(|name| name == "roundabout") {
+    let file = arguments.first().and_then(|name| std::fs::read_to_string(name).ok());
+    let draft = if let Some(json) = file {
+        recrash_roads::read_draft(&json).expect("a scenario file").value
+    } else if arguments.first().is_some_and(|name| name == "roundabout") {
         let mut draft = common::alone(common::roundabout(2), Turn::Straight, 1, 7.0, 7.0);
         draft.traffic.density = 0.3;
         draft

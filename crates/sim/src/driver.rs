@@ -6,6 +6,7 @@
 use crate::chassis::Controls;
 use crate::recorder::CastMember;
 use crate::scene::Seen;
+use recrash_model::geometry::Vec2;
 use recrash_model::rollout::{ActorState, Termination};
 use recrash_model::scenario::{Aspect, MissionStop};
 use recrash_roads::{Scenario, StopLine};
@@ -64,5 +65,13 @@ impl Observation<'_> {
     /// Whether an actor is in the world: background traffic that has driven off the map is not, nor who appears later.
     pub fn is_present(&self, actor: usize) -> bool {
         self.seen.get(actor).is_none_or(|seen| seen.present)
+    }
+
+    /// Unit vector of an actor's heading.
+    pub fn forward(&self, actor: usize) -> Vec2 {
+        match self.seen.get(actor) {
+            Some(seen) => seen.forward,
+            None => Vec2::from_heading(self.states[actor].heading),
+        }
     }
 }

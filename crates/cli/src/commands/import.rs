@@ -56,6 +56,7 @@ pub fn run(args: &ImportArgs, output: Output) -> Result<(), PipelineError> {
             python: Path::new(""),
             patience: Patience::default(),
             rollout: None,
+            picture: None,
         })
     };
     let replayed = args.simulate.then(replay).transpose()?;

@@ -6,8 +6,11 @@ mod bench_sim;
 mod check_driver;
 mod doctor;
 mod eval;
+mod evidence;
 mod export;
+mod failures;
 mod fetch;
+mod freeze;
 mod import;
 mod ledger;
 mod model;
@@ -24,6 +27,7 @@ mod simulate;
 mod stage;
 #[cfg(feature = "parquet")]
 mod sweep;
+mod test;
 
 use crate::options::SuiteArgs;
 use crate::output::Output;
@@ -36,7 +40,7 @@ Examples:
   recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
   recrash simulate suite/6-tuned/intersection-straight-straight-90102-28.json --ego idm
   recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
-  recrash run --agent gpt-5-mini --max-cost 2            a language model in the roles; recrash prompt shows its questions
+  recrash run --profile paper --agent gpt-5-mini --max-cost 2    a language model in the roles; recrash prompt shows its questions
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
   recrash fetch --edition archive                        NHTSA's crash file, for --records sgo-ads-archive.csv
 
@@ -48,10 +52,13 @@ Exit codes: 0 done; 1 a file that is there could not be read, or one could not b
 const RUN_EXAMPLES: &str = "\
 Examples:
   recrash run                                            the built-in sample, into suite/
+  recrash run --records archive.csv --records current.csv --budget all --out corpus
+                                                         every crash that can be told
   recrash run --records ads.csv --profile paper --out paper-suite
+                                                         the published method
   recrash run --where 'road = intersection' --budget 10 --out crossings
   recrash run --ego 'cmd:python3 my_ego.py'              a system of yours
-  recrash run --agent gpt-5-mini --max-cost 2            a language model in the roles
+  recrash run --profile paper --agent gpt-5-mini --max-cost 2    a language model in the roles
 
 The same command goes on where it was stopped.";
 const NARRATE_EXAMPLES: &str = "\
@@ -128,6 +135,18 @@ pub enum Command {
     Read(read::ReadArgs),
     /// Each incident of crash files as a scenario that shows its own crash, with the recorded driver
     Reconstruct(reconstruct::ReconstructArgs),
+    /// Freeze the scenarios of a suite, or scenario files, into a folder of tests that runs anywhere, without the crash file.
+    Freeze(freeze::FreezeArgs),
+    /// Run a frozen suite with an ego: what failed, how bad it is, what led to it, and what changed against a baseline.
+    Test(test::TestArgs),
+    /// Hold two results of frozen suites against each other.
+    Compare(test::CompareArgs),
+    /// Tell how robust the failures of a frozen suite are: under small changes, and on MetaDrive.
+    Robustness(failures::RobustnessArgs),
+    /// Strip the failures of a frozen suite to what they need, each with the nearest scenario that passes.
+    Minimise(failures::MinimiseArgs),
+    /// Write a folder of evidence: claims with numbers, and a checker that works each of them out again.
+    Evidence(evidence::EvidenceArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
     Eval(eval::EvalArgs),
     /// Show what a language model would be asked, without asking it.
@@ -198,6 +217,12 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Import(args) => import::run(args, output),
         Command::Read(args) => read::run(args, output),
         Command::Reconstruct(args) => reconstruct::run(args, output),
+        Command::Freeze(args) => freeze::run(args, output),
+        Command::Test(args) => test::run(args, output),
+        Command::Compare(args) => test::compare(args, output),
+        Command::Robustness(args) => failures::robustness(args, output),
+        Command::Minimise(args) => failures::minimise(args, output),
+        Command::Evidence(args) => evidence::run(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),
         Command::Ledger(args) => ledger::run(args, output),

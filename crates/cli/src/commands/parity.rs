@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash parity --n 200 --seed 1                        200 random scenarios, table and replays in parity/
+  recrash parity --n 200 --seed 1                        200 random ones, table and replays in parity/
   recrash parity paper-suite --out paper-suite-parity    every scenario of a suite, as designed and as tuned
   recrash parity --open-loop                             the vehicle alone: 5 s of random throttle, brake and steering
 
@@ -25,7 +25,7 @@ pub struct ParityArgs {
     /// Folder of a suite: its scenarios instead of random ones.
     #[arg(value_name = "SUITE", conflicts_with_all = ["count", "seed", "open_loop"])]
     pub suite: Option<PathBuf>,
-    /// Random scenarios to draw. [default: 200; with --open-loop 60]
+    /// Random scenarios to draw, in turn on the paper's maps and on networks of roads. [default: 200; with --open-loop 60]
     #[arg(long = "n", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub count: Option<u32>,
     /// Seed of the random scenarios.

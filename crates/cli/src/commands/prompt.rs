@@ -53,7 +53,8 @@ fn role(name: &str) -> Result<Role, String> {
 /// There is no such scenario or record.
 pub fn run(args: &PromptArgs, output: Output) -> Result<(), PipelineError> {
     let base = Options::default();
-    let profile = args.profile.clone().unwrap_or_else(|| base.profile.clone());
+    // Models play their roles in suites that go by templates.
+    let profile = args.profile.clone().unwrap_or_else(|| "paper".to_owned());
     let prompt = prompt(&PromptRequest {
         dir: args.out.clone(),
         options: args.source.over(Options { profile, ..base }),

@@ -19,6 +19,7 @@ Examples:
   recrash simulate suite/6-tuned/intersection-straight-straight-90102-28.json --ego idm
   recrash simulate paper-suite --ego reference           the scenarios of another suite
   recrash simulate scenario.json --rollout rollout.json --json
+  recrash simulate scenario.json --ego recorded --picture scenario.svg
 
 Exit code 5: a scenario of the suite is not true to its record; the results are written all the same.";
 
@@ -32,6 +33,9 @@ pub struct SimulateArgs {
     /// Where to write the rollout of the one scenario (JSON).
     #[arg(long, value_name = "FILE", requires = "scenario")]
     pub rollout: Option<PathBuf>,
+    /// Where to draw the one scenario: its roads, everybody's way, and where all are at the ego's first contact (SVG).
+    #[arg(long, value_name = "FILE", requires = "scenario")]
+    pub picture: Option<PathBuf>,
     /// Options of the suite.
     #[command(flatten)]
     pub suite: SuiteArgs,
@@ -46,8 +50,9 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
         return stage::run(&args.suite, &[Stage::Simulate], output);
     };
     if scenario.is_dir() {
-        if args.rollout.is_some() {
-            let what = format!("--rollout is for one scenario file, and {} is a folder", scenario.display());
+        let given = [("--rollout", &args.rollout), ("--picture", &args.picture)];
+        if let Some((option, _)) = given.into_iter().find(|(_, given)| given.is_some()) {
+            let what = format!("{option} is for one scenario file, and {} is a folder", scenario.display());
             return Err(PipelineError::Usage(what));
         }
         let suite = SuiteArgs { out: scenario.clone(), ..args.suite.clone() };
@@ -63,6 +68,7 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
         python: &args.suite.python,
         patience: args.suite.patience(),
         rollout: args.rollout.as_deref(),
+        picture: args.picture.as_deref(),
     })?;
     if output.json {
         output::json(&result.run);

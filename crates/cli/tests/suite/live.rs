@@ -432,7 +432,7 @@ fn no_key_is_in_any_file_line_or_error() {
 fn an_interrupt_keeps_every_answer_and_says_how_to_go_on() {
     let folder = Folder::new();
     let server = server(|request| (5..7).contains(&request.number).then(|| Reply::Hang(Duration::from_secs(20))));
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("recrash"));
+    let mut command = crate::common::plain_recrash();
     command
         .args(["run", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
         .arg(folder.suite())
@@ -484,7 +484,7 @@ fn packed_zeros() -> Vec<u8> {
 /// Runs with three scenarios, and gives the output and the most memory that the run held. [bytes]
 #[cfg(target_os = "linux")]
 fn run_and_measure(server: &Server, out: &Path) -> (Output, u64) {
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("recrash"));
+    let mut command = crate::common::plain_recrash();
     command.args(["run", "--agent", "scripted", "--base-url", &server.base_url, "--out"]).arg(out);
     command.args(["--budget", "3", "--tune", "rules", "--tune-budget", "1", "--retries", "1", "--repairs", "1"]);
     let piped = std::process::Stdio::piped;

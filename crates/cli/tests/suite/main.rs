@@ -10,6 +10,7 @@ mod egos;
 mod eval;
 mod export;
 mod live;
+mod nightly;
 mod outputs;
 mod read;
 mod reconstruct;

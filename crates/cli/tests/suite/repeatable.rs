@@ -3,7 +3,7 @@
 use crate::common::recrash;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 const SMALL: [&str; 6] = ["--budget", "6", "--tune-budget", "24", "--seed", "5"];
@@ -48,7 +48,7 @@ fn another_seed_writes_other_scenarios_and_leaves_none_of_the_old() {
 
 /// Kills the command as soon as a file is there, then runs it again to the end.
 fn kill_when(out: &Path, file: &str) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_recrash"))
+    let mut child = crate::common::plain_recrash()
         .args(["run", "--quiet", "--out", out.to_str().unwrap()])
         .args(SMALL)
         .stdout(Stdio::null())

@@ -225,7 +225,7 @@ fn files(folder: &Path) -> Vec<String> {
 fn an_interrupted_sweep_leaves_nothing_behind() {
     let place = Place::new();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
-    let sweep = std::process::Command::new(assert_cmd::cargo::cargo_bin("recrash"))
+    let sweep = crate::common::plain_recrash()
         .arg("sweep")
         .arg(root.join("crates/pipeline/benches/crossing.json"))
         .args(["-n", "1000000000", "--quiet", "--out", "rows.parquet"])

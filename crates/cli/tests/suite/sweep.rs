@@ -101,7 +101,7 @@ fn a_killed_or_failed_sweep_leaves_the_old_file() {
     case.sweep("a.parquet", &["-n", "10"]);
     let before = std::fs::read(case.out("a.parquet")).expect("a file");
     let out = case.out("a.parquet").display().to_string();
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("recrash"))
+    let mut child = crate::common::plain_recrash()
         .args(["sweep", &crossing(), "-n", "100000000", "--threads", "1", "--out", &out, "--quiet"])
         .spawn()
         .expect("it starts");

@@ -48,7 +48,7 @@ fn an_output_that_is_full_is_an_error() {
         assert_eq!(output.status.code(), Some(1), "{words:?}: {error}");
         assert!(error.contains("cannot write the standard output") && error.contains("space"), "{words:?}: {error}");
     }
-    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("recrash"));
+    let mut command = crate::common::plain_recrash();
     let status = command.args(["records", "nowhere.csv"]).stderr(full()).status().unwrap();
     assert_eq!(status.code(), Some(3), "what cannot be told changes nothing");
 }

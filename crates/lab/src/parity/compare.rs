@@ -40,11 +40,12 @@ pub struct Pair {
     pub name: String,
     /// Letter of its map.
     pub map: char,
-    /// Policy of the first partner; `none` without partners.
+    /// Policy of the first partner; `plan` where road users have plans, `none` where there are none.
     pub policy: &'static str,
-    /// Kind of the first partner.
+    /// Kind of the first partner, or of the first with a plan.
     pub kind: Option<PartnerKind>,
-    /// Obstacles, background traffic and surface, where they are not none, none and dry.
+    /// What else there is: obstacles, background traffic, a surface that is not dry, sideways moves, control, doors and the
+    /// like, a handover from the recorded driver.
     pub extras: Vec<&'static str>,
     /// The native simulator.
     pub native: PairOutcome,
@@ -92,11 +93,16 @@ impl Pair {
             metadrive.as_ref().map_or_else(|_| Vec::new(), |run| apart(&native.rollout, &run.rollout, role))
         };
         let first = draft.partners.first();
+        let planned = draft.actors.first();
         Self {
             name,
             map: draft.map.letter(),
-            policy: first.map_or("none", |partner| policy_name(&partner.policy)),
-            kind: first.map(|partner| partner.kind),
+            policy: match (first, planned) {
+                (Some(partner), _) => policy_name(&partner.policy),
+                (None, Some(_)) => "plan",
+                (None, None) => "none",
+            },
+            kind: first.map(|partner| partner.kind).or(planned.map(|actor| actor.kind)),
             extras: extras(draft),
             native: PairOutcome::of(native),
             ego_apart_m: apart(Role::Ego),
@@ -258,7 +264,7 @@ pub fn policy_name(policy: &Policy) -> &'static str {
 fn extras(draft: &ScenarioDraft) -> Vec<&'static str> {
     use recrash_model::surroundings::Surface;
     let mut all = Vec::new();
-    all.extend((!draft.obstacles.is_empty()).then_some("obstacles"));
+    all.extend((!draft.obstacles.is_empty() || !draft.objects.is_empty()).then_some("obstacles"));
     all.extend((draft.traffic.density > 0.0).then_some("traffic"));
     match draft.environment.surface {
         Surface::Dry => {}
@@ -266,6 +272,9 @@ fn extras(draft: &ScenarioDraft) -> Vec<&'static str> {
         Surface::SnowIce => all.push("icy road"),
     }
     all.extend(draft.partners.iter().any(|partner| !partner.lateral.is_empty()).then_some("sideways move"));
+    all.extend((!draft.control.is_empty()).then_some("control"));
+    all.extend(draft.actors.iter().any(|actor| !actor.parts.is_empty()).then_some("parts"));
+    all.extend(draft.ego.handover_s.map(|_| "handover"));
     all
 }
 

@@ -2,6 +2,8 @@
 
 pub mod compare;
 mod draw;
+mod scenes;
 
 pub use compare::{Agreement, Apart, GAP_TOLERANCE_M, Pair, PairOutcome, TIME_TOLERANCE_S};
 pub use draw::random_scenario;
+pub use scenes::random_scene;

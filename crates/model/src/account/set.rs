@@ -69,6 +69,12 @@ pub struct UntoldIncident {
 }
 
 impl AccountSet {
+    /// Every readable incident and its crash type.
+    pub fn all(&self) -> impl Iterator<Item = (&str, Option<CrashType>)> {
+        let told = self.told.iter().map(|account| (account.incident.as_str(), super::told(&account.crash_type)));
+        told.chain(self.untold.iter().map(|untold| (untold.incident.as_str(), untold.crash_type)))
+    }
+
     /// The account of the incident that this report speaks for.
     pub fn of(&self, report: &RecordRef) -> Option<&Account> {
         self.told.iter().find(|account| account.report == *report)

@@ -1,6 +1,7 @@
 //! What users give: crash files, scenario files, and what profiles and egos name.
 
 pub(crate) mod accounts;
+pub(crate) mod documents;
 pub(crate) mod fetching;
 pub(crate) mod named;
 pub(crate) mod records;

@@ -42,6 +42,8 @@ pub struct FileRequest<'a> {
     pub patience: Patience,
     /// Where to write the rollout.
     pub rollout: Option<&'a Path>,
+    /// Where to draw the scenario and its run.
+    pub picture: Option<&'a Path>,
 }
 
 /// Reads, checks and runs one scenario file.
@@ -52,6 +54,7 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
     let read = named::of_profile_and_ego(Some(request.profile), request.ego).into_iter();
     let mut outputs = Outputs::of_inputs(read.chain([request.scenario.to_owned()]));
     let rollout = request.rollout.map(|target| outputs.claim(target)).transpose()?;
+    let picture = request.picture.map(|target| outputs.claim(target)).transpose()?;
     let profile = load_profile(request.profile)?;
     let (scenario, diagnostics) = read_scenario(request.scenario)?;
     let ego = request.ego.unwrap_or(&profile.ego);
@@ -59,6 +62,9 @@ pub fn simulate_file(request: &FileRequest) -> Result<FileRun, PipelineError> {
     let run = run_scenario(&scenario, &simulator, &profile, None)?;
     if let Some(rollout) = rollout {
         rollout.write(&to_compact_json(&run.rollout))?;
+    }
+    if let Some(picture) = picture {
+        picture.write(recrash_report::picture(&scenario, &run.rollout).as_bytes())?;
     }
     Ok(FileRun { run, diagnostics })
 }
@@ -72,6 +78,19 @@ pub fn read_scenario(path: &Path) -> Result<(Scenario, Vec<Diagnostic>), Pipelin
     match scenario_from(&text) {
         Ok(read) => Ok((read.value, read.diagnostics)),
         Err(diagnostics) => Err(not_runnable(path, diagnostics)),
+    }
+}
+
+/// Reads and checks the JSON of a scenario that stands in no file.
+///
+/// # Errors
+/// It is no scenario: every problem with its place.
+pub fn parse_scenario(json: &str) -> Result<(Scenario, Vec<Diagnostic>), PipelineError> {
+    match scenario_from(json) {
+        Ok(read) => Ok((read.value, read.diagnostics)),
+        Err(diagnostics) => {
+            Err(PipelineError::BadInput { what: "this is not a scenario that can be run".to_owned(), diagnostics })
+        }
     }
 }
 

@@ -7,13 +7,18 @@ use crate::reading::records::RecordInput;
 use crate::reading::retelling::tell;
 use crate::suite::Suite;
 use crate::suite::names;
-use recrash_model::Outcome;
+use recrash_model::account::{Account, AccountSet, CrashType};
+use recrash_model::diagnostic::{Location, Severity};
 use recrash_model::profile::Tells;
+use recrash_model::template::{Movement, RoadType};
+use recrash_model::{Diagnostic, Outcome};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Runs the stage.
 pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let input = RecordInput::read(suite.options())?;
+    let before: Option<AccountSet> = serde_json::from_slice(&suite.store().read_or_empty(names::ACCOUNTS)).ok();
     let mut report = work.whole(&inputs(suite, &input), || {
         let filter = input.filter().cloned();
         let Outcome { mut value, diagnostics } = input.ingest(suite.profile())?;
@@ -27,8 +32,47 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         Ok(files)
     })?;
     report.diagnostics = suite.store().read_json(names::RECORD_REMARKS)?;
+    if let (Some(before), Tells::Accounts) = (before, suite.profile().records.tells) {
+        report.diagnostics.extend(what_is_new(&before, &suite.store().read_json(names::ACCOUNTS)?));
+    }
     Ok(report)
 }
+
+/// What came in since the last run of this suite: incidents by crash type, and which roads and movements nobody had seen.
+fn what_is_new(before: &AccountSet, now: &AccountSet) -> Option<Diagnostic> {
+    let known: BTreeSet<&str> = before.all().map(|(incident, _)| incident).collect();
+    let mut by_type: BTreeMap<&str, usize> = BTreeMap::new();
+    for (_, crash_type) in now.all().filter(|(incident, _)| !known.contains(incident)) {
+        *by_type.entry(crash_type.map_or("type not told", CrashType::label)).or_default() += 1;
+    }
+    if by_type.is_empty() {
+        return None;
+    }
+    let all: usize = by_type.values().sum();
+    let types: Vec<String> = by_type.iter().map(|(name, count)| format!("{count} {name}")).collect();
+    let triple = |account: &Account| {
+        let template = account.template();
+        (template.road, template.sv, template.cp)
+    };
+    let seen: BTreeSet<_> = before.told.iter().map(triple).collect();
+    let unseen: BTreeSet<_> = now.told.iter().map(triple).filter(|of| !seen.contains(of)).collect();
+    let shown = |(road, sv, cp): &(RoadType, Movement, Movement)| {
+        format!("{}, SV {}, CP {}", road.label(), sv.label(), cp.label()).to_lowercase()
+    };
+    let triples = match unseen.len() {
+        0 => "every road and pair of movements of theirs was seen before".to_owned(),
+        count => {
+            let list: Vec<String> = unseen.iter().take(TRIPLES_SHOWN).map(shown).collect();
+            let more = if count > list.len() { format!("; and {} more", count - list.len()) } else { String::new() };
+            format!("{count} roads and pairs of movements were never seen before: {}{more}", list.join("; "))
+        }
+    };
+    let message = format!("{all} readable incidents are new: {}; {triples}", types.join(", "));
+    Some(Diagnostic::new(Severity::Note, "records.new", Location::default(), message))
+}
+
+/// Roads and movements that are named.
+const TRIPLES_SHOWN: usize = 20;
 
 /// What decides which records come out.
 pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {

@@ -195,6 +195,7 @@ fn read_case<'a>(suite: &Suite, cases: &Cases, cluster: &'a Cluster) -> Result<C
         crash_type: reading.crash_type,
         role: reading.role,
     });
+    let edited = edited_files(suite, id);
     let design = made(Stage::Design).then(|| store.read_json(&names::design_log(id))).transpose()?;
     // Who was parked is not tested: those runs are not there.
     let run = |stage: Stage, scenario: String, run: String| -> Result<Option<Ran>, PipelineError> {
@@ -214,9 +215,15 @@ fn read_case<'a>(suite: &Suite, cases: &Cases, cluster: &'a Cluster) -> Result<C
             agent: store.read_json(&names::tune_agent(id))?,
         }),
     };
+    // Beside a tuned run belongs how the recorded driver fares in the tuned scenario.
+    let recorded = match &tuned {
+        Some(Tuned { log, .. }) if by_account && (log.best != 0 || !edited.is_empty()) => {
+            run(Stage::Triage, names::tuned(id), names::tuned_recorded_run(id))?
+        }
+        _ => recorded,
+    };
     let triage = optional(suite, &names::triage(id), tuned.is_some())?;
     let reference = optional(suite, &names::reference_run(id), triage.is_some())?;
-    let edited = edited_files(suite, id);
     Ok(Case { cluster, narrative, design, account, recorded, first, tuned, triage, reference, failure, edited })
 }
 

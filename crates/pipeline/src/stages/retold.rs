@@ -2,6 +2,7 @@
 //! driver; the system under test takes over before the contact.
 
 use super::cases::{case_seed, of_case, scenario, text_of};
+use super::tune::tune_options;
 use super::{Bench, CaseStage};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
@@ -10,15 +11,16 @@ use crate::simulators::{Simulator, built_in};
 use crate::stages::design::{DesignAttempt, DesignLog};
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
-use recrash_lab::{judge_by, run_scenario, situation, triage};
+use recrash_lab::{Scoring, is_sound_contact, judge_by, run_scenario, situation, triage};
 use recrash_model::account::{Account, Untold};
-use recrash_model::metrics::Verdict;
+use recrash_model::metrics::{Answer, Verdict};
 use recrash_model::run::JudgedRun;
+use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Cluster;
 use recrash_model::triage::TRIAGE_FORMAT;
-use recrash_model::tuning::{Score, TUNE_FORMAT, TuneLog, TunePoint};
-use recrash_reconstruct::{held_against, reconstruct};
-use recrash_roads::Scenario;
+use recrash_model::tuning::TunePoint;
+use recrash_reconstruct::{held_against, open_choices, reconstruct, reconstruct_with};
+use recrash_roads::{RunError, Scenario};
 use recrash_sim::{Ego, Native};
 
 /// The stages, in order.
@@ -49,15 +51,21 @@ pub(super) const DECLARED: [CaseStage; 5] = [
     },
     CaseStage {
         stage: Stage::Tune,
-        reads: |id| vec![(Stage::Design, names::scenario(id)), (Stage::Simulate, names::recorded_run(id))],
+        reads: |id| {
+            vec![
+                (Stage::Narrate, names::account(id)),
+                (Stage::Design, names::scenario(id)),
+                (Stage::Simulate, names::recorded_run(id)),
+            ]
+        },
         editable: |id| vec![names::tuned(id)],
-        decides: |suite| Ok(vec![text_of(&suite.options().seed)]),
-        runs_ego: false,
+        decides: |suite| Ok(vec![format!("{:?}", tune_options(suite)?), text_of(&suite.options().seed)]),
+        runs_ego: true,
         work: tune,
     },
     CaseStage {
         stage: Stage::Triage,
-        reads: |id| vec![(Stage::Simulate, names::recorded_run(id)), (Stage::Tune, names::tuned(id))],
+        reads: |id| vec![(Stage::Narrate, names::account(id)), (Stage::Tune, names::tuned(id))],
         editable: |_| Vec::new(),
         decides: |_| Ok(vec![TRIAGE_FORMAT.to_owned()]),
         runs_ego: true,
@@ -84,13 +92,18 @@ fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
         let (what, seen, told) = (missed.kind.label(), &missed.observed, &missed.expected);
         return Err(refused(format!("{}: {what} is {seen}, not {told}", Untold::NotShown.label())));
     }
-    let mut draft = made.draft;
-    draft.id.clone_from(id);
-    draft.source.template = Some(cluster.template);
-    draft.source.seed = case_seed(bench.suite, cluster).0;
+    let draft = named(made.draft, bench, cluster);
     let attempt = DesignAttempt { draft: draft.clone(), diagnostics: Vec::new(), unfaithful: Some(Vec::new()) };
     let log = DesignLog { assumed: made.assumed, ..DesignLog::by_rules(attempt) };
     Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
+}
+
+/// A reconstruction as a case of the suite.
+fn named(mut draft: ScenarioDraft, bench: &Bench, cluster: &Cluster) -> ScenarioDraft {
+    draft.id.clone_from(&cluster.scenario_id);
+    draft.source.template = Some(cluster.template);
+    draft.source.seed = case_seed(bench.suite, cluster).0;
+    draft
 }
 
 /// The recorded driver's run, which is held against the account; and the run of the system under test.
@@ -124,29 +137,62 @@ fn tested_run(
     scenario: &Scenario,
     simulator: &dyn Simulator,
     recorded: &JudgedRun,
-) -> Result<JudgedRun, PipelineError> {
+) -> Result<JudgedRun, RunError> {
     let mut run = run_scenario(scenario, simulator, suite.profile(), None)?;
     let from_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
     run.judgement.verdict = Verdict { checks: vec![situation(&run, recorded, from_s)] };
     Ok(run)
 }
 
-/// What the account leaves open is searched; of a case that is not tested nothing is.
+/// What the account leaves open is searched for the nearest failure. A scenario that a person edited is nobody's staging any
+/// more, and stays as it is; so does one with nothing to test.
 fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let (suite, id) = (bench.suite, &cluster.scenario_id);
     let scenario = scenario(suite, id, &names::scenario(id))?;
-    let score = Score { objective: 0.0, min_gap: None, findings: Vec::new(), failed: false, refused: Vec::new() };
-    let log = TuneLog {
-        format: TUNE_FORMAT.to_owned(),
-        scenario_id: id.clone(),
-        searcher: "none".to_owned(),
-        seed: case_seed(suite, cluster).child("tune").0,
-        parameters: Vec::new(),
-        points: vec![TunePoint { number: 0, proposed_by: "start".to_owned(), values: Vec::new(), score }],
-        best: 0,
+    let design: DesignLog = suite.store().read_json(&names::design_log(id))?;
+    let account = account(suite, id)?;
+    let as_designed = design.attempts.get(design.taken).is_some_and(|taken| taken.draft == *scenario.draft());
+    let open = if as_designed && is_tested(&scenario) { open_choices(&account) } else { Vec::new() };
+    let first: JudgedRun = suite.store().read_json(&match is_tested(&scenario) {
+        true => names::first_run(id),
+        false => names::recorded_run(id),
+    })?;
+    let draft_of = |values: &[f64]| -> Result<ScenarioDraft, String> {
+        if values.iter().zip(&open).all(|(value, parameter)| *value == parameter.start) {
+            return Ok(scenario.draft().clone());
+        }
+        let made = reconstruct_with(&account, &open, values).map_err(|why| why.label().to_owned())?;
+        match made.verdict.failures().next() {
+            Some(missed) => {
+                Err(format!("not as told: {} is {}, not {}", missed.kind.label(), missed.observed, missed.expected))
+            }
+            None => Ok(named(made.draft, bench, cluster)),
+        }
     };
+    let make = |values: &[f64]| {
+        let checked = recrash_roads::check(draft_of(values)?);
+        checked
+            .map(|checked| checked.value)
+            .map_err(|told| told.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+    };
+    let run = |scenario: &Scenario| {
+        let recorded = Native::new(Ego::Recorded).run(scenario)?;
+        tested_run(
+            suite,
+            scenario,
+            bench.simulator(),
+            &judge_by(scenario, recorded, suite.profile(), Verdict::default()),
+        )
+    };
+    let scoring = Scoring::of(&open, make, run, &first);
+    let sound = is_sound_contact(&first.rollout) && first.faithful() == Answer::Yes;
+    let enough = |point: &TunePoint| open.is_empty() || point.number == 0 && point.score.refused.is_empty() && sound;
+    let seed = case_seed(suite, cluster).child("tune");
+    let options = tune_options(suite)?;
+    let log = recrash_search::tune(id, &open, options, seed, |values| scoring.score(values), enough);
+    let tuned = draft_of(&log.points[log.best].values).map_err(|why| PipelineError::scenario(id, why))?;
     Ok(vec![
-        (names::tuned(id), to_json(scenario.draft())),
+        (names::tuned(id), to_json(&tuned)),
         (names::tune_log(id), to_compact_json(&log)),
         (names::tune_agent(id), to_json(&AgentLog::rules())),
     ])
@@ -158,9 +204,12 @@ fn judge(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     if !is_tested(&scenario) {
         return Ok(Vec::new());
     }
-    let recorded: JudgedRun = suite.store().read_json(&names::recorded_run(id))?;
+    let recorded = recorded_run(suite, id, &scenario)?;
     let run = tested_run(suite, &scenario, bench.simulator(), &recorded)?;
-    let mut files = vec![(names::tuned_run(id), to_compact_json(&run))];
+    let mut files = vec![
+        (names::tuned_run(id), to_compact_json(&run)),
+        (names::tuned_recorded_run(id), to_compact_json(&recorded)),
+    ];
     if run.failed() {
         let (triage, reference) = triage(&scenario, suite.ego(), &run.findings, suite.profile(), &built_in())?;
         files.push((names::triage(id), to_json(&triage)));

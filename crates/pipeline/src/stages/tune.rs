@@ -36,7 +36,7 @@ pub(super) const DECLARED: CaseStage = CaseStage {
     work: tune,
 };
 
-fn tune_options(suite: &Suite) -> Result<TuneOptions, PipelineError> {
+pub(super) fn tune_options(suite: &Suite) -> Result<TuneOptions, PipelineError> {
     let searcher = suite.options().searcher.parse().map_err(|e: String| PipelineError::bad_input(e))?;
     Ok(TuneOptions { searcher, budget: suite.options().tune_budget })
 }

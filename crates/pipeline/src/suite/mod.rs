@@ -8,7 +8,7 @@ pub(crate) mod names;
 
 use crate::error::PipelineError;
 use crate::models::cast::RULES;
-use crate::simulators::external::{EGO_COMMAND_PREFIX, Patience};
+use crate::simulators::external::{EgoCommand, Patience};
 
 use crate::files::store::{Store, WriteFile, sha256, to_json, write_suite_file};
 use crate::models::{AnswerMode, ModelAccess, Models};
@@ -18,7 +18,7 @@ use crate::simulators::{Simulator, check_simulator, start_simulator};
 use journal::{Journal, Made, Unit};
 use names::is_failure_file;
 use recrash_agents::llm::Spent;
-use recrash_model::profile::SystemProfile;
+use recrash_model::profile::{SystemProfile, Tells};
 use recrash_model::{Diagnostic, Location, Seed, Severity};
 use recrash_search::Searcher;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// The suite files' format tag.
 const SUITE_FORMAT: &str = "recrash.suite/2";
 /// The file that makes a folder a suite.
-const SUITE_FILE: &str = "suite.json";
+pub(crate) const SUITE_FILE: &str = "suite.json";
 
 /// The stages, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -489,7 +489,7 @@ impl Suite {
 /// # Errors
 /// The ego is a program, and the caller neither named it nor trusts the suite.
 pub(crate) fn refuse_untrusted(ego: &str, trust: bool) -> Result<(), PipelineError> {
-    if trust || !ego.starts_with(EGO_COMMAND_PREFIX) {
+    if trust || matches!(EgoCommand::parse(ego), Ok(None)) {
         return Ok(());
     }
     Err(PipelineError::Untrusted { program: ego.to_owned() })
@@ -577,5 +577,12 @@ fn hash_all(inputs: &[String]) -> String {
 /// One of them is not there.
 pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
     suite.options().searcher.parse::<Searcher>().map_err(PipelineError::bad_input)?;
+    if let (Tells::Accounts, Some(model)) = (suite.profile().records.tells, suite.options().cast.models().first()) {
+        return Err(PipelineError::bad_input(format!(
+            "the profile {} goes by accounts, which the built-in reader reads; {model} plays its role in suites that go by templates: \
+             choose the profile paper",
+            suite.profile().name
+        )));
+    }
     check_simulator(suite.options().simulator, suite.ego())
 }

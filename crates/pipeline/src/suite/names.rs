@@ -90,6 +90,10 @@ pub fn tune_agent(id: &str) -> String {
 pub fn tuned_run(id: &str) -> String {
     format!("7-tuned-runs/{id}.json")
 }
+/// Judged run of the recorded driver in the tuned scenario.
+pub fn tuned_recorded_run(id: &str) -> String {
+    format!("7-tuned-runs/{id}.recorded.json")
+}
 /// How the other egos fare in the tuned scenario, where the system under test fails.
 pub fn triage(id: &str) -> String {
     format!("7-tuned-runs/{id}.triage.json")

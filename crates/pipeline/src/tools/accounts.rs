@@ -14,7 +14,7 @@ use serde::Serialize;
 /// # Errors
 /// The file cannot be written.
 pub fn write_accounts(accounts: &[Account], format: TableFormat, output: &Output) -> Result<usize, PipelineError> {
-    let table = table(accounts);
+    let table = account_table(accounts);
     match format {
         TableFormat::Csv => {
             let failed = |source| io("write", output.name(), source);
@@ -28,7 +28,8 @@ pub fn write_accounts(accounts: &[Account], format: TableFormat, output: &Output
     Ok(table.rows)
 }
 
-fn table(accounts: &[Account]) -> RecordTable {
+/// Accounts as a table of their main facts, a row an incident.
+pub fn account_table(accounts: &[Account]) -> RecordTable {
     let text = |of: &dyn Fn(&Account) -> Option<String>| Column::Text(accounts.iter().map(of).collect());
     let partner = |of: &dyn Fn(&Party) -> Option<String>| -> Column {
         Column::Text(accounts.iter().map(|account| account.partner.as_ref().and_then(of)).collect())

@@ -481,7 +481,9 @@ fn searched(file: &Path) -> Result<Option<Vec<Parameter>>, PipelineError> {
     if !folder.path(log).exists() {
         return Ok(None);
     }
-    folder.read_json::<TuneLog>(log).map(|log| Some(log.parameters))
+    let found = folder.read_json::<TuneLog>(log)?.parameters;
+    // What an account leaves open stands at no place in the scenario.
+    Ok(found.iter().all(|parameter| parameter.pointer.starts_with('/')).then_some(found))
 }
 
 fn varied(draft: &ScenarioDraft, vary: &[Vary], file: &Path) -> Result<Vec<Parameter>, PipelineError> {

@@ -22,7 +22,7 @@ fn run_all(suite: &Suite) -> Result<(), PipelineError> {
 #[test]
 fn a_full_disk_stops_the_run_and_the_next_run_goes_on() {
     let folder = tempfile::tempdir().unwrap();
-    let options = Options { budget: Some(3), tune_budget: 8, ..Options::default() };
+    let options = Options { budget: Some(3), tune_budget: 8, profile: "paper".into(), ..Options::default() };
     let fresh = folder.path().join("fresh");
     run_all(&Suite::open(&fresh, options.clone(), Resources::default()).unwrap()).unwrap();
     let size = std::fs::metadata(fresh.join("1-records.json")).unwrap().len() as i64;

@@ -44,7 +44,13 @@ fn a_folder_that_is_no_suite_and_a_suite_with_another_ego_are_refused() {
     assert!(error.to_string().contains("it holds no suite.json"), "{error}");
 
     let dir = folder.path().join("suite");
-    let options = Options { ego: Some("idm".into()), budget: Some(1), tune_budget: 1, ..Options::default() };
+    let options = Options {
+        ego: Some("idm".into()),
+        budget: Some(1),
+        tune_budget: 1,
+        profile: "paper".into(),
+        ..Options::default()
+    };
     suite(&dir, options);
     let source = ParitySource::Suite { dir };
     let error = parity(&request(source, "python3".into(), folder.path()), &NoProgress).expect_err("another ego");
@@ -72,7 +78,7 @@ fn scenarios_that_metadrive_fails_on_count_as_disagreeing_and_the_results_are_wr
     assert_eq!((result.agreement.pairs, result.agreement.errors, result.agreement.same_verdict), (2, 2, 0));
     let told = result.pairs[0].error.as_deref().unwrap_or_default();
     assert!(told.contains("random-0000") && told.contains("no memory"), "{told}");
-    for file in ["parity.json", "parity.csv", "parity.html", "worst/random-0001.json"] {
+    for file in ["parity.json", "parity.csv", "parity.html", "worst/scene-0000.json"] {
         assert!(out.join(file).is_file(), "{file}");
     }
     let csv = std::fs::read_to_string(out.join("parity.csv")).expect("text");
@@ -112,7 +118,7 @@ fn failures_of_a_suite_are_confirmed() {
     let Some(python) = metadrive() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let dir = folder.path().join("suite");
-    suite(&dir, Options { budget: Some(6), tune_budget: 60, ..Options::default() });
+    suite(&dir, Options { budget: Some(6), tune_budget: 60, profile: "paper".into(), ..Options::default() });
     let out = folder.path().join("parity");
     let result = parity(&request(ParitySource::Suite { dir }, python, &out), &NoProgress).expect("MetaDrive runs");
     println!("{}", shown(&result));

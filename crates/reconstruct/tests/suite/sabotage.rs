@@ -1,10 +1,10 @@
 //! A reconstruction that was sabotaged is not called true.
 
 use crate::stories::shown;
-use recrash_model::account::{Account, ContactState, told};
+use recrash_model::account::{Account, ContactState, Obeyed, SignalState, told};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::Answer;
-use recrash_model::scenario::{Deed, Leg, Place, ScenarioDraft};
+use recrash_model::scenario::{Aspect, Deed, Device, Leg, Place, ScenarioDraft};
 use recrash_model::zones::ContactZone;
 use recrash_reconstruct::held_against;
 use recrash_sim::{Ego, simulate};
@@ -149,11 +149,33 @@ fn a_contact_on_the_other_side() {
 #[test]
 fn a_partner_that_nobody_throws() {
     caught("a partner that comes by itself", 1, |_, draft| {
-        let thrown = draft.actors.len() == 2;
-        if thrown {
-            draft.actors.truncate(1);
-            draft.actors[0].plan.acts.clear();
+        let all = draft.actors.len();
+        draft.actors.retain(|actor| actor.id != "pusher");
+        draft.actors.len() < all
+    });
+}
+
+#[test]
+fn a_signal_or_sign_that_is_gone() {
+    caught("a junction without its signals and signs", 3, |_, draft| {
+        let there = !draft.control.is_empty();
+        draft.control.clear();
+        there
+    });
+}
+
+#[test]
+fn a_red_light_that_is_green() {
+    caught("a red light that is green", 2, |account, draft| {
+        let red =
+            account.sv.controls.last().is_some_and(|fact| {
+                fact.value.state == Some(SignalState::Red) && fact.value.obeyed == Some(Obeyed::Yes)
+            });
+        for control in &mut draft.control {
+            if let Device::Signal { program, .. } = &mut control.device {
+                program.iter_mut().for_each(|phase| phase.show = Aspect::Green);
+            }
         }
-        thrown
+        red && !draft.control.is_empty()
     });
 }

@@ -40,7 +40,7 @@ struct Case {
 }
 
 /// The folder of the cases.
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
+pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
 
 /// The names of all cases: paths below `cases/` without `.json`.
 pub(crate) fn case_names() -> BTreeSet<String> {
@@ -163,10 +163,13 @@ fn outcome(rollout: &Rollout) -> String {
 
 /// The table of `cases/README.md`.
 fn table(cases: &[Case], rollouts: &[Rollout]) -> String {
-    let mut table = "| Case | What it shows | As recorded | With `idm` |\n| --- | --- | --- | --- |\n".to_owned();
+    let mut table =
+        "| Case | What it shows | Picture | As recorded | With `idm` |\n| --- | --- | --- | --- | --- |\n".to_owned();
     for (case, runs) in cases.iter().zip(rollouts.chunks(EGOS.len())) {
         let (name, says) = (&case.name, &case.draft.source.narrative);
-        writeln!(table, "| [{name}]({name}.json) | {says} | {} | {} |", outcome(&runs[0]), outcome(&runs[1])).unwrap();
+        let picture = format!("[picture](../docs/gallery/{}.svg)", name.replace('/', "-"));
+        let [recorded, idm] = [outcome(&runs[0]), outcome(&runs[1])];
+        writeln!(table, "| [{name}]({name}.json) | {says} | {picture} | {recorded} | {idm} |").unwrap();
     }
     table
 }

@@ -6,6 +6,7 @@ mod common;
 mod demand;
 mod driven;
 mod gallery;
+mod mutated;
 mod parity;
 mod partners;
 mod reference;

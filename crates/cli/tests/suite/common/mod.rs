@@ -6,10 +6,18 @@ pub mod server;
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
 
-/// The command, with a budget small enough for a test where it makes suites.
+/// The command. Where nothing else is said its suites go by templates, as the published method does; those that go by
+/// accounts have tests of their own.
 pub fn recrash(arguments: &[&str]) -> Command {
     let mut command = Command::cargo_bin("recrash").expect("the binary is built with its tests");
-    command.args(arguments);
+    command.args(arguments).env("RECRASH_PROFILE", "paper");
+    command
+}
+
+/// The same command for processes that are stopped or watched on their way.
+pub fn plain_recrash() -> std::process::Command {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("recrash"));
+    command.env("RECRASH_PROFILE", "paper");
     command
 }
 

@@ -75,6 +75,18 @@ def give_up(kind, detail="", version=None):
     sys.exit(0)
 
 
+class Colours:
+    """Stands in for seaborn, of which MetaDrive takes ten colours and nothing else: loading it, with pandas and statistics,
+    takes longer than all that is done here until the first step."""
+
+    @staticmethod
+    def color_palette(_):
+        codes = "0173b2 de8f05 029e73 d55e00 cc78bc ca9161 fbafe4 949494 ece133 56b4e9".split()
+        return [tuple(part / 255 for part in bytes.fromhex(code)) for code in codes]
+
+
+sys.modules.setdefault("seaborn", Colours)
+
 VERSION = installed_version()
 if VERSION is None:
     give_up("metadrive_missing")

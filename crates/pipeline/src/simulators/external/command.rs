@@ -1,10 +1,19 @@
-//! The command of an external ego, as it is typed: `cmd:PROGRAM [ARGS]`.
+//! The command of an external ego, as it is typed: `cmd:PROGRAM [ARGS]`, or `py:MODULE:NAME` for Python.
 
 use std::fmt;
 use std::path::Path;
 
 /// What an ego's name begins with where it is a program.
 pub const EGO_COMMAND_PREFIX: &str = "cmd:";
+
+/// What an ego's name begins with where it is a class or function in Python.
+const PYTHON_PREFIX: &str = "py:";
+
+/// The variable that names the Python interpreter, and the one where it does not.
+const PYTHON: (&str, &str) = ("RECRASH_PYTHON", "python3");
+
+/// The module of the Python package that speaks the protocol for a class or function.
+const PYTHON_MODULE: &str = "recrash.ego";
 
 /// A program with its arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,13 +26,19 @@ pub struct EgoCommand {
 }
 
 impl EgoCommand {
-    /// Reads `cmd:PROGRAM [ARGS]`; `None` where the name does not begin with `cmd:`.
+    /// Reads `cmd:PROGRAM [ARGS]` or `py:MODULE:NAME`; `None` where the name begins with neither.
+    ///
+    /// `MODULE` is a module of Python's, or the path of a file `.py`; `NAME` a class or function in it. The interpreter is the
+    /// one that `RECRASH_PYTHON` names, else `python3`, and has the package recrash.
     ///
     /// Words are separated by white space; quotes of both kinds and backslashes work as in a shell. No shell is run.
     ///
     /// # Errors
     /// There is no program, or a quote is not closed.
     pub fn parse(ego: &str) -> Result<Option<Self>, String> {
+        if let Some(named) = ego.strip_prefix(PYTHON_PREFIX) {
+            return Self::of_python(ego, named).map(Some);
+        }
         let Some(line) = ego.strip_prefix(EGO_COMMAND_PREFIX) else { return Ok(None) };
         let mut words = split(line).ok_or_else(|| format!("a quote is not closed in the ego '{ego}'"))?.into_iter();
         match words.next() {
@@ -32,6 +47,19 @@ impl EgoCommand {
             }
             _ => Err("the ego cmd: needs a program, such as 'cmd:python3 my_ego.py'".to_owned()),
         }
+    }
+
+    fn of_python(ego: &str, named: &str) -> Result<Self, String> {
+        let Some((module, name)) =
+            named.rsplit_once(':').filter(|(module, name)| !module.is_empty() && !name.is_empty())
+        else {
+            return Err(format!(
+                "the ego {ego} needs a module and a name in it, such as py:my_stack:Planner or py:ego.py:drive"
+            ));
+        };
+        let program = std::env::var(PYTHON.0).unwrap_or_else(|_| PYTHON.1.to_owned());
+        let arguments = ["-m", PYTHON_MODULE, module, name].map(str::to_owned).to_vec();
+        Ok(Self { text: ego.to_owned(), program, arguments })
     }
 
     /// Whether the program can be found, as far as that is seen without starting it: on Windows names go without endings.
@@ -109,5 +137,15 @@ mod tests {
         let command = EgoCommand::parse("cmd:python3 ego.py").unwrap().unwrap();
         assert_eq!((command.program.as_str(), command.arguments.len()), ("python3", 1));
         assert_eq!(command.to_string(), "`cmd:python3 ego.py`");
+    }
+
+    #[test]
+    fn a_class_in_python_is_a_command_that_has_its_file_among_its_words() {
+        let command = EgoCommand::parse("py:egos/mine.py:Careful").unwrap().unwrap();
+        assert_eq!(command.arguments, ["-m", "recrash.ego", "egos/mine.py", "Careful"]);
+        assert_eq!(command.as_str(), "py:egos/mine.py:Careful");
+        for wrong in ["py:", "py:mine", "py:mine:", "py::Careful"] {
+            assert!(EgoCommand::parse(wrong).unwrap_err().contains("needs a module and a name"), "{wrong}");
+        }
     }
 }

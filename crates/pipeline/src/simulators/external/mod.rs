@@ -11,6 +11,7 @@ mod protocol;
 
 pub use command::{EGO_COMMAND_PREFIX, EgoCommand};
 pub use process::{EgoFault, Patience};
+pub use protocol::{told_at_reset, told_at_step};
 
 use crate::error::PipelineError;
 use process::EgoProcess;

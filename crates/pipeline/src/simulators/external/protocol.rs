@@ -30,6 +30,8 @@ pub(crate) enum Said<'a> {
 #[derive(Debug, Serialize)]
 pub(crate) struct Reset<'a> {
     scenario: &'a str,
+    /// Of whatever is random in the ego.
+    seed: u64,
     dt_s: f64,
     duration_s: f64,
     surface: Surface,
@@ -152,6 +154,20 @@ pub(crate) enum Control {
     Motion { acceleration_mps2: f64, wheel_angle_rad: f64 },
 }
 
+/// What an ego is told when a run begins, for one that lives in this process: JSON.
+pub fn told_at_reset(scenario: &Scenario, cast: &[CastMember]) -> String {
+    json(&Said::Reset(Box::new(Reset::new(scenario, cast))))
+}
+
+/// What it is told before every decision: JSON. `ids` are the names of all but the ego, in the order of the cast.
+pub fn told_at_step(observation: &Observation<'_>, ids: &[String]) -> String {
+    json(&Said::Step(Step::new(observation, ids)))
+}
+
+fn json(said: &Said<'_>) -> String {
+    serde_json::to_string(said).unwrap_or_else(|_| unreachable!("numbers and texts serialise"))
+}
+
 impl Control {
     pub(crate) fn controls(&self, spec: &VehicleSpec) -> Controls {
         match *self {
@@ -191,6 +207,7 @@ impl<'a> Reset<'a> {
         });
         Self {
             scenario: &draft.id,
+            seed: draft.source.seed,
             dt_s: STEP_S,
             duration_s: draft.duration_s,
             surface: draft.environment.surface,

@@ -1,0 +1,485 @@
+//! Many slots, stepped together.
+
+use crate::handles::{ACTS, Handles};
+use crate::raster::Raster;
+use crate::reward::{Reward, TERMS};
+use crate::scene::Scene;
+use crate::slot::{Shared, Slot};
+use crate::view::{View, ViewError};
+use rayon::ThreadPool;
+use recrash_model::profile::SystemProfile;
+use recrash_model::run::JudgedRun;
+use recrash_model::seed::Seed;
+
+/// Fewer slots than this are not worth another thread.
+const GRAIN: usize = 16;
+
+/// What happens when an episode has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Autoreset {
+    /// The next step begins a new one: its action is not used, its reward is 0.
+    NextStep,
+    /// The same step begins a new one: the last observation is in [`Outputs::final_numbers`].
+    SameStep,
+    /// Nothing, until somebody resets it.
+    Disabled,
+}
+
+/// How a batch works.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// What drivers are shown.
+    pub view: View,
+    /// What they answer.
+    pub handles: Handles,
+    /// What is good and bad.
+    pub reward: Reward,
+    /// What happens at the end of an episode.
+    pub autoreset: Autoreset,
+    /// Judges every episode that ended by this profile.
+    pub judged_by: Option<SystemProfile>,
+    /// Threads; 1 starts none.
+    pub threads: usize,
+}
+
+/// What cannot be done.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BatchError {
+    /// There is nothing to drive in.
+    #[error("there is no scenario to drive in: a batch needs at least one")]
+    NoScene,
+    /// There is nobody to drive.
+    #[error("a batch of 0 environments: it needs at least one")]
+    NoSlot,
+    /// The view is none.
+    #[error(transparent)]
+    View(#[from] ViewError),
+    /// Something has another size.
+    #[error("{what} has {got} entries, and {wanted} are wanted")]
+    Size {
+        /// What.
+        what: &'static str,
+        /// How many it should have.
+        wanted: usize,
+        /// How many it has.
+        got: usize,
+    },
+    /// Weights of scenes that cannot be drawn by.
+    #[error("the weight of scenario {scene} is {weight}: weights are 0 or more, and one of them is more")]
+    Weight {
+        /// Which scene.
+        scene: usize,
+        /// Its weight.
+        weight: f64,
+    },
+    /// There is no such scene.
+    #[error("environment {slot} is to drive in scenario {scene}, and there are {count}, counted from 0")]
+    Scene {
+        /// Which slot.
+        slot: usize,
+        /// The scene it names.
+        scene: i64,
+        /// How many there are.
+        count: usize,
+    },
+    /// An action that is no number.
+    #[error("the action of environment {slot} has {value} at position {position}: actions are numbers from -1 to 1")]
+    NotFinite {
+        /// Which slot.
+        slot: usize,
+        /// Which of its numbers.
+        position: usize,
+        /// The number.
+        value: f32,
+    },
+    /// An act that there is not.
+    #[error("the action of environment {slot} is {act}: actions are 0 to {}", ACTS.len() - 1)]
+    NoSuchAct {
+        /// Which slot.
+        slot: usize,
+        /// What it said.
+        act: i64,
+    },
+    /// Actions of the other kind.
+    #[error("these actions are of another kind than the environment's")]
+    OtherKind,
+    /// An episode is over.
+    #[error("the episode of environment {slot} is over or was never begun; reset it first")]
+    Ended {
+        /// Which slot.
+        slot: usize,
+    },
+    /// The threads could not be started.
+    #[error("cannot start {0} threads; try with fewer")]
+    Threads(usize),
+}
+
+/// What drivers answer, slot by slot.
+#[derive(Debug, Clone, Copy)]
+pub enum Actions<'a> {
+    /// Two numbers each.
+    Numbers(&'a [f32]),
+    /// Positions in [`ACTS`].
+    Acts(&'a [i64]),
+}
+
+/// Where results go, slot by slot.
+#[derive(Debug)]
+pub struct Outputs<'a> {
+    /// Numbers of the view.
+    pub numbers: &'a mut [f32],
+    /// Bytes of the view's picture.
+    pub bytes: &'a mut [u8],
+    /// Numbers of the last observation of an episode that ended, where the same step begins another; else empty.
+    pub final_numbers: &'a mut [f32],
+    /// The same of its picture.
+    pub final_bytes: &'a mut [u8],
+    /// Weighted sum of the terms.
+    pub rewards: &'a mut [f64],
+    /// Terms of the reward, in the order of [`TERMS`].
+    pub terms: &'a mut [f32],
+    /// The episode has ended.
+    pub terminated: &'a mut [bool],
+    /// Its time was up.
+    pub truncated: &'a mut [bool],
+    /// How it ended: 0 not yet, else 1 and the kind's position in its list.
+    pub endings: &'a mut [u8],
+    /// Position of the scene of the step.
+    pub scenes: &'a mut [i32],
+    /// Steps of the episode that has ended.
+    pub episode_steps: &'a mut [i32],
+    /// Sum of its rewards.
+    pub episode_returns: &'a mut [f64],
+}
+
+/// Where the results of one slot go.
+pub(crate) struct Row<'a> {
+    pub(crate) numbers: &'a mut [f32],
+    pub(crate) bytes: &'a mut [u8],
+    pub(crate) final_numbers: &'a mut [f32],
+    pub(crate) final_bytes: &'a mut [u8],
+    pub(crate) reward: &'a mut f64,
+    pub(crate) terms: &'a mut [f32],
+    pub(crate) terminated: &'a mut bool,
+    pub(crate) truncated: &'a mut bool,
+    pub(crate) ending: &'a mut u8,
+    pub(crate) scene: &'a mut i32,
+    pub(crate) episode_steps: &'a mut i32,
+    pub(crate) episode_return: &'a mut f64,
+}
+
+impl Row<'_> {
+    /// Nothing has happened.
+    pub(crate) fn clear(&mut self) {
+        self.terms.fill(0.0);
+        (*self.reward, *self.terminated, *self.truncated) = (0.0, false, false);
+        (*self.ending, *self.episode_steps, *self.episode_return) = (0, 0, 0.0);
+    }
+}
+
+/// Many runs.
+#[derive(Debug)]
+pub struct Batch {
+    scenes: Vec<Scene>,
+    sums: Vec<f64>,
+    settings: Settings,
+    slots: Vec<Slot>,
+    pool: Option<ThreadPool>,
+}
+
+impl Batch {
+    /// So many slots in these scenes.
+    ///
+    /// # Errors
+    /// There are none, the view cannot be, or there are no threads.
+    pub fn new(mut scenes: Vec<Scene>, slots: usize, settings: Settings) -> Result<Self, BatchError> {
+        settings.view.check()?;
+        let first = scenes.first().ok_or(BatchError::NoScene)?;
+        if slots == 0 {
+            return Err(BatchError::NoSlot);
+        }
+        let slots = (0..slots).map(|_| Slot::new(first)).collect();
+        scenes.iter_mut().for_each(|scene| settings.view.prepare(scene));
+        let pool = match settings.threads {
+            0 | 1 => None,
+            threads => {
+                let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                Some(built.map_err(|_| BatchError::Threads(threads))?)
+            }
+        };
+        let sums = (1..=scenes.len()).map(|number| number as f64).collect();
+        Ok(Self { scenes, sums, settings, slots, pool })
+    }
+
+    /// The scenes.
+    pub fn scenes(&self) -> &[Scene] {
+        &self.scenes
+    }
+
+    /// How it works.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// How many slots.
+    pub fn slots(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// The last episode of a slot that ended, judged; `None` before one has, and where none is judged.
+    pub fn judged(&self, slot: usize) -> Option<&JudgedRun> {
+        self.slots.get(slot)?.judged.as_ref()
+    }
+
+    /// A slot's picture from above as it is now, written row by row: see [`Raster`].
+    ///
+    /// # Errors
+    /// The picture cannot be, there is no such slot, or the memory has another size.
+    pub fn picture(&mut self, slot: usize, raster: Raster, bytes: &mut [u8]) -> Result<(), BatchError> {
+        let view = View::Raster(raster);
+        view.check()?;
+        size("the memory for the picture", view.bytes(), bytes.len())?;
+        let slots = self.slots.len();
+        let slot = self.slots.get(slot).ok_or(BatchError::Size { what: "the batch", wanted: slot + 1, got: slots })?;
+        view.prepare(&mut self.scenes[slot.scene]);
+        slot.paint(&self.scenes[slot.scene], raster, bytes);
+        Ok(())
+    }
+
+    /// Draws the scenes of later episodes by these weights, one for each.
+    ///
+    /// # Errors
+    /// There are not as many as scenes, one is negative or no number, or all are 0.
+    pub fn set_weights(&mut self, weights: &[f64]) -> Result<(), BatchError> {
+        size("the list of weights", self.scenes.len(), weights.len())?;
+        let mut sum = 0.0;
+        let mut sums = Vec::with_capacity(weights.len());
+        for (scene, &weight) in weights.iter().enumerate() {
+            if !(0.0..=1e12).contains(&weight) {
+                return Err(BatchError::Weight { scene, weight });
+            }
+            sum += weight;
+            sums.push(sum);
+        }
+        if sum <= 0.0 {
+            return Err(BatchError::Weight { scene: 0, weight: 0.0 });
+        }
+        self.sums = sums;
+        Ok(())
+    }
+
+    /// Begins episodes: in every slot or those of the mask; in the scenes that are named for each slot, or in drawn ones.
+    /// With a seed every slot's draws begin anew.
+    ///
+    /// # Errors
+    /// Something has another size, or a scene is not there. Nothing has changed then.
+    pub fn reset(
+        &mut self,
+        seed: Option<u64>,
+        mask: Option<&[bool]>,
+        scenes: Option<&[i64]>,
+        mut outputs: Outputs<'_>,
+    ) -> Result<(), BatchError> {
+        self.check(&outputs)?;
+        size("the mask", self.slots.len(), mask.map_or(self.slots.len(), <[bool]>::len))?;
+        size("the list of scenarios", self.slots.len(), scenes.map_or(self.slots.len(), <[i64]>::len))?;
+        let count = self.scenes.len();
+        for (slot, &scene) in scenes.unwrap_or_default().iter().enumerate() {
+            if !usize::try_from(scene).is_ok_and(|scene| scene < count) {
+                return Err(BatchError::Scene { slot, scene, count });
+            }
+        }
+        let shared = Shared { scenes: &self.scenes, sums: &self.sums, settings: &self.settings };
+        for (number, slot) in self.slots.iter_mut().enumerate() {
+            let (row, rest) = outputs.split_at(1, &shared.settings.view);
+            outputs = rest;
+            if let Some(seed) = seed {
+                slot.seed(Seed(seed).child(&number.to_string()));
+            }
+            if mask.is_none_or(|mask| mask[number]) {
+                let scene = scenes.and_then(|scenes| usize::try_from(scenes[number]).ok());
+                slot.reset(&shared, scene, &mut row.into_row());
+            }
+        }
+        Ok(())
+    }
+
+    /// Every slot goes on for a step.
+    ///
+    /// # Errors
+    /// An action cannot be used, something has another size, or an episode is over and nobody has begun another. Nothing has
+    /// changed then.
+    pub fn step(&mut self, actions: Actions<'_>, outputs: Outputs<'_>) -> Result<(), BatchError> {
+        self.check(&outputs)?;
+        self.check_actions(actions)?;
+        let begins = self.settings.autoreset == Autoreset::NextStep;
+        if let Some(slot) = self.slots.iter().position(|slot| slot.ended && !(begins && slot.is_begun())) {
+            return Err(BatchError::Ended { slot });
+        }
+        let shared = Shared { scenes: &self.scenes, sums: &self.sums, settings: &self.settings };
+        let slots = &mut self.slots[..];
+        match &self.pool {
+            None => step_all(&shared, slots, actions, outputs, usize::MAX),
+            Some(pool) => {
+                let grain = (slots.len() / (4 * pool.current_num_threads())).max(GRAIN);
+                pool.install(|| step_all(&shared, slots, actions, outputs, grain));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_actions(&self, actions: Actions<'_>) -> Result<(), BatchError> {
+        match actions {
+            Actions::Numbers(numbers) if self.settings.handles.numbers() > 0 => {
+                let each = self.settings.handles.numbers();
+                size("the list of actions", each * self.slots.len(), numbers.len())?;
+                match numbers.iter().position(|number| !number.is_finite()) {
+                    None => Ok(()),
+                    Some(at) => Err(BatchError::NotFinite { slot: at / each, position: at % each, value: numbers[at] }),
+                }
+            }
+            Actions::Acts(acts) if self.settings.handles == Handles::Acts => {
+                size("the list of actions", self.slots.len(), acts.len())?;
+                match acts.iter().position(|act| !(0..ACTS.len() as i64).contains(act)) {
+                    None => Ok(()),
+                    Some(slot) => Err(BatchError::NoSuchAct { slot, act: acts[slot] }),
+                }
+            }
+            _ => Err(BatchError::OtherKind),
+        }
+    }
+
+    fn check(&self, outputs: &Outputs<'_>) -> Result<(), BatchError> {
+        let (slots, view) = (self.slots.len(), &self.settings.view);
+        let final_slots = if self.settings.autoreset == Autoreset::SameStep { slots } else { 0 };
+        size("the memory for numbers", slots * view.numbers(), outputs.numbers.len())?;
+        size("the memory for pictures", slots * view.bytes(), outputs.bytes.len())?;
+        size("the memory for last numbers", final_slots * view.numbers(), outputs.final_numbers.len())?;
+        size("the memory for last pictures", final_slots * view.bytes(), outputs.final_bytes.len())?;
+        size("the memory for rewards", slots, outputs.rewards.len())?;
+        size("the memory for terms", slots * TERMS.len(), outputs.terms.len())?;
+        size("the memory for terminated", slots, outputs.terminated.len())?;
+        size("the memory for truncated", slots, outputs.truncated.len())?;
+        size("the memory for endings", slots, outputs.endings.len())?;
+        size("the memory for scenes", slots, outputs.scenes.len())?;
+        size("the memory for episode steps", slots, outputs.episode_steps.len())?;
+        size("the memory for episode returns", slots, outputs.episode_returns.len())
+    }
+}
+
+fn size(what: &'static str, wanted: usize, got: usize) -> Result<(), BatchError> {
+    if wanted == got { Ok(()) } else { Err(BatchError::Size { what, wanted, got }) }
+}
+
+/// Steps slots, halved from thread to thread until they are few.
+fn step_all(shared: &Shared<'_>, slots: &mut [Slot], actions: Actions<'_>, outputs: Outputs<'_>, grain: usize) {
+    if slots.len() > grain {
+        let half = slots.len() / 2;
+        let (first, second) = slots.split_at_mut(half);
+        let (first_actions, second_actions) = actions.split_at(half, shared.settings.handles);
+        let (first_out, second_out) = outputs.split_at(half, &shared.settings.view);
+        rayon::join(
+            || step_all(shared, first, first_actions, first_out, grain),
+            || step_all(shared, second, second_actions, second_out, grain),
+        );
+        return;
+    }
+    let mut outputs = outputs;
+    for (number, slot) in slots.iter_mut().enumerate() {
+        let (row, rest) = outputs.split_at(1, &shared.settings.view);
+        outputs = rest;
+        let handles = shared.settings.handles;
+        slot.step(
+            shared,
+            |scene, observation| match actions {
+                Actions::Numbers(numbers) => {
+                    let pair = [f64::from(numbers[2 * number]), f64::from(numbers[2 * number + 1])];
+                    handles.of_numbers(pair, scene, observation)
+                }
+                Actions::Acts(acts) => Handles::of_act(acts[number] as usize, scene, observation),
+            },
+            &mut row.into_row(),
+        );
+    }
+}
+
+impl<'a> Actions<'a> {
+    fn split_at(self, slots: usize, handles: Handles) -> (Self, Self) {
+        match self {
+            Self::Numbers(numbers) => {
+                let (first, second) = numbers.split_at(slots * handles.numbers());
+                (Self::Numbers(first), Self::Numbers(second))
+            }
+            Self::Acts(acts) => {
+                let (first, second) = acts.split_at(slots);
+                (Self::Acts(first), Self::Acts(second))
+            }
+        }
+    }
+}
+
+impl<'a> Outputs<'a> {
+    fn split_at(self, slots: usize, view: &View) -> (Self, Self) {
+        let finals = if self.final_numbers.is_empty() { 0 } else { slots };
+        let (numbers, more_numbers) = self.numbers.split_at_mut(slots * view.numbers());
+        let (bytes, more_bytes) = self.bytes.split_at_mut(slots * view.bytes());
+        let (final_numbers, more_final_numbers) = self.final_numbers.split_at_mut(finals * view.numbers());
+        let (final_bytes, more_final_bytes) = self.final_bytes.split_at_mut(finals * view.bytes());
+        let (rewards, more_rewards) = self.rewards.split_at_mut(slots);
+        let (terms, more_terms) = self.terms.split_at_mut(slots * TERMS.len());
+        let (terminated, more_terminated) = self.terminated.split_at_mut(slots);
+        let (truncated, more_truncated) = self.truncated.split_at_mut(slots);
+        let (endings, more_endings) = self.endings.split_at_mut(slots);
+        let (scenes, more_scenes) = self.scenes.split_at_mut(slots);
+        let (episode_steps, more_episode_steps) = self.episode_steps.split_at_mut(slots);
+        let (episode_returns, more_episode_returns) = self.episode_returns.split_at_mut(slots);
+        (
+            Outputs {
+                numbers,
+                bytes,
+                final_numbers,
+                final_bytes,
+                rewards,
+                terms,
+                terminated,
+                truncated,
+                endings,
+                scenes,
+                episode_steps,
+                episode_returns,
+            },
+            Outputs {
+                numbers: more_numbers,
+                bytes: more_bytes,
+                final_numbers: more_final_numbers,
+                final_bytes: more_final_bytes,
+                rewards: more_rewards,
+                terms: more_terms,
+                terminated: more_terminated,
+                truncated: more_truncated,
+                endings: more_endings,
+                scenes: more_scenes,
+                episode_steps: more_episode_steps,
+                episode_returns: more_episode_returns,
+            },
+        )
+    }
+
+    /// Of one slot.
+    fn into_row(self) -> Row<'a> {
+        Row {
+            numbers: self.numbers,
+            bytes: self.bytes,
+            final_numbers: self.final_numbers,
+            final_bytes: self.final_bytes,
+            reward: &mut self.rewards[0],
+            terms: self.terms,
+            terminated: &mut self.terminated[0],
+            truncated: &mut self.truncated[0],
+            ending: &mut self.endings[0],
+            scene: &mut self.scenes[0],
+            episode_steps: &mut self.episode_steps[0],
+            episode_return: &mut self.episode_returns[0],
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Promises about batches of runs.
+
+mod batches;
+mod common;
+mod views;

@@ -1,0 +1,322 @@
+//! Minimal failures: a failing scenario stripped to what it needs, and the nearest one that passes beside it. Described in
+//! `docs/models/minimal.md`.
+//!
+//! An element is a piece of the scenario's JSON that can be taken away, or a number that can be set back. What cannot be run
+//! without something else is no element: taking it away says nothing.
+
+use crate::perturb::{Nudge, Who, nudged, others};
+use crate::robustness::fails;
+use recrash_model::profile::SystemProfile;
+use recrash_model::scenario::ScenarioDraft;
+use recrash_roads::{RunError, Simulator};
+use serde::Serialize;
+use serde_json::Value;
+
+/// How far somebody is moved to find a twin that passes, in order. [m]
+const MOVES_M: [f64; 13] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0];
+/// Halvings between the last move that fails and the first that passes.
+const HALVINGS: usize = 6;
+
+/// What can be taken away of the whole scenario, of a partner, of an actor and of the ego; the largest first.
+const OF_SCENARIO: [&str; 5] = ["partners", "actors", "objects", "obstacles", "control"];
+const OF_PARTNER: [&str; 1] = ["lateral"];
+const OF_ACTOR: [&str; 2] = ["parts", "plan/acts"];
+const OF_EGO: [&str; 3] = ["parts", "stops", "recorded/acts"];
+
+/// A failing scenario and what it needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MinimalFailure {
+    /// The scenario without what it does not need; it fails.
+    pub draft: ScenarioDraft,
+    /// What was taken away or set back, in order.
+    pub taken: Vec<String>,
+    /// What is left: without any one of these it passes.
+    pub needed: Vec<Needed>,
+    /// The nearest scenario that passes; `None` where none was found, such as where the ego fails by itself.
+    pub twin: Option<Twin>,
+    /// Scenarios that were run.
+    pub runs: usize,
+}
+
+/// An element that the failure needs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Needed {
+    /// What it is.
+    pub name: String,
+    /// Where it stands in the scenario (JSON pointer).
+    pub pointer: String,
+}
+
+/// A scenario that passes, near one that fails.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Twin {
+    /// The scenario.
+    pub draft: ScenarioDraft,
+    /// What is different.
+    pub difference: String,
+    /// By how much somebody is moved; absent where something was taken away. [m]
+    pub moved_m: Option<f64>,
+}
+
+/// One thing that may be taken away, or set back to a value.
+#[derive(Debug, Clone, PartialEq)]
+struct Element {
+    pointer: String,
+    name: String,
+    set_back: Option<Value>,
+}
+
+/// Runs drafts and counts them.
+struct Trial<'a> {
+    simulator: &'a dyn Simulator,
+    profile: &'a SystemProfile,
+    runs: usize,
+}
+
+impl Trial<'_> {
+    /// Whether it fails; `None` where it may not be run.
+    fn fails(&mut self, draft: &ScenarioDraft) -> Result<Option<bool>, RunError> {
+        self.runs += 1;
+        Ok(fails(draft.clone(), self.simulator, self.profile)?.map(|(failed, _)| failed))
+    }
+}
+
+/// Strips a failing scenario. `record` is the scenario as its record tells it, where this one was varied: numbers go back to it.
+///
+/// # Errors
+/// The simulator or the ego failed.
+pub fn minimal(
+    draft: &ScenarioDraft,
+    record: Option<&ScenarioDraft>,
+    simulator: &dyn Simulator,
+    profile: &SystemProfile,
+) -> Result<MinimalFailure, RunError> {
+    let mut trial = Trial { simulator, profile, runs: 0 };
+    let record = record.map(|draft| serde_json::to_value(draft).unwrap_or_default());
+    let mut current = draft.clone();
+    let mut taken = Vec::new();
+    let (needed, passing) = loop {
+        let (mut needed, mut passing, mut at, mut found) = (Vec::new(), Vec::new(), 0, false);
+        loop {
+            let Some(element) = elements(&current, record.as_ref()).into_iter().nth(at) else { break };
+            let without = without(&current, &element);
+            match without.as_ref().map(|draft| trial.fails(draft)).transpose()?.flatten() {
+                Some(true) => {
+                    current = without.unwrap_or(current);
+                    taken.push(element.name);
+                    found = true;
+                    continue;
+                }
+                Some(false) => {
+                    needed.push(Needed { name: element.name.clone(), pointer: element.pointer });
+                    passing.extend(without.map(|draft| (element.name, draft)));
+                }
+                None => {}
+            }
+            at += 1;
+        }
+        // What was needed may be needed no more once something else is gone.
+        if !found {
+            break (needed, passing);
+        }
+    };
+    let twin = match moved_twin(&current, &mut trial)? {
+        Some(twin) => Some(twin),
+        // The last elements are the smallest.
+        None => passing.into_iter().next_back().map(|(name, draft)| Twin {
+            draft,
+            difference: format!("without {name}"),
+            moved_m: None,
+        }),
+    };
+    Ok(MinimalFailure { draft: current, taken, needed, twin, runs: trial.runs })
+}
+
+/// Every single element of a scenario taken away: what it is, and whether the rest fails; `None` where the rest may not be run. For
+/// whoever checks that a failure is minimal.
+///
+/// # Errors
+/// The simulator or the ego failed.
+pub fn without_each(
+    draft: &ScenarioDraft,
+    record: Option<&ScenarioDraft>,
+    simulator: &dyn Simulator,
+    profile: &SystemProfile,
+) -> Result<Vec<(String, Option<bool>)>, RunError> {
+    let record = record.map(|draft| serde_json::to_value(draft).unwrap_or_default());
+    let mut trial = Trial { simulator, profile, runs: 0 };
+    let each = |element: Element| {
+        let rest = without(draft, &element);
+        let failed = rest.map(|draft| trial.fails(&draft)).transpose()?.flatten();
+        Ok((element.name, failed))
+    };
+    elements(draft, record.as_ref()).into_iter().map(each).collect()
+}
+
+/// The scenario without an element; `None` where that is none any more.
+fn without(draft: &ScenarioDraft, element: &Element) -> Option<ScenarioDraft> {
+    let mut document = serde_json::to_value(draft).ok()?;
+    match &element.set_back {
+        Some(value) => *document.pointer_mut(&element.pointer)? = value.clone(),
+        None => {
+            let (parent, last) = element.pointer.rsplit_once('/')?;
+            match document.pointer_mut(parent)? {
+                Value::Array(list) => drop(list.remove(last.parse().ok()?)),
+                Value::Object(fields) => drop(fields.remove(last)?),
+                _ => return None,
+            }
+        }
+    }
+    let changed: ScenarioDraft = serde_json::from_value(document).ok()?;
+    (changed != *draft).then_some(changed)
+}
+
+/// Elements of a scenario, the largest first.
+fn elements(draft: &ScenarioDraft, record: Option<&Value>) -> Vec<Element> {
+    let Ok(document) = serde_json::to_value(draft) else { return Vec::new() };
+    let mut all = Vec::new();
+    lists(&document, "", &OF_SCENARIO, &mut all);
+    if draft.traffic.density > 0.0 {
+        all.push(set_back("/traffic/density", "background traffic", Value::from(0.0)));
+    }
+    for at in 0..draft.actors.len() {
+        lists(&document, &format!("/actors/{at}"), &OF_ACTOR, &mut all);
+    }
+    for at in 0..draft.partners.len() {
+        lists(&document, &format!("/partners/{at}"), &OF_PARTNER, &mut all);
+    }
+    lists(&document, "/ego", &OF_EGO, &mut all);
+    if let Some(record) = record {
+        numbers(&document, record, String::new(), &mut all);
+    }
+    settings(&document, &mut all);
+    all
+}
+
+fn set_back(pointer: &str, name: &str, value: Value) -> Element {
+    Element { pointer: pointer.to_owned(), name: name.to_owned(), set_back: Some(value) }
+}
+
+/// Members of lists.
+fn lists(document: &Value, parent: &str, names: &[&str], all: &mut Vec<Element>) {
+    for name in names {
+        let list = format!("{parent}/{name}");
+        let members = document.pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
+        for at in 0..members {
+            let pointer = format!("{list}/{at}");
+            let id = document.pointer(&format!("{pointer}/id")).and_then(Value::as_str);
+            let name = id.map_or_else(|| pointer.clone(), |id| format!("{pointer} ({id})"));
+            all.push(Element { pointer, name, set_back: None });
+        }
+    }
+}
+
+/// Numbers that are not the record's. Where a list is another one, its numbers say nothing.
+fn numbers(document: &Value, record: &Value, pointer: String, all: &mut Vec<Element>) {
+    match (document, record) {
+        (Value::Number(now), Value::Number(told)) if now != told => {
+            let name = format!("{pointer}: {now} where the record has {told}");
+            all.push(Element { pointer, name, set_back: Some(record.clone()) });
+        }
+        (Value::Object(now), Value::Object(told)) => {
+            for (name, value) in now.iter().filter(|(name, _)| !matches!(name.as_str(), "source" | "map")) {
+                if let Some(other) = told.get(name) {
+                    numbers(value, other, format!("{pointer}/{name}"), all);
+                }
+            }
+        }
+        (Value::Array(now), Value::Array(told)) if now.len() == told.len() => {
+            for (at, (value, other)) in now.iter().zip(told).enumerate() {
+                numbers(value, other, format!("{pointer}/{at}"), all);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Settings that are not as they are where nobody says anything.
+fn settings(document: &Value, all: &mut Vec<Element>) {
+    let defaults = serde_json::to_value(recrash_model::scenario::Environment::default()).unwrap_or_default();
+    for (name, usual) in defaults.as_object().into_iter().flatten() {
+        let pointer = format!("/environment/{name}");
+        if let Some(now) = document.pointer(&pointer).filter(|now| *now != usual) {
+            all.push(set_back(&pointer, &format!("{pointer}: {now}"), usual.clone()));
+        }
+    }
+    if document.get("after_contact_s").is_some() {
+        all.push(Element {
+            pointer: "/after_contact_s".to_owned(),
+            name: "/after_contact_s".to_owned(),
+            set_back: None,
+        });
+    }
+    for group in ["partners", "actors"] {
+        let members = document.get(group).and_then(Value::as_array).map_or(0, Vec::len);
+        for at in 0..members {
+            let owner = format!("/{group}/{at}");
+            own_settings(document, &owner, all);
+        }
+    }
+    own_settings(document, "/ego", all);
+}
+
+/// Settings of one road user: its kind, its size, where it is beside its lane's middle.
+fn own_settings(document: &Value, owner: &str, all: &mut Vec<Element>) {
+    let at = |name: &str| document.pointer(&format!("{owner}/{name}"));
+    if at("kind").is_some_and(|kind| kind != "passenger_car") {
+        let pointer = format!("{owner}/kind");
+        let name = format!("{pointer}: {}", at("kind").unwrap_or(&Value::Null));
+        all.push(Element { pointer, name, set_back: Some(Value::from("passenger_car")) });
+    }
+    for name in ["size", "plan/obeys_control", "plan/appears_s", "policy/speed_kp"] {
+        if at(name).is_some_and(|value| !value.is_null()) {
+            let pointer = format!("{owner}/{name}");
+            all.push(Element { name: pointer.clone(), pointer, set_back: None });
+        }
+    }
+    for name in ["start/delta_t_m", "plan/start/t_m", "plan/start/heading_deg"] {
+        let is_lane = !name.ends_with("heading_deg") || at("plan/start/road").is_some();
+        if is_lane && at(name).and_then(Value::as_f64).is_some_and(|value| value != 0.0) {
+            let pointer = format!("{owner}/{name}");
+            all.push(Element { name: pointer.clone(), pointer, set_back: Some(Value::from(0.0)) });
+        }
+    }
+}
+
+/// The least move of one other that makes the scenario pass.
+fn moved_twin(draft: &ScenarioDraft, trial: &mut Trial) -> Result<Option<Twin>, RunError> {
+    let ways = [
+        (Nudge::Along(1.0), "farther along its way"),
+        (Nudge::Along(-1.0), "farther back"),
+        (Nudge::Across(1.0), "farther to its right"),
+        (Nudge::Across(-1.0), "farther to its left"),
+    ];
+    let everyone = others(draft);
+    let mut before_m = 0.0;
+    for by_m in MOVES_M {
+        for &who in &everyone {
+            for (way, how) in ways {
+                let at = |by_m: f64| nudged(draft, who, way.times(by_m));
+                if trial.fails(&at(by_m))? != Some(false) {
+                    continue;
+                }
+                let (mut fails_m, mut passes_m): (f64, f64) = (before_m, by_m);
+                for _ in 0..HALVINGS {
+                    let middle_m = 0.5 * (fails_m + passes_m);
+                    match trial.fails(&at(middle_m))? {
+                        Some(false) => passes_m = middle_m,
+                        _ => fails_m = middle_m,
+                    }
+                }
+                return Ok(Some(twin(draft, who, at(passes_m), how, passes_m)));
+            }
+        }
+        before_m = by_m;
+    }
+    Ok(None)
+}
+
+fn twin(draft: &ScenarioDraft, who: Who, moved: ScenarioDraft, how: &str, by_m: f64) -> Twin {
+    let difference = format!("{} {by_m:.2} m {how}", who.name(draft));
+    Twin { draft: moved, difference, moved_m: Some(by_m) }
+}

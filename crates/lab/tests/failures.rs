@@ -1,0 +1,122 @@
+//! Failures of random scenarios: what they need, and how robust they are.
+
+use recrash_lab::minimal::{minimal, without_each};
+use recrash_lab::parity::random_scenario;
+use recrash_lab::robustness::robustness;
+use recrash_lab::run_scenario;
+use recrash_model::Seed;
+use recrash_model::metrics::CollisionKind;
+use recrash_model::profile::{
+    Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
+};
+use recrash_model::scenario::ScenarioDraft;
+use recrash_sim::{Ego, Native};
+
+/// Failures that are looked at.
+const FAILURES: usize = 100;
+
+fn profile() -> SystemProfile {
+    SystemProfile {
+        format: PROFILE_FORMAT.to_owned(),
+        name: "test".to_owned(),
+        description: String::new(),
+        ego: "metadrive-idm".to_owned(),
+        records: RecordRules { dedupe: Dedupe::None, tells: Tells::Templates },
+        expresses: Expressible {
+            road_types: Vec::new(),
+            sv_movements: Vec::new(),
+            cp_movements: Vec::new(),
+            work_zone: true,
+            partner_kinds: Vec::new(),
+            min_speed_mps: 0.0,
+            max_speed_mps: 30.0,
+            max_traffic_density: 1.0,
+        },
+        excludes: Excluded { collisions: Vec::<CollisionKind>::new() },
+        failure: FailureCriteria {
+            min_gap_m: 1.0,
+            hard_braking_mps2: 4.0,
+            phantom_braking_mps2: 3.0,
+            oscillation_reversals: 4,
+            oscillation_window_s: 5.0,
+            lane_departure_m: 0.2,
+        },
+    }
+}
+
+/// Random scenarios that the ego fails.
+fn failing(simulator: &Native) -> Vec<ScenarioDraft> {
+    let profile = profile();
+    let fails =
+        |scenario: &recrash_roads::Scenario| run_scenario(scenario, simulator, &profile, None).unwrap().failed();
+    let all = (0..).map(|number| random_scenario(14, number)).filter(fails);
+    all.map(|scenario| scenario.draft().clone()).take(FAILURES).collect()
+}
+
+#[test]
+fn a_minimal_failure_passes_without_any_one_element_and_its_twin_passes() {
+    let (simulator, profile) = (Native::new(Ego::MetadriveIdm), profile());
+    let fails = |draft: &ScenarioDraft| {
+        let scenario = recrash_roads::check(draft.clone()).unwrap().value;
+        run_scenario(&scenario, &simulator, &profile, None).unwrap().failed()
+    };
+    let (mut twins, mut taken, mut needed) = (0, 0, 0);
+    for draft in failing(&simulator) {
+        let found = minimal(&draft, None, &simulator, &profile).unwrap();
+        assert!(fails(&found.draft), "{}", draft.id);
+        let each = without_each(&found.draft, None, &simulator, &profile).unwrap();
+        let still: Vec<_> = each.iter().filter(|(_, failed)| *failed == Some(true)).collect();
+        assert!(still.is_empty(), "{}: {still:?}", draft.id);
+        let passing = each.iter().filter(|(_, failed)| *failed == Some(false)).count();
+        assert_eq!(passing, found.needed.len(), "{}", draft.id);
+        if let Some(twin) = &found.twin {
+            assert!(!fails(&twin.draft), "{}: {}", draft.id, twin.difference);
+            twins += 1;
+        } else {
+            assert!(found.needed.is_empty(), "{}: {:?}", draft.id, found.needed);
+        }
+        taken += found.taken.len();
+        needed += found.needed.len();
+    }
+    println!("{FAILURES} failures: {taken} elements taken, {needed} needed, {twins} twins");
+    assert!(twins >= 90 && taken > FAILURES, "{twins} twins, {taken} taken");
+}
+
+#[test]
+fn numbers_go_back_to_the_record_where_the_failure_does_not_need_them() {
+    let (simulator, profile) = (Native::new(Ego::MetadriveIdm), profile());
+    let mut looked_at = 0;
+    for record in failing(&simulator).into_iter().filter(|draft| !draft.partners.is_empty()).take(20) {
+        let mut varied = record.clone();
+        varied.ego.target_speed_mps *= 0.98;
+        varied.partners[0].speed_mps *= 0.99;
+        let Ok(checked) = recrash_roads::check(varied.clone()) else { continue };
+        if !run_scenario(&checked.value, &simulator, &profile, None).unwrap().failed() {
+            continue;
+        }
+        let found = minimal(&varied, Some(&record), &simulator, &profile).unwrap();
+        let each = without_each(&found.draft, Some(&record), &simulator, &profile).unwrap();
+        assert!(each.iter().all(|(_, failed)| *failed != Some(true)), "{each:?}");
+        looked_at += usize::from(found.taken.iter().any(|name| name.contains("where the record has")));
+    }
+    assert!(looked_at >= 10, "{looked_at}");
+}
+
+#[test]
+fn robustness_repeats_and_finds_what_lives_on_little() {
+    let (simulator, profile) = (Native::new(Ego::MetadriveIdm), profile());
+    let failing = failing(&simulator);
+    let of = |draft: &ScenarioDraft, seed| robustness(draft, &simulator, &profile, 20, Seed(seed)).unwrap();
+    let all: Vec<_> = failing.iter().map(|draft| of(draft, 1)).collect();
+    assert!(failing.iter().zip(&all).take(10).all(|(draft, found)| of(draft, 1) == *found), "the same twice");
+    assert!(all.iter().all(|found| found.failed <= found.tries && found.crashed <= found.tries));
+    let share = |marginal: bool| {
+        let of: Vec<f64> = all.iter().filter(|found| found.is_marginal() == marginal).map(|f| f.share()).collect();
+        of.iter().sum::<f64>() / of.len() as f64
+    };
+    let marginal = all.iter().filter(|found| found.is_marginal()).count();
+    println!("{marginal} of {FAILURES} live on little, share {:.2}; the others {:.2}", share(true), share(false));
+    assert!(marginal > 0 && share(true) < share(false) - 0.2);
+    // The ego in the way of somebody far deeper than any change: nothing undoes it.
+    assert!(all.iter().any(|found| found.share() == 1.0));
+}

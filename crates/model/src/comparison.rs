@@ -1,0 +1,161 @@
+//! Two results of one frozen suite, held against each other. Defined in `docs/models/comparison.md`.
+
+use crate::account::CrashType;
+use crate::metrics::FindingKind;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The comparisons' format tag.
+pub const COMPARISON_FORMAT: &str = "recrash.comparison/1";
+
+/// What became of a test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Change {
+    /// It passed and fails.
+    Broken,
+    /// It fails or passes as before, and worse.
+    Worse,
+    /// It failed and passes.
+    Fixed,
+    /// It fails or passes as before, and better.
+    Better,
+    /// Its runs come out differently by chance alone, as far as they can tell.
+    Flaky,
+    /// It gave a rollout on one side only, or on neither.
+    NotRun,
+    /// The test itself is another one.
+    Changed,
+    /// It is new.
+    Added,
+    /// It is gone.
+    Removed,
+    /// As before.
+    Same,
+}
+
+impl Change {
+    /// Every change, in the order of tables.
+    pub const ALL: [Self; 10] = [
+        Self::Broken,
+        Self::Worse,
+        Self::Fixed,
+        Self::Better,
+        Self::Flaky,
+        Self::NotRun,
+        Self::Changed,
+        Self::Added,
+        Self::Removed,
+        Self::Same,
+    ];
+
+    /// Its name in files and options.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Broken => "broken",
+            Self::Worse => "worse",
+            Self::Fixed => "fixed",
+            Self::Better => "better",
+            Self::Flaky => "flaky",
+            Self::NotRun => "not_run",
+            Self::Changed => "changed",
+            Self::Added => "added",
+            Self::Removed => "removed",
+            Self::Same => "same",
+        }
+    }
+
+    /// For sentences.
+    pub fn label(self) -> &'static str {
+        if self == Self::NotRun { "not run" } else { self.name() }
+    }
+}
+
+impl std::str::FromStr for Change {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let names = || Self::ALL.map(Self::name).join(", ");
+        let found = Self::ALL.into_iter().find(|change| change.name() == name);
+        found.ok_or_else(|| format!("there is no change \"{name}\"; there are: {}", names()))
+    }
+}
+
+/// How one side of a test came out.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Side {
+    /// Runs that gave a rollout.
+    pub runs: usize,
+    /// Of those, the ones that failed.
+    pub failures: usize,
+    /// Kinds of findings of the telling run.
+    pub findings: Vec<FindingKind>,
+    /// Its least gap. [m]
+    pub least_gap_m: Option<f64>,
+    /// The greater delta-v of its contact; 0 without one. [m/s]
+    pub delta_v_mps: f64,
+}
+
+/// One test on both sides.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Compared {
+    /// The test.
+    pub id: String,
+    /// Its crash type, where it is known.
+    pub crash_type: Option<CrashType>,
+    /// What became of it.
+    pub change: Change,
+    /// In a few words.
+    pub why: String,
+    /// Before; absent where it was not there.
+    pub base: Option<Side>,
+    /// Now; absent where it is gone.
+    pub new: Option<Side>,
+    /// How probable it is that shares that differ so come from one; absent where nothing is random.
+    pub p: Option<f64>,
+    /// Whether every run drove the same, state by state.
+    pub identical: bool,
+}
+
+/// How many tests of one crash type changed how.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TypeRow {
+    /// Crash type, for tables.
+    pub crash_type: &'static str,
+    /// Tests.
+    pub tests: usize,
+    /// Failed before.
+    pub base_failed: usize,
+    /// Failed now.
+    pub new_failed: usize,
+    /// By change; those without any are left out.
+    pub changes: BTreeMap<Change, usize>,
+    /// McNemar's exact p of broken against fixed.
+    pub p: f64,
+}
+
+/// Two results, compared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Always [`COMPARISON_FORMAT`].
+    pub format: &'static str,
+    /// Egos of both.
+    pub egos: [String; 2],
+    /// Simulators of both.
+    pub simulators: [String; 2],
+    /// Suites of both, by content.
+    pub suites: [String; 2],
+    /// Over all tests.
+    pub all: TypeRow,
+    /// By crash type, in the order of tables.
+    pub by_type: Vec<TypeRow>,
+    /// Every test, by id.
+    pub tests: Vec<Compared>,
+}
+
+impl Comparison {
+    /// Tests that changed so.
+    pub fn of(&self, change: Change) -> impl Iterator<Item = &Compared> {
+        self.tests.iter().filter(move |test| test.change == change)
+    }
+}

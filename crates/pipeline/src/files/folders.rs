@@ -1,0 +1,27 @@
+//! Folders that commands make.
+
+use crate::error::PipelineError;
+use crate::files::store::io;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Refuses to fill a folder that holds something else: it must be new, empty, or hold `ours`, the file that says that we filled it.
+///
+/// # Errors
+/// It holds something else, or is a file.
+pub fn must_be_free(folder: &Path, ours: Option<&str>) -> Result<(), PipelineError> {
+    let refused = |why: &str| Err(PipelineError::bad_input(format!("{}: {why}", folder.display())));
+    match std::fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(_) if folder.is_file() => refused("it is a file; name a folder"),
+        Err(source) => Err(io("read", folder, source)),
+        Ok(mut entries) => {
+            let is_ours = ours.is_some_and(|name| folder.join(name).is_file());
+            if is_ours || entries.next().is_none() {
+                Ok(())
+            } else {
+                refused("it holds something else; name another folder, or empty it")
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Tables that leave by the Arrow PyCapsule interface: pyarrow, polars, pandas and DuckDB take them without a copy.
+
+use crate::errors::{input, to_python};
+use arrow_array::builder::{BooleanBuilder, Float64Builder, Int64Builder, StringBuilder};
+use arrow_array::ffi_stream::FFI_ArrowArrayStream;
+use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray};
+use arrow_schema::ffi::FFI_ArrowSchema;
+use arrow_schema::{DataType, Field, Schema};
+use pyo3::prelude::*;
+use pyo3::types::{PyCapsule, PyDict, PyList};
+use recrash_pipeline::{Column, RecordTable};
+use serde_json::Value;
+use std::sync::Arc;
+
+/// A table of columns.
+#[pyclass(frozen, module = "recrash")]
+pub struct Table {
+    batch: RecordBatch,
+}
+
+#[pymethods]
+impl Table {
+    /// A table of dicts; its columns are the keys, in the order of their first use. What is neither number, text nor yes or no
+    /// becomes JSON.
+    #[staticmethod]
+    fn of_rows(rows: &Bound<'_, PyList>) -> PyResult<Self> {
+        let py = rows.py();
+        let text = crate::errors::to_json(rows.as_any())?;
+        let rows: Vec<serde_json::Map<String, Value>> =
+            serde_json::from_str(&text).map_err(|error| input(py, error))?;
+        let mut names: Vec<&String> = Vec::new();
+        for name in rows.iter().flat_map(|row| row.keys()) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let columns = names.iter().map(|name| ((*name).clone(), column_of(rows.iter().map(|row| row.get(*name)))));
+        Self::of_arrays(py, columns.collect())
+    }
+
+    /// Names of the columns.
+    #[getter]
+    fn column_names(&self) -> Vec<String> {
+        self.batch.schema().fields().iter().map(|field| field.name().clone()).collect()
+    }
+
+    /// Rows, and columns.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        (self.batch.num_rows(), self.batch.num_columns())
+    }
+
+    /// Its rows as dicts.
+    fn to_dicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let rows: Vec<Value> = (0..self.batch.num_rows()).map(|row| self.row(row)).collect();
+        to_python(py, &rows)
+    }
+
+    /// Its columns as lists, by name.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (number, name) in self.column_names().into_iter().enumerate() {
+            let values: Vec<Value> =
+                (0..self.batch.num_rows()).map(|row| value(self.batch.column(number), row)).collect();
+            all.set_item(name, to_python(py, &values)?)?;
+        }
+        Ok(all)
+    }
+
+    /// The Arrow PyCapsule interface.
+    #[pyo3(signature = (requested_schema=None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        // Another schema is a wish, which the interface lets a producer pass over.
+        drop(requested_schema);
+        let batches = [Ok(self.batch.clone())];
+        let reader = RecordBatchIterator::new(batches, self.batch.schema());
+        PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(reader)), c"arrow_array_stream")
+    }
+
+    /// The Arrow PyCapsule interface.
+    fn __arrow_c_schema__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyCapsule>> {
+        let schema = FFI_ArrowSchema::try_from(&*self.batch.schema()).map_err(|error| input(py, error))?;
+        PyCapsule::new_with_value(py, schema, c"arrow_schema")
+    }
+
+    fn __len__(&self) -> usize {
+        self.batch.num_rows()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Table({} rows: {})", self.batch.num_rows(), self.column_names().join(", "))
+    }
+}
+
+impl Table {
+    /// From columns of the library.
+    pub fn of_columns(py: Python<'_>, columns: Vec<(&'static str, Column)>) -> PyResult<Self> {
+        Self::of_arrays(py, columns.into_iter().map(|(name, column)| (name.to_owned(), array(column))).collect())
+    }
+
+    /// From a table of the library.
+    pub fn of_table(py: Python<'_>, table: RecordTable) -> PyResult<Self> {
+        Self::of_columns(py, table.columns)
+    }
+
+    fn of_arrays(py: Python<'_>, columns: Vec<(String, ArrayRef)>) -> PyResult<Self> {
+        let fields = columns.iter().map(|(name, array)| Field::new(name, array.data_type().clone(), true));
+        let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
+        let arrays: Vec<ArrayRef> = columns.into_iter().map(|(_, array)| array).collect();
+        let rows = arrays.first().map_or(0, |array| array.len());
+        let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows));
+        let batch = RecordBatch::try_new_with_options(schema, arrays, &options).map_err(|error| input(py, error))?;
+        Ok(Self { batch })
+    }
+
+    /// The same table; its columns are shared.
+    pub fn copy(&self) -> Self {
+        Self { batch: self.batch.clone() }
+    }
+
+    fn row(&self, row: usize) -> Value {
+        let names = self.column_names().into_iter().enumerate();
+        Value::Object(names.map(|(number, name)| (name, value(self.batch.column(number), row))).collect())
+    }
+}
+
+fn array(column: Column) -> ArrayRef {
+    match column {
+        Column::Text(values) => Arc::new(StringArray::from_iter(values)),
+        Column::Whole(values) => Arc::new(Int64Array::from_iter(values)),
+        Column::Number(values) => Arc::new(Float64Array::from_iter(values)),
+        Column::Flag(values) => Arc::new(BooleanArray::from_iter(values)),
+    }
+}
+
+/// A column of JSON values: of the narrowest kind that holds all.
+fn column_of<'a>(values: impl Iterator<Item = Option<&'a Value>> + Clone) -> ArrayRef {
+    let told = values.clone().flatten().filter(|value| !value.is_null());
+    let (mut flags, mut whole, mut numbers) = (true, true, true);
+    let mut any = false;
+    for value in told {
+        any = true;
+        flags &= value.is_boolean();
+        whole &= value.is_i64();
+        numbers &= value.is_number();
+    }
+    if any && flags {
+        let mut builder = BooleanBuilder::new();
+        values.for_each(|value| builder.append_option(value.and_then(Value::as_bool)));
+        Arc::new(builder.finish())
+    } else if any && whole {
+        let mut builder = Int64Builder::new();
+        values.for_each(|value| builder.append_option(value.and_then(Value::as_i64)));
+        Arc::new(builder.finish())
+    } else if any && numbers {
+        let mut builder = Float64Builder::new();
+        values.for_each(|value| builder.append_option(value.and_then(Value::as_f64)));
+        Arc::new(builder.finish())
+    } else {
+        let mut builder = StringBuilder::new();
+        values.for_each(|value| {
+            builder.append_option(value.filter(|value| !value.is_null()).map(|value| match value {
+                Value::String(text) => text.clone(),
+                other => other.to_string(),
+            }));
+        });
+        Arc::new(builder.finish())
+    }
+}
+
+/// One value of an array that this module made.
+fn value(array: &ArrayRef, row: usize) -> Value {
+    use arrow_array::cast::AsArray;
+    use arrow_array::types::{Float64Type, Int64Type};
+    if array.is_null(row) {
+        return Value::Null;
+    }
+    match array.data_type() {
+        DataType::Utf8 => Value::from(array.as_string::<i32>().value(row)),
+        DataType::Int64 => Value::from(array.as_primitive::<Int64Type>().value(row)),
+        DataType::Float64 => Value::from(array.as_primitive::<Float64Type>().value(row)),
+        DataType::Boolean => Value::from(array.as_boolean().value(row)),
+        _ => Value::Null,
+    }
+}

@@ -1,0 +1,36 @@
+"""What the tests share."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CASES = Path(__file__).parents[2] / "cases"
+EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
+
+
+def gallery() -> list[Path]:
+    """Every case of the gallery, in order."""
+    return sorted(CASES.glob("*/*.json"))
+
+
+def case(name: str) -> Path:
+    return CASES / f"{name}.json"
+
+
+def command(*words: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run the command: the program that RECRASH names, else the one that the wheel brings."""
+    program = [os.environ["RECRASH"]] if "RECRASH" in os.environ else [sys.executable, "-m", "recrash"]
+    environment = {**os.environ, "RECRASH_PYTHON": sys.executable}
+    return subprocess.run(
+        [*program, *map(str, words)], capture_output=True, text=True, timeout=120, cwd=cwd, env=environment, check=False
+    )
+
+
+@pytest.fixture(scope="session")
+def crashes() -> Path:
+    return CASES / "crashes"

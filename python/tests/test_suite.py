@@ -1,0 +1,103 @@
+"""Suites: made, gone on with, opened, tested; Ctrl-C."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import recrash
+from recrash import InputError, RecrashError, Suite
+
+OPTIONS = {"budget": 3, "tune_budget": 2, "seed": 5}
+
+
+@pytest.fixture(scope="module")
+def suite(tmp_path_factory):
+    return recrash.run(tmp_path_factory.mktemp("suite") / "made", progress=False, **OPTIONS)
+
+
+def test_a_suite_is_made_and_opened(suite):
+    opened = Suite.open(suite.folder)
+    assert opened.options["seed"] == 5
+    assert len(opened) == len(opened.cases) == 3
+    assert opened.report().is_file()
+    assert "<table>" in opened._repr_html_()
+    assert len(opened.scenarios()) > 0
+
+
+def test_an_ego_is_tested_in_a_suite_and_nothing_in_the_folder_changes(suite):
+    before = {file: file.read_bytes() for file in suite.folder.rglob("*") if file.is_file()}
+    table = suite.test(lambda _: (0.0, 0.0))
+    assert len(table) == len(suite.scenarios())
+    assert {file: file.read_bytes() for file in suite.folder.rglob("*") if file.is_file()} == before
+
+
+def test_progress_is_told_and_ctrl_c_keeps_what_is_done(tmp_path):
+    told = []
+
+    def stops(stage, units, begins):
+        told.append((stage, units, begins))
+        if stage == "tune":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        recrash.run(tmp_path / "s", progress=stops, **OPTIONS)
+    stages = {stage for stage, _, begins in told if begins}
+    assert {"records", "design", "tune"} <= stages
+    assert "report" not in stages
+    # Nothing is half written, and the same call goes on to the same end.
+    for file in (tmp_path / "s").rglob("*.json"):
+        json.loads(file.read_text())
+    resumed = recrash.run(tmp_path / "s", progress=False, **OPTIONS)
+    fresh = recrash.run(tmp_path / "t", progress=False, **OPTIONS)
+    assert resumed.summary["cases"] == fresh.summary["cases"]
+
+
+def test_a_listener_that_raises_stops_the_run_with_what_it_raised(tmp_path):
+    def breaks(*_):
+        raise LookupError("bar")
+
+    with pytest.raises(LookupError, match="bar"):
+        recrash.run(tmp_path / "s", progress=breaks, **OPTIONS)
+
+
+def test_a_folder_without_a_suite_is_told(tmp_path):
+    with pytest.raises(InputError, match="no suite in .*check the folder"):
+        Suite.open(tmp_path)
+    with pytest.raises(InputError, match="holds no scenario file"):
+        recrash.load_scenarios(tmp_path)
+    (tmp_path / "mine.txt").write_text("notes")
+    with pytest.raises(RecrashError, match="not overwritten"):
+        recrash.run(tmp_path, progress=False, **OPTIONS)
+
+
+def test_a_suite_of_another_version_is_told(suite, tmp_path):
+    saved = json.loads((suite.folder / "suite.json").read_text())
+    (tmp_path / "suite.json").write_text(json.dumps({**saved, "format": "recrash.suite/99"}))
+    with pytest.raises(RecrashError, match=r"suite\.json"):
+        Suite.open(tmp_path)
+
+
+def test_options_that_there_are_not_and_cannot_be_are_told(tmp_path):
+    with pytest.raises(InputError, match='no option "budgte"; there are: .*budget'):
+        recrash.run(tmp_path / "s", budgte=3)
+    with pytest.raises(InputError, match="cannot be used"):
+        recrash.run(tmp_path / "s", budget="many")
+    with pytest.raises(InputError, match='no stage "desing"'):
+        recrash.run(tmp_path / "s", until="desing", **OPTIONS)
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_program_that_only_the_suite_names_is_not_started(suite, tmp_path):
+    saved = json.loads((suite.folder / "suite.json").read_text())
+    marker = tmp_path / "ran"
+    saved["options"]["ego"] = f"cmd:touch {marker}"
+    (suite.folder / "suite.json").write_text(json.dumps(saved))
+    try:
+        with pytest.raises(InputError, match="name it yourself if you trust it"):
+            Suite.open(suite.folder).test()
+    finally:
+        saved["options"]["ego"] = None
+        (suite.folder / "suite.json").write_text(json.dumps(saved))
+    assert not marker.exists()

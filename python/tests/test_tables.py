@@ -1,0 +1,83 @@
+"""Crash files, and tables that leave by the Arrow PyCapsule interface."""
+
+from __future__ import annotations
+
+import pandas
+import polars
+import pyarrow
+import pytest
+from conftest import case
+
+import recrash
+from recrash import InputError, Scenario, Table
+
+
+def test_the_sample_is_read_and_reconstructed():
+    accounts = recrash.read()
+    assert len(accounts) == len(accounts.table) > 200
+    assert accounts.incidents >= len(accounts)
+    assert accounts[0]["incident"] == accounts.table.to_dicts()[0]["incident"]
+    assert accounts[-1] == accounts[len(accounts) - 1]
+    with pytest.raises(IndexError):
+        accounts[len(accounts)]
+
+
+def test_a_filter_keeps_some_records_and_a_wrong_one_is_told():
+    everything, some = recrash.records(), recrash.records(where="road = intersection")
+    assert 0 < len(some) < len(everything)
+    with pytest.raises(InputError, match="roda"):
+        recrash.records(where="roda = intersection")
+
+
+def test_a_file_that_is_no_crash_file_is_refused(tmp_path):
+    (tmp_path / "a.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(InputError, match=r"a\.csv"):
+        recrash.read(tmp_path / "a.csv")
+    with pytest.raises(InputError, match=r"nothing\.csv"):
+        recrash.read([tmp_path / "nothing.csv"])
+
+
+@pytest.fixture
+def rows():
+    return [
+        {"name": "a", "count": 1, "share": 0.5, "yes": True, "more": [1, 2]},
+        {"name": None, "count": 2, "share": 1, "yes": False, "more": None},
+    ]
+
+
+def test_pyarrow_polars_and_pandas_take_a_table(rows):
+    table = Table.of_rows(rows)
+    assert table.shape == (2, 5)
+    arrow = pyarrow.table(table)
+    assert arrow.schema.names == table.column_names == ["name", "count", "share", "yes", "more"]
+    kinds = [pyarrow.string(), pyarrow.int64(), pyarrow.float64(), pyarrow.bool_(), pyarrow.string()]
+    assert arrow.schema.types == kinds
+    assert arrow.to_pylist() == [{**rows[0], "more": "[1,2]"}, {**rows[1], "share": 1.0}]
+    assert polars.DataFrame(table).to_dicts() == arrow.to_pylist()
+    assert pandas.DataFrame.from_arrow(table)["count"].tolist() == [1, 2]
+    assert table.to_dicts() == arrow.to_pylist()
+    assert table.to_dict()["name"] == ["a", None]
+
+
+def test_a_table_is_handed_out_as_often_as_it_is_asked_for(rows):
+    table = Table.of_rows(rows)
+    first, second = pyarrow.table(table), pyarrow.table(table)
+    # The same memory: nothing was copied.
+    assert first["count"].chunks[0].buffers()[1].address == second["count"].chunks[0].buffers()[1].address
+    del table, first
+    assert second["share"].to_pylist() == [0.5, 1.0]
+
+
+def test_an_empty_table_is_one():
+    table = Table.of_rows([])
+    assert (len(table), pyarrow.table(table).num_rows) == (0, 0)
+
+
+def test_tracks_are_the_states_of_who_is_there():
+    run = Scenario.load(case("acts/13-leave")).run("recorded")
+    frame = polars.DataFrame(run.tracks)
+    walker = frame.filter(polars.col("actor") == "walker")
+    # It leaves at 1.8 s, and has no rows after that.
+    assert walker["time_s"].max() == pytest.approx(1.7)
+    ego = frame.filter(polars.col("actor") == "ego")
+    assert ego["x_m"].to_list() == run.states[:, 0, 0].tolist()

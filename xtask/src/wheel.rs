@@ -1,0 +1,65 @@
+//! The Python package: its wheel is built, installed where nothing else is, and held against its gates.
+
+use crate::steps::{Result, built, counted, find_python, missing, root, run, target};
+use crate::tally::Tally;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The largest wheel that is given to anybody: of a `dist` build, where there is one. [bytes]
+const MAX_WHEEL_BYTES: u64 = 12 << 20;
+
+/// Lint, types, the wheel and the tests in it.
+///
+/// The wheel is of the dev profile, which lint and tests have compiled already: about a minute for what is left, where a release
+/// build takes ten.
+pub fn step(tally: &mut Tally) -> Result {
+    let Some(python) = find_python() else {
+        return missing(tally, "wheel", "Python 3.11 is not on the PATH");
+    };
+    let (package, environment) = (root().join("python"), target().join("wheel-venv"));
+    let own = |name: &str| environment.join(if cfg!(windows) { "Scripts" } else { "bin" }).join(name);
+    if !own("python").exists() {
+        run(Command::new(python).args(["-m", "venv"]).arg(&environment))?;
+    }
+    let pip = |arguments: &[&str]| {
+        let quiet = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        let mut command = Command::new(own("python"));
+        command.args(quiet).args(arguments);
+        command
+    };
+    run(pip(&["--requirement"]).arg(root().join("requirements/python.txt")))?;
+    run(Command::new(own("ruff")).args(["format", "--check"]).arg(&package))?;
+    run(Command::new(own("ruff")).arg("check").arg(&package))?;
+    let wheels = target().join("wheels-dev");
+    // An older wheel would be found instead of the one that is built.
+    let _ = fs::remove_dir_all(&wheels);
+    let build = ["build", "--profile", "dev", "--interpreter"];
+    run(Command::new(own("maturin")).args(build).arg(own("python")).arg("--out").arg(&wheels).current_dir(&package))?;
+    let wheel = only_file(&wheels)?;
+    run(pip(&["--force-reinstall", "--no-deps"]).arg(&wheel))?;
+    let installed = "import recrash, pathlib; print(pathlib.Path(recrash.__file__).parent)";
+    run(Command::new(own("python")).args(["-c", installed]))?;
+    run(Command::new(own("mypy")).args(["--package", "recrash"]).current_dir(&package))?;
+    run(Command::new(own("stubtest")).args(["--ignore-disjoint-bases", "recrash._recrash"]))?;
+    let mut tests = Command::new(own("pytest"));
+    tests.args(["--quiet", "-p", "no:cacheprovider", "--config-file"]).arg(package.join("pyproject.toml"));
+    counted(tests.arg(package.join("tests")).env("RECRASH", built()?), tally)?;
+    let released = target().join("wheels");
+    let large = only_file(&released).ok().filter(|file| size(file) > MAX_WHEEL_BYTES);
+    large
+        .map_or(Ok(()), |file| Err(format!("{}: {} bytes, {MAX_WHEEL_BYTES} is the most", file.display(), size(&file))))
+}
+
+fn only_file(folder: &Path) -> Result<PathBuf> {
+    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut files = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+    match (files.next(), files.next()) {
+        (Some(file), None) => Ok(file),
+        _ => Err(format!("{} does not hold one file", folder.display())),
+    }
+}
+
+fn size(file: &Path) -> u64 {
+    fs::metadata(file).map_or(0, |metadata| metadata.len())
+}
