@@ -147,8 +147,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             Some(Spot::Driveway | Spot::SideStreet) => {
                 return told_as(Origin::Driveway { side: side.or_else(|| zone_side(account)) }, source);
             }
-            Some(Spot::Curb) => return told_as(Origin::Parked { side }, source),
-            Some(Spot::Sidewalk) => return told_as(Origin::Sidewalk { side }, source),
+            Some(Spot::Curb) => return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source),
+            Some(Spot::Sidewalk) => {
+                return told_as(Origin::Sidewalk { side: side.or_else(|| zone_side(account)) }, source);
+            }
             None => {}
         }
     }
