@@ -1,7 +1,7 @@
 //! What a labelled or scored account says of one record: in the terms of the labels in `eval/labels.csv` and
 //! `eval/accounts.csv`. What suites are built from is [`crate::account::Account`].
 
-use crate::account::{ContactState, CrashType, Driver, FirstContact, LeftRight, Origin, Role, Standing, Striker};
+use crate::account::{ContactState, CrashType, Driver, FirstContact, Role, Striker};
 use crate::metrics::CollisionKind;
 use crate::narrative::FirstMover;
 use crate::scenario::Approach;
@@ -85,20 +85,6 @@ pub enum Since {
     UnderWay,
 }
 
-impl Since {
-    /// What the state at the contact and the time of standing say together.
-    pub fn of(state: ContactState, standing: Option<Standing>) -> Option<Self> {
-        match (state, standing) {
-            (ContactState::Parked, _) => Some(Self::Parked),
-            (ContactState::Stopped, Some(Standing::FromTheStart)) => Some(Self::Long),
-            (ContactState::Stopped, Some(Standing::CameToStop | Standing::Stopping)) => Some(Self::Just),
-            (ContactState::Stopped, None) => None,
-            (ContactState::SettingOff, _) => Some(Self::SettingOff),
-            (ContactState::Moving | ContactState::Reversing, _) => Some(Self::UnderWay),
-        }
-    }
-}
-
 /// From where somebody came, seen from the subject vehicle before any turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -117,32 +103,6 @@ pub enum CameFrom {
     Left,
     /// From a crossing road, a driveway, a stall or the kerb on the right.
     Right,
-}
-
-impl CameFrom {
-    /// Where an account has it; absent where no side is told, and from above.
-    pub fn of(origin: Origin) -> Option<Self> {
-        Some(match origin {
-            Origin::Behind => Self::Behind,
-            Origin::Ahead => Self::Ahead,
-            Origin::Opposite => Self::Opposite,
-            Origin::Beside { side: LeftRight::Left } => Self::BesideLeft,
-            Origin::Beside { side: LeftRight::Right } => Self::BesideRight,
-            Origin::Cross { side } => Self::from_side(side),
-            Origin::Stall { side }
-            | Origin::Driveway { side }
-            | Origin::Parked { side }
-            | Origin::Sidewalk { side } => Self::from_side(side?),
-            Origin::Above => return None,
-        })
-    }
-
-    fn from_side(side: LeftRight) -> Self {
-        match side {
-            LeftRight::Left => Self::Left,
-            LeftRight::Right => Self::Right,
-        }
-    }
 }
 
 /// Kinds of road that a reader of a narrative can tell apart.

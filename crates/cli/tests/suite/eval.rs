@@ -127,3 +127,66 @@ fn the_rules_read_the_held_out_half_as_well_as_the_documentation_says() {
         assert!(share >= least, "{field}: {share}");
     }
 }
+
+const ACCOUNTS_HEADER: &str = "half,report,version,file,crash_type,role,striker,sv_state,sv_since,driver,sv_movement,cp_movement,came_from,order,first_contact,sv_zones,cp_zones,sv_impact_mps,note";
+
+#[test]
+fn the_reader_is_scored_on_labels_of_accounts_and_those_only() {
+    let mut files = files(&[DEV]);
+    let refused = eval(&files, &["--agent", "reader"]);
+    assert_eq!(refused.status.code(), Some(3), "labels of records are not of accounts");
+    files.labels = files.folder.path().join("accounts.csv");
+    let row = "dev,90104-54,1,sample,intersection,responder,cp,moving,under_way,unknown,straight,none,right,unknown,sv_and_partner,,,unknown,";
+    std::fs::write(&files.labels, format!("{ACCOUNTS_HEADER}\n{row}\n")).unwrap();
+    let scored = json(&eval(&files, &["--agent", "reader", "--json"]));
+    assert_eq!((share(&scored, "dev", "came_from"), share(&scored, "dev", "crash_type")), (1.0, 1.0));
+    // Its partner is a vehicle, and has a movement.
+    assert_eq!(share(&scored, "dev", "cp_movement"), 0.0);
+    let half = &scored["halves"][0];
+    let field = |name: &str| {
+        half["fields"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|field| field["field"] == name)
+            .unwrap_or_else(|| panic!("{name}"))
+            .clone()
+    };
+    // What the label does not know counts neither way, and of labels of one's own no second reader is known.
+    assert_eq!((&field("driver")["scored"], &field("driver")["unknown"]), (&0.into(), &1.into()));
+    assert!(field("role").get("readers").is_none(), "{half:#}");
+}
+
+/// The bounds are what the reader reached when it was last mended, less two records, as totals (`docs/models/evaluation.md`).
+#[test]
+fn the_reader_reads_the_held_out_half_as_well_as_the_documentation_says() {
+    let Some(shared) = recrash_testing::shared("data/nhtsa") else { return };
+    let files = ["ads-2021-06-to-2025-06.csv", "ads-2025-06-to-2026-01.csv"].map(|name| shared.join(name));
+    let names = files.each_ref().map(|path| path.to_str().unwrap());
+    let arguments = ["eval", "--agent", "reader", "--half", "held-out", "--records", names[0], "--records", names[1]];
+    let text = recrash(&arguments).output().unwrap();
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    assert!(text.contains("two readers agree") && text.contains("163/165"), "{text}");
+    let evaluation = json(&recrash(&[&arguments[..], &["--json"]].concat()).output().unwrap());
+    for (field, least) in FLOORS {
+        let share = share(&evaluation, "held-out", field);
+        assert!(share >= least, "{field}: {share}");
+    }
+}
+
+const FLOORS: [(&str, f64); 14] = [
+    ("crash_type", 0.83),
+    ("role", 0.86),
+    ("striker", 0.85),
+    ("sv_state", 0.92),
+    ("sv_since", 0.79),
+    ("driver", 0.93),
+    ("sv_movement", 0.81),
+    ("cp_movement", 0.77),
+    ("came_from", 0.66),
+    ("order", 0.87),
+    ("first_contact", 0.90),
+    ("sv_zones", 0.93),
+    ("cp_zones", 0.94),
+    ("sv_impact_mps", 0.98),
+];

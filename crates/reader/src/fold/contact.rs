@@ -49,6 +49,9 @@ impl Contacts {
             return contacts;
         }
         let others = (0..frames.len()).find(|&number| between_others(&frames[number]));
+        let untouched = frames.iter().any(|frame| {
+            frame.negated && matches!(frame.sense, Sense::Contact) && [frame.who, frame.object].contains(&Some(SUBJECT))
+        });
         contacts.partner = announced(story).or_else(|| only_other(story));
         if let (Some(number), Some(who)) = (others, others.and_then(|number| frames[number].who)) {
             let headline = frames
@@ -60,6 +63,7 @@ impl Contacts {
                 contacts.first = Some(number);
             }
         }
+        contacts.others_only |= untouched;
         if contacts.first.is_none() {
             let headline = frames.iter().position(|frame| frame.sense == Sense::Headline);
             // Without a contact of its own, the last thing the partner does is next to it.
@@ -100,7 +104,9 @@ fn with_whom(story: &Story, frame: &Frame, number: usize) -> Option<Actor> {
         // "The van made contact": with whom, if not with the subject vehicle.
         (Some(other), None) if frame.sense != Sense::ReverseContact => {
             let kind = story.world.actors[other].kind;
-            kind.is_none_or(|kind| kind.group() != KindGroup::Object).then_some(other)
+            // "The debris touched the rear bumper": of a thing that has none.
+            let part = frame.on.as_ref().is_some_and(|piece| !piece.parts.is_empty());
+            (part || kind.is_none_or(|kind| kind.group() != KindGroup::Object)).then_some(other)
         }
         (None, None) if frame.sense == Sense::ContactMade => near(story, number),
         _ => None,

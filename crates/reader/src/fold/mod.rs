@@ -153,7 +153,7 @@ fn own_kind(record: &CrashRecord) -> Option<Kind> {
     if truck.iter().any(|make| vehicle.contains(make)) {
         return Some(Kind::SemiTrailerTruck);
     }
-    let shuttle = ["navya", "olli", "easymile", "e-palette", "autonom"];
+    let shuttle = ["navya", "olli", "easymile", "e-palette", "autonom", "ohmio"];
     shuttle.iter().any(|make| vehicle.contains(make)).then_some(Kind::Bus)
 }
 
@@ -173,14 +173,27 @@ fn words_of(story: &Story) -> u32 {
 fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
     let lexicon = Lexicon::get();
     let story = &reading.story;
+    // The crash is told first as a headline, and then again after what led to it.
+    let early = story.standing.iter().position(|standing| !standing);
+    let headline = reading.contacts.first.is_some_and(|first| Some(story.frames[first].sentence) == early);
+    let told_again = |number: usize| {
+        headline
+            && story.frames[number + 1..].iter().any(|frame| {
+                frame.is_contact()
+                    && !frame.looks_back
+                    && !frame.aside
+                    && [frame.who, frame.object].contains(&Some(SUBJECT))
+            })
+    };
     let took_over = story.frames.iter().enumerate().find(|(number, frame)| {
         frame.sense == Sense::TakeOver
             && frame.happened()
             && frame.who.is_none_or(|who| who == SUBJECT)
-            && !reading.is_after(*number)
+            && (!reading.is_after(*number) || told_again(*number))
     });
     let mut system = None;
     let mut human = None;
+    let mut handed_over = false;
     for sentence in &story.sentences {
         let words = &story.tokens[sentence.first..sentence.end];
         let at_impact = words
@@ -190,6 +203,10 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
             && words.first().is_some_and(|token| token.text == "at");
         let in_time_before =
             words.iter().any(|token| matches!(token.text.as_str(), "30" | "seconds" | "prior" | "within"));
+        handed_over |= just_before(words);
+        if let Some(at) = by_hand_for(words) {
+            return Some(reading.told(Driver::HumanTookOver, sentence.first + at, sentence.first + at + 3));
+        }
         let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
         let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
         if at_impact && let Some((value, at, length)) = said_human.or(said_system) {
@@ -208,6 +225,10 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
     if let Some((_, frame)) = took_over {
         return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
     }
+    // Driven by hand, and by the system within the half minute before.
+    if let Some((_, at, length)) = human.filter(|_| handed_over) {
+        return Some(reading.told(Driver::HumanTookOver, at, at + length));
+    }
     if let Some((value, at, length)) = human.or(system) {
         return Some(reading.told(value, at, at + length));
     }
@@ -218,6 +239,24 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// Whether a sentence says that the system drove, or handed over, in the half minute before: "autonomy was engaged within the
+/// 30 second period".
+fn just_before(words: &[crate::token::Token]) -> bool {
+    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
+    any(&["second", "seconds"])
+        && any(&["within", "prior", "before"])
+        && any(&["autonomy", "disengaged", "autonomous", "autonomously", "engaged"])
+        && !any(&["not", "minutes"])
+}
+
+/// Where a sentence says "in manual mode for approximately 10 seconds prior": the system drove until then.
+fn by_hand_for(words: &[crate::token::Token]) -> Option<usize> {
+    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
+    let at =
+        words.windows(3).position(|run| run[0].text == "manual" && run[1].text == "mode" && run[2].text == "for")?;
+    (any(&["seconds"]) && any(&["prior", "before"])).then_some(at)
 }
 
 /// Whether a sentence stands behind the one of the contact.

@@ -64,13 +64,24 @@ impl Clues<'_> {
 /// From where the partner came.
 pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> {
     let partner = account.partner.as_ref()?;
-    let Some(actor) = reading.contacts.partner else { return by_columns(reading, account) };
     let kind = partner.kind.as_ref().map(|kind| kind.value);
+    let Some(actor) = reading.contacts.partner else {
+        let thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object);
+        return if thing && forward(account) {
+            Some(Fact::by_rule(Origin::Ahead, "a thing that the subject vehicle drives into is ahead of it"))
+        } else {
+            by_columns(reading, account)
+        };
+    };
     let clues = Clues { reading, actor };
     if kind.is_some_and(|kind| kind.group() == KindGroup::Object) {
         return of_thing(&clues, account);
     }
     of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account))
+}
+
+fn forward(account: &Account) -> bool {
+    told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff))
 }
 
 fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
@@ -83,11 +94,33 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             source: clues.has(if side == LeftRight::Left { Relation::Left } else { Relation::Right }),
         });
     }
-    let forward =
-        told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff));
-    let on_road = forward && zone_side(account).is_none() && !account.sv.zones.iter().any(|zone| zone.value.is_rear());
-    (on_road || has_zone(&account.sv, |zone| zone.is_front()))
-        .then(|| Fact::by_rule(Origin::Ahead, "a thing that the front of the subject vehicle touches is ahead of it"))
+    let kind = told(&account.partner.as_ref()?.kind);
+    let fixed = matches!(kind, Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Gate | Kind::Barrier | Kind::Sign));
+    let plain_front = has_zone(&account.sv, |zone| zone == Z::Front);
+    if let (true, false, Some(side)) = (fixed, plain_front, zone_side(account)) {
+        return Some(Fact::by_rule(
+            Origin::Beside { side },
+            "what stands beside the way is on the side that touches it",
+        ));
+    }
+    let lies =
+        matches!(kind, Some(Kind::Debris | Kind::Pothole | Kind::Object)) && account.partner.as_ref()?.acts.is_empty();
+    let on_road = forward(account)
+        && (lies || zone_side(account).is_none() && !account.sv.zones.iter().any(|zone| zone.value.is_rear()));
+    if on_road || has_zone(&account.sv, |zone| zone.is_front()) {
+        return Some(Fact::by_rule(
+            Origin::Ahead,
+            "a thing that the front of the subject vehicle touches is ahead of it",
+        ));
+    }
+    let reverses = told(&account.sv.state) == Some(ContactState::Reversing);
+    if reverses && has_zone(&account.sv, |zone| zone.is_rear()) {
+        return Some(Fact::by_rule(
+            Origin::Behind,
+            "a thing that the rear of the reversing subject vehicle touches is behind it",
+        ));
+    }
+    zone_side(account).map(|side| Fact::by_rule(Origin::Beside { side }, "the side that the thing touches"))
 }
 
 fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
@@ -97,6 +130,12 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let did = |act: Act| frames().any(|(_, frame)| frame.act() == Some(act));
     let told_as = |value: Origin, source: Source| Some(Fact { value, source });
     let sv_stands = told(&account.sv.state).is_some_and(ContactState::stands);
+    // Thrown at its plain rear, from whatever lane it was in.
+    let thrown = did(Act::Pushed) || !reading.contacts.earlier.is_empty();
+    let all_rear = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value == Z::Rear);
+    if thrown && all_rear && told(&account.sv.state) != Some(ContactState::Reversing) {
+        return Some(Fact::by_rule(Origin::Behind, "thrown at the rear"));
+    }
     let parked = frames().any(|(_, frame)| frame.sense == Sense::Parked)
         || told(&account.partner.as_ref()?.state) == Some(ContactState::Parked);
     // Out of a stall, a driveway, a lot.
@@ -108,8 +147,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             Some(Spot::Driveway | Spot::SideStreet) => {
                 return told_as(Origin::Driveway { side: side.or_else(|| zone_side(account)) }, source);
             }
-            Some(Spot::Curb) => return told_as(Origin::Parked { side }, source),
-            Some(Spot::Sidewalk) => return told_as(Origin::Sidewalk { side }, source),
+            Some(Spot::Curb) => return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source),
+            Some(Spot::Sidewalk) => {
+                return told_as(Origin::Sidewalk { side: side.or_else(|| zone_side(account)) }, source);
+            }
             None => {}
         }
     }
@@ -227,7 +268,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
                 if let Some(side) = lane_side(account) {
                     return Some(Fact { value: Origin::Beside { side }, source });
                 }
-                if let Some(side) = changed_from(account) {
+                let moved_over = if did(Act::LaneChange) { zone_side(account) } else { None };
+                if let Some(side) = changed_from(account).or(moved_over) {
                     return told_as(
                         Origin::Beside { side },
                         clues.source(|frame| frame.act() == Some(Act::LaneChange)),
@@ -303,7 +345,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
 /// Who moves over without a side told comes from the side that was touched, and who is parked stands there; an animal in the way is ahead.
 fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let partner = account.partner.as_ref()?;
-    let moved_over = [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass].into_iter().any(|act| partner.did(act));
+    let moved_over =
+        [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass, Act::Pushed].into_iter().any(|act| partner.did(act));
     let parked = told(&partner.state) == Some(ContactState::Parked);
     if let (true, Some(side)) = (moved_over || parked || clues.any(Relation::Beside), zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
@@ -415,6 +458,9 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
         }
         Some(Movement::Passing) => return rule(Origin::Behind),
         _ => {}
+    }
+    if let (true, Some(side)) = (partner.did(Act::LaneChange), zone_side(account)) {
+        return rule(Origin::Beside { side });
     }
     if sv_rear && cp_front && !sv_front {
         return rule(Origin::Behind);

@@ -531,6 +531,10 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
     if let (true, Some(kind)) = (vague, column) {
         partner.kind = Some(Fact::of_column(kind, "Crash With"));
     }
+    // Something that neither a word of ours nor the column knows is no road user.
+    if partner.kind.is_none() && nobody_else(reading) {
+        partner.kind = Some(Fact::by_rule(Kind::Object, "something that has no name of a road user"));
+    }
     if partner.state.is_none() {
         let state = match record.cp_movement.known() {
             Some(Movement::Stopped) => Some(ContactState::Stopped),
@@ -541,6 +545,18 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
         };
         partner.state = state.map(|state| Fact::of_column(state, "CP Pre-Crash Movement"));
     }
+}
+
+/// Whether the words tell a contact, and of no other road user.
+fn nobody_else(reading: &Reading<'_>) -> bool {
+    let story = &reading.story;
+    let touches = |frame: &Frame| {
+        frame.is_contact()
+            || frame.sense == Sense::Headline
+            || matches!(frame.act(), Some(Act::Fall)) && frame.who == Some(SUBJECT)
+    };
+    let known = |kind: Option<Kind>| kind.is_some_and(|kind| kind.group() != KindGroup::Object);
+    story.frames.iter().any(touches) && !story.world.actors.iter().skip(1).any(|actor| known(actor.kind))
 }
 
 /// Words name an end or a side where the column ticks one corner of it: both are meant.
@@ -573,6 +589,7 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         (None, Some(Movement::Backing)) => Some(ContactState::Reversing),
         (None, _) if zero => Some(ContactState::Stopped),
         (None, Some(_)) => Some(ContactState::Moving),
+        (None, None) if moves_at_contact(reading) => Some(ContactState::Moving),
         // Slowing in words, standing in numbers: it had come to stand.
         // Told to come to a stop, and still rolling in numbers.
         (Some(ContactState::Stopped), _)
@@ -637,9 +654,13 @@ fn kind_of(kind: PartnerKind) -> Kind {
 /// Movement of both sides just before the conflict.
 pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     account.sv.movement = movement(&account.sv, reading.record.sv_movement.known(), "SV Pre-Crash Movement");
-    // The column says of its own vehicle whether passing somebody was a manoeuvre.
-    if let (Some(Movement::Passing), Some(column)) = (told(&account.sv.movement), reading.record.sv_movement.known()) {
-        account.sv.movement = Some(Fact::of_column(column, "SV Pre-Crash Movement"));
+    // Who stops in the lane for passengers is parked by the column, and stopped by the words.
+    let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
+    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
+    if let (Some(Movement::Parked), true, false, Some(reason)) =
+        (told(&account.sv.movement), by_column, account.sv.did(Act::Park), riders)
+    {
+        account.sv.movement = Some(Fact { value: Movement::Stopped, source: reason.source.clone() });
     }
     if let Some(partner) = &mut account.partner {
         let group = partner.kind.as_ref().map(|kind| kind.value.group());
@@ -648,9 +669,21 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
         } else {
             let column = reading.record.cp_movement.known();
             let mut movement = movement(partner, column, "CP Pre-Crash Movement");
+            let drives = group.is_some_and(|group| {
+                matches!(group, KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle | KindGroup::Cyclist)
+            });
+            if movement.is_none() && drives && account.came_from.is_some() {
+                movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
+            }
+            let crosses = column != Some(Movement::Passing)
+                && (group == Some(KindGroup::OnFoot) && partner.did(Act::Cross) && !partner.did(Act::Pass)
+                    || group == Some(KindGroup::Cyclist) && crosswalk(partner));
+            if let (true, None, Some(act)) =
+                (crosses, &movement, partner.acts.iter().find(|fact| fact.act == Act::Cross))
+            {
+                movement = Some(Fact { value: Movement::NmCrossing, source: act.source.clone() });
+            }
             if let Some(fact) = &mut movement {
-                let crosses = group == Some(KindGroup::OnFoot)
-                    && partner.acts.iter().any(|fact| fact.act == Act::Cross && !fact.after_contact);
                 let oncoming = account
                     .came_from
                     .as_ref()
@@ -660,13 +693,38 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                 } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
                     fact.value = Movement::Straight;
                 }
+                if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
+                    (fact.value, oncoming, column)
+                {
+                    fact.value = column.unwrap_or(fact.value);
+                }
             }
             movement
         };
     }
 }
 
+/// Whether somebody crosses on a crosswalk.
+fn crosswalk(party: &Party) -> bool {
+    party.acts.iter().any(|fact| fact.act == Act::Cross && !fact.after_contact && words_of(fact).contains("crosswalk"))
+}
+
+fn words_of(fact: &ActFact) -> String {
+    words(&fact.source)
+}
+
+/// The words of a source, written small.
+fn words(source: &Source) -> String {
+    match source {
+        Source::Words { text, .. } => text.to_lowercase(),
+        _ => String::new(),
+    }
+}
+
 fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<Movement>> {
+    if let (Some(ContactState::Reversing), Some(Movement::ParkingManeuver)) = (told(&party.state), column) {
+        return Some(Fact::of_column(Movement::ParkingManeuver, name));
+    }
     if let Some(state) = &party.state {
         let value = match state.value {
             ContactState::Stopped => Some(Movement::Stopped),
@@ -688,7 +746,10 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
             best = None;
         }
         if fact.act == Act::Follow
-            && best.as_ref().is_some_and(|(_, known, _)| matches!(known, Movement::LeftTurn | Movement::RightTurn))
+            && best.as_ref().is_some_and(|(_, known, source)| {
+                matches!(known, Movement::LeftTurn | Movement::RightTurn)
+                    && !(words_of(fact).starts_with("approach") && words(source).starts_with("turning"))
+            })
         {
             best = None;
         }
@@ -719,13 +780,17 @@ fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
             _ => return None,
         },
         (Act::UTurn, _) => (4, Movement::UTurn),
+        (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
         (Act::Reverse, _) => (4, Movement::Backing),
+        (Act::LaneChange, _) if words_of(fact).starts_with("merg") => (3, Movement::Merging),
         (Act::LaneChange, _) => (3, Movement::ChangingLanes),
+        (Act::Pass, _) if column == Some(Movement::Passing) => (3, Movement::Passing),
         (Act::Pass, _) => (2, Movement::Passing),
         (Act::PullOut, _) => (3, Movement::EnteringTraffic),
         (Act::Park, _) => (3, Movement::ParkingManeuver),
         (Act::PullOver, _) => (1, Movement::ParkingManeuver),
-        (Act::WrongWay, _) => (2, Movement::WrongWay),
+        (Act::Swerve | Act::Drift, _) if column.is_none() => (1, Movement::LaneDeparture),
+        (Act::WrongWay, _) => (4, Movement::WrongWay),
         (Act::Follow | Act::Slow | Act::SetOff | Act::Enter | Act::Accelerate | Act::RunRed | Act::RunStop, _) => {
             (0, Movement::Straight)
         }

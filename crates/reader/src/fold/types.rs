@@ -7,7 +7,7 @@ use crate::lexicon::Sense;
 use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, Fact, FirstContact, Kind, KindGroup, LeftRight, MatrixCell, MatrixEvent,
-    MatrixObject, Origin, Party, PrecrashScenario, Role, Striker, told,
+    MatrixObject, Origin, Party, PrecrashScenario, Role, Source, Striker, told,
 };
 use recrash_model::narrative::FirstMover;
 use recrash_model::template::Movement;
@@ -57,7 +57,7 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     if cp_stands && !sv_stands {
         return rule(Striker::Sv, "one stood");
     }
-    let number = reading.contacts.first?;
+    let Some(number) = reading.contacts.first else { return by_fronts(account) };
     let frame = &reading.story.frames[number];
     let value = match (frame.who, frame.object) {
         (Some(SUBJECT), Some(_)) => {
@@ -68,9 +68,24 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         (Some(who), _) if who != SUBJECT => Striker::Cp,
         (None, Some(SUBJECT)) => Striker::Cp,
         (None, Some(_)) => Striker::Sv,
-        _ => return None,
+        _ => return by_fronts(account),
     };
     Some(Fact { value, source: reading.of(frame) })
+}
+
+/// Rule of a striker of whom the words say nothing.
+const BY_FRONTS: &str = "whose front took part";
+
+/// Whose front alone took part moved into the other.
+fn by_fronts(account: &Account) -> Option<Fact<Striker>> {
+    let partner = account.partner.as_ref()?;
+    let front = |party: &Party| has_zone(party, |zone| zone.is_front());
+    let value = match (front(&account.sv), front(partner)) {
+        (true, false) => Striker::Sv,
+        (false, true) => Striker::Cp,
+        _ => return None,
+    };
+    Some(Fact::by_rule(value, BY_FRONTS))
 }
 
 /// Whether a turn of this side is under way at the contact: told last but for slowing and stopping.
@@ -100,16 +115,16 @@ pub(crate) fn crash_type(reading: &Reading<'_>, account: &Account) -> Option<Fac
 fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
     let partner = account.partner.as_ref()?;
     if group(account) == Some(KindGroup::Object) {
-        let thrown = matches!(told(&partner.kind), Some(Kind::LooseWheel | Kind::Cargo));
-        return Some(if thrown {
-            (CrashType::Other, "a thing that came off a vehicle")
+        return Some(if told(&partner.kind) == Some(Kind::Cargo) {
+            (CrashType::Other, "cargo")
         } else {
             (CrashType::SingleVehicle, "a thing")
         });
     }
-    if partner.did(Act::Pushed)
+    if (partner.did(Act::Pushed)
         || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
-        || separate(reading)
+        || separate(reading))
+        && !drove_on(reading)
     {
         return Some((CrashType::Secondary, "another contact threw the partner at it"));
     }
@@ -138,6 +153,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
     if cp == Some(ContactState::Reversing)
         || sv == Some(ContactState::Reversing)
         || told(&partner.movement) == Some(Movement::Backing)
+        || told(&partner.movement) == Some(Movement::ParkingManeuver) && partner.did(Act::Reverse)
     {
         return Some((CrashType::Backing, "one went backwards"));
     }
@@ -271,9 +287,27 @@ fn double_parked(reading: &Reading<'_>) -> bool {
     reading.story.tokens.windows(2).any(|pair| pair[0].text == "double" && pair[1].text == "parked")
 }
 
-/// "was involved in a separate collision".
+/// Whether the partner touched somebody, and then went on of its own accord before it came to the subject vehicle.
+fn drove_on(reading: &Reading<'_>) -> bool {
+    let (Some(first), Some(partner)) = (reading.contacts.first, reading.contacts.partner) else { return false };
+    let frames = &reading.story.frames;
+    let earlier: Vec<usize> = reading.contacts.earlier.iter().copied().filter(|&number| number < first).collect();
+    let struck_others = !earlier.is_empty() && earlier.iter().all(|&number| frames[number].who == Some(partner));
+    struck_others
+        && frames[earlier[earlier.len() - 1] + 1..first].iter().any(|frame| {
+            frame.who == Some(partner)
+                && frame.happened()
+                && matches!(frame.act(), Some(Act::Follow | Act::Pass | Act::Turn | Act::Enter | Act::SetOff))
+        })
+}
+
+/// "was involved in a separate collision", told up to the crash.
 fn separate(reading: &Reading<'_>) -> bool {
-    let tokens = &reading.story.tokens;
+    let end = reading
+        .contacts
+        .first
+        .map_or(usize::MAX, |number| reading.story.sentences[reading.story.frames[number].sentence].end);
+    let tokens = &reading.story.tokens[..end.min(reading.story.tokens.len())];
     tokens.windows(2).any(|pair| {
         matches!(pair[0].text.as_str(), "separate" | "previous" | "another")
             && matches!(pair[1].text.as_str(), "collision" | "crash")
@@ -328,6 +362,20 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'
     Some((CrashType::Lateral, rule))
 }
 
+/// Whether the sentence of the contact says that it lay there.
+fn lay(reading: &Reading<'_>) -> bool {
+    reading.contacts.first.is_some_and(|number| {
+        let sentence = reading.story.sentences[reading.story.frames[number].sentence];
+        let words = &reading.story.tokens[sentence.first..sentence.end];
+        words.iter().any(|token| matches!(token.text.as_str(), "motionless" | "lying" | "laying" | "deceased"))
+    })
+}
+
+/// Whether a thing came into the way.
+fn comes(partner: &Party) -> bool {
+    partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop))
+}
+
 /// Whose move brought it about.
 pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role>> {
     let partner = account.partner.as_ref()?;
@@ -348,14 +396,16 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return rule(Role::Responder, "it stood");
     }
     if group(account) == Some(KindGroup::Object) {
-        let appears = partner.did(Act::Fall)
-            || partner.did(Act::Roll)
-            || matches!(told(&partner.kind), Some(Kind::Debris | Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo));
+        let flies = matches!(told(&partner.kind), Some(Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo));
+        let appears = flies || comes(partner);
         return if appears {
             rule(Role::Responder, "something came into its way")
         } else {
             rule(Role::Initiator, "it moved into a thing")
         };
+    }
+    if group(account) == Some(KindGroup::Animal) && lay(reading) {
+        return rule(Role::Initiator, "it moved into an animal that lay there");
     }
     let broke = [Act::RunRed, Act::RunStop, Act::FailToYield, Act::WrongWay].into_iter().any(|act| partner.did(act));
     if broke && !account.sv.did(Act::RunRed) {
@@ -389,7 +439,9 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     if told(&account.crash_type) == Some(CrashType::Intersection) && own_way && across {
         return rule(Role::Responder, "the other turned or came out across its way");
     }
-    if matches!(striker, Some(Striker::Sv)) && told(&account.crash_type) != Some(CrashType::Other) {
+    // What zones alone say of it is not enough to blame it.
+    let by_zones = matches!(&account.striker, Some(Fact { source: Source::Rule { name }, .. }) if name == BY_FRONTS);
+    if striker == Some(Striker::Sv) && !by_zones && told(&account.crash_type) != Some(CrashType::Other) {
         return if cp_moves {
             rule(Role::Both, "both moved")
         } else {
@@ -428,6 +480,9 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
     if group(account) == Some(KindGroup::Object) {
         return rule(FirstMover::Cp, "things stand");
     }
+    if account.door.as_ref().is_some_and(|door| door.value == Striker::Cp) {
+        return rule(FirstMover::Sv, "a door was opened into it");
+    }
     match (sv_stands, cp_stands) {
         (true, false) => return rule(FirstMover::Sv, "who stands is there first"),
         (false, true) => return rule(FirstMover::Cp, "who stands is there first"),
@@ -438,17 +493,29 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
             let lead = has_zone(&account.sv, |zone| zone.is_rear()) && told(&account.came_from) != Some(Origin::Ahead);
             return rule(if lead { FirstMover::Sv } else { FirstMover::Cp }, "who is ahead is there first");
         }
-        CrashType::Backing | CrashType::HeadOn => return rule(FirstMover::Both, "they meet"),
+        CrashType::HeadOn => return rule(FirstMover::Both, "they meet"),
+        // Who goes backwards comes to the other.
+        CrashType::Backing => {
+            let value = match (sv_state(account)?, cp_state(account)) {
+                (ContactState::Reversing, Some(ContactState::Reversing)) => FirstMover::Both,
+                (ContactState::Reversing, _) => FirstMover::Cp,
+                _ => FirstMover::Sv,
+            };
+            return rule(value, "who goes backwards comes to the other");
+        }
         _ => {}
     }
     // Whose front touches comes later than whose flank is touched.
-    let front = |party: &Party| has_zone(party, |zone| zone.is_front()) && !has_zone(party, |zone| !zone.is_front());
+    let front = |party: &Party| has_zone(party, |zone| zone.is_front());
     let flank = |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front());
     if partner.zones.is_empty() && !account.sv.zones.is_empty() {
         let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
         return rule(value, "whose flank is touched is there first");
     }
+    let striker = told(&account.striker);
     match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {
+        (_, true, _, true) if striker == Some(Striker::Cp) => rule(FirstMover::Sv, "the other came to its flank"),
+        (_, true, _, true) if striker == Some(Striker::Sv) => rule(FirstMover::Cp, "it came to the other's flank"),
         (_, true, true, _) => rule(FirstMover::Sv, "whose flank is touched is there first"),
         (true, _, _, true) => rule(FirstMover::Cp, "whose flank is touched is there first"),
         _ => rule(FirstMover::Both, "at about the same time"),
@@ -462,11 +529,19 @@ pub(crate) fn first_contact(reading: &Reading<'_>, account: &Account) -> Option<
     if reading.contacts.others_only {
         return rule(FirstContact::OthersOnly, "contacts of the story");
     }
-    if told(&account.crash_type) == Some(CrashType::Secondary) {
+    let touched_others = reading.contacts.first.is_some_and(|first| {
+        let partner = reading.contacts.partner;
+        let of_partner = |number: &usize| {
+            let frame = &reading.story.frames[*number];
+            *number < first && (frame.who == partner || frame.object == partner)
+        };
+        reading.contacts.earlier.iter().any(of_partner)
+    });
+    if touched_others || told(&account.crash_type) == Some(CrashType::Secondary) {
         return rule(FirstContact::PartnerAndOther, "contacts of the story");
     }
-    if group(account) == Some(KindGroup::Object) {
-        return rule(FirstContact::Object, "kind of the partner");
+    if told(&account.crash_type) == Some(CrashType::SingleVehicle) || group(account) == Some(KindGroup::Object) {
+        return rule(FirstContact::Object, "a thing, or a vehicle with nobody in it");
     }
     rule(FirstContact::SvAndPartner, "contacts of the story")
 }

@@ -1,34 +1,120 @@
 //! What an account says of the fields that the labels have.
 
-use recrash_model::account::{Account, ContactState, KindGroup, SpeedMeaning, told};
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Party, Source, SpeedMeaning, StandReason,
+    Standing, told,
+};
 use recrash_model::labelled::{CameFrom, LabelledAccount, Since};
+use recrash_model::zones::ContactZone as Z;
 
 /// An account in the terms of the labels.
 pub fn in_labels(account: &Account) -> LabelledAccount {
     let (sv, partner) = (&account.sv, account.partner.as_ref());
     let state = told(&sv.state);
-    let group = partner.and_then(|partner| told(&partner.kind)).map(recrash_model::account::Kind::group);
     let impact = sv.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact);
     LabelledAccount {
         crash_type: told(&account.crash_type),
         role: told(&account.role),
         striker: told(&account.striker),
         sv_state: state.map(Into::into),
-        sv_since: state.and_then(|state| Since::of(state, told(&sv.standing))),
+        sv_since: since(sv),
         driver: told(&account.driver),
         sv_movement: told(&sv.movement),
         cp_movement: partner.and_then(|partner| told(&partner.movement)),
-        cp_unmoved: matches!(group, Some(KindGroup::Object | KindGroup::Animal)),
-        came_from: told(&account.came_from).and_then(CameFrom::of),
+        cp_unmoved: matches!(group(account), Some(KindGroup::Object | KindGroup::Animal)),
+        came_from: came_from(account),
         order: told(&account.order),
         first_contact: told(&account.first_contact),
         sv_zones: sv.zone_values(),
-        cp_zones: partner.map(recrash_model::account::Party::zone_values).unwrap_or_default(),
+        cp_zones: partner.map(Party::zone_values).unwrap_or_default(),
         sv_impact_mps: if state.is_some_and(ContactState::stands) {
             Some(0.0)
         } else {
             impact.map(|speed| speed.value.mps)
         },
         ..LabelledAccount::default()
+    }
+}
+
+fn group(account: &Account) -> Option<KindGroup> {
+    account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group)
+}
+
+/// Since when it stood or moved: an account tells whether it came to a stop in the story, the labels how long ago that was.
+fn since(sv: &Party) -> Option<Since> {
+    let state = told(&sv.state)?;
+    let before: Vec<&ActFact> = sv.acts.iter().filter(|fact| !fact.after_contact).collect();
+    let last_stop = before.iter().rposition(|fact| matches!(fact.act, Act::Stop | Act::Hold));
+    let remains = last_stop.is_some_and(
+        |at| matches!(&before[at].source, Source::Words { text, .. } if text.to_lowercase().starts_with("remain")),
+    );
+    let waits = waits_for_riders(sv) || remains;
+    Some(match state {
+        ContactState::Parked if !waits_for_riders(sv) => Since::Parked,
+        ContactState::Parked => Since::Long,
+        ContactState::Stopped if waits || told(&sv.standing)? == Standing::FromTheStart => Since::Long,
+        ContactState::Stopped => Since::Just,
+        ContactState::SettingOff => Since::SettingOff,
+        // The stop is the last but one thing that it did.
+        ContactState::Moving | ContactState::Reversing if last_stop.is_some_and(|at| at + 2 >= before.len()) => {
+            Since::SettingOff
+        }
+        ContactState::Moving | ContactState::Reversing => Since::UnderWay,
+    })
+}
+
+fn waits_for_riders(sv: &Party) -> bool {
+    sv.reasons.iter().any(|reason| reason.value == StandReason::PickupDropoff)
+}
+
+/// From where the partner came. An account tells where somebody starts, the labels where it is met: who passes from behind is
+/// beside, so is who stands parked there; a thing at the side of the way is on that side.
+fn came_from(account: &Account) -> Option<CameFrom> {
+    let partner = account.partner.as_ref()?;
+    let parked = told(&partner.state) == Some(ContactState::Parked);
+    let thing = group(account) == Some(KindGroup::Object);
+    Some(match told(&account.came_from)? {
+        Origin::Behind => alongside(account).map_or(CameFrom::Behind, beside),
+        Origin::Ahead => CameFrom::Ahead,
+        Origin::Opposite => CameFrom::Opposite,
+        Origin::Beside { side } if thing => from_side(side),
+        Origin::Beside { side } => beside(side),
+        Origin::Parked { side } if parked => beside(side?),
+        Origin::Cross { side } => from_side(side),
+        Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
+            from_side(side?)
+        }
+        Origin::Above => return None,
+    })
+}
+
+/// The side on which one from behind is met: where the flank is touched, or a rear corner by more than a front.
+fn alongside(account: &Account) -> Option<LeftRight> {
+    let partner = account.partner.as_ref()?;
+    let sv = account.sv.zone_values();
+    let any = |zones: &[Z]| zones.iter().any(|zone| sv.contains(zone));
+    let (left, right) = (any(&[Z::FrontLeft, Z::Left, Z::RearLeft]), any(&[Z::FrontRight, Z::Right, Z::RearRight]));
+    let side = match (left, right) {
+        (true, false) => LeftRight::Left,
+        (false, true) => LeftRight::Right,
+        _ => return None,
+    };
+    let flank = any(&[Z::FrontLeft, Z::Left, Z::FrontRight, Z::Right]);
+    let cp = partner.zone_values();
+    let not_front_alone = cp.iter().any(|zone| !zone.is_front());
+    (!sv.contains(&Z::Rear) && (flank || not_front_alone)).then_some(side)
+}
+
+fn beside(side: LeftRight) -> CameFrom {
+    match side {
+        LeftRight::Left => CameFrom::BesideLeft,
+        LeftRight::Right => CameFrom::BesideRight,
+    }
+}
+
+fn from_side(side: LeftRight) -> CameFrom {
+    match side {
+        LeftRight::Left => CameFrom::Left,
+        LeftRight::Right => CameFrom::Right,
     }
 }
