@@ -170,7 +170,15 @@ pub enum TableFormat {
 /// A file cannot be read or is no crash file, or the filter, the mapping or the profile cannot be used.
 pub fn read_records(options: &Options) -> Result<Outcome<RecordSet>, PipelineError> {
     let profile = options.system_profile()?;
-    RecordInput::read(options)?.ingest(&profile)
+    let input = RecordInput::read(options)?;
+    let filter = input.filter().cloned();
+    let mut read = input.ingest(&profile)?;
+    if let Some(filter) = filter {
+        // A profile that goes by accounts ingests every row, since an incident is made of all of its own.
+        let RecordSet { records, usable, .. } = &mut read.value;
+        usable.retain(|&position| filter.keeps(&records[position]));
+    }
+    Ok(read)
 }
 
 /// Writes records as a table. Gives the number of rows.

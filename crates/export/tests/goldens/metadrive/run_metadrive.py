@@ -774,7 +774,9 @@ class PartnerPolicy(IDMPolicy):
     def decide(self, world, me):
         actor = world.actors[me]
         if self.waits(world.step):
-            # The controllers begin when it sets off.
+            # The controllers begin when it sets off. On its brakes alone a vehicle creeps at some centimetres a second.
+            if actor.vehicle.speed < Law.standing_mps:
+                actor.vehicle.set_velocity([0.0, 0.0])
             return [0.0, hold_still(actor.vehicle.speed)]
         throttle = hold_still(actor.vehicle.speed) if actor.halted else self.pedal(world, me)
         return [self.steer(world, actor), throttle]

@@ -1,0 +1,135 @@
+//! Suites that go by accounts, as a user of them meets them.
+
+use crate::common::Place;
+use serde_json::Value;
+
+const RUN: [&str; 9] = ["run", "--profile", "open", "--budget", "12", "--tune-budget", "6", "--seed", "3"];
+
+fn made() -> Place {
+    let place = Place::new();
+    let (code, _, remarks) = place.run(&RUN);
+    assert_eq!(code, 0, "{remarks}");
+    place
+}
+
+fn json(place: &Place, file: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(place.path(file)).unwrap()).unwrap()
+}
+
+fn cases(place: &Place) -> Vec<Value> {
+    json(place, "suite/summary.json")["cases"].as_array().unwrap().clone()
+}
+
+#[test]
+fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
+    let place = made();
+    let summary = json(&place, "suite/summary.json");
+    let accounts = &summary["accounts"];
+    let (told, readable) = (accounts["told"].as_u64().unwrap(), accounts["readable"].as_u64().unwrap());
+    let untold: u64 = accounts["untold"].as_array().unwrap().iter().map(|of| of[1].as_u64().unwrap()).sum();
+    assert!(told > 100 && told + untold == readable, "{told} of {readable}, {untold} not");
+    assert_eq!(summary["usable"].as_u64().unwrap(), told);
+    let cases = cases(&place);
+    assert_eq!(cases.len(), 12);
+    for case in &cases {
+        assert_eq!(case["origin"]["is"], "own", "{case}");
+        assert!(case["crash_type"].is_string() && case["failure"].is_null(), "{case}");
+        assert_ne!(case["recorded"]["faithful"], "no", "{case}");
+        // Who was parked is not tested; of everybody else it is said whether the situation was met.
+        assert_eq!(case["tuned"].is_null(), case["situation_met"].is_null(), "{case}");
+    }
+    let junit = std::fs::read_to_string(place.path("suite/junit.xml")).unwrap();
+    assert!(junit.contains("tests=\"12\"") && junit.contains("crash type: "), "{junit}");
+    let page = std::fs::read_to_string(place.path("suite/report.html")).unwrap();
+    for words in ["Crash types", "Situation met", "Why the others are not told", "Told facts that are shown"] {
+        assert!(page.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn a_second_run_does_nothing_and_any_number_of_threads_gives_the_same_bytes() {
+    let place = made();
+    let first = std::fs::read(place.path("suite/summary.json")).unwrap();
+    let (code, _, remarks) = place.run(&RUN);
+    assert_eq!(code, 0, "{remarks}");
+    assert_eq!(std::fs::read(place.path("suite/summary.json")).unwrap(), first);
+    let again = Place::new();
+    let (code, _, remarks) = again.run(&[&RUN[..], &["--threads", "1"]].concat());
+    assert_eq!(code, 0, "{remarks}");
+    for file in ["summary.json", "results.csv", "junit.xml", "1-accounts.json"] {
+        let read = |place: &Place| std::fs::read(place.path(&format!("suite/{file}"))).unwrap();
+        assert_eq!(read(&again), read(&place), "{file}");
+    }
+}
+
+#[test]
+fn an_edited_account_is_kept_and_what_no_scene_shows_is_told() {
+    let place = made();
+    let standing = cases(&place).into_iter().find(|case| case["crash_type"] == "front_to_rear").expect("there is one");
+    let id = standing["id"].as_str().unwrap();
+    let file = format!("suite/3-narratives/{id}.account.json");
+    let mut account = json(&place, &file);
+    // Front on rear, and now the ego is told to have been touched on its roof and came from nowhere else.
+    account["crash_type"]["value"] = "head_on".into();
+    account["came_from"]["value"] = "opposite".into();
+    std::fs::write(place.path(&file), serde_json::to_string_pretty(&account).unwrap()).unwrap();
+    let (code, shown, remarks) = place.run(&RUN);
+    assert_eq!(code, 0, "{remarks}");
+    assert_eq!(json(&place, &file)["crash_type"]["value"], "head_on", "the edit is kept");
+    let after = cases(&place).into_iter().find(|case| case["id"] == *id).unwrap();
+    let refused = after["failure"].is_object();
+    let edited = after["edited"].as_array().unwrap().len() == 1;
+    assert!(edited && (refused || after["recorded"]["faithful"] != "no"), "{after}\n{shown}");
+}
+
+#[test]
+fn an_edited_scenario_that_is_not_as_told_ends_with_exit_code_5() {
+    let place = made();
+    let id = cases(&place)
+        .into_iter()
+        .find(|case| !case["tuned"].is_null() && case["crash_type"] != "single_vehicle")
+        .and_then(|case| case["id"].as_str().map(str::to_owned))
+        .expect("there is one");
+    let file = format!("suite/4-scenarios/{id}.json");
+    let mut scenario = json(&place, &file);
+    // Nobody is there any more.
+    scenario["actors"] = Value::Array(Vec::new());
+    std::fs::write(place.path(&file), serde_json::to_string_pretty(&scenario).unwrap()).unwrap();
+    let (code, _, remarks) = place.run(&["simulate"]);
+    assert_eq!(code, 5, "{remarks}");
+    assert!(remarks.contains("not faithful") && remarks.contains(&id), "{remarks}");
+}
+
+#[test]
+fn new_records_say_what_they_bring_and_leave_the_rest() {
+    let place = Place::new();
+    let mut table = csv::Reader::from_reader(include_str!("../../../records/data/sample.csv").as_bytes());
+    let header = table.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let write = |count: usize| {
+        let mut file = csv::Writer::from_path(place.path("crashes.csv")).unwrap();
+        file.write_record(&header).unwrap();
+        rows.iter().take(count).for_each(|row| file.write_record(row).unwrap());
+        file.flush().unwrap();
+    };
+    let run = || {
+        let words = ["run", "--profile", "open", "--records", "crashes.csv", "--budget", "all", "--tune-budget", "1"];
+        place.run(&words)
+    };
+    write(rows.len() - 60);
+    let (code, _, remarks) = run();
+    assert_eq!(code, 0, "{remarks}");
+    assert!(!remarks.contains("incidents are new"), "{remarks}");
+    write(rows.len());
+    let (code, _, remarks) = run();
+    assert_eq!(code, 0, "{remarks}");
+    assert!(remarks.contains("readable incidents are new: "), "{remarks}");
+    assert!(remarks.contains("never seen before") || remarks.contains("was seen before"), "{remarks}");
+}
+
+#[test]
+fn a_model_plays_no_role_there() {
+    let place = Place::new();
+    let (code, _, remarks) = place.run(&["run", "--profile", "open", "--agent", "gpt-5-mini"]);
+    assert!(code != 0 && remarks.contains("choose the profile paper"), "{code} {remarks}");
+}
