@@ -1,6 +1,7 @@
 //! The account, folded from the event frames and held against the columns.
 
 mod contact;
+mod movement;
 mod origin;
 mod party;
 mod place;
@@ -130,7 +131,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     };
     party::columns(&reading, &mut account);
     account.came_from = origin::came_from(&reading, &account);
-    party::movements(&reading, &mut account);
+    movement::movements(&reading, &mut account);
     account.striker = types::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
     account.role = types::role(&reading, &account);

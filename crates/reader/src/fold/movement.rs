@@ -1,0 +1,154 @@
+//! Movement of both sides just before the conflict, from their acts, states and columns.
+
+use super::Reading;
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, Fact, KindGroup, LeftRight, Party, Source, StandReason, told,
+};
+use recrash_model::template::Movement;
+
+/// Movement of both sides just before the conflict.
+pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
+    account.sv.movement = movement(&account.sv, reading.record.sv_movement.known(), "SV Pre-Crash Movement");
+    // Who stops in the lane for passengers is parked by the column, and stopped by the words.
+    let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
+    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
+    if let (Some(Movement::Parked), true, false, Some(reason)) =
+        (told(&account.sv.movement), by_column, account.sv.did(Act::Park), riders)
+    {
+        account.sv.movement = Some(Fact { value: Movement::Stopped, source: reason.source.clone() });
+    }
+    if let Some(partner) = &mut account.partner {
+        let group = partner.kind.as_ref().map(|kind| kind.value.group());
+        partner.movement = if group == Some(KindGroup::Object) {
+            None
+        } else {
+            let column = reading.record.cp_movement.known();
+            let mut movement = movement(partner, column, "CP Pre-Crash Movement");
+            let drives = group.is_some_and(|group| {
+                matches!(group, KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle | KindGroup::Cyclist)
+            });
+            if movement.is_none() && drives && account.came_from.is_some() {
+                movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
+            }
+            let crosses = column != Some(Movement::Passing)
+                && (group == Some(KindGroup::OnFoot) && partner.did(Act::Cross) && !partner.did(Act::Pass)
+                    || group == Some(KindGroup::Cyclist) && crosswalk(partner));
+            if let (true, None, Some(act)) =
+                (crosses, &movement, partner.acts.iter().find(|fact| fact.act == Act::Cross))
+            {
+                movement = Some(Fact { value: Movement::NmCrossing, source: act.source.clone() });
+            }
+            if let Some(fact) = &mut movement {
+                let oncoming = account
+                    .came_from
+                    .as_ref()
+                    .is_some_and(|from| from.value == recrash_model::account::Origin::Opposite);
+                if crosses {
+                    fact.value = Movement::NmCrossing;
+                } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
+                    fact.value = Movement::Straight;
+                }
+                if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
+                    (fact.value, oncoming, column)
+                {
+                    fact.value = column.unwrap_or(fact.value);
+                }
+            }
+            movement
+        };
+    }
+}
+
+/// Whether somebody crosses on a crosswalk.
+fn crosswalk(party: &Party) -> bool {
+    party.acts.iter().any(|fact| fact.act == Act::Cross && !fact.after_contact && words_of(fact).contains("crosswalk"))
+}
+
+fn words_of(fact: &ActFact) -> String {
+    words(&fact.source)
+}
+
+/// The words of a source, written small.
+fn words(source: &Source) -> String {
+    match source {
+        Source::Words { text, .. } => text.to_lowercase(),
+        _ => String::new(),
+    }
+}
+
+fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<Movement>> {
+    if let (Some(ContactState::Reversing), Some(Movement::ParkingManeuver)) = (told(&party.state), column) {
+        return Some(Fact::of_column(Movement::ParkingManeuver, name));
+    }
+    if let Some(state) = &party.state {
+        let value = match state.value {
+            ContactState::Stopped => Some(Movement::Stopped),
+            ContactState::Parked => Some(Movement::Parked),
+            ContactState::Reversing => Some(Movement::Backing),
+            _ => None,
+        };
+        if let Some(value) = value {
+            return Some(Fact { value, source: state.source.clone() });
+        }
+    }
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let mut best: Option<(u8, Movement, &Source)> = None;
+    for fact in before() {
+        // Who passes has done with going backwards, and who drives on with its turn.
+        if matches!(fact.act, Act::Pass | Act::LaneChange)
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)
+        {
+            best = None;
+        }
+        if fact.act == Act::Follow
+            && best.as_ref().is_some_and(|(_, known, source)| {
+                matches!(known, Movement::LeftTurn | Movement::RightTurn)
+                    && !(words_of(fact).starts_with("approach") && words(source).starts_with("turning"))
+            })
+        {
+            best = None;
+        }
+        let Some((weight, value)) = weight(fact, column) else { continue };
+        // The last of those that say as much.
+        if best.as_ref().is_none_or(|(known, ..)| weight >= *known) {
+            best = Some((weight, value, &fact.source));
+        }
+    }
+    match (best, column) {
+        (Some((0, ..)) | None, Some(column)) if column != Movement::Stopped && column != Movement::Parked => {
+            Some(Fact::of_column(column, name))
+        }
+        (Some((_, value, source)), _) => Some(Fact { value, source: source.clone() }),
+        (None, Some(column)) => Some(Fact::of_column(column, name)),
+        _ => None,
+    }
+}
+
+/// What an act says of the movement, and how much.
+fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
+    Some(match (fact.act, fact.side) {
+        (Act::Turn, Some(LeftRight::Left)) => (3, Movement::LeftTurn),
+        (Act::Turn, Some(LeftRight::Right)) => (3, Movement::RightTurn),
+        (Act::Turn, None) => match column {
+            Some(Movement::LeftTurn) => (3, Movement::LeftTurn),
+            Some(Movement::RightTurn) => (3, Movement::RightTurn),
+            _ => return None,
+        },
+        (Act::UTurn, _) => (4, Movement::UTurn),
+        (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
+        (Act::Reverse, _) => (4, Movement::Backing),
+        (Act::LaneChange, _) if words_of(fact).starts_with("merg") => (3, Movement::Merging),
+        (Act::LaneChange, _) => (3, Movement::ChangingLanes),
+        (Act::Pass, _) if column == Some(Movement::Passing) => (3, Movement::Passing),
+        (Act::Pass, _) => (2, Movement::Passing),
+        (Act::PullOut, _) => (3, Movement::EnteringTraffic),
+        (Act::Park, _) => (3, Movement::ParkingManeuver),
+        (Act::PullOver, _) => (1, Movement::ParkingManeuver),
+        (Act::Swerve | Act::Drift, _) if column.is_none() => (1, Movement::LaneDeparture),
+        (Act::WrongWay, _) => (4, Movement::WrongWay),
+        (Act::Follow | Act::Slow | Act::SetOff | Act::Enter | Act::Accelerate | Act::RunRed | Act::RunStop, _) => {
+            (0, Movement::Straight)
+        }
+        _ => return None,
+    })
+}
