@@ -29,6 +29,15 @@ pub struct SourceArgs {
     pub filter: Option<String>,
 }
 
+/// Names the profile where neither an option nor a suite does.
+const PROFILE_VARIABLE: &str = "RECRASH_PROFILE";
+
+/// The options of who types none.
+pub fn defaults() -> Options {
+    let base = Options::default();
+    Options { profile: std::env::var(PROFILE_VARIABLE).unwrap_or(base.profile), ..base }
+}
+
 /// How many scenarios are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Budget {
@@ -88,8 +97,8 @@ pub struct SuiteArgs {
     #[command(flatten)]
     pub source: SourceArgs,
     /// System profile: open (every crash that can be told, by its incident's account), paper (the published method: templates),
-    /// or a TOML file. [default: open]
-    #[arg(long, value_name = "NAME|FILE", env = "RECRASH_PROFILE")]
+    /// or a TOML file. [default: open, or what the variable RECRASH_PROFILE names]
+    #[arg(long, value_name = "NAME|FILE")]
     pub profile: Option<String>,
     /// How records are chosen.
     #[command(flatten)]
@@ -232,7 +241,7 @@ impl SuiteArgs {
     /// # Errors
     /// As [`SuiteArgs::open`].
     pub fn open_or_begin(&self) -> Result<Suite, PipelineError> {
-        self.open(Suite::saved_options(&self.out)?.unwrap_or_default())
+        self.open(Suite::saved_options(&self.out)?.unwrap_or_else(defaults))
     }
 
     /// The suite a stage works on, with what was typed over what is saved there.

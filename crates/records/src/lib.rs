@@ -36,7 +36,7 @@ pub use parquet::ParquetWriter;
 pub use stream::{Bytes, sha256};
 pub use table::{Column, RecordTable, TableRows, record_table, write_csv};
 
-use recrash_model::profile::{Dedupe, SystemProfile, Tells};
+use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason};
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
 use row::Draft;
@@ -84,8 +84,8 @@ pub fn ingest(files: &[SourceText<'_>], profile: &SystemProfile) -> Result<Outco
 }
 
 /// Reads crash files and filters their records by what the profile can express, in the order of the paper: merge (where
-/// the profile asks for it), the user's filter, readable narratives, expressible movements and roads. A profile that goes by
-/// accounts gets every crash report: its reader merges and filters incidents.
+/// the profile asks for it), the user's filter, readable narratives, expressible movements and roads. For a profile that
+/// goes by accounts every crash report that is left is usable: what of it can be told, its reader says.
 ///
 /// Bad rows are rejected by row number and the rest goes on; an error means that a whole file is unusable.
 ///
@@ -139,8 +139,7 @@ pub fn ingest_sources(
         funnel.push(FunnelStep { name: "well formed".to_owned(), remaining: drafts.len(), lost });
     }
     let mut fates: Vec<Option<RejectReason>> = vec![None; drafts.len()];
-    let by_template = profile.records.tells == Tells::Templates;
-    if by_template && profile.records.dedupe == Dedupe::Incident {
+    if profile.records.dedupe == Dedupe::Incident {
         let (merged, remarks) = identity::merge(&mut drafts);
         diagnostics.extend(remarks);
         for (fate, merged) in fates.iter_mut().zip(merged) {
@@ -148,7 +147,7 @@ pub fn ingest_sources(
         }
         funnel.push(funnel::tally("one report an incident", &fates, &funnel));
     }
-    if let Some(filter) = options.filter.filter(|_| by_template) {
+    if let Some(filter) = options.filter {
         for (draft, fate) in drafts.iter().zip(fates.iter_mut()).filter(|(_, fate)| fate.is_none()) {
             *fate = (!filter.keeps(&draft.record)).then_some(RejectReason::FilteredOut);
         }

@@ -50,7 +50,7 @@ pub fn run(args: &BenchEmbedArgs, output: Output) -> Result<(), PipelineError> {
     if output.tables() {
         eprintln!("measuring {} times in turn, {} threads each", args.rounds, args.threads);
     }
-    let options = Options { model_dir: args.model_dir.clone(), ..args.source.over(Options::default()) };
+    let options = Options { model_dir: args.model_dir.clone(), ..args.source.over(crate::options::defaults()) };
     let bench = bench_embedding(&EmbedBenchRequest {
         options,
         count: usize::from(args.count),

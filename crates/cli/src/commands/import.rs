@@ -4,9 +4,7 @@ use super::simulate;
 use crate::output::{self, Output};
 use crate::screen::println;
 use clap::Args;
-use recrash_pipeline::{
-    FileRequest, ImportRequest, Imported, Options, Patience, PipelineError, SimulatorKind, SourceFormat,
-};
+use recrash_pipeline::{FileRequest, ImportRequest, Imported, Patience, PipelineError, SimulatorKind, SourceFormat};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -46,7 +44,7 @@ pub struct ImportArgs {
 pub fn run(args: &ImportArgs, output: Output) -> Result<(), PipelineError> {
     let target = args.out.as_deref();
     let imported = recrash_pipeline::import(&ImportRequest { source: &args.source, target, force: args.force })?;
-    let defaults = Options::default();
+    let defaults = crate::options::defaults();
     let replay = || {
         recrash_pipeline::simulate_file(&FileRequest {
             scenario: &imported.file,

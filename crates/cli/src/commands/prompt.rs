@@ -52,7 +52,7 @@ fn role(name: &str) -> Result<Role, String> {
 /// # Errors
 /// There is no such scenario or record.
 pub fn run(args: &PromptArgs, output: Output) -> Result<(), PipelineError> {
-    let base = Options::default();
+    let base = crate::options::defaults();
     // Models play their roles in suites that go by templates.
     let profile = args.profile.clone().unwrap_or_else(|| "paper".to_owned());
     let prompt = prompt(&PromptRequest {

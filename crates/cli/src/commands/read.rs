@@ -49,7 +49,7 @@ impl ReadArgs {
     fn options(&self) -> Options {
         let mut source = self.source.clone();
         source.records.extend(self.files.iter().cloned());
-        source.over(Options::default())
+        source.over(crate::options::defaults())
     }
 
     fn tables(&self, options: &Options) -> Result<Vec<(TableFormat, File)>, PipelineError> {

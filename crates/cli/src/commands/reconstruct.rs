@@ -50,7 +50,7 @@ impl ReconstructArgs {
     fn options(&self) -> Options {
         let mut source = self.source.clone();
         source.records.extend(self.files.iter().cloned());
-        source.over(Options::default())
+        source.over(crate::options::defaults())
     }
 }
 

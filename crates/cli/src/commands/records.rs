@@ -80,7 +80,7 @@ impl RecordsArgs {
 /// A file cannot be read or written.
 pub fn run(args: &RecordsArgs, output: Output) -> Result<(), PipelineError> {
     let saved = args.out.as_deref().map(Suite::saved_options).transpose()?.flatten();
-    let options = args.over(saved.unwrap_or_default());
+    let options = args.over(saved.unwrap_or_else(crate::options::defaults));
     let tables = args.tables(&options)?;
     let (records, diagnostics) = match &args.out {
         None => {

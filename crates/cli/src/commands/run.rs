@@ -11,8 +11,8 @@ use recrash_model::account::CrashType;
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
 use recrash_pipeline::{
-    AccountSummary, CaseSummary, ModelSummary, Options, PipelineError, RunSummary, Stage, Suite, Summary,
-    check_choices, run_stage,
+    AccountSummary, CaseSummary, ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices,
+    run_stage,
 };
 use std::path::Path;
 
@@ -21,7 +21,7 @@ use std::path::Path;
 /// # Errors
 /// The first stage's that stops.
 pub fn run(args: &SuiteArgs, output: Output) -> Result<(), PipelineError> {
-    let suite = args.open(Options::default())?;
+    let suite = args.open(crate::options::defaults())?;
     output::batch_remarks(&suite, output);
     check_choices(&suite)?;
     if output.tables() {

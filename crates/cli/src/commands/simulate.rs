@@ -8,9 +8,7 @@ use crate::table::{Cell, number, table};
 use clap::Args;
 use recrash_model::preventability::Preventability;
 use recrash_model::severity::{InjuryOutcome, Suffered};
-use recrash_pipeline::{
-    FileRequest, FileRun, Options, PipelineError, Stage, preventability, severity_of, simulate_file,
-};
+use recrash_pipeline::{FileRequest, FileRun, PipelineError, Stage, preventability, severity_of, simulate_file};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -58,7 +56,7 @@ pub fn run(args: &SimulateArgs, output: Output) -> Result<(), PipelineError> {
         let suite = SuiteArgs { out: scenario.clone(), ..args.suite.clone() };
         return stage::run(&suite, &[Stage::Simulate], output);
     }
-    let defaults = Options::default();
+    let defaults = crate::options::defaults();
     let profile = args.suite.profile.as_deref().unwrap_or(&defaults.profile);
     let result = simulate_file(&FileRequest {
         scenario,

@@ -2,11 +2,10 @@
 
 use crate::error::PipelineError;
 use crate::options::Options;
-use crate::reading::records::{RecordInput, read_filter};
+use crate::reading::records::RecordInput;
 use recrash_model::Diagnostic;
 use recrash_model::account::Account;
 use recrash_model::incident::Incident;
-use recrash_model::profile::Tells;
 use recrash_model::record::SourceFile;
 use serde::Serialize;
 use serde_json::Value;
@@ -44,11 +43,7 @@ pub struct ToldFact {
 /// # Errors
 /// A file cannot be read or is no crash file, or the filter or the mapping cannot be used.
 pub fn read_accounts(options: &Options) -> Result<Accounts, PipelineError> {
-    let mut profile = options.system_profile()?;
-    // Incidents are made of every row.
-    profile.records.tells = Tells::Accounts;
-    let filter = read_filter(options)?;
-    let read = RecordInput::read(options)?.ingest(&profile)?;
+    let (read, filter) = RecordInput::read(options)?.ingest_all(&options.system_profile()?)?;
     let mut incidents = recrash_reader::incidents(&read.value.records);
     if let Some(filter) = filter {
         incidents.retain(|incident| incident.leading().is_some_and(|report| filter.keeps(&report.record)));

@@ -7,7 +7,7 @@ use crate::options::{Options, RecordSource};
 use crate::reading::fetching::cached;
 use crate::reading::named;
 use recrash_model::Outcome;
-use recrash_model::profile::SystemProfile;
+use recrash_model::profile::{Dedupe, RecordRules, SystemProfile, Tells};
 use recrash_model::record::RecordSet;
 use recrash_records::{
     Bytes, Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, SAMPLE_CSV, SAMPLE_NAME, SourceBytes, TableRows,
@@ -94,9 +94,17 @@ impl RecordInput {
         all
     }
 
-    /// The filter of the options.
-    pub fn filter(&self) -> Option<&Filter> {
-        self.filter.as_ref()
+    /// Every crash report, for incidents, which are made of all of theirs; and the filter, which keeps incidents then.
+    ///
+    /// # Errors
+    /// As [`Self::ingest`].
+    pub fn ingest_all(
+        mut self,
+        profile: &SystemProfile,
+    ) -> Result<(Outcome<RecordSet>, Option<Filter>), PipelineError> {
+        let filter = self.filter.take();
+        let records = RecordRules { dedupe: Dedupe::None, tells: Tells::Accounts };
+        Ok((self.ingest(&SystemProfile { records, ..profile.clone() })?, filter))
     }
 
     /// The records. In memory is what is kept of the files.
@@ -170,15 +178,7 @@ pub enum TableFormat {
 /// A file cannot be read or is no crash file, or the filter, the mapping or the profile cannot be used.
 pub fn read_records(options: &Options) -> Result<Outcome<RecordSet>, PipelineError> {
     let profile = options.system_profile()?;
-    let input = RecordInput::read(options)?;
-    let filter = input.filter().cloned();
-    let mut read = input.ingest(&profile)?;
-    if let Some(filter) = filter {
-        // A profile that goes by accounts ingests every row, since an incident is made of all of its own.
-        let RecordSet { records, usable, .. } = &mut read.value;
-        usable.retain(|&position| filter.keeps(&records[position]));
-    }
-    Ok(read)
+    RecordInput::read(options)?.ingest(&profile)
 }
 
 /// Writes records as a table. Gives the number of rows.

@@ -20,16 +20,21 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let input = RecordInput::read(suite.options())?;
     let before: Option<AccountSet> = serde_json::from_slice(&suite.store().read_or_empty(names::ACCOUNTS)).ok();
     let mut report = work.whole(&inputs(suite, &input), || {
-        let filter = input.filter().cloned();
-        let Outcome { mut value, diagnostics } = input.ingest(suite.profile())?;
-        let mut files = vec![(names::RECORD_REMARKS.into(), to_json(&diagnostics))];
-        if suite.profile().records.tells == Tells::Accounts {
-            let (told, accounts) = tell(value, filter.as_ref(), work.progress);
-            value = told;
-            files.push((names::ACCOUNTS.into(), to_compact_json(&accounts)));
+        let profile = suite.profile();
+        if profile.records.tells == Tells::Templates {
+            let Outcome { value, diagnostics } = input.ingest(profile)?;
+            return Ok(vec![
+                (names::RECORDS.into(), to_compact_json(&value)),
+                (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
+            ]);
         }
-        files.push((names::RECORDS.into(), to_compact_json(&value)));
-        Ok(files)
+        let (Outcome { value, diagnostics }, filter) = input.ingest_all(profile)?;
+        let (told, accounts) = tell(value, filter.as_ref(), work.progress);
+        Ok(vec![
+            (names::RECORDS.into(), to_compact_json(&told)),
+            (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
+            (names::ACCOUNTS.into(), to_compact_json(&accounts)),
+        ])
     })?;
     report.diagnostics = suite.store().read_json(names::RECORD_REMARKS)?;
     if let (Some(before), Tells::Accounts) = (before, suite.profile().records.tells) {
