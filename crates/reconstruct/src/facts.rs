@@ -131,7 +131,17 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
         let (shown, observed) = order(first, ego_track, track, geometry.point, touch.time_s);
-        fact(CheckKind::Order, shown, first.words().to_owned(), observed);
+        if told.door && !shown {
+            // Who was there before a door opened: no door opens here.
+            list.push(Check {
+                kind: CheckKind::Order,
+                expected: first.words().to_owned(),
+                observed: format!("{observed}; doors of reconstructions stay shut"),
+                result: CheckResult::CannotBeShown,
+            });
+        } else {
+            fact(CheckKind::Order, shown, first.words().to_owned(), observed);
+        }
     }
     let mut held = |kind: CheckKind, expected: String, (result, observed): (CheckResult, String)| {
         list.push(Check { kind, expected, observed, result });
