@@ -10,7 +10,7 @@ pub enum Handles {
     /// Two numbers from -1 to 1: steering (left positive, 1 at the greatest wheel angle) and throttle (negative brakes).
     Pedals,
     /// Two numbers from -1 to 1: acceleration (1 the most the engine gives, -1 the most the brakes ask for), and the place
-    /// beside the route to steer to (1 is [`WIDEST_M`] to the right).
+    /// beside the route to steer to (1 is `WIDEST_M` to the right).
     Guided,
     /// A position in [`ACTS`].
     Acts,
