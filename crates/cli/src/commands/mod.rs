@@ -52,7 +52,7 @@ Exit codes: 0 done; 1 a file that is there could not be read, or one could not b
 const RUN_EXAMPLES: &str = "\
 Examples:
   recrash run                                            the built-in sample, into suite/
-  recrash run --records archive.csv --records current.csv --budget all --out corpus
+  recrash run --records archive.csv --records current.csv --budget all --tune-budget 1 --out corpus
                                                          every crash that can be told
   recrash run --records ads.csv --profile paper --out paper-suite
                                                          the published method
