@@ -25,8 +25,8 @@ Examples:
 
 The ego is the recorded driver. Checked are: contact, kind of partner, zones of both within a step, state of both at the
 contact, impact speeds, turns of both, lanes of both, signals and signs and whether they were obeyed, why the ego stood, from
-where the partner comes, who was first, and whether another threw the partner at the ego. A told fact that no scene can show yet
-(a door) counts as not checked. docs/models/reconstruction.md says how each is checked.";
+where the partner comes, who was first, and whether another threw the partner at the ego. A crash with a
+door is not told: doors stay shut. docs/models/reconstruction.md says how each is checked.";
 
 /// Options of `reconstruct`.
 #[derive(Debug, Clone, Args)]
@@ -122,7 +122,7 @@ fn types(read: &Accounts, retold: &[Retold]) {
     type_table(&type_shares(&read.accounts, retold));
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
     println!(
-        "not checked yet: doors, lanes for bicycles and buses, most of the others in the story, acts beside turns, stops and lanes"
+        "not checked yet: lanes for bicycles and buses, most of the others in the story, acts beside turns, stops and lanes"
     );
 }
 

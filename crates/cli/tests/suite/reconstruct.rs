@@ -10,7 +10,7 @@ fn shares_reasons_and_facts_are_shown_on_a_screen() {
     assert_eq!(code, 0, "{remarks}");
     for words in [
         "Readable incidents whose every checked fact is shown",
-        "not checked yet: doors",
+        "not checked yet: lanes for bicycles",
         "Front to rear",
         "Why the others are not",
         "facts per 100 words",

@@ -60,3 +60,13 @@ fn another_driver_takes_over_in_every_one() {
         }
     }
 }
+
+#[test]
+fn a_crash_with_a_door_is_not_told_while_doors_stay_shut() {
+    let mut tried = 0;
+    for (name, account) in accounts().into_iter().filter(|(_, account)| account.door.is_some()) {
+        tried += 1;
+        assert!(!reconstruct(&account).is_ok_and(|made| made.is_true()), "{name}");
+    }
+    assert!(tried >= 2, "{tried}");
+}
