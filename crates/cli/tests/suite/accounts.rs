@@ -133,3 +133,21 @@ fn a_model_plays_no_role_there() {
     let (code, _, remarks) = place.run(&["run", "--profile", "open", "--agent", "gpt-5-mini"]);
     assert!(code != 0 && remarks.contains("choose the profile paper"), "{code} {remarks}");
 }
+
+#[test]
+fn an_account_that_somebody_spoiled_stops_its_case_alone_until_it_is_mended() {
+    let place = made();
+    let id = cases(&place)[0]["id"].as_str().unwrap().to_owned();
+    let file = place.path(&format!("suite/3-narratives/{id}.account.json"));
+    let whole = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &whole[..whole.len() / 2]).unwrap();
+    let (code, _, remarks) = place.run(&RUN);
+    assert_eq!(code, 0, "{remarks}");
+    let failed: Vec<bool> = cases(&place).iter().map(|case| case["failure"].is_object()).collect();
+    assert_eq!(failed.iter().filter(|failed| **failed).count(), 1, "{remarks}");
+    assert!(failed[0] && remarks.contains(&format!("{id}.account.json")), "{remarks}");
+    std::fs::write(&file, whole).unwrap();
+    let (code, _, remarks) = place.run(&RUN);
+    assert_eq!(code, 0, "{remarks}");
+    assert!(cases(&place).iter().all(|case| case["failure"].is_null()), "{remarks}");
+}
