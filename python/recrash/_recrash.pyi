@@ -13,26 +13,30 @@ __all__ = [
     "ENDINGS",
     "FIELDS_ALWAYS",
     "FIELDS_OF_OTHER",
+    "METADRIVE_EGOS",
     "STATE",
     "TERMS",
     "WEIGHTS",
     "Accounts",
     "Batch",
+    "Points",
     "Run",
     "Scenario",
+    "Simulator",
     "Table",
     "__version__",
     "command",
     "held_out",
     "read_accounts",
     "read_records",
-    "run_all",
     "run_suite",
     "suite_options",
+    "tune_one",
 ]
 
 __version__: str
 EGOS: list[str]
+METADRIVE_EGOS: list[str]
 ENDINGS: list[str]
 TERMS: list[str]
 WEIGHTS: list[float]
@@ -62,7 +66,18 @@ class Scenario:
     def to_json(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...
     def with_seed(self, seed: int) -> Scenario: ...
-    def run(self, ego: object | None = None, *, seed: int | None = None, profile: str | None = None) -> Run: ...
+    def run(
+        self,
+        ego: object | None = None,
+        *,
+        seed: int | None = None,
+        profile: str | None = None,
+        simulator: str | None = None,
+        python: str | PathLike[str] | None = None,
+    ) -> Run: ...
+    @staticmethod
+    def _restore(json: str, remarks: Sequence[str], crash_type: str | None) -> Scenario: ...
+    def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
 
@@ -108,6 +123,11 @@ class Run:
     def tracks(self) -> Table: ...
     @property
     def drawing(self) -> dict[str, Any] | None: ...
+    @property
+    def series(self) -> dict[str, Any]: ...
+    def picture(self) -> str | None: ...
+    def _repr_html_(self) -> str: ...
+    def _repr_svg_(self) -> str | None: ...
     def __copy__(self) -> Run: ...
     def __deepcopy__(self, memo: object, /) -> Run: ...
     def to_dict(self) -> dict[str, Any]: ...
@@ -116,6 +136,8 @@ class Run:
 class Table:
     @staticmethod
     def of_rows(rows: list[dict[str, Any]]) -> Table: ...
+    @staticmethod
+    def concat(tables: Sequence[Table]) -> Table: ...
     @property
     def column_names(self) -> list[str]: ...
     @property
@@ -137,6 +159,7 @@ class Accounts:
     @property
     def remarks(self) -> list[str]: ...
     def reconstruct(self) -> tuple[list[Scenario], Table]: ...
+    def part(self, begin: int, end: int) -> Accounts: ...
     def __len__(self) -> int: ...
     def __getitem__(self, number: int, /) -> dict[str, Any]: ...
 
@@ -190,9 +213,45 @@ class Batch:
     @property
     def episode_returns(self) -> NDArray[np.float64]: ...
 
+@final
+class Points:
+    def __new__(
+        cls,
+        scenarios: Sequence[Scenario],
+        vary: Sequence[str],
+        ego: str | None = None,
+        profile: str | None = None,
+        seed: int = 0,
+    ) -> Points: ...
+    @property
+    def ego(self) -> str: ...
+    def rows(self, begin: int, end: int, threads: int = 0) -> Table: ...
+    def scenario(self, number: int) -> Scenario: ...
+
+@final
+class Simulator:
+    def __new__(
+        cls,
+        ego: str | None = None,
+        profile: str | None = None,
+        simulator: str | None = None,
+        python: str | PathLike[str] | None = None,
+        threads: int | None = None,
+    ) -> Simulator: ...
+    @property
+    def ego(self) -> str: ...
+    def run_all(self, scenarios: Sequence[Scenario]) -> list[Run | Exception]: ...
+
+def tune_one(
+    scenario: Scenario,
+    ego: str | None = None,
+    profile: str | None = None,
+    budget: int = 160,
+    seed: int = 0,
+    searcher: str = "cma",
+) -> tuple[Scenario, Run, dict[str, Any]]: ...
 def command(words: Sequence[str]) -> int: ...
 def held_out(scenarios: Sequence[Scenario], share: float) -> list[bool]: ...
-def run_all(scenarios: Sequence[Scenario], ego: str | None = None, profile: str | None = None) -> list[Run | Exception]: ...
 def read_accounts(
     files: Sequence[str | PathLike[str]] | None = None,
     filter: str | None = None,
@@ -214,5 +273,6 @@ def run_suite(
     replace: bool = False,
     trust: bool = False,
     until: str | None = None,
+    python: str | PathLike[str] | None = None,
 ) -> None: ...
 def suite_options(folder: str | PathLike[str]) -> dict[str, Any]: ...

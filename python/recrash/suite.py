@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from recrash import _recrash
 from recrash._recrash import Accounts, Run, Scenario, Table
+from recrash._show import StageBars, counted, suite_html, wants_progress
 from recrash.errors import EgoError, InputError, RecrashError
 
 #: A file's or folder's path.
 Location = str | os.PathLike[str]
+#: Columns of a row of :func:`test` behind those of the scenario.
+RESULTS = (
+    "ego", "failed", "termination", "duration_s", "findings", "min_gap_m", "closing_speed_mps", "delta_v_mps",
+    "state_hash", "error",
+)  # fmt: skip
+#: Scenarios that are run between two looks at Ctrl-C.
+AT_ONCE = 256
+#: Rollouts of a sweep between two looks at Ctrl-C.
+SWEEP_CHUNK = 4096
 #: Told ``(stage, units, begins)``: a stage begins with so many units of work, or so many of them are done.
 Progress = Callable[[str, int, bool], None]
 
@@ -83,48 +92,139 @@ def _is_scenario(file: Path) -> bool:
     return isinstance(content, dict) and str(content.get("format", "")).startswith("recrash.scenario/")
 
 
-def runs(scenarios: Sequence[Scenario], ego: object = None, *, profile: str | None = None) -> list[Run | RecrashError]:
+def runs(
+    scenarios: Sequence[Scenario],
+    ego: object = None,
+    *,
+    profile: str | None = None,
+    simulator: str | None = None,
+    python: Location | None = None,
+    threads: int | None = None,
+    progress: bool | None = None,
+) -> list[Run | RecrashError]:
     """Run scenarios with one ego, in their order. What one fails of stands in its place, and the others go on.
 
-    An ego by name runs on all cores. A Python object is called from this thread, a class is made anew for each run.
+    An ego by name runs on all cores, or on as many ``threads``. A Python object is called from this thread, a class is made anew
+    for each run. The other arguments are those of :func:`test`.
     """
+    shown = wants_progress(progress)
     if ego is None or isinstance(ego, str):
-        return [_as_result(each) for each in _recrash.run_all(scenarios, ego, profile)]
+        host = _recrash.Simulator(ego, profile, simulator, python, threads)
+        # Few enough that Ctrl-C is heard soon.
+        parts = [scenarios[begin : begin + AT_ONCE] for begin in range(0, len(scenarios), AT_ONCE)] or [scenarios]
+        done = (host.run_all(part) for part in parts)
+        told = counted(done, "test", len(parts), shown and len(parts) > 1)
+        return [as_result(each) for part in told for each in part]
     results: list[Run | RecrashError] = []
-    for scenario in scenarios:
+    for scenario in counted(scenarios, "test", len(scenarios), shown):
         try:
-            results.append(scenario.run(ego, profile=profile))
+            results.append(scenario.run(ego, profile=profile, simulator=simulator))
         except EgoError as error:
             results.append(error)
     return results
 
 
-def _as_result(each: Run | Exception) -> Run | RecrashError:
+def as_result(each: Run | Exception) -> Run | RecrashError:
+    """Keep what a scenario failed of as a value; anything else is raised."""
     if isinstance(each, (Run, RecrashError)):
         return each
     raise each
 
 
-def test(scenarios: Location | Iterable[Scenario | Location], ego: object = None, *, profile: str | None = None) -> Table:
+def test(
+    scenarios: Location | Iterable[Scenario | Location],
+    ego: object = None,
+    *,
+    profile: str | None = None,
+    simulator: str | None = None,
+    python: Location | None = None,
+    threads: int | None = None,
+    progress: bool | None = None,
+) -> Table:
     """Test an ego in scenarios. A row each: how its run ended, what it failed of, how near and how bad it was.
 
     ``ego`` is a name (see ``recrash.EGOS``), a command (``"cmd:./my_stack"``), or a Python object: a function of an
     observation, or a class or object with ``control(observation)`` and, if it likes, ``reset(world)`` and ``end(ending)``.
     An ego that raises fails its scenario, with ``error`` saying what and where; the rest goes on.
+
+    ``simulator="metadrive"`` runs MetaDrive's own egos (``recrash.METADRIVE_EGOS``) in MetaDrive; ``python`` is the interpreter
+    that has it, this one without. ``progress`` shows a bar, by itself on a terminal and in a notebook.
     """
     loaded = load_scenarios(scenarios)
-    return Table.of_rows(
-        [_row(scenario, result) for scenario, result in zip(loaded, runs(loaded, ego, profile=profile), strict=True)]
-    )
+    options: dict[str, Any] = {"simulator": simulator, "python": python, "threads": threads, "progress": progress}
+    results = runs(loaded, ego, profile=profile, **options)
+    return Table.of_rows([row_of(scenario, result) for scenario, result in zip(loaded, results, strict=True)])
 
 
 test.__test__ = False  # type: ignore[attr-defined]  # pytest takes it for one of its own.
 
 
-def _row(scenario: Scenario, result: Run | RecrashError) -> dict[str, Any]:
-    row: dict[str, Any] = {"scenario": scenario.id, "template": scenario.template}
+def sweep(
+    scenarios: Location | Iterable[Scenario | Location],
+    rollouts: int,
+    *,
+    vary: Sequence[str] = (),
+    ego: str | None = None,
+    profile: str | None = None,
+    seed: int = 0,
+    progress: bool | None = None,
+) -> Table:
+    """Run very many rollouts around scenarios, each with other numbers, on all cores. A row each, as ``docs/sweep.md`` has it.
+
+    ``vary`` are numbers of the scenarios and their ranges (``"/partners/0/speed_mps=5:12"``); without it what a search for
+    failures would move. Rollout by rollout the scenarios take turns. A rollout is made of its number and the ``seed`` alone.
+    :func:`recrash.ray.sweep` does the same on a cluster.
+    """
+    points = _recrash.Points(load_scenarios(scenarios), list(vary), ego, profile, seed)
+    ranges = [(begin, min(begin + SWEEP_CHUNK, rollouts)) for begin in range(0, rollouts, SWEEP_CHUNK)] or [(0, 0)]
+    shown = wants_progress(progress)
+    return Table.concat([points.rows(*each) for each in counted(ranges, "sweep", len(ranges), shown)])
+
+
+def tune(
+    scenarios: Location | Iterable[Scenario | Location],
+    ego: str | None = None,
+    *,
+    profile: str | None = None,
+    budget: int = 160,
+    seed: int = 0,
+    searcher: str = "cma",
+    progress: bool | None = None,
+) -> tuple[list[Scenario], Table]:
+    """Search the nearest failure of an ego around each scenario: the tuned scenarios, and a row for each.
+
+    ``budget`` is the number of points that are tried at most, ``searcher`` is ``cma`` or ``halton``. A scenario in which nothing
+    can vary stays as it is, with ``error`` saying so. Suites are tuned as they are made (:func:`run`), where the search also
+    keeps what their records tell.
+    """
+    loaded = load_scenarios(scenarios)
+    tuned: list[Scenario] = []
+    rows = []
+    for scenario in counted(loaded, "tune", len(loaded), wants_progress(progress)):
+        made, row = tune_one(scenario, ego, profile, budget, seed, searcher)
+        tuned.append(made)
+        rows.append(row)
+    return tuned, Table.of_rows(rows)
+
+
+def tune_one(
+    scenario: Scenario, ego: str | None, profile: str | None, budget: int, seed: int, searcher: str
+) -> tuple[Scenario, dict[str, Any]]:
+    """Tune one scenario; its row says how its run ends then, and what was moved."""
+    try:
+        made, run, log = _recrash.tune_one(scenario, ego, profile, budget, seed, searcher)
+    except RecrashError as error:
+        return scenario, {**row_of(scenario, error), "points": 0, "moved": None}
+    values = log["points"][log["best"]]["values"]
+    moved = {parameter["pointer"]: value for parameter, value in zip(log["parameters"], values, strict=True)}
+    return made, {**row_of(scenario, run), "points": len(log["points"]), "moved": moved}
+
+
+def row_of(scenario: Scenario, result: Run | RecrashError) -> dict[str, Any]:
+    """Put a run, or what a scenario failed of, as a row of :func:`test`."""
+    row: dict[str, Any] = {"scenario": scenario.id, "template": scenario.template, "crash_type": scenario.crash_type}
     if isinstance(result, RecrashError):
-        return {**row, "error": str(result)}
+        return {**row, **dict.fromkeys(RESULTS), "error": str(result)}
     severity = result.severity
     failures = [finding["kind"] for finding in result.findings]
     return {
@@ -175,19 +275,27 @@ class Suite:
         """The scenarios, tuned where they were tuned."""
         return load_scenarios(self.folder)
 
-    def test(self, ego: object = None, *, profile: str | None = None) -> Table:
-        """Test an ego in the suite's scenarios, see :func:`test`. Nothing in the folder changes.
+    def test(self, ego: object = None, *, profile: str | None = None, **options: Any) -> Table:
+        """Test an ego in the suite's scenarios, ``options`` as of :func:`test`. Nothing in the folder changes.
 
         Without ``ego`` the suite's own drives; a program that the suite names is not started, since a suite may be anybody's.
         """
         own = self.options.get("ego")
-        if ego is None and own is not None and own not in _recrash.EGOS:
+        if ego is None and own is not None and own not in {*_recrash.EGOS, *_recrash.METADRIVE_EGOS}:
             raise InputError(f"{self.folder}: the suite wants to start {own!r} as the ego; name it yourself if you trust it")
-        return test(self.scenarios(), own if ego is None else ego, profile=profile or self.options["profile"])
+        options.setdefault("simulator", self.options.get("simulator") if ego is None else None)
+        return test(self.scenarios(), own if ego is None else ego, profile=profile or self.options["profile"], **options)
 
-    def report(self) -> Path:
-        """The page of the suite."""
-        return self.folder / "report.html"
+    def report(self, *, show: bool = False) -> Path:
+        """The page of the suite; ``show`` opens it in a browser."""
+        file = self.folder / "report.html"
+        if not file.is_file():
+            raise InputError(f"{self.folder}: its report is not made yet; run the suite to its end")
+        if show:
+            import webbrowser
+
+            webbrowser.open(file.resolve().as_uri())
+        return file
 
     def __len__(self) -> int:
         return len(self.summary["cases"])
@@ -196,9 +304,7 @@ class Suite:
         return f"Suite({str(self.folder)!r})"
 
     def _repr_html_(self) -> str:
-        from recrash._show import table_html
-
-        return table_html(self.cases)
+        return suite_html(self)
 
 
 def run(
@@ -210,12 +316,14 @@ def run(
     replace: bool = False,
     trust: bool = False,
     until: str | None = None,
+    python: Location | None = None,
     **options: Any,
 ) -> Suite:
     """Make a suite in a folder, or go on with the one there; finished work is kept.
 
     ``files`` are crash files; the built-in sample without any. ``options`` are those of the command, with underscores:
-    ``budget=20, ego="idm", seed=1, tune_budget=160``. ``progress`` shows a bar (by itself on a terminal and in a
+    ``budget=20, ego="idm", seed=1, tune_budget=160, simulator="metadrive"``; ``python`` is the interpreter that has MetaDrive,
+    this one without. ``progress`` shows a bar (by itself on a terminal and in a
     notebook), or is called with what happens. Ctrl-C stops between two units of work, and nothing is half written.
     """
     chosen = _files(files)
@@ -223,12 +331,10 @@ def run(
     trust = trust or options.get("ego") is not None
     if chosen is not None:
         options["records"] = {"files": [os.fspath(file) for file in chosen]}
-    if callable(progress):
-        listener: Progress | None = progress
-    else:
-        from recrash._show import progress_bar
-
-        shown = sys.stderr.isatty() or "ipykernel" in sys.modules if progress is None else progress
-        listener = progress_bar() if shown else None
-    _recrash.run_suite(folder, options, listener, threads, replace, trust, until)
+    bars = StageBars()
+    listener: Progress | None = progress if callable(progress) else bars if wants_progress(progress) else None
+    try:
+        _recrash.run_suite(folder, options, listener, threads, replace, trust, until, python)
+    finally:
+        bars.close()
     return Suite(folder)

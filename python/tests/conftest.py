@@ -9,6 +9,12 @@ from pathlib import Path
 
 import pytest
 
+# Plots are drawn into memory.
+os.environ.setdefault("MPLBACKEND", "Agg")
+# Ray asks nobody about its use, and warns of nothing that is to come.
+os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
+
 CASES = Path(__file__).parents[2] / "cases"
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 

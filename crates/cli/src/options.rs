@@ -109,8 +109,8 @@ pub struct SuiteArgs {
     /// Python interpreter for MetaDrive.
     #[arg(long, value_name = "FILE", env = "RECRASH_PYTHON", default_value = "python3")]
     pub python: PathBuf,
-    /// System under test: metadrive-idm, idm, reference, a program of yours as 'cmd:PROGRAM ARGS', which speaks JSON lines as
-    /// docs/ego-protocol.md says, or a Python class or function as py:MODULE:NAME (docs/python.md). [default: the profile's]
+    /// System under test: metadrive-idm, idm, reference, metadrive-expert (on metadrive), a program of yours as
+    /// 'cmd:PROGRAM ARGS', which speaks JSON lines as docs/ego-protocol.md says, or a Python class or function as py:MODULE:NAME (docs/python.md). [default: the profile's]
     #[arg(long, value_name = "NAME|cmd:PROGRAM|py:MODULE:NAME")]
     pub ego: Option<String>,
     /// Seconds such a program may take for an answer; six times that to start.

@@ -42,6 +42,7 @@ impl Options {
 /// MetaDrive, ready to run scenarios. It may be shared between threads.
 pub struct Metadrive {
     options: Options,
+    drive: Drive,
     state: Mutex<State>,
     returned: Condvar,
     versions: (String, String),
@@ -69,7 +70,14 @@ impl Metadrive {
         let hello = worker.hello();
         let versions = (hello.python.clone(), hello.metadrive.clone().unwrap_or_default());
         let state = Mutex::new(State { idle: vec![worker], busy: 0 });
-        Ok(Self { options, state, returned: Condvar::new(), versions })
+        Ok(Self { options, drive: Drive::MetadriveIdm, state, returned: Condvar::new(), versions })
+    }
+
+    /// The same pool with another driver in the ego's seat where it stands for a simulator with an ego; without, MetaDrive's IDM
+    /// policy.
+    #[must_use]
+    pub fn driven_by(self, drive: Drive) -> Self {
+        Self { drive, ..self }
     }
 
     /// Versions of Python and of MetaDrive.
@@ -163,7 +171,7 @@ impl Metadrive {
     }
 }
 
-/// With MetaDrive's own IDM policy as the ego.
+/// With the driver that was chosen as the ego.
 impl Simulator for Metadrive {
     fn name(&self) -> &str {
         "MetaDrive"
@@ -174,11 +182,11 @@ impl Simulator for Metadrive {
     }
 
     fn ego(&self) -> &str {
-        Drive::MetadriveIdm.name()
+        self.drive.name()
     }
 
     fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError> {
-        self.simulate(scenario, &Drive::MetadriveIdm).map_err(|error| RunError::new(scenario, error))
+        self.simulate(scenario, &self.drive).map_err(|error| RunError::new(scenario, error))
     }
 }
 

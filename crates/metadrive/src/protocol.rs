@@ -7,7 +7,7 @@ use recrash_model::rollout::{
     ActorState, ActorTrack, Event, EventKind, ROLLOUT_FORMAT, Role, Rollout, STEP_S, Termination, TerminationKind,
 };
 use recrash_model::vehicle::VehicleSpec;
-use recrash_plan::metadrive::{Actor, NO_HANDOVER, Planned, PlannedPart, Run, handover};
+use recrash_plan::metadrive::{Actor, EgoPolicy, NO_HANDOVER, Planned, PlannedPart, Run, handover};
 use recrash_roads::Scenario;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 pub enum Drive {
     /// MetaDrive's own IDM policy, at the scenario's target speed.
     MetadriveIdm,
+    /// The PPO expert that MetaDrive ships: a network over its own lasers and navigation, which knows no target speed.
+    MetadriveExpert,
     /// The recorded driver to the end, where there is one; else MetaDrive's own policy.
     Recorded,
     /// Given controls, steering and throttle per step of 0.1 s, both -1 to 1; none behind their end. Only a contact or
@@ -24,9 +26,14 @@ pub enum Drive {
 }
 
 impl Drive {
-    pub(crate) fn name(&self) -> &'static str {
+    /// Policies of MetaDrive's own that can be a system under test.
+    pub const POLICIES: [Self; 2] = [Self::MetadriveIdm, Self::MetadriveExpert];
+
+    /// Its name.
+    pub fn name(&self) -> &'static str {
         match self {
             Self::MetadriveIdm => "metadrive-idm",
+            Self::MetadriveExpert => "metadrive-expert",
             Self::Recorded => "recorded",
             Self::OpenLoop(_) => "open-loop",
         }
@@ -117,6 +124,9 @@ pub(crate) fn run_spec(scenario: &Scenario, drive: &Drive) -> Result<Run, String
     let mut run = Run::new(scenario, handover)?;
     if let Drive::OpenLoop(controls) = drive {
         run.ego.controls = Some(controls.clone());
+    }
+    if *drive == Drive::MetadriveExpert {
+        run.ego.policy = Some(EgoPolicy::Expert);
     }
     Ok(run)
 }

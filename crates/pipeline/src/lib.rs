@@ -50,11 +50,12 @@ pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Column, Distribution, FILTER_HELP, RecordTable, TableRows, distributions, record_table};
 pub use recrash_report::comparison::{github as github_annotations, sentence as comparison_sentence};
+pub use recrash_report::picture;
 pub use recrash_roads::scenario_schema as schema;
 pub use simulators::external::{
     EGO_COMMAND_PREFIX, EgoCommand, EgoFault, ExternalEgo, Patience, told_at_reset, told_at_step,
 };
-pub use simulators::{Simulator, SimulatorKind, start_simulator};
+pub use simulators::{Simulator, SimulatorKind, metadrive_egos, start_simulator};
 pub use stages::{
     AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary,
     SelectionStudy, StageReport, StrategyStudy, Summary, run_stage, unfaithful,
@@ -87,5 +88,6 @@ pub use tools::prompting::{Prompt, PromptRequest, prompt};
 pub use tools::reconstructing::write_reconstructions;
 pub use tools::running::run_many;
 #[cfg(feature = "parquet")]
-pub use tools::sweep::{Sweep, SweepRequest, SweepSummary, SweptScenario, Vary};
+pub use tools::sweep::{Sweep, SweepPoints, SweepRequest, SweepSummary, SweptScenario, Vary};
 pub use tools::testing::{TestRequest, read_results, test};
+pub use tools::tuning::{TunedScenario, tune_scenario};

@@ -9,6 +9,8 @@ mod errors;
 mod reading;
 mod run;
 mod scenario;
+mod search;
+mod simulator;
 mod suite;
 mod table;
 
@@ -24,13 +26,16 @@ fn command(py: Python<'_>, words: Vec<std::ffi::OsString>) -> u8 {
 fn _recrash(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("EGOS", recrash_sim::Ego::NAMES)?;
+    module.add("METADRIVE_EGOS", recrash_pipeline::metadrive_egos())?;
     module.add_class::<scenario::Scenario>()?;
     module.add_class::<run::Run>()?;
     module.add_class::<table::Table>()?;
     module.add_class::<reading::Accounts>()?;
     module.add_class::<batch::Batch>()?;
+    module.add_class::<search::Points>()?;
+    module.add_class::<simulator::Simulator>()?;
+    module.add_function(wrap_pyfunction!(search::tune_one, module)?)?;
     module.add_function(wrap_pyfunction!(command, module)?)?;
-    module.add_function(wrap_pyfunction!(scenario::run_all, module)?)?;
     module.add_function(wrap_pyfunction!(reading::read_accounts, module)?)?;
     module.add_function(wrap_pyfunction!(reading::read_records, module)?)?;
     module.add_function(wrap_pyfunction!(suite::run_suite, module)?)?;

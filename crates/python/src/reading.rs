@@ -75,6 +75,27 @@ impl Accounts {
         Ok((scenarios, table.cast::<Table>()?.get().copy()))
     }
 
+    /// Accounts `begin` to `end` (which is not among them), without what the files say besides: to share work out.
+    fn part(&self, begin: usize, end: usize) -> Self {
+        let all = &self.accounts.accounts;
+        let end = end.min(all.len());
+        Self::alone(all[begin.min(end)..end].to_vec())
+    }
+
+    /// Pickled as the JSON of its accounts, so that it goes from process to process; what the files say besides stays behind.
+    #[allow(clippy::type_complexity, reason = "Python's protocol: a callable and its arguments")]
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        let restore = py.get_type::<Self>().getattr("_restore")?;
+        let accounts = serde_json::to_string(&self.accounts.accounts).map_err(|error| input(py, error))?;
+        Ok((restore, (accounts,)))
+    }
+
+    /// What `pickle` calls.
+    #[staticmethod]
+    fn _restore(py: Python<'_>, accounts: &str) -> PyResult<Self> {
+        serde_json::from_str(accounts).map(Self::alone).map_err(|error| input(py, error))
+    }
+
     fn __len__(&self) -> usize {
         self.accounts.accounts.len()
     }
@@ -93,6 +114,14 @@ impl Accounts {
     fn __repr__(&self) -> String {
         let (reports, incidents, accounts) = (self.reports(), self.incidents(), self.accounts.accounts.len());
         format!("Accounts({accounts} accounts of {incidents} incidents in {reports} reports)")
+    }
+}
+
+impl Accounts {
+    /// Accounts without their files.
+    fn alone(accounts: Vec<Account>) -> Self {
+        let (files, incidents, diagnostics) = (Vec::new(), Vec::new(), Vec::new());
+        Self { accounts: recrash_pipeline::Accounts { files, reports: 0, incidents, accounts, diagnostics } }
     }
 }
 

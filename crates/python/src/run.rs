@@ -182,6 +182,31 @@ impl Run {
         Table::of_columns(py, columns)
     }
 
+    /// Time series for plots: `time_s`, `ego_speed_mps`, `ego_acceleration_mps2`, and for each partner `id`, `speed_mps`,
+    /// `acceleration_mps2`, `gap_m`, `centre_distance_m` and `ttc_s` (`None` where the two would never touch).
+    #[getter]
+    fn series<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let series = py.detach(|| recrash_metrics::series(&self.run.rollout));
+        to_python(py, &series)
+    }
+
+    /// A still picture (SVG): the roads, everybody's way, and where all are at the start and at the first contact or the end;
+    /// `None` where the scenario is not known.
+    fn picture(&self, py: Python<'_>) -> Option<String> {
+        let scenario = self.scenario.as_ref()?;
+        Some(py.detach(|| recrash_pipeline::picture(scenario, &self.run.rollout)))
+    }
+
+    /// Its picture for a notebook.
+    fn _repr_svg_(&self, py: Python<'_>) -> Option<String> {
+        self.picture(py)
+    }
+
+    /// Its replay for a notebook.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("recrash._show")?.call_method1("run_html", (slf,))
+    }
+
     /// What is drawn of the road: areas and lines of points.
     #[getter]
     fn drawing<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -1,19 +1,17 @@
 //! Scenarios: read, checked, run and judged.
 
 use crate::ego::PythonEgo;
-use crate::errors::{Kind, error, input, of_library, to_json};
+use crate::errors::{Kind, error, of_library, to_json};
 use crate::run::Run;
+use crate::simulator::Host;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyType};
 use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
-use recrash_pipeline::{
-    Options, Patience, PipelineError, Simulator, SimulatorKind, load_profile, parse_scenario, read_scenario, run_many,
-    start_simulator,
-};
+use recrash_pipeline::{Options, PipelineError, load_profile, parse_scenario, read_scenario};
 use recrash_roads::write_draft;
 use recrash_sim::{RolloutRecorder, Runner};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A checked scenario. It never changes.
@@ -108,31 +106,40 @@ impl Scenario {
         Ok(Self::of(checked.value, self.remarks.clone(), self.crash_type.clone()))
     }
 
-    /// Runs it and judges the run. `ego` is a name, a command, or an object that drives.
-    #[pyo3(signature = (ego=None, *, seed=None, profile=None))]
+    /// Runs it and judges the run. `ego` is a name, a command, or an object that drives; `simulator` is `native` or `metadrive`,
+    /// `python` the interpreter that has MetaDrive (this one without). MetaDrive takes seconds to start: `recrash.test` starts it
+    /// once for many scenarios.
+    #[pyo3(signature = (ego=None, *, seed=None, profile=None, simulator=None, python=None))]
     fn run(
         &self,
         py: Python<'_>,
         ego: Option<&Bound<'_, PyAny>>,
         seed: Option<u64>,
         profile: Option<&str>,
+        simulator: Option<&str>,
+        python: Option<PathBuf>,
     ) -> PyResult<Run> {
         if let Some(seed) = seed {
-            return self.with_seed(py, seed)?.run(py, ego, None, profile);
+            return self.with_seed(py, seed)?.run(py, ego, None, profile, simulator, python);
         }
+        let host = Host::of(py, simulator, python)?;
         match ego.filter(|ego| !ego.is_instance_of::<PyString>()) {
-            Some(object) => self.run_with(object, profile),
+            Some(object) => host.must_be_native(py).and_then(|()| self.run_with(object, profile)),
             None => {
                 let name: Option<String> = ego.map(|ego| ego.extract()).transpose()?;
                 let judged = py.detach(|| {
                     let profile = system_profile(profile)?;
-                    let ego = name.as_deref().unwrap_or(&profile.ego);
-                    let simulator = simulator(ego)?;
+                    let simulator = host.start(name.as_deref().unwrap_or(&profile.ego), 1)?;
                     Ok(recrash_lab::run_scenario(&self.scenario, &simulator, &profile, None)?)
                 });
-                self.judged(judged.map_err(|failed: PipelineError| of_library(py, &failed))?)
+                self.judged(judged.map_err(|failed: PipelineError| host.failed(py, &failed))?)
             }
         }
+    }
+
+    /// Its replay for a notebook, with the recorded driver.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("recrash._show")?.call_method1("scenario_html", (slf,))
     }
 
     fn __repr__(&self) -> String {
@@ -169,6 +176,11 @@ impl Scenario {
         Self { scenario: Arc::new(scenario), remarks, crash_type }
     }
 
+    /// The type of the account it was reconstructed from.
+    pub fn known_type(&self) -> Option<String> {
+        self.crash_type.clone()
+    }
+
     /// A run of it.
     pub fn judged(&self, run: JudgedRun) -> PyResult<Run> {
         Ok(Run::of(run, Some(Arc::clone(&self.scenario))))
@@ -190,36 +202,4 @@ impl Scenario {
 /// A profile by name or path; that of suites where none is named.
 pub fn system_profile(name: Option<&str>) -> Result<SystemProfile, PipelineError> {
     load_profile(name.unwrap_or(&Options::default().profile))
-}
-
-/// The native simulator with an ego by name.
-fn simulator(ego: &str) -> Result<Box<dyn Simulator>, PipelineError> {
-    start_simulator(SimulatorKind::Native, ego, Path::new("python3"), 1, Patience::default())
-}
-
-/// Runs many scenarios with an ego by name, on all cores. What one fails of stands in its place.
-#[pyfunction]
-#[pyo3(signature = (scenarios, ego=None, profile=None))]
-pub fn run_all<'py>(
-    py: Python<'py>,
-    scenarios: Vec<Bound<'py, Scenario>>,
-    ego: Option<&str>,
-    profile: Option<&str>,
-) -> PyResult<Vec<Bound<'py, PyAny>>> {
-    if scenarios.is_empty() {
-        return Err(input(py, "there is no scenario to run"));
-    }
-    let each: Vec<&Scenario> = scenarios.iter().map(Bound::get).collect();
-    let all: Vec<&recrash_roads::Scenario> = each.iter().map(|scenario| &*scenario.scenario).collect();
-    let done = py.detach(|| {
-        let profile = system_profile(profile)?;
-        let simulator = simulator(ego.unwrap_or(&profile.ego))?;
-        Ok(run_many(&all, &simulator, &profile))
-    });
-    let done = done.map_err(|failed: PipelineError| of_library(py, &failed))?;
-    let result = |(scenario, done): (&&Scenario, Result<JudgedRun, PipelineError>)| match done {
-        Ok(run) => Ok(Bound::new(py, scenario.judged(run)?)?.into_any()),
-        Err(failed) => Ok(of_library(py, &failed).into_value(py).into_bound(py).into_any()),
-    };
-    each.iter().zip(done).map(result).collect()
 }

@@ -1,6 +1,7 @@
 //! Suites: run stage by stage, with progress and Ctrl-C.
 
 use crate::errors::{input, of_library, to_json, to_python};
+use crate::simulator::interpreter;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use recrash_pipeline::{
@@ -62,7 +63,7 @@ fn options(py: Python<'_>, chosen: &Bound<'_, PyDict>) -> PyResult<Options> {
 
 /// Makes a suite, or goes on with one. `progress(stage, units, begins)` is called as work goes on.
 #[pyfunction]
-#[pyo3(signature = (folder, chosen, progress=None, threads=None, replace=false, trust=false, until=None))]
+#[pyo3(signature = (folder, chosen, progress=None, threads=None, replace=false, trust=false, until=None, python=None))]
 #[allow(clippy::too_many_arguments, reason = "one for each argument of the Python function")]
 pub fn run_suite(
     py: Python<'_>,
@@ -73,6 +74,7 @@ pub fn run_suite(
     replace: bool,
     trust: bool,
     until: Option<&str>,
+    python: Option<PathBuf>,
 ) -> PyResult<()> {
     let options = options(py, chosen)?;
     let last = match until {
@@ -82,7 +84,8 @@ pub fn run_suite(
         })?,
     };
     let permissions = Permissions { replace, trust, ..Permissions::default() };
-    let resources = Resources { threads, permissions, ..Resources::default() };
+    let python = interpreter(py, python)?;
+    let resources = Resources { threads, permissions, python, ..Resources::default() };
     let (sender, mut receiver) = channel();
     let reporter = Reporter { sender: Mutex::new(sender), stop: AtomicBool::new(false) };
     let work = || {

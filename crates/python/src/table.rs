@@ -5,7 +5,7 @@ use arrow_array::builder::{BooleanBuilder, Float64Builder, Int64Builder, StringB
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray};
 use arrow_schema::ffi::FFI_ArrowSchema;
-use arrow_schema::{DataType, Field, Schema};
+use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyList};
 use recrash_pipeline::{Column, RecordTable};
@@ -15,7 +15,9 @@ use std::sync::Arc;
 /// A table of columns.
 #[pyclass(frozen, module = "recrash")]
 pub struct Table {
-    batch: RecordBatch,
+    schema: SchemaRef,
+    /// Rows, one batch behind the other: tables are put together without a copy.
+    batches: Vec<RecordBatch>,
 }
 
 #[pymethods]
@@ -38,30 +40,49 @@ impl Table {
         Self::of_arrays(py, columns.collect())
     }
 
+    /// The rows of several tables of the same columns, one table behind the other, without a copy.
+    #[staticmethod]
+    fn concat(py: Python<'_>, tables: Vec<Bound<'_, Self>>) -> PyResult<Self> {
+        let first = tables.first().ok_or_else(|| input(py, "there is no table to put together"))?.get();
+        let other = tables.iter().position(|table| table.get().schema != first.schema);
+        if let Some(number) = other {
+            return Err(input(py, format!("table {number} has other columns than the first")));
+        }
+        let batches = tables.iter().flat_map(|table| table.get().batches.clone()).collect();
+        Ok(Self { schema: Arc::clone(&first.schema), batches })
+    }
+
     /// Names of the columns.
     #[getter]
     fn column_names(&self) -> Vec<String> {
-        self.batch.schema().fields().iter().map(|field| field.name().clone()).collect()
+        self.schema.fields().iter().map(|field| field.name().clone()).collect()
     }
 
     /// Rows, and columns.
     #[getter]
     fn shape(&self) -> (usize, usize) {
-        (self.batch.num_rows(), self.batch.num_columns())
+        (self.__len__(), self.schema.fields().len())
     }
 
     /// Its rows as dicts.
     fn to_dicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let rows: Vec<Value> = (0..self.batch.num_rows()).map(|row| self.row(row)).collect();
-        to_python(py, &rows)
+        let names = self.column_names();
+        let row = |batch: &RecordBatch, row: usize| {
+            let cells = names.iter().zip(batch.columns());
+            Value::Object(cells.map(|(name, column)| (name.clone(), value(column, row))).collect())
+        };
+        let rows = self.batches.iter().flat_map(|batch| (0..batch.num_rows()).map(|number| row(batch, number)));
+        to_python(py, &rows.collect::<Vec<Value>>())
     }
 
     /// Its columns as lists, by name.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         for (number, name) in self.column_names().into_iter().enumerate() {
-            let values: Vec<Value> =
-                (0..self.batch.num_rows()).map(|row| value(self.batch.column(number), row)).collect();
+            let of = |batch: &RecordBatch| -> Vec<Value> {
+                (0..batch.num_rows()).map(|row| value(batch.column(number), row)).collect()
+            };
+            let values: Vec<Value> = self.batches.iter().flat_map(of).collect();
             all.set_item(name, to_python(py, &values)?)?;
         }
         Ok(all)
@@ -76,23 +97,23 @@ impl Table {
     ) -> PyResult<Bound<'py, PyCapsule>> {
         // Another schema is a wish, which the interface lets a producer pass over.
         drop(requested_schema);
-        let batches = [Ok(self.batch.clone())];
-        let reader = RecordBatchIterator::new(batches, self.batch.schema());
+        let batches: Vec<_> = self.batches.iter().cloned().map(Ok).collect();
+        let reader = RecordBatchIterator::new(batches, Arc::clone(&self.schema));
         PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(reader)), c"arrow_array_stream")
     }
 
     /// The Arrow PyCapsule interface.
     fn __arrow_c_schema__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyCapsule>> {
-        let schema = FFI_ArrowSchema::try_from(&*self.batch.schema()).map_err(|error| input(py, error))?;
+        let schema = FFI_ArrowSchema::try_from(&*self.schema).map_err(|error| input(py, error))?;
         PyCapsule::new_with_value(py, schema, c"arrow_schema")
     }
 
     fn __len__(&self) -> usize {
-        self.batch.num_rows()
+        self.batches.iter().map(RecordBatch::num_rows).sum()
     }
 
     fn __repr__(&self) -> String {
-        format!("Table({} rows: {})", self.batch.num_rows(), self.column_names().join(", "))
+        format!("Table({} rows: {})", self.__len__(), self.column_names().join(", "))
     }
 }
 
@@ -100,6 +121,11 @@ impl Table {
     /// From columns of the library.
     pub fn of_columns(py: Python<'_>, columns: Vec<(&'static str, Column)>) -> PyResult<Self> {
         Self::of_arrays(py, columns.into_iter().map(|(name, column)| (name.to_owned(), array(column))).collect())
+    }
+
+    /// From columns with names that are made.
+    pub fn of_named(py: Python<'_>, columns: Vec<(String, Column)>) -> PyResult<Self> {
+        Self::of_arrays(py, columns.into_iter().map(|(name, column)| (name, array(column))).collect())
     }
 
     /// From a table of the library.
@@ -113,18 +139,13 @@ impl Table {
         let arrays: Vec<ArrayRef> = columns.into_iter().map(|(_, array)| array).collect();
         let rows = arrays.first().map_or(0, |array| array.len());
         let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows));
-        let batch = RecordBatch::try_new_with_options(schema, arrays, &options).map_err(|error| input(py, error))?;
-        Ok(Self { batch })
+        let batch = RecordBatch::try_new_with_options(Arc::clone(&schema), arrays, &options);
+        Ok(Self { schema, batches: vec![batch.map_err(|error| input(py, error))?] })
     }
 
     /// The same table; its columns are shared.
     pub fn copy(&self) -> Self {
-        Self { batch: self.batch.clone() }
-    }
-
-    fn row(&self, row: usize) -> Value {
-        let names = self.column_names().into_iter().enumerate();
-        Value::Object(names.map(|(number, name)| (name, value(self.batch.column(number), row))).collect())
+        Self { schema: Arc::clone(&self.schema), batches: self.batches.clone() }
     }
 }
 

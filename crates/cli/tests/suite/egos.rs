@@ -40,7 +40,7 @@ fn an_unknown_ego_lists_the_known_ones_and_metadrive_takes_no_program() {
     assert!(errors.contains("metadrive-idm, idm, reference"), "{errors}");
     let (code, _, errors) = run(&["simulate", &crossing(), "--ego", "cmd:true", "--sim", "metadrive"]);
     assert_eq!(code, 3);
-    assert!(errors.contains("runs its own policy only"), "{errors}");
+    assert!(errors.contains("runs its own policies only"), "{errors}");
 }
 
 /// An ego that drives straight on, and gives up in one scenario.

@@ -4,12 +4,17 @@ pub(crate) mod external;
 
 use crate::error::PipelineError;
 use external::{EgoCommand, ExternalEgo, Patience};
-use recrash_metadrive::{METADRIVE_VERSION, Metadrive};
+use recrash_metadrive::{Drive, METADRIVE_VERSION, Metadrive};
 use recrash_sim::{Ego, Native};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 pub use recrash_roads::Simulator;
+
+/// Egos that drive on MetaDrive: policies of its own.
+pub fn metadrive_egos() -> [&'static str; 2] {
+    Drive::POLICIES.map(|drive| drive.name())
+}
 
 /// Which simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -65,15 +70,31 @@ pub fn start_simulator(
             SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
         };
     }
-    let native: Ego = ego.parse().map_err(|e| PipelineError::bad_input(format!("{e}")))?;
     match kind {
-        SimulatorKind::Native => Ok(Box::new(Native::new(native))),
-        SimulatorKind::Metadrive if native == Ego::MetadriveIdm => {
+        SimulatorKind::Native => Ok(Box::new(Native::new(native_ego(ego)?))),
+        SimulatorKind::Metadrive => {
+            let drive = metadrive_policy(ego)?;
             let options = recrash_metadrive::Options { workers, ..recrash_metadrive::Options::new(python) };
             let pool = Metadrive::start(options).map_err(|e| PipelineError::bad_input(e.to_string()))?;
-            Ok(Box::new(pool))
+            Ok(Box::new(pool.driven_by(drive)))
         }
-        SimulatorKind::Metadrive => Err(metadrive_only_runs_its_own(ego)),
+    }
+}
+
+/// An ego of the native simulator.
+fn native_ego(ego: &str) -> Result<Ego, PipelineError> {
+    if metadrive_egos().contains(&ego) && ego != Ego::MetadriveIdm.name() {
+        let text = format!("{ego} drives on MetaDrive alone: choose the simulator metadrive for it");
+        return Err(PipelineError::bad_input(text));
+    }
+    ego.parse().map_err(|e| PipelineError::bad_input(format!("{e}")))
+}
+
+/// A policy of MetaDrive's own.
+fn metadrive_policy(ego: &str) -> Result<Drive, PipelineError> {
+    match Drive::POLICIES.into_iter().find(|drive| drive.name() == ego) {
+        Some(drive) => Ok(drive),
+        None => native_ego(ego).and_then(|_| Err(metadrive_only_runs_its_own(ego))),
     }
 }
 
@@ -88,11 +109,9 @@ pub(crate) fn check_simulator(kind: SimulatorKind, ego: &str) -> Result<(), Pipe
             "the ego {command}: there is no such program; check its name and path"
         ))),
         Some(_) => Ok(()),
-        None => match ego.parse::<Ego>().map_err(|e| PipelineError::bad_input(format!("{e}")))? {
-            native if kind == SimulatorKind::Metadrive && native != Ego::MetadriveIdm => {
-                Err(metadrive_only_runs_its_own(ego))
-            }
-            _ => Ok(()),
+        None => match kind {
+            SimulatorKind::Native => native_ego(ego).map(drop),
+            SimulatorKind::Metadrive => metadrive_policy(ego).map(drop),
         },
     }
 }
@@ -104,6 +123,7 @@ pub(crate) fn built_in() -> Vec<Box<dyn Simulator>> {
 
 fn metadrive_only_runs_its_own(ego: &str) -> PipelineError {
     PipelineError::bad_input(format!(
-        "MetaDrive {METADRIVE_VERSION} runs its own policy only: choose the ego metadrive-idm, or the native simulator for {ego}"
+        "MetaDrive {METADRIVE_VERSION} runs its own policies only: choose the ego {}, or the native simulator for {ego}",
+        metadrive_egos().join(" or ")
     ))
 }

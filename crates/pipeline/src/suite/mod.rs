@@ -517,7 +517,8 @@ fn refuse_other(dir: &Path, saved: &Options, options: &Options) -> Result<(), Pi
     Ok(())
 }
 
-fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, PipelineError> {
+/// A pool of so many threads; as many as there are cores for 0.
+pub(crate) fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, PipelineError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|e| PipelineError::Threads(e.to_string()))
 }

@@ -19,3 +19,4 @@ pub(crate) mod running;
 #[cfg(feature = "parquet")]
 pub(crate) mod sweep;
 pub(crate) mod testing;
+pub(crate) mod tuning;

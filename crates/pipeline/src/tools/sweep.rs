@@ -13,23 +13,22 @@ use crate::reading::scenarios::read_scenario;
 use crate::simulators::external::Patience;
 use crate::simulators::{Simulator, SimulatorKind, start_simulator};
 use crate::suite::names;
-use crate::suite::{Suite, refuse_untrusted};
+use crate::suite::{Suite, refuse_untrusted, thread_pool};
+use crate::tools::tuning::movable;
 use rayon::prelude::*;
-use recrash_agents::parameters;
 use recrash_metrics::{findings, measure};
 use recrash_model::Seed;
 use recrash_model::metrics::{Contact, PartnerMetrics, Timed};
-use recrash_model::narrative::{NARRATIVE_FORMAT, Narrative, Origin};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{Rollout, TerminationKind};
-use recrash_model::scenario::{Author, ScenarioDraft};
+use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Selection;
-use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::tuning::{Parameter, TuneLog, apply};
 use recrash_records::{Column, ParquetWriter};
 use recrash_roads::Scenario;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Rollouts between two reports of progress.
@@ -120,17 +119,22 @@ pub struct SweptScenario {
 
 /// A sweep with everything read, ready to run.
 pub struct Sweep {
+    points: SweepPoints,
+    ego: String,
+    patience: Patience,
+    rollouts: u64,
+    threads: Option<usize>,
+    output: Output,
+    passed_over: Vec<String>,
+}
+
+/// What varies in which scenarios: any rollout of a sweep is made of its number alone, wherever and in whatever order.
+pub struct SweepPoints {
     bases: Vec<Base>,
     /// Pointers of all scenarios, each once, in order of first appearance.
     pointers: Vec<String>,
     profile: SystemProfile,
-    ego: String,
-    patience: Patience,
-    rollouts: u64,
     seed: Seed,
-    threads: Option<usize>,
-    output: Output,
-    passed_over: Vec<String>,
 }
 
 struct Base {
@@ -156,16 +160,10 @@ impl Sweep {
         let output = Outputs::of_inputs(read.into_iter().chain([request.source.to_owned()])).claim(request.out)?;
         let files = scenario_files(request.source)?;
         let bases = files.iter().map(|file| base(file, request.vary, &profile)).collect::<Result<Vec<_>, _>>()?;
-        let mut pointers: Vec<String> = Vec::new();
-        for parameter in bases.iter().flat_map(|base| &base.parameters) {
-            if !pointers.contains(&parameter.pointer) {
-                pointers.push(parameter.pointer.clone());
-            }
-        }
-        let (rollouts, seed, threads) = (request.rollouts, Seed(request.seed).child("sweep"), request.threads);
         let passed_over = passed_over(request.source, &bases);
-        let patience = request.patience;
-        Ok(Self { bases, pointers, profile, ego, patience, rollouts, seed, threads, output, passed_over })
+        let points = SweepPoints::new(bases, profile, request.seed);
+        let (rollouts, threads, patience) = (request.rollouts, request.threads, request.patience);
+        Ok(Self { points, ego, patience, rollouts, threads, output, passed_over })
     }
 
     /// Ego that drives.
@@ -181,10 +179,7 @@ impl Sweep {
         if number >= self.rollouts {
             return Err(PipelineError::bad_input(format!("there is no rollout {number} of {}", self.rollouts)));
         }
-        let (base, values, _) = self.point(number);
-        let mut draft = apply(&base.draft, &base.parameters, &values).map_err(PipelineError::bad_input)?;
-        draft.id = format!("{}-{number}", draft.id);
-        Ok(draft)
+        self.points.draft(number)
     }
 
     /// Scenarios of the suite that are not swept, because their tuned files are not there.
@@ -206,10 +201,7 @@ impl Sweep {
     /// # Errors
     /// The table cannot be written, or the ego cannot be started. A rollout cannot fail: it gets its verdict.
     pub fn run(&self, progress: &(dyn Fn(u64) + Sync)) -> Result<SweepSummary, PipelineError> {
-        let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads.unwrap_or(0))
-            .build()
-            .map_err(|e| PipelineError::Threads(e.to_string()))?;
+        let threads = thread_pool(self.threads.unwrap_or(0))?;
         let simulator = start_simulator(SimulatorKind::Native, &self.ego, Path::new(""), 1, self.patience)?;
         let failed = |source| io("write", self.output.name(), source);
         let (begun, summary) = self.write(self.output.begin()?, &threads, &simulator, progress, &failed)?;
@@ -225,7 +217,7 @@ impl Sweep {
         progress: &(dyn Fn(u64) + Sync),
         failed: &dyn Fn(std::io::Error) -> PipelineError,
     ) -> Result<(Begun, SweepSummary), PipelineError> {
-        let empty = self.columns(&[]);
+        let empty = self.points.columns(&[]);
         let columns = empty.iter().map(|(name, column)| (name.as_str(), column));
         let mut writer = ParquetWriter::new(sink, "rollouts", columns, &self.notes()).map_err(failed)?;
         let mut summary = self.empty_summary();
@@ -233,20 +225,104 @@ impl Sweep {
         let mut done = 0;
         while done < self.rollouts {
             let end = (done + CHUNK).min(self.rollouts);
-            let chunk: Vec<Row> = threads.install(|| {
-                let numbers = (done..end).into_par_iter();
-                numbers.map(|n| self.row(n, simulator)).collect()
-            });
+            let chunk = threads.install(|| self.points.rows(done..end, simulator));
             chunk.iter().for_each(|row| summary.count(row));
             rows.extend(chunk);
             done = end;
             if rows.len() >= GROUP_ROWS || done == self.rollouts {
-                writer.write(self.columns(&rows).iter().map(|(_, column)| column)).map_err(failed)?;
+                writer.write(self.points.columns(&rows).iter().map(|(_, column)| column)).map_err(failed)?;
                 rows.clear();
             }
             progress(done);
         }
         Ok((writer.finish().map_err(failed)?, summary))
+    }
+
+    /// What the file says about itself.
+    fn notes(&self) -> Vec<(&'static str, String)> {
+        let ids: Vec<&str> = self.points.bases.iter().map(|base| base.draft.id.as_str()).collect();
+        vec![
+            ("recrash.version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("recrash.ego", self.ego.clone()),
+            ("recrash.profile", self.points.profile.name.clone()),
+            ("recrash.scenarios", ids.join(",")),
+        ]
+    }
+
+    fn empty_summary(&self) -> SweepSummary {
+        let scenarios = self
+            .points
+            .bases
+            .iter()
+            .map(|base| SweptScenario { id: base.draft.id.clone(), parameters: base.parameters.clone() });
+        SweepSummary {
+            format: "recrash.sweep/1".to_owned(),
+            rollouts: 0,
+            verdicts: BTreeMap::new(),
+            closest: None,
+            scenarios: scenarios.collect(),
+            passed_over: self.passed_over.clone(),
+            file: self.output.name().to_owned(),
+        }
+    }
+}
+
+impl SweepPoints {
+    /// Around scenarios that stand in no file: `vary` in each of them, or what a search would move where it is empty.
+    ///
+    /// # Errors
+    /// There is no scenario, what varies is no number of one, or nothing varies in one.
+    pub fn around(
+        scenarios: &[&Scenario],
+        vary: &[Vary],
+        profile: SystemProfile,
+        seed: u64,
+    ) -> Result<Self, PipelineError> {
+        if scenarios.is_empty() {
+            return Err(PipelineError::bad_input("there is no scenario to sweep".to_owned()));
+        }
+        let base = |scenario: &&Scenario| based(scenario.draft(), vary, &scenario.draft().id, None, &profile);
+        let bases = scenarios.iter().map(base).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self::new(bases, profile, seed))
+    }
+
+    fn new(bases: Vec<Base>, profile: SystemProfile, seed: u64) -> Self {
+        let mut pointers: Vec<String> = Vec::new();
+        for parameter in bases.iter().flat_map(|base| &base.parameters) {
+            if !pointers.contains(&parameter.pointer) {
+                pointers.push(parameter.pointer.clone());
+            }
+        }
+        Self { bases, pointers, profile, seed: Seed(seed).child("sweep") }
+    }
+
+    /// A table of these rollouts, a row each in the order of their numbers; on so many threads, or as many as there are cores for 0.
+    ///
+    /// # Errors
+    /// There cannot be so many threads.
+    pub fn table(
+        &self,
+        numbers: Range<u64>,
+        simulator: &dyn Simulator,
+        threads: usize,
+    ) -> Result<Vec<(String, Column)>, PipelineError> {
+        let pool = thread_pool(threads)?;
+        Ok(self.columns(&pool.install(|| self.rows(numbers, simulator))))
+    }
+
+    /// The scenario of one rollout.
+    ///
+    /// # Errors
+    /// The sampled values do not fit the scenario.
+    pub fn draft(&self, number: u64) -> Result<ScenarioDraft, PipelineError> {
+        let (base, values, _) = self.point(number);
+        let mut draft = apply(&base.draft, &base.parameters, &values).map_err(PipelineError::bad_input)?;
+        draft.id = format!("{}-{number}", draft.id);
+        Ok(draft)
+    }
+
+    fn rows(&self, numbers: Range<u64>, simulator: &dyn Simulator) -> Vec<Row> {
+        numbers.into_par_iter().map(|number| self.row(number, simulator)).collect()
     }
 
     /// Which scenario a rollout is of, the sampled values, and the seed they come from.
@@ -342,33 +418,6 @@ impl Sweep {
         columns.extend(results.map(|(name, column)| (name.to_owned(), column)));
         columns
     }
-
-    /// What the file says about itself.
-    fn notes(&self) -> Vec<(&'static str, String)> {
-        let ids: Vec<&str> = self.bases.iter().map(|base| base.draft.id.as_str()).collect();
-        vec![
-            ("recrash.version", env!("CARGO_PKG_VERSION").to_owned()),
-            ("recrash.ego", self.ego.clone()),
-            ("recrash.profile", self.profile.name.clone()),
-            ("recrash.scenarios", ids.join(",")),
-        ]
-    }
-
-    fn empty_summary(&self) -> SweepSummary {
-        let scenarios = self
-            .bases
-            .iter()
-            .map(|base| SweptScenario { id: base.draft.id.clone(), parameters: base.parameters.clone() });
-        SweepSummary {
-            format: "recrash.sweep/1".to_owned(),
-            rollouts: 0,
-            verdicts: BTreeMap::new(),
-            closest: None,
-            scenarios: scenarios.collect(),
-            passed_over: self.passed_over.clone(),
-            file: self.output.name().to_owned(),
-        }
-    }
 }
 
 /// Verdict of a rollout whose sampled scenario the check refuses.
@@ -459,18 +508,29 @@ fn passed_over(source: &Path, bases: &[Base]) -> Vec<String> {
 
 fn base(file: &Path, vary: &[Vary], profile: &SystemProfile) -> Result<Base, PipelineError> {
     let (scenario, _) = read_scenario(file)?;
-    let draft = scenario.draft().clone();
-    let parameters = if !vary.is_empty() {
-        varied(&draft, vary, file)?
-    } else if let Some(found) = searched(file)? {
-        found
-    } else {
-        parameters(&draft, &untold(&draft), profile)
+    let searched = if vary.is_empty() { searched(file)? } else { None };
+    based(scenario.draft(), vary, &file.display().to_string(), searched, profile)
+}
+
+/// A scenario with what varies in it: what was asked for, what a suite's search moved, or what one would move.
+fn based(
+    draft: &ScenarioDraft,
+    vary: &[Vary],
+    name: &str,
+    searched: Option<Vec<Parameter>>,
+    profile: &SystemProfile,
+) -> Result<Base, PipelineError> {
+    let parameters = match searched {
+        _ if !vary.is_empty() => varied(draft, vary, name)?,
+        Some(found) => found,
+        None => movable(draft, profile),
     };
     if parameters.is_empty() {
-        return Err(PipelineError::bad_input(format!("nothing varies in {}; give --vary", file.display())));
+        return Err(PipelineError::bad_input(format!(
+            "nothing varies in {name}; say what shall vary, as POINTER=MIN:MAX"
+        )));
     }
-    Ok(Base { draft, parameters })
+    Ok(Base { draft: draft.clone(), parameters })
 }
 
 /// What the search of a suite might move, where its log lies beside the scenario.
@@ -486,11 +546,11 @@ fn searched(file: &Path) -> Result<Option<Vec<Parameter>>, PipelineError> {
     Ok(found.iter().all(|parameter| parameter.pointer.starts_with('/')).then_some(found))
 }
 
-fn varied(draft: &ScenarioDraft, vary: &[Vary], file: &Path) -> Result<Vec<Parameter>, PipelineError> {
+fn varied(draft: &ScenarioDraft, vary: &[Vary], name: &str) -> Result<Vec<Parameter>, PipelineError> {
     let document = serde_json::to_value(draft).unwrap_or_default();
     let parameter = |vary: &Vary| {
         let number = document.pointer(&vary.pointer).filter(|value| value.is_number()).ok_or_else(|| {
-            PipelineError::bad_input(format!("--vary {}: there is no such number in {}", vary.pointer, file.display()))
+            PipelineError::bad_input(format!("--vary {}: there is no such number in {name}", vary.pointer))
         })?;
         Ok(Parameter {
             pointer: vary.pointer.clone(),
@@ -503,22 +563,6 @@ fn varied(draft: &ScenarioDraft, vary: &[Vary], file: &Path) -> Result<Vec<Param
         })
     };
     vary.iter().map(parameter).collect()
-}
-
-/// A narrative that says nothing: everything may move by what is usual.
-fn untold(draft: &ScenarioDraft) -> Narrative {
-    let straight = Movement::Straight;
-    let any = Template { road: RoadType::Intersection, sv: straight, cp: straight, work_zone: false };
-    Narrative {
-        format: NARRATIVE_FORMAT.to_owned(),
-        scenario_id: draft.id.clone(),
-        template: draft.source.template.unwrap_or(any),
-        records: Vec::new(),
-        text: String::new(),
-        facts: Vec::new(),
-        origin: Origin::Invented { reason: String::new() },
-        author: Author::Person,
-    }
 }
 
 #[cfg(test)]

@@ -79,6 +79,9 @@ pub struct Actor {
     pub overtake_timer_steps: u32,
     /// Size and limits.
     pub body: Body,
+    /// Which policy of MetaDrive's drives the ego; its IDM policy where none is named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub policy: Option<EgoPolicy>,
     /// Given controls, steering and throttle per step; of an ego that is played.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub controls: Option<Vec<[f64; 2]>>,
@@ -90,6 +93,14 @@ pub struct Actor {
     pub partner_way: Option<Way>,
     /// Where a partner that gives way meets others' ways. A stretch without end has `null` for it.
     pub crossings: Vec<Crossing>,
+}
+
+/// A policy of MetaDrive's besides its IDM.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EgoPolicy {
+    /// The PPO expert that it ships.
+    Expert,
 }
 
 /// Size and limits, as in [`VehicleSpec`].
@@ -257,6 +268,7 @@ fn actor(scenario: &Scenario, names: &LaneNames<'_>, member: &Member<'_>) -> Act
             wheel_angle_rad: size.max_wheel_angle_rad,
             friction: DRY_TYRE_FRICTION * scenario.draft().environment.surface.relative_friction(),
         },
+        policy: None,
         controls: None,
         plan: None,
         partner_way: None,

@@ -8,7 +8,7 @@ use crate::reading::documents::read_document;
 use crate::reading::named;
 use crate::simulators::external::Patience;
 use crate::simulators::{Simulator, SimulatorKind, start_simulator};
-use crate::suite::refuse_untrusted;
+use crate::suite::{refuse_untrusted, thread_pool};
 use crate::tools::freezing::Opened;
 use rayon::prelude::*;
 use recrash_drivers::preventability;
@@ -63,10 +63,7 @@ impl Bench {
         let opened = Opened::read(&request.frozen)?;
         let ego = request.ego.as_deref().unwrap_or(&opened.suite.profile.ego);
         refuse_untrusted(ego, request.ego.is_some())?;
-        let threads = rayon::ThreadPoolBuilder::new()
-            .num_threads(request.threads.unwrap_or(0))
-            .build()
-            .map_err(|error| PipelineError::Threads(error.to_string()))?;
+        let threads = thread_pool(request.threads.unwrap_or(0))?;
         let workers = threads.current_num_threads();
         let simulator = start_simulator(request.simulator, ego, &request.python, workers, request.patience)?;
         Ok(Self { opened, simulator, threads })

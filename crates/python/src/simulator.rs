@@ -1,0 +1,115 @@
+//! Simulators: the native one, or MetaDrive, each with an ego by name.
+
+use crate::errors::{Kind, error, input, of_library};
+use crate::scenario::{Scenario, system_profile};
+use pyo3::prelude::*;
+use recrash_model::profile::SystemProfile;
+use recrash_model::run::JudgedRun;
+use recrash_pipeline::{Patience, PipelineError, SimulatorKind, metadrive_egos, run_many, start_simulator};
+use std::path::PathBuf;
+
+/// A simulator with an ego in it, for many scenarios: what takes seconds to start (MetaDrive, an ego that is a program) is started
+/// once.
+#[pyclass(frozen, module = "recrash._recrash")]
+pub struct Simulator {
+    host: Host,
+    profile: SystemProfile,
+    threads: usize,
+    simulator: Box<dyn recrash_pipeline::Simulator>,
+}
+
+#[pymethods]
+impl Simulator {
+    /// Starts it. `threads` scenarios run at a time: as many as there are cores without.
+    #[new]
+    #[pyo3(signature = (ego=None, profile=None, simulator=None, python=None, threads=None))]
+    fn new(
+        py: Python<'_>,
+        ego: Option<&str>,
+        profile: Option<&str>,
+        simulator: Option<&str>,
+        python: Option<PathBuf>,
+        threads: Option<usize>,
+    ) -> PyResult<Self> {
+        let host = Host::of(py, simulator, python)?;
+        let threads = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+        let started = py.detach(|| {
+            let profile = system_profile(profile)?;
+            let simulator = host.start(ego.unwrap_or(&profile.ego), threads)?;
+            Ok((profile, simulator))
+        });
+        let (profile, simulator) = started.map_err(|failed: PipelineError| of_library(py, &failed))?;
+        Ok(Self { host, profile, threads, simulator })
+    }
+
+    /// Name of the ego.
+    #[getter]
+    fn ego(&self) -> &str {
+        self.simulator.ego()
+    }
+
+    /// Runs scenarios and judges the runs, in their order. What one fails of stands in its place.
+    fn run_all<'py>(&self, py: Python<'py>, scenarios: Vec<Bound<'py, Scenario>>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        if scenarios.is_empty() {
+            return Err(input(py, "there is no scenario to run"));
+        }
+        let each: Vec<&Scenario> = scenarios.iter().map(Bound::get).collect();
+        let all: Vec<&recrash_roads::Scenario> = each.iter().map(|scenario| &*scenario.scenario).collect();
+        let done = py.detach(|| run_many(&all, &self.simulator, &self.profile, self.threads));
+        let done = done.map_err(|failed| of_library(py, &failed))?;
+        let result = |(scenario, done): (&&Scenario, Result<JudgedRun, PipelineError>)| match done {
+            Ok(run) => Ok(Bound::new(py, scenario.judged(run)?)?.into_any()),
+            Err(failed) => Ok(self.host.failed(py, &failed).into_value(py).into_bound(py).into_any()),
+        };
+        each.iter().zip(done).map(result).collect()
+    }
+}
+
+/// Where scenarios are run.
+pub struct Host {
+    kind: SimulatorKind,
+    python: PathBuf,
+}
+
+impl Host {
+    /// A simulator by name; the native one where none is named.
+    pub fn of(py: Python<'_>, simulator: Option<&str>, python: Option<PathBuf>) -> PyResult<Self> {
+        let kind = simulator.map_or(Ok(SimulatorKind::Native), str::parse).map_err(|why| input(py, why))?;
+        Ok(Self { kind, python: interpreter(py, python)? })
+    }
+
+    /// Starts it with an ego by name.
+    pub fn start(&self, ego: &str, workers: usize) -> Result<Box<dyn recrash_pipeline::Simulator>, PipelineError> {
+        start_simulator(self.kind, ego, &self.python, workers, Patience::default())
+    }
+
+    /// A Python object can be the ego there.
+    pub fn must_be_native(&self, py: Python<'_>) -> PyResult<()> {
+        match self.kind {
+            SimulatorKind::Native => Ok(()),
+            SimulatorKind::Metadrive => Err(input(
+                py,
+                format!(
+                    "a Python object drives on the native simulator; MetaDrive runs its own egos: {}",
+                    metadrive_egos().join(", ")
+                ),
+            )),
+        }
+    }
+
+    /// What it could not run: the ego's fault only where the ego is no part of the simulator.
+    pub fn failed(&self, py: Python<'_>, failed: &PipelineError) -> PyErr {
+        match (self.kind, failed) {
+            (SimulatorKind::Metadrive, PipelineError::Scenario { .. }) => error(py, Kind::Other, failed.to_string()),
+            _ => of_library(py, failed),
+        }
+    }
+}
+
+/// The interpreter that has MetaDrive: this one where none is named.
+pub fn interpreter(py: Python<'_>, given: Option<PathBuf>) -> PyResult<PathBuf> {
+    match given {
+        Some(python) => Ok(python),
+        None => py.import("sys")?.getattr("executable")?.extract(),
+    }
+}

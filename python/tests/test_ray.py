@@ -1,0 +1,194 @@
+"""A cluster of two node processes on this machine: the same bytes as one process, whatever becomes of a node."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+
+import pytest
+from conftest import case
+
+import recrash
+from recrash import RecrashError, Scenario
+
+pytest.importorskip("ray", reason="Ray is not installed")
+# Ray's own, at its start and its end.
+pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::FutureWarning", "ignore::DeprecationWarning")
+
+
+class Steady:
+    """An ego with a state."""
+
+    def reset(self, world):
+        self.steps = 0
+
+    def control(self, observation):
+        self.steps += 1
+        return (0.5 if self.steps % 2 else -0.5), 0.0
+
+
+class Fatal(Steady):
+    """Takes its process with it in one scenario."""
+
+    def reset(self, world):
+        super().reset(world)
+        if world["scenario"] == "crashes-32-lead-reverses":
+            os._exit(9)
+
+
+class Careless(Steady):
+    def reset(self, world):
+        super().reset(world)
+        if world["scenario"] == "crashes-32-lead-reverses":
+            raise ValueError("no map")
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    import ray
+    from ray.cluster_utils import Cluster
+
+    # Workers do not have this file: egos of it are sent whole.
+    ray.cloudpickle.register_pickle_by_value(sys.modules[__name__])
+
+    memory = 100 << 20
+    head = {"num_cpus": 1, "object_store_memory": memory, "include_dashboard": False}
+    made = Cluster(initialize_head=True, head_node_args=head)
+    ray.init(address=made.address, log_to_driver=False, logging_level="ERROR")
+    made.memory = memory
+    yield made
+    ray.shutdown()
+    made.shutdown()
+
+
+@pytest.fixture
+def second_node(cluster):
+    node = cluster.add_node(num_cpus=1, object_store_memory=cluster.memory)
+    cluster.wait_for_nodes()
+    yield node
+    if node in cluster.list_all_nodes():
+        cluster.remove_node(node)
+
+
+@pytest.fixture
+def killed_after_two(cluster, second_node, monkeypatch):
+    """Kills the second node once two batches have come back; what is killed is noted."""
+    import recrash.ray
+
+    killed = []
+
+    def counted(items, name, total, shown):
+        for number, item in enumerate(items):
+            if number == 1:
+                cluster.remove_node(second_node, allow_graceful=False)
+                killed.append(name)
+            yield item
+
+    monkeypatch.setattr(recrash.ray, "counted", counted)
+    return killed
+
+
+@pytest.fixture
+def scenarios(crashes):
+    return recrash.load_scenarios(crashes)
+
+
+def test_tests_and_sweeps_are_those_of_one_process(second_node, scenarios, tmp_path):
+    import recrash.ray
+
+    here = {"cluster": False}
+    for ego in ("idm", Steady):
+        table = recrash.ray.test(scenarios, ego, batch=5, out=tmp_path / "on.parquet")
+        recrash.ray.test(scenarios, ego, batch=5, out=tmp_path / "here.parquet", **here)
+        assert table.to_pylist() == recrash.test(scenarios, ego).to_dicts()
+        assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+    lead = [Scenario.load(case("crashes/32-lead-reverses"))]
+    vary = {"vary": ["/ego/speed_mps=5:12"], "ego": "idm", "seed": 3}
+    assert recrash.ray.sweep(lead, 50, batch=20, out=tmp_path / "on.parquet", **vary) is None
+    recrash.ray.sweep(lead, 50, batch=20, out=tmp_path / "here.parquet", **vary, **here)
+    assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+    assert recrash.ray.sweep(lead, 50, batch=20, **vary).to_pylist() == recrash.sweep(lead, 50, **vary).to_dicts()
+
+
+@pytest.mark.parametrize("ego", ["idm", Steady])
+def test_a_node_killed_in_the_middle_changes_no_byte(killed_after_two, scenarios, tmp_path, ego):
+    import recrash.ray
+
+    recrash.ray.test(scenarios, ego, batch=2, out=tmp_path / "on.parquet")
+    assert killed_after_two == ["test"]
+    recrash.ray.test(scenarios, ego, batch=2, out=tmp_path / "here.parquet", cluster=False)
+    assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+
+
+def test_a_corpus_is_reconstructed_and_tested_in_parts(cluster):
+    import recrash.ray
+
+    rows = recrash.ray.corpus(where="road = parking lot", ego="idm", batch=7).to_pylist()
+    accounts = recrash.read(where="road = parking lot")
+    scenarios, made = accounts.reconstruct()
+    assert [row["incident"] for row in rows] == accounts.table.to_dict()["incident"]
+    assert [row["standing"] for row in rows] == made.to_dict()["standing"]
+    tested = {row["scenario"]: row["state_hash"] for row in recrash.test(scenarios, "idm").to_dicts()}
+    assert {row["scenario"]: row["state_hash"] for row in rows if row["scenario"]} == tested
+
+
+def test_searches_are_those_of_one_process(cluster, scenarios):
+    import recrash.ray
+
+    plain, table = recrash.tune(scenarios[:3], "idm", budget=6)
+    tuned, rows = recrash.ray.tune(scenarios[:3], "idm", budget=6)
+    assert tuned == plain
+    assert [row["state_hash"] for row in rows.to_pylist()] == table.to_dict()["state_hash"]
+    assert rows["moved"].to_pylist() == table.to_dict()["moved"]
+
+
+def test_what_kills_its_worker_is_named_and_the_rest_goes_on(cluster, scenarios, monkeypatch):
+    import recrash.ray
+
+    monkeypatch.setattr(recrash.ray, "RETRIES", 0)
+    few = [each for each in scenarios if each.id >= "crashes-31"][:4]
+    assert "crashes-32-lead-reverses" in [each.id for each in few]
+    rows = recrash.ray.test(few, Fatal, batch=4).to_pylist()
+    (lost,) = [row for row in rows if row["error"]]
+    assert lost["scenario"] == "crashes-32-lead-reverses"
+    assert "crashes-32-lead-reverses: not done on the cluster: ActorDiedError" in lost["error"]
+    assert [row["scenario"] for row in rows] == [each.id for each in few]
+
+
+def test_an_ego_that_raises_fails_its_scenario_alone(cluster, scenarios):
+    import recrash.ray
+
+    rows = recrash.ray.test(scenarios, Careless, batch=9).to_pylist()
+    assert rows == recrash.test(scenarios, Careless).to_dicts()
+    (failed,) = [row for row in rows if row["error"]]
+    assert "Careless raised ValueError: no map at reset" in failed["error"]
+
+
+def test_what_cannot_be_done_is_told_and_leaves_no_file(cluster, scenarios, tmp_path, monkeypatch):
+    import recrash.ray
+
+    with pytest.raises(RecrashError, match="no ego is called `human`"):
+        recrash.ray.test(scenarios, "human", out=tmp_path / "t.parquet")
+    with pytest.raises(RecrashError, match="there is no such number in crashes-"):
+        recrash.ray.sweep(scenarios, 10, vary=["/nobody=1:2"], out=tmp_path / "t.parquet")
+
+    def stops(items, name, total, shown):
+        yield next(items)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(recrash.ray, "counted", stops)
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        recrash.ray.test(scenarios, "idm", batch=1, out=tmp_path / "t.parquet")
+    assert time.monotonic() - begun < 20
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_id_is_of_the_content(scenarios):
+    import recrash.ray
+
+    one = recrash.ray._id("test", "idm", (None, None), scenarios[0].to_json())
+    assert one == recrash.ray._id("test", "idm", (None, None), scenarios[0].to_json())
+    assert one != recrash.ray._id("test", "reference", (None, None), scenarios[0].to_json())
+    assert one != recrash.ray._id("test", "idm", (None, None), scenarios[1].to_json())
