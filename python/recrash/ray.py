@@ -28,6 +28,7 @@ import fsspec
 import pyarrow
 import pyarrow.parquet
 import ray
+from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 
 from recrash import _recrash
 from recrash._recrash import Accounts, Scenario
@@ -348,7 +349,9 @@ def _on_cluster(work: _Work, batches: Sequence[Batch], actors: int | None) -> It
     """Do batches on the cluster, and give their tables in order. What is under way is cancelled where nobody goes on."""
     if not ray.is_initialized():
         ray.init(ignore_reinit_error=True, log_to_driver=False)
-    processors = max(1, int(ray.cluster_resources().get("CPU", 1)))
+    # The machine of each processor: an actor lives there, or wherever there is room once that is lost.
+    places = [node["NodeID"] for node in ray.nodes() if node["Alive"] for _ in range(int(node["Resources"].get("CPU", 0)))]
+    processors = max(1, len(places))
     workers = []
     if work.seat is None:
         task = ray.remote(_answer).options(max_retries=RETRIES, num_cpus=1)
@@ -357,8 +360,13 @@ def _on_cluster(work: _Work, batches: Sequence[Batch], actors: int | None) -> It
         def send(batch: Batch) -> Any:
             return task.remote(work.function, shared, None, batch.id, batch.given)
     else:
-        kind = ray.remote(_Actor).options(max_restarts=-1, max_task_retries=RETRIES, num_cpus=1)
-        workers = [kind.remote(work.function, work.shared, work.seat) for _ in range(min(actors or processors, len(batches)))]
+        # It reserves no processor: one whose machine is lost would wait for another machine for ever.
+        # What it loses is sent to the next one, see `_received`.
+        kind = ray.remote(_Actor)
+        near = [NodeAffinitySchedulingStrategy(place, soft=True) for place in places] or ["DEFAULT"]
+        homes = itertools.islice(itertools.cycle(near), min(actors or processors, len(batches)))
+        made = (kind.options(scheduling_strategy=home, max_restarts=-1) for home in homes)
+        workers = [each.remote(work.function, work.shared, work.seat) for each in made]
         turns = itertools.cycle(workers)
 
         def send(batch: Batch) -> Any:
@@ -371,7 +379,7 @@ def _on_cluster(work: _Work, batches: Sequence[Batch], actors: int | None) -> It
             waiting.append((batch, send(batch)))
         while waiting:
             batch, answer = waiting.popleft()
-            yield _received(batch, answer, send)
+            yield _received(batch, answer, send, RETRIES)
             for following in itertools.islice(to_send, 1):
                 waiting.append((following, send(following)))
     finally:
@@ -381,19 +389,23 @@ def _on_cluster(work: _Work, batches: Sequence[Batch], actors: int | None) -> It
             ray.kill(worker)
 
 
-def _received(batch: Batch, answer: Any, send: Callable[[Batch], Any]) -> pyarrow.Table:
+def _received(batch: Batch, answer: Any, send: Callable[[Batch], Any], tries: int) -> pyarrow.Table:
     """A batch's table. Of a batch whose worker is lost for good what its pieces give, or what stands for it, or an exception."""
     try:
         batch_id, table = ray.get(answer)
     except ray.exceptions.RayError as error:
+        if tries > 0 and isinstance(error, ray.exceptions.RayActorError):
+            return _received(batch, send(batch), send, tries - 1)
         cause = getattr(error, "cause", None)
         why = cause if isinstance(cause, RecrashError) else error
         first = str(why).strip().splitlines()[-1] if str(why).strip() else type(why).__name__
-        told = f"{batch.name}: not done on the cluster: {type(why).__name__}: {first}"
+        lost = isinstance(error, (ray.exceptions.RayActorError, ray.exceptions.WorkerCrashedError, ray.exceptions.NodeDiedError))
+        said = "its worker was lost, again and again" if lost else f"{type(why).__name__}: {first}"
+        told = f"{batch.name}: not done on the cluster: {said}"
         if batch.lost is None or isinstance(why, RecrashError):
             raise RecrashError(told) from error
         if batch.pieces is not None:
-            return pyarrow.concat_tables([_received(piece, send(piece), send) for piece in batch.pieces()])
+            return pyarrow.concat_tables([_received(piece, send(piece), send, tries) for piece in batch.pieces()])
         return batch.lost(told)
     if batch_id != batch.id:
         raise RecrashError(f"{batch.name}: the cluster answered with batch {batch_id} instead of {batch.id}")

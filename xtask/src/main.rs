@@ -2,6 +2,7 @@
 
 mod edges;
 mod fuzz;
+mod licences;
 mod steps;
 mod tally;
 mod tidy;
@@ -20,10 +21,11 @@ usage: cargo xtask COMMAND
   test       all Rust tests; those on a real MetaDrive where it is set up
   docs       rustdoc, warnings denied
   python     the Python tests
-  wheel      lint, types and tests of the Python package, in a wheel that it builds
+  wheel      lint, types, tests, notebook and API pages of the Python package, in a wheel that it builds; and its sdist
   browser    makes a suite and clicks through its report in headless Chromium
   fuzz       20 s of fuzzing for each reader of untrusted files
   fuzz-keep  keeps what fuzzing found, as few inputs as reach the same code
+  licences   writes python/LICENSES.txt: what stands in a wheel, and its licences
 What was skipped is named at the end. With CI set in the environment a step that lacks something fails.";
 
 fn main() -> ExitCode {
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
     let result = match command.as_str() {
         "ci" => steps::ci(&mut tally),
         "fuzz-keep" => fuzz::keep(),
+        "licences" => licences::write(),
         name => match steps::STEPS.iter().find(|(step, _)| *step == name) {
             Some((_, step)) => step(&mut tally),
             None => {

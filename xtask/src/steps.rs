@@ -2,6 +2,7 @@
 
 use crate::tally::Tally;
 use crate::{fuzz, tidy, wheel};
+use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -82,9 +83,8 @@ fn prepare(tally: &mut Tally) -> Result {
 fn test(tally: &mut Tally) -> Result {
     let mut command = cargo_command();
     command.args(["test", "--workspace", "--no-fail-fast"]);
-    let known = std::fs::read_to_string(metadrive_note()).unwrap_or_default();
-    if std::env::var_os("RECRASH_METADRIVE_PYTHON").is_none() && Path::new(known.trim()).is_file() {
-        command.env("RECRASH_METADRIVE_PYTHON", known.trim());
+    if let Some(python) = metadrive_python() {
+        command.env("RECRASH_METADRIVE_PYTHON", python);
     }
     counted(&mut command, tally)
 }
@@ -135,6 +135,12 @@ pub fn find_python() -> Option<&'static str> {
 
 fn venv_python() -> PathBuf {
     root().join(".venv").join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
+}
+
+/// The interpreter that has MetaDrive: the one that is named, else the one that `prepare` has set up.
+pub fn metadrive_python() -> Option<OsString> {
+    let noted = || std::fs::read_to_string(metadrive_note()).ok().map(|known| known.trim().into());
+    std::env::var_os("RECRASH_METADRIVE_PYTHON").or_else(noted).filter(|python| Path::new(python).is_file())
 }
 
 /// Where `prepare` notes the interpreter that has MetaDrive.

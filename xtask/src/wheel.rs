@@ -1,6 +1,7 @@
 //! The Python package: its wheel is built, installed where nothing else is, and held against its gates.
 
-use crate::steps::{Result, built, counted, find_python, missing, root, run, target};
+use crate::licences;
+use crate::steps::{Result, built, counted, find_python, metadrive_python, missing, root, run, target};
 use crate::tally::Tally;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +10,17 @@ use std::process::Command;
 /// The largest wheel that is given to anybody: of a `dist` build, where there is one. [bytes]
 const MAX_WHEEL_BYTES: u64 = 12 << 20;
 
-/// Lint, types, the wheel and the tests in it.
+/// What a source distribution needs beside the crates: they read it when they are compiled.
+const SDIST_NEEDS: [&str; 6] = [
+    "LICENSES.txt",
+    "Cargo.lock",
+    "profiles/open.toml",
+    "profiles/paper.toml",
+    "eval/labels.csv",
+    "crates/python/src/lib.rs",
+];
+
+/// Lint, types, the wheel and the tests in it, the notebook, the API pages, and what a source distribution holds.
 ///
 /// The wheel is of the dev profile, which lint and tests have compiled already: about a minute for what is left, where a release
 /// build takes ten.
@@ -29,6 +40,7 @@ pub fn step(tally: &mut Tally) -> Result {
         command
     };
     run(pip(&["--requirement"]).arg(root().join("requirements/python.txt")))?;
+    licences::check()?;
     run(Command::new(own("ruff")).args(["format", "--check"]).arg(&package))?;
     run(Command::new(own("ruff")).arg("check").arg(&package))?;
     let wheels = target().join("wheels-dev");
@@ -43,12 +55,33 @@ pub fn step(tally: &mut Tally) -> Result {
     run(Command::new(own("mypy")).args(["--package", "recrash"]).current_dir(&package))?;
     run(Command::new(own("stubtest")).args(["--ignore-disjoint-bases", "recrash._recrash"]))?;
     let mut tests = Command::new(own("pytest"));
-    tests.args(["--quiet", "-p", "no:cacheprovider", "--config-file"]).arg(package.join("pyproject.toml"));
-    counted(tests.arg(package.join("tests")).env("RECRASH", built()?), tally)?;
+    tests.args(["--quiet", "--nbmake", "-p", "no:cacheprovider", "--config-file"]).arg(package.join("pyproject.toml"));
+    tests.arg(package.join("tests")).arg(package.join("examples/tutorial.ipynb")).env("RECRASH", built()?);
+    if let Some(python) = metadrive_python() {
+        tests.env("RECRASH_METADRIVE_PYTHON", python);
+    }
+    counted(&mut tests, tally)?;
+    let (pages, made) = (package.join("docs"), target().join("python-docs"));
+    run(Command::new(own("sphinx-build")).args(["-q", "-W", "--keep-going", "-E"]).arg(&pages).arg(&made))?;
+    source_distribution(&own("maturin"), &package)?;
     let released = target().join("wheels");
     let large = only_file(&released).ok().filter(|file| size(file) > MAX_WHEEL_BYTES);
     large
         .map_or(Ok(()), |file| Err(format!("{}: {} bytes, {MAX_WHEEL_BYTES} is the most", file.display(), size(&file))))
+}
+
+/// A source distribution is made, and everything that its crates read stands in it. That one builds from nothing is tried by hand:
+/// it takes ten minutes (`bench-runs`).
+fn source_distribution(maturin: &Path, package: &Path) -> Result {
+    let folder = target().join("sdist");
+    let _ = fs::remove_dir_all(&folder);
+    run(Command::new(maturin).args(["sdist", "--quiet", "--out"]).arg(&folder).current_dir(package))?;
+    let sdist = only_file(&folder)?;
+    let listed = Command::new("tar").arg("tzf").arg(&sdist).output().map_err(|error| format!("tar: {error}"))?;
+    let listed = String::from_utf8_lossy(&listed.stdout);
+    let held: Vec<&str> = listed.lines().filter_map(|name| name.split_once('/')).map(|(_, name)| name).collect();
+    let missing: Vec<&str> = SDIST_NEEDS.into_iter().filter(|name| !held.contains(name)).collect();
+    if missing.is_empty() { Ok(()) } else { Err(format!("{} lacks {}", sdist.display(), missing.join(", "))) }
 }
 
 fn only_file(folder: &Path) -> Result<PathBuf> {
