@@ -94,7 +94,7 @@ METADRIVE = os.environ.get("RECRASH_METADRIVE_PYTHON")
 @pytest.mark.skipif(METADRIVE is None, reason="RECRASH_METADRIVE_PYTHON names no interpreter with MetaDrive")
 def test_metadrive_and_its_expert_are_driven_from_python(tmp_path):
     suite = recrash.run(tmp_path / "s", progress=False, until="design", **OPTIONS)
-    options = {"profile": "paper", "simulator": "metadrive", "python": METADRIVE, "threads": 1}
+    options: dict = {"profile": "paper", "simulator": "metadrive", "python": METADRIVE, "threads": 1}
     scenarios = suite.scenarios()
     by_expert = recrash.test(scenarios, "metadrive-expert", **options).to_dicts()
     assert {row["ego"] for row in by_expert} == {"metadrive-expert"}
@@ -102,10 +102,6 @@ def test_metadrive_and_its_expert_are_driven_from_python(tmp_path):
     # In another order, by another worker: the same.
     again = recrash.test(scenarios[::-1], "metadrive-expert", **options).to_dicts()
     assert [row["state_hash"] for row in again[::-1]] == [row["state_hash"] for row in by_expert]
-    by_idm = recrash.test(scenarios, "metadrive-idm", **options).to_dicts()
-    assert {row["state_hash"] for row in by_idm}.isdisjoint(row["state_hash"] for row in by_expert)
-    own = [scenario.run("metadrive-idm", profile="paper").termination for scenario in scenarios]
-    assert [row["termination"] for row in by_idm] == own
 
 
 MAKES = """
