@@ -180,6 +180,17 @@ impl World {
             return Some(SUBJECT);
         }
         let has = |adjective: Adjective| noun.adjectives.contains(&adjective);
+        // "The shuttle" of a story that a shuttle tells, and that knows no other one.
+        let own = self.actors[SUBJECT].kind.is_some_and(|own| own == kind && kind.group() == KindGroup::Truck);
+        if own
+            && noun.article == Article::Definite
+            && !noun.several
+            && !has(Adjective::Other)
+            && !has(Adjective::Another)
+            && !self.actors[1..].iter().any(|known| known.kind == Some(kind))
+        {
+            return Some(SUBJECT);
+        }
         let fits = |known: &Known| {
             (known.kind.is_none() || known.kind.is_some_and(|known| same_kind(known, kind)))
                 && (noun.number.is_none() || known.number.is_none() || noun.number == known.number)

@@ -145,6 +145,11 @@ const PREPOSITIONS: [&str; 28] = [
 const DETERMINERS: [&str; 14] =
     ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
 
+/// Whether a noun begins with this word.
+pub fn is_determiner(word: &str) -> bool {
+    DETERMINERS.contains(&word)
+}
+
 /// Most tokens that name one part.
 const LONGEST_PIECE: usize = 14;
 

@@ -55,9 +55,11 @@ impl Reading<'_> {
             return false;
         }
         // "made contact while passing": at the same time.
+        let between = at.end.min(frame.first)..frame.first;
         let simultaneous = frame.sentence == at.sentence
             && frame.joint == Some(crate::chunk::Joint::While)
-            && frame.clause > at.clause;
+            && frame.clause > at.clause
+            && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
         !(simultaneous || frame.described && frame.sentence == at.sentence)
     }
 
