@@ -4,6 +4,7 @@ mod contact;
 mod movement;
 mod origin;
 mod party;
+mod picture;
 mod place;
 mod types;
 
@@ -134,6 +135,10 @@ pub fn account(incident: &Incident) -> Option<Account> {
     party::columns(&reading, &mut account);
     account.came_from = origin::came_from(&reading, &account);
     movement::movements(&reading, &mut account);
+    if let Some(origin) = picture::settle(&account) {
+        account.came_from = Some(origin);
+        movement::movements(&reading, &mut account);
+    }
     account.striker = types::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
     account.role = types::role(&reading, &account);

@@ -294,6 +294,13 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             clues.has(if side == LeftRight::Left { Relation::Left } else { Relation::Right }),
         );
     }
+    if ahead
+        && side.is_none()
+        && moved_over
+        && let Some(side) = lane_side(account)
+    {
+        return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
+    }
     if ahead && side.is_none() {
         return told_as(Origin::Ahead, clues.has(Relation::Ahead));
     }
@@ -352,7 +359,8 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
-    (animal && has_zone(&account.sv, |zone| zone.is_front()))
+    let driven_over = account.sv.zones.iter().all(|zone| zone.value == Z::Bottom) && forward(account);
+    (animal && (driven_over || has_zone(&account.sv, |zone| zone.is_front())))
         .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
 }
 

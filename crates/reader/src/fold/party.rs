@@ -56,10 +56,9 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
 }
 
 fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<recrash_model::account::Compass>> {
-    let (_, frame) =
-        reading.before(actor).find(|(_, frame)| {
-            frame.onto && frame.heading.is_some() && frame.happened() && frame.act().is_some()
-        })?;
+    let (_, frame) = reading
+        .before(actor)
+        .find(|(_, frame)| frame.onto && frame.heading.is_some() && frame.happened() && frame.act().is_some())?;
     frame.heading.map(|(compass, first, end)| reading.told(compass, first, end))
 }
 

@@ -197,7 +197,9 @@ impl Parser<'_> {
         let last = self.tokens[placed.end - 1].text.as_str();
         let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
             || (last == "behind" && placed.end == placed.first + 1);
-        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) {
+        let of_street = (placed.first..placed.end).any(|at| self.tokens[at].text == "side")
+            && self.tokens.get(placed.end).is_some_and(|next| next.capital);
+        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) && !of_street {
             return;
         }
         // "to the left" is a side of what is done there, or a place.

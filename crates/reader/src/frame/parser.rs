@@ -63,6 +63,8 @@ pub(super) struct Carry {
     pub(super) pushed: bool,
     /// A noun that nobody knows stands behind the preposition or relation: "at this time", "on Elm Street".
     pub(super) filled: bool,
+    /// A clause behind "where" waits for its subject.
+    pub(super) place: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -177,6 +179,7 @@ impl Parser<'_> {
             }
             Chunk::Joint(joint) => self.joint(*joint, carry, &all[at + 1..]),
             Chunk::Comma => {
+                self.leave_place(carry);
                 carry.after_comma = true;
                 (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
                 carry.progress = None;
@@ -194,12 +197,25 @@ impl Parser<'_> {
                 if let Some(progress) = self.lexicon.progress(word) {
                     self.progress(progress, carry);
                 }
+                // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
+                if word == "where" {
+                    (carry.subject, carry.frame, carry.has_verb) = (None, None, false);
+                    (carry.place, carry.fresh) = (true, true);
+                }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
                 carry.filled |= waits && (is_determiner(word) || self.tokens[placed.first].capital);
                 return;
             }
         }
         (carry.after_comma, carry.filled) = (false, false);
+    }
+
+    /// Behind a clause that tells of a place the sentence goes on with whom it is about.
+    fn leave_place(&self, carry: &mut Carry) {
+        if std::mem::take(&mut carry.place) && carry.subject.is_none() {
+            carry.subject = carry.main.clone();
+            carry.has_verb = carry.main.is_some();
+        }
     }
 
     fn progress(&mut self, progress: Progress, carry: &mut Carry) {
@@ -302,6 +318,12 @@ impl Parser<'_> {
                     Sense::Tow => {
                         if let Some(tower) = taken.who {
                             self.world.tow(tower, actor);
+                            // "a truck towing a trailer that was facing east": they are one.
+                            if let Some(last) =
+                                carry.last.as_mut().filter(|_| self.world.actors[actor].towed_by == Some(tower))
+                            {
+                                last.actor = tower;
+                            }
                         }
                     }
                     _ => {}
@@ -371,6 +393,7 @@ impl Parser<'_> {
             return;
         }
         carry.also = None;
+        self.leave_place(carry);
         carry.clause += 1;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
         if joint != Joint::And {
@@ -401,8 +424,16 @@ impl Parser<'_> {
     }
 
     fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
+        if carry.place && carry.subject.is_none() {
+            return;
+        }
         let placed = &all[at];
         let word = self.tokens[placed.first].text.clone();
+        // "traffic was backed up" stands.
+        let before = at.checked_sub(1).map(|at| &all[at]);
+        let remains = before.is_some_and(|before| matches!(before.chunk, Chunk::Verb(Sense::Act(Act::Hold), _)));
+        let backed = sense == Sense::Act(Act::Reverse) && form == Form::Past && (carry.be || remains);
+        let sense = if backed && word == "backed" { Sense::Other } else { sense };
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         // A finite verb behind a finished relative clause is of the clause around it.
         let finite = (matches!(form, Form::Past | Form::Present)) || (form == Form::Ing && carry.be);

@@ -26,7 +26,14 @@ impl Parser<'_> {
     }
 
     /// Of whom a verb is told.
-    pub(super) fn who_of(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry, purpose: bool) -> Option<Mention> {
+    pub(super) fn who_of(
+        &self,
+        sense: Sense,
+        form: Form,
+        placed: &Placed,
+        carry: &Carry,
+        purpose: bool,
+    ) -> Option<Mention> {
         if carry.pushed && purpose {
             return carry.last.clone();
         }
