@@ -281,6 +281,7 @@ impl Chunker<'_> {
             "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
             "that" | "which" | "who" | "whom" => Chunk::Relative,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
+            "no" if at == self.first => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
             | "avoiding" | "avoided" => Chunk::Not,
             "fail" | "failed" | "failing" | "fails" | "refused" => Chunk::Not,

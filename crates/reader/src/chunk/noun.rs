@@ -151,7 +151,7 @@ impl Chunker<'_> {
         let mut strange = 0;
         let head = loop {
             if at >= self.tokens.len() || at > first + 10 || self.tokens[at].kind == TokenKind::Mark {
-                return None;
+                return self.only_named(noun, first, at.min(self.tokens.len()), company, make);
             }
             if let Some(found) = self.head(at) {
                 break found;

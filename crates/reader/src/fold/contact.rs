@@ -41,6 +41,10 @@ impl Contacts {
                     && (*other == partner || story.world.actors[*other].mentions > 1)
                     && alike(story, partner, *other)
             });
+            // "... struck it from behind. It then struck the left side": two events, no headline.
+            let told = &frames[first];
+            let full = told.on.is_some() || told.with.is_some() || !told.relations.is_empty();
+            let again = again.filter(|(number, _)| !(full && goes_on(story, *number)));
             let (first, partner) = again.copied().unwrap_or((first, partner));
             contacts.first = Some(first);
             contacts.partner = Some(partner);
@@ -49,7 +53,12 @@ impl Contacts {
                 .collect();
             return contacts;
         }
-        let others = (0..frames.len()).find(|&number| between_others(&frames[number]));
+        // The one that names parts tells most.
+        let apart = |&number: &usize| between_others(&frames[number]);
+        let others = (0..frames.len())
+            .filter(apart)
+            .find(|&number| frames[number].on.is_some() || frames[number].with.is_some())
+            .or_else(|| (0..frames.len()).find(apart));
         let untouched = frames.iter().any(|frame| {
             frame.negated && matches!(frame.sense, Sense::Contact) && [frame.who, frame.object].contains(&Some(SUBJECT))
         });
@@ -89,6 +98,16 @@ impl Contacts {
     }
 }
 
+/// Whether the sentence of a frame says that it is one more event.
+fn goes_on(story: &Story, number: usize) -> bool {
+    let sentence = story.sentences[story.frames[number].sentence];
+    let words = &story.tokens[sentence.first..story.frames[number].first];
+    words.iter().any(|token| matches!(token.text.as_str(), "then" | "again" | "subsequently"))
+        || story.tokens[sentence.first..sentence.end]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "third" | "times"))
+}
+
 fn alike(story: &Story, one: Actor, other: Actor) -> bool {
     match (story.world.actors[one].kind, story.world.actors[other].kind) {
         (Some(one), Some(other)) => same_kind(one, other) || same_kind(other, one),
@@ -120,7 +139,7 @@ fn between_others(frame: &Frame) -> bool {
         && !pair.contains(&Some(SUBJECT))
         && frame.who.is_some()
         && frame.object.is_some()
-        && frame.who != frame.object
+        && (frame.who != frame.object || frame.sense == Sense::ContactMade)
 }
 
 /// Whether a contact of two others came before the crash: told before it, told as the first, or followed by the crash told

@@ -52,6 +52,14 @@ impl Reading<'_> {
         let frame = &self.story.frames[number];
         let Some(contact) = self.contacts.first else { return false };
         let at = &self.story.frames[contact];
+        // "Before it set off, a van struck it".
+        let until = frame.sentence == at.sentence
+            && frame.joint == Some(crate::chunk::Joint::Before)
+            && at.joint != frame.joint
+            && !frame.is_contact();
+        if until && frame.progress != crate::lexicon::Progress::Wished {
+            return true;
+        }
         if number <= contact || frame.looks_back || frame.aside && frame.sentence == at.sentence {
             return false;
         }

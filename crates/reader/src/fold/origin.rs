@@ -139,7 +139,21 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let parked = frames().any(|(_, frame)| frame.sense == Sense::Parked)
         || told(&account.partner.as_ref()?.state) == Some(ContactState::Parked);
     // Out of a stall, a driveway, a lot.
-    if let Some((number, frame)) = frames().find(|(_, frame)| frame.out_of.is_some()) {
+    let heading = account.partner.as_ref()?.heading.as_ref();
+    // After a turn that is done, its new direction counts.
+    let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
+    let turn =
+        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
+    // Out of a spot at the other side of the road, and then on: it comes the other way.
+    let drove_on = |number: usize| {
+        turn == Some(4)
+            && frames().any(|(later, frame)| {
+                later > number && matches!(frame.act(), Some(Act::Follow | Act::SetOff | Act::Drift))
+            })
+    };
+    if let Some((number, frame)) =
+        frames().find(|(_, frame)| frame.out_of.is_some()).filter(|(number, _)| !drove_on(*number))
+    {
         let (first, end) = reading.window(number);
         let source = reading.words(first, end);
         match frame.out_of {
@@ -198,15 +212,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     }
     let leaves_curb =
         did(Act::PullOut) && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
-    if leaves_curb && (parked || !behind_first(clues)) {
+    let crosses = matches!(turn, Some(2 | 6));
+    if leaves_curb && (parked || !(behind_first(clues) || crosses)) {
         let source = clues.source(|frame| frame.act() == Some(Act::PullOut));
         return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
     }
-    let heading = account.partner.as_ref()?.heading.as_ref();
-    // After a turn that is done, its new direction counts.
-    let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
-    let turn =
-        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
     let first = first_relation(clues);
     // Beside it, before it passes or changes lanes.
     let beside = |side: LeftRight| {

@@ -604,6 +604,12 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         {
             Some(ContactState::Moving)
         }
+        // "As it set off, a van struck it" is plain.
+        (Some(ContactState::SettingOff), Some(Movement::Stopped | Movement::Parked))
+            if zero && !moves_at_contact(reading) && !sets_off_at_contact(reading) =>
+        {
+            Some(ContactState::Stopped)
+        }
         (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
             if zero && !moves_at_contact(reading) =>
         {
@@ -627,6 +633,17 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
         account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
     }
+}
+
+/// Whether the sentence of the contact says that the subject vehicle sets off.
+fn sets_off_at_contact(reading: &Reading<'_>) -> bool {
+    let Some(contact) = reading.contacts.first else { return false };
+    let sentence = reading.story.frames[contact].sentence;
+    reading.before(SUBJECT).any(|(_, frame)| {
+        frame.sentence == sentence
+            && frame.happened()
+            && matches!(frame.act(), Some(Act::SetOff | Act::Follow | Act::Enter | Act::Turn))
+    })
 }
 
 /// Whether the words of the contact's own clause say that the subject vehicle moved into something.

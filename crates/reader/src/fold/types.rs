@@ -121,9 +121,10 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             (CrashType::SingleVehicle, "a thing")
         });
     }
-    if (partner.did(Act::Pushed)
-        || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
-        || separate(reading))
+    if !reading.contacts.others_only
+        && (partner.did(Act::Pushed)
+            || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
+            || separate(reading))
         && !drove_on(reading)
     {
         return Some((CrashType::Secondary, "another contact threw the partner at it"));

@@ -65,6 +65,10 @@ pub(super) struct Carry {
     pub(super) filled: bool,
     /// A clause behind "where" waits for its subject.
     pub(super) place: bool,
+    /// "Neither", "no" stands before the subject.
+    pub(super) nobody: bool,
+    /// "Between" waits for the second of a pair.
+    pub(super) pair: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -162,7 +166,11 @@ impl Parser<'_> {
             }
             Chunk::Verb(sense, form) => self.verb(*sense, *form, all, at, carry),
             Chunk::Be => carry.be = true,
-            Chunk::Not => carry.negated = true,
+            Chunk::Not => {
+                carry.negated = true;
+                // "Neither car made contact": said before who it is.
+                carry.nobody |= carry.fresh && matches!(self.tokens[placed.first].text.as_str(), "neither" | "no");
+            }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
             Chunk::Side(side) => self.side(*side, carry),
@@ -201,6 +209,17 @@ impl Parser<'_> {
                 if word == "where" {
                     (carry.subject, carry.frame, carry.has_verb) = (None, None, false);
                     (carry.place, carry.fresh) = (true, true);
+                }
+                // "The Fusion" of "a red Ford Fusion".
+                if self.tokens[placed.first].capital
+                    && placed.first > 0
+                    && self.tokens[placed.first - 1].text == "the"
+                    && let Some(actor) = self.world.by_name(word)
+                {
+                    let mention = Mention { actor, piece: None, person: None, end: placed.end };
+                    self.mention(mention, placed, carry, next);
+                    (carry.after_comma, carry.filled) = (false, false);
+                    return;
                 }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
                 carry.filled |= waits && (is_determiner(word) || self.tokens[placed.first].capital);
@@ -302,6 +321,12 @@ impl Parser<'_> {
         match open {
             // The object of the verb before.
             Some(frame) if !carry.after_comma => {
+                // Nobody touches itself: "the van made contact with the van that was turning".
+                let itself = self.frames[frame].sense == Sense::Contact
+                    && self.frames[frame].who == Some(actor)
+                    && actor != SUBJECT;
+                let actor = if itself { self.world.like(actor).unwrap_or(actor) } else { actor };
+                let mention = Mention { actor, ..mention };
                 let taken = &mut self.frames[frame];
                 taken.object = Some(actor);
                 taken.on.clone_from(&mention.piece);
@@ -330,7 +355,11 @@ impl Parser<'_> {
                 }
             }
             _ => {
-                // A new subject.
+                // A new subject; behind a comma that of the main clause: "As the van turned, it touched the wall".
+                if carry.after_comma && carry.has_verb && !carry.relative && carry.joint.is_some() {
+                    carry.joint = None;
+                    carry.clause += 1;
+                }
                 let list = carry.has_verb && !carry.after_comma && !carry.fresh && !governed;
                 if list && !matches!(next, Some(Chunk::Verb(..) | Chunk::Be | Chunk::Relation(_) | Chunk::Relative)) {
                     carry.last = Some(mention);
@@ -340,9 +369,19 @@ impl Parser<'_> {
                 // "While stopped at a light, a man began to cross": of somebody new it is not told.
                 let new = self.world.actors[actor].mentions == 1 && actor != SUBJECT && carry.main.is_none();
                 for pending in std::mem::take(&mut carry.pending) {
-                    let dangles = new
-                        && self.frames[pending].state
-                        && matches!(self.frames[pending].sense, Sense::Act(Act::Hold) | Sense::Parked);
+                    let waiting = &self.frames[pending];
+                    let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
+                    // "It began to cross. While crossing, a van ...": who did so before.
+                    let goes_on = waiting.form == Form::Ing
+                        && waiting.act().is_some()
+                        && self.frames.iter().any(|before| {
+                            before.sentence < waiting.sentence
+                                && before.who == Some(self.world.topic)
+                                && before.happened()
+                                && before.act() == waiting.act()
+                                && !matches!(before.act(), Some(Act::Follow))
+                        });
+                    let dangles = new && (stands || goes_on);
                     self.frames[pending].who = Some(if dangles { self.world.topic } else { actor });
                 }
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
@@ -357,7 +396,8 @@ impl Parser<'_> {
                 carry.has_verb = false;
                 carry.relative = false;
                 carry.governed = false;
-                (carry.be, carry.to, carry.progress, carry.negated) = (false, false, None, false);
+                let nobody = std::mem::take(&mut carry.nobody);
+                (carry.be, carry.to, carry.progress, carry.negated) = (false, false, None, nobody);
                 carry.frame = None;
             }
         }
@@ -378,7 +418,7 @@ impl Parser<'_> {
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
         });
-        if joint == Joint::And && noun && ends && carry.has_verb {
+        if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair)) {
             carry.preposition = Some("and");
             return;
         }
@@ -590,6 +630,9 @@ impl Parser<'_> {
         }
         carry.began = leads;
         carry.lead_who = None;
+        if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "between" {
+            carry.preposition = Some("between");
+        }
         carry.row = false;
         carry.negated = false;
     }
