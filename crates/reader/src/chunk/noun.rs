@@ -139,6 +139,11 @@ impl Chunker<'_> {
                 noun.article = Article::Definite;
                 at += 1;
             }
+            // "one of the cyclists", "each of the vans".
+            "one" if self.text(at + 1) == "of" && matches!(self.text(at + 2), "the" | "these" | "those") => {
+                noun.article = Article::Definite;
+                at += 3;
+            }
             "a" | "an" | "one" => {
                 noun.article = Article::Indefinite;
                 at += 1;

@@ -10,7 +10,7 @@ mod types;
 
 use crate::chunk::Piece;
 use crate::frame::{Frame, Own, Story, story};
-use crate::lexicon::{Lexicon, Sense};
+use crate::lexicon::{Lexicon, Occupant, Sense};
 use crate::world::{Actor, SUBJECT};
 use contact::Contacts;
 use recrash_model::account::{
@@ -205,7 +205,7 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         frame.sense == Sense::TakeOver
             && frame.happened()
             && frame.who.is_none_or(|who| who == SUBJECT)
-            && (!reading.is_after(*number) || told_again(*number))
+            && (!reading.is_after(*number) || told_again(*number) || had_done(reading, frame))
     });
     let mut system = None;
     let mut human = None;
@@ -245,6 +245,9 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
     if let Some((_, at, length)) = human.filter(|_| handed_over) {
         return Some(reading.told(Driver::HumanTookOver, at, at + length));
     }
+    if let (None, Some(frame)) = (&human, by_hand(reading)) {
+        return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
+    }
     if let Some((value, at, length)) = human.or(system) {
         return Some(reading.told(value, at, at + length));
     }
@@ -255,6 +258,22 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// "It struck the van, which at that time had disengaged": told behind the contact, and done before it.
+fn had_done(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence);
+    let before = frame.first.checked_sub(1).map(|at| reading.story.tokens[at].text.as_str());
+    contact == Some(frame.sentence) && before == Some("had")
+}
+
+/// The first thing that the human at the wheel did to the vehicle before the contact.
+fn by_hand<'a>(reading: &'a Reading<'_>) -> Option<&'a Frame> {
+    reading.before(SUBJECT).map(|(_, frame)| frame).find(|frame| {
+        frame.person == Some(Occupant::Driver)
+            && frame.happened()
+            && matches!(frame.act(), Some(Act::Slow | Act::Swerve | Act::Stop | Act::Turn | Act::LaneChange))
+    })
 }
 
 /// Whether a sentence says that the system drove, or handed over, in the half minute before: "autonomy was engaged within the

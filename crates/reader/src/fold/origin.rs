@@ -349,6 +349,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let turning =
         super::types::turning(&account.sv) && !super::types::turning(account.partner.as_ref()?) && !did(Act::Pass);
     if let (true, Some(side)) = (turning && !has_zone(&account.sv, |zone| zone.is_rear()), zone_side(account)) {
+        if parked {
+            return Some(Fact::by_rule(Origin::Beside { side }, "the side that a parked one is touched with"));
+        }
         return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));
     }
     let rear_ended = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);

@@ -315,6 +315,9 @@ const TOLD: i32 = 8;
 /// What a rule of the words adds: lanes, directions.
 const BY_RULE: i32 = 4;
 
+/// What the side of a turning vehicle adds.
+const BY_TURN: i32 = 7;
+
 /// What columns alone add.
 const BY_COLUMNS: i32 = 1;
 
@@ -337,6 +340,7 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
     let told_way = now.and_then(|fact| Way::of(fact.value));
     let prior = match now.map(|fact| &fact.source) {
         Some(Source::Rule { name }) if name.starts_with("zones") => BY_COLUMNS,
+        Some(Source::Rule { name }) if name.contains("turning vehicle") => BY_TURN,
         Some(Source::Rule { .. } | Source::Column { .. }) => BY_RULE,
         _ => TOLD,
     };

@@ -59,8 +59,13 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     }
     let Some(number) = reading.contacts.first else { return by_fronts(account) };
     let frame = &reading.story.frames[number];
+    // "It entered, making contact with the front of the other": the front moved into the side.
+    let crossing = matches!(told(&account.came_from), Some(Origin::Cross { .. } | Origin::Opposite));
+    if let (true, Some(front)) = (crossing, front_on_flank(account)) {
+        return rule(front, FRONT_ON_SIDE);
+    }
     let value = match (frame.who, frame.object) {
-        (Some(SUBJECT), Some(_)) => {
+        (Some(SUBJECT), _) => {
             // "The rear of the subject vehicle made contact with the front of the car": who moved forward into whom.
             let rear = has_zone(&account.sv, |zone| zone.is_rear());
             if rear && sv != Some(ContactState::Reversing) { Striker::Cp } else { Striker::Sv }
@@ -71,6 +76,29 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         _ => return by_fronts(account),
     };
     Some(Fact { value, source: reading.of(frame) })
+}
+
+/// Rule of a striker by whose front touches whose side.
+const FRONT_ON_SIDE: &str = "the front of one on the side of the other";
+
+/// Whose front alone touches a side that is no corner.
+fn front_on_flank(account: &Account) -> Option<Striker> {
+    use recrash_model::zones::ContactZone as Z;
+    let partner = account.partner.as_ref()?;
+    let front = |party: &Party| {
+        !party.zones.is_empty()
+            && party.zones.iter().all(|zone| zone.value.is_front())
+            && has_zone(party, |zone| zone == Z::Front)
+    };
+    let flank = |party: &Party| {
+        !party.zones.is_empty()
+            && party.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::Right | Z::RearLeft | Z::RearRight))
+    };
+    match (front(&account.sv) && flank(partner), front(partner) && flank(&account.sv)) {
+        (true, false) => Some(Striker::Sv),
+        (false, true) => Some(Striker::Cp),
+        _ => None,
+    }
 }
 
 /// Rule of a striker of whom the words say nothing.
@@ -372,9 +400,18 @@ fn lay(reading: &Reading<'_>) -> bool {
     })
 }
 
-/// Whether a thing came into the way.
-fn comes(partner: &Party) -> bool {
-    partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop))
+/// Whether a thing came into the way: one that is fixed does not, whatever a sentence makes its subject.
+fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
+    let fixed = matches!(
+        told(&partner.kind),
+        Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier | Kind::Sign | Kind::Pothole | Kind::Chain)
+    );
+    let thrown = || {
+        let Some(actor) = reading.contacts.partner else { return false };
+        reading.before(actor).any(|(_, frame)| frame.sense == Sense::Push && frame.happened())
+    };
+    let moved = partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop));
+    !fixed && (moved || thrown())
 }
 
 /// Whose move brought it about.
@@ -398,7 +435,7 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     }
     if group(account) == Some(KindGroup::Object) {
         let flies = matches!(told(&partner.kind), Some(Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo));
-        let appears = flies || comes(partner);
+        let appears = flies || comes(reading, partner);
         return if appears {
             rule(Role::Responder, "something came into its way")
         } else {
@@ -441,7 +478,10 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return rule(Role::Responder, "the other turned or came out across its way");
     }
     // What zones alone say of it is not enough to blame it.
-    let by_zones = matches!(&account.striker, Some(Fact { source: Source::Rule { name }, .. }) if name == BY_FRONTS);
+    let by_zones = matches!(
+        &account.striker,
+        Some(Fact { source: Source::Rule { name }, .. }) if name == BY_FRONTS || name == FRONT_ON_SIDE
+    );
     if striker == Some(Striker::Sv) && !by_zones && told(&account.crash_type) != Some(CrashType::Other) {
         return if cp_moves {
             rule(Role::Both, "both moved")
@@ -462,6 +502,19 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
             rule(Role::Both, "it turned across another's way")
         };
     }
+    if account.sv.did(Act::UTurn) && !cp_moves && told(&account.came_from) != Some(Origin::Ahead) {
+        return rule(Role::Initiator, "it turned round before one that drove on");
+    }
+    if crossed_from_stop(account) && !cp_moves && !ignored_a_stop(reading) {
+        return rule(Role::Initiator, "it crossed from a stop before one that drove on");
+    }
+    let over = account.sv.did(Act::LaneChange) && matches!(told(&account.came_from), Some(Origin::Beside { .. }));
+    let passes = told(&partner.movement) == Some(Movement::Passing) || partner.did(Act::Accelerate);
+    // Struck at its rear it was there already.
+    let beside = striker == Some(Striker::Sv) || has_zone(&account.sv, |zone| !zone.is_rear());
+    if over && beside && !cp_moves && !passes && told(&account.crash_type) == Some(CrashType::Lateral) {
+        return rule(Role::Initiator, "it changed lanes into one that drove on");
+    }
     if sv_changes && !matches!(told(&account.crash_type), Some(CrashType::Intersection)) {
         return rule(Role::Both, "it changed lanes");
     }
@@ -470,6 +523,32 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     }
     let _ = reading;
     rule(Role::Responder, "the other moved into it")
+}
+
+/// Whether the partner is told not to have stopped, wherever it should have.
+fn ignored_a_stop(reading: &Reading<'_>) -> bool {
+    let Some(actor) = reading.contacts.partner else { return false };
+    reading
+        .before(actor)
+        .any(|(_, frame)| frame.negated && (frame.act() == Some(Act::Stop) || frame.sense == Sense::Yield))
+}
+
+/// Whether it stood for a sign or for others, and then crossed the way of one who had nothing to stop for.
+fn crossed_from_stop(account: &Account) -> bool {
+    let Some(partner) = &account.partner else { return false };
+    use recrash_model::account::{RoadFeature, StandReason};
+    let before: Vec<Act> = account.sv.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+    let stood = before.iter().position(|act| matches!(act, Act::Stop | Act::Hold));
+    let went = before.iter().rposition(|act| matches!(act, Act::SetOff | Act::Cross | Act::Enter | Act::Turn));
+    let waits = account.place.features.iter().any(|feature| feature.value == RoadFeature::StopSign)
+        || account.sv.reasons.iter().any(|reason| matches!(reason.value, StandReason::StopSign | StandReason::Yield));
+    let signal = account.place.features.iter().any(|feature| feature.value == RoadFeature::Signal);
+    let stops = partner.did(Act::Stop) || partner.did(Act::Hold) || partner.did(Act::SetOff);
+    matches!(told(&account.came_from), Some(Origin::Cross { .. }))
+        && stood.zip(went).is_some_and(|(stood, went)| stood < went)
+        && waits
+        && !signal
+        && !stops
 }
 
 /// Who was at the place of the conflict first.
@@ -508,7 +587,14 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
     }
     // Whose front touches comes later than whose flank is touched.
     let front = |party: &Party| has_zone(party, |zone| zone.is_front());
-    let flank = |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front());
+    // A side that is named with its front corner is a side.
+    use recrash_model::zones::ContactZone as Z;
+    let side = |party: &Party| {
+        has_zone(party, |zone| matches!(zone, Z::Left | Z::Right))
+            && party.zones.iter().filter(|zone| zone.value.is_front()).all(|zone| zone.value != Z::Front)
+            && party.zones.iter().any(|zone| zone.source.is_told())
+    };
+    let flank = |party: &Party| !party.zones.is_empty() && (side(party) || !has_zone(party, |zone| zone.is_front()));
     if partner.zones.is_empty() && !account.sv.zones.is_empty() {
         let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
         return rule(value, "whose flank is touched is there first");

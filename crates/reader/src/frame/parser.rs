@@ -146,6 +146,13 @@ impl Parser<'_> {
                     None => self.loose_piece(piece, placed, carry),
                 }
             }
+            // "It is at this time that ...": nobody.
+            Chunk::Pronoun
+                if matches!(next, Some(Chunk::Be))
+                    && matches!(
+                        all.get(at + 2).map(|placed| &placed.chunk),
+                        Some(Chunk::Preposition("at" | "within") | Chunk::Relative)
+                    ) => {}
             Chunk::Pronoun => {
                 let actor = self.its(carry);
                 self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
