@@ -43,6 +43,24 @@ pub struct Noun {
     pub owner: Option<Box<Noun>>,
 }
 
+impl Noun {
+    /// A noun of which nothing is said yet.
+    fn unnamed() -> Self {
+        Self {
+            article: Article::None,
+            subject: false,
+            kind: None,
+            number: None,
+            names: Vec::new(),
+            adjectives: Vec::new(),
+            compass: None,
+            several: false,
+            occupant: None,
+            owner: None,
+        }
+    }
+}
+
 /// A part of a vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
@@ -279,6 +297,7 @@ impl Chunker<'_> {
         let word = self.text(at);
         let chunk = match word {
             "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
+            "we" | "us" => Chunk::Noun(Noun { subject: true, ..Noun::unnamed() }),
             "that" | "which" | "who" | "whom" => Chunk::Relative,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
             "no" if at == self.first => Chunk::Not,

@@ -41,7 +41,8 @@ impl Chunker<'_> {
             return None;
         }
         let placed = parts.iter().any(|part| *part != Part::Noun);
-        let mut owner = None;
+        let ours = self.text(first) == "our";
+        let mut owner = ours.then(|| Noun { subject: true, ..Noun::unnamed() });
         if self.text(at) == "of" || (self.text(at) == "on" && nouns > 0) {
             let mut behind = at + 1;
             // "the rear of both the van and the bus" has one owner: the first.
@@ -121,18 +122,7 @@ impl Chunker<'_> {
 
     /// Somebody or something that is named here.
     pub(super) fn noun(&self, first: usize) -> Option<(Noun, usize)> {
-        let mut noun = Noun {
-            article: Article::None,
-            subject: false,
-            kind: None,
-            number: None,
-            names: Vec::new(),
-            adjectives: Vec::new(),
-            compass: None,
-            several: false,
-            occupant: None,
-            owner: None,
-        };
+        let mut noun = Noun::unnamed();
         let mut at = first;
         match self.text(at) {
             "the" | "this" | "that" | "these" | "those" | "its" | "their" | "our" | "his" | "her" => {

@@ -6,6 +6,7 @@ mod origin;
 mod party;
 mod picture;
 mod place;
+mod scenario;
 mod types;
 
 use crate::chunk::Piece;
@@ -144,6 +145,13 @@ pub fn account(incident: &Incident) -> Option<Account> {
     account.came_from = origin::came_from(&reading, &account);
     movement::movements(&reading, &mut account);
     if let Some(origin) = picture::settle(&account) {
+        if let Some(told) = account.came_from.take().filter(|told| told.source.is_told()) {
+            account.contradictions.push(Contradiction {
+                about: "came_from".to_owned(),
+                kept: format!("{}, by zones and movements", origin.value.words()),
+                against: format!("{} in words", told.value.words()),
+            });
+        }
         account.came_from = Some(origin);
         movement::movements(&reading, &mut account);
     }
@@ -152,8 +160,8 @@ pub fn account(incident: &Incident) -> Option<Account> {
     account.role = types::role(&reading, &account);
     account.order = types::order(&account);
     account.first_contact = types::first_contact(&reading, &account);
-    account.scenario = types::scenario(&account);
-    account.matrix = types::matrix(&account);
+    account.scenario = scenario::scenario(&account);
+    account.matrix = scenario::matrix(&account);
     account.contradictions.extend(contradictions(&account, record));
     party::refine(&mut account.sv.zones, &record.sv_zones, "SV Contact Area");
     if let Some(partner) = &mut account.partner {
@@ -264,13 +272,25 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
 fn had_done(reading: &Reading<'_>, frame: &Frame) -> bool {
     let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence);
     let before = frame.first.checked_sub(1).map(|at| reading.story.tokens[at].text.as_str());
-    contact == Some(frame.sentence) && before == Some("had")
+    let sentence = reading.story.sentences[frame.sentence];
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
+    // "It disengaged before the impact", told behind it.
+    let until = words.iter().position(|word| matches!(*word, "before" | "prior")).is_some_and(|at| {
+        words[at..]
+            .iter()
+            .take(5)
+            .any(|word| matches!(*word, "impact" | "contact" | "collision" | "crash" | "incident"))
+    });
+    until || contact == Some(frame.sentence) && before == Some("had")
 }
 
 /// The first thing that the human at the wheel did to the vehicle before the contact.
 fn by_hand<'a>(reading: &'a Reading<'_>) -> Option<&'a Frame> {
+    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence)?;
     reading.before(SUBJECT).map(|(_, frame)| frame).find(|frame| {
-        frame.person == Some(Occupant::Driver)
+        frame.sentence + 1 >= contact
+            && frame.person == Some(Occupant::Driver)
             && frame.happened()
             && matches!(frame.act(), Some(Act::Slow | Act::Swerve | Act::Stop | Act::Turn | Act::LaneChange))
     })

@@ -96,7 +96,9 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     }
     let kind = told(&account.partner.as_ref()?.kind);
     let fixed = matches!(kind, Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Gate | Kind::Barrier | Kind::Sign));
-    let plain_front = has_zone(&account.sv, |zone| zone == Z::Front);
+    // What runs along the road is met with its corner.
+    let along = matches!(kind, Some(Kind::Curb | Kind::Barrier));
+    let plain_front = has_zone(&account.sv, |zone| zone == Z::Front) && !along;
     if let (true, false, Some(side)) = (fixed, plain_front, zone_side(account)) {
         return Some(Fact::by_rule(
             Origin::Beside { side },
@@ -210,8 +212,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             clues.source(|frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor)),
         );
     }
-    let leaves_curb =
-        did(Act::PullOut) && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
+    let pulled_on =
+        frames().find(|(_, frame)| frame.act() == Some(Act::PullOut)).is_some_and(|(number, _)| drove_on(number));
+    let leaves_curb = !pulled_on
+        && did(Act::PullOut)
+        && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
     let crosses = matches!(turn, Some(2 | 6));
     if leaves_curb && (parked || !(behind_first(clues) || crosses)) {
         let source = clues.source(|frame| frame.act() == Some(Act::PullOut));
@@ -328,7 +333,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return told_as(Origin::Opposite, clues.has(Relation::Opposite));
     }
     if did(Act::Pass) && passes_subject(reading, actor) {
-        return told_as(Origin::Behind, clues.source(|frame| frame.act() == Some(Act::Pass)));
+        return Some(Fact::by_rule(Origin::Behind, "who passes comes from behind"));
     }
     if let Some(side) = lane_side(account).or_else(|| changed_from(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));

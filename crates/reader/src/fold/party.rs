@@ -2,7 +2,7 @@
 
 use super::Reading;
 use crate::frame::{Frame, sided, zone_of};
-use crate::lexicon::{Lexicon, Progress, Sense};
+use crate::lexicon::{Lexicon, Progress, Relation, Sense};
 use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
@@ -141,7 +141,17 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         {
             Some(Act::Follow)
         }
-        Act::Pass if frame.who == Some(SUBJECT) && frame.object.is_none() && frame.side.is_none() => Some(Act::Follow),
+        // So does "passed behind the van".
+        Act::Pass
+            if frame.who == Some(SUBJECT)
+                && frame.object.is_none()
+                && frame
+                    .relations
+                    .iter()
+                    .all(|(relation, _)| matches!(relation, Relation::Ahead | Relation::Behind)) =>
+        {
+            Some(Act::Follow)
+        }
         _ => Some(act),
     }
 }

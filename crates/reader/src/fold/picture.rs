@@ -381,3 +381,59 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
     let same_family = matches!((told_way, way), (Way::Behind, Way::Beside(_)));
     (weight > have && !same_family).then(|| Fact::by_rule(way.origin(), RULE))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use LeftRight::{Left, Right};
+
+    fn party(zones: &[Z], movement: Movement) -> Party {
+        let state = match movement {
+            Movement::Stopped => ContactState::Stopped,
+            Movement::Backing => ContactState::Reversing,
+            _ => ContactState::Moving,
+        };
+        Party {
+            zones: zones.iter().map(|zone| Fact::by_rule(*zone, "made")).collect(),
+            movement: Some(Fact::by_rule(movement, "made")),
+            state: Some(Fact::by_rule(state, "made")),
+            ..Party::default()
+        }
+    }
+
+    /// The heaviest of all origins.
+    fn best(sv: (&[Z], Movement), cp: (&[Z], Movement)) -> Way {
+        let (sv, cp, place) = (party(sv.0, sv.1), party(cp.0, cp.1), Place::default());
+        let scene = Scene { sv: &sv, cp: &cp, place: &place };
+        WAYS.into_iter().max_by_key(|way| (scene.weigh(*way), std::cmp::Reverse(*way))).unwrap()
+    }
+
+    #[test]
+    fn sides_tell_the_direction() {
+        let stands = Movement::Stopped;
+        let on = Movement::Straight;
+        assert_eq!(best((&[Z::Left], stands), (&[Z::Left], on)), Way::Opposite);
+        assert_eq!(best((&[Z::Left], stands), (&[Z::Right], on)), Way::Beside(Left));
+        assert_eq!(best((&[Z::Right], stands), (&[Z::Left], on)), Way::Beside(Right));
+        assert_eq!(best((&[Z::Rear], stands), (&[Z::Front], on)), Way::Behind);
+        assert_eq!(best((&[Z::Front], on), (&[Z::Rear], on)), Way::Ahead);
+        assert_eq!(best((&[Z::Left], on), (&[Z::Front], on)), Way::Cross(Left));
+        assert_eq!(best((&[Z::Right], on), (&[Z::Front], on)), Way::Cross(Right));
+        assert_eq!(best((&[Z::Front], on), (&[Z::Right], on)), Way::Cross(Left));
+    }
+
+    #[test]
+    fn a_turn_turns_the_sides() {
+        // Across from the other direction: its front meets the right side of who turns left.
+        assert_eq!(best((&[Z::Right], Movement::LeftTurn), (&[Z::Front], Movement::Straight)), Way::Opposite);
+        // Who turns right out of the lane on the left shows its right side.
+        assert_eq!(best((&[Z::FrontLeft], Movement::Straight), (&[Z::Right], Movement::RightTurn)), Way::Beside(Left));
+    }
+
+    #[test]
+    fn movements_weigh_where_zones_do_not() {
+        assert_eq!(best((&[Z::RearLeft], Movement::Stopped), (&[], Movement::Passing)), Way::Beside(Left));
+        assert_eq!(best((&[], Movement::Straight), (&[], Movement::NmCrossing)), Way::Cross(Left));
+        assert_eq!(best((&[Z::Front], Movement::Stopped), (&[], Movement::Backing)), Way::Ahead);
+    }
+}

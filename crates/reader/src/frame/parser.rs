@@ -209,7 +209,9 @@ impl Parser<'_> {
             }
             Chunk::Word => {
                 let word = self.tokens[placed.first].text.as_str();
-                if let Some(progress) = self.lexicon.progress(word) {
+                // "time to turn" is no turn; "at which time it turned" is one.
+                let waits_for = word != "time" || matches!(next, Some(Chunk::Preposition("to")));
+                if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for) {
                     self.progress(progress, carry);
                 }
                 // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
@@ -261,13 +263,18 @@ impl Parser<'_> {
     /// What the adjectives of a noun say of it.
     fn attribute(&mut self, noun: &Noun, actor: Actor, placed: &Placed, carry: &Carry) {
         for adjective in &noun.adjectives {
-            let sense = match adjective {
-                Adjective::Stopped => Sense::Act(Act::Hold),
-                Adjective::Parked => Sense::Parked,
+            let (sense, side) = match adjective {
+                Adjective::Stopped => (Sense::Act(Act::Hold), None),
+                Adjective::Parked => (Sense::Parked, None),
+                Adjective::Doing if actor != SUBJECT && !noun.several => match self.doing(placed) {
+                    Some((act, side)) => (Sense::Act(act), side),
+                    None => continue,
+                },
                 _ => continue,
             };
             let mut frame = self.frame(Some(actor), sense, Form::Past, placed, carry);
             (frame.aside, frame.state, frame.negated, frame.progress) = (true, true, false, Progress::Real);
+            frame.side = side;
             self.frames.push(frame);
         }
     }
@@ -388,7 +395,13 @@ impl Parser<'_> {
                                 && before.act() == waiting.act()
                                 && !matches!(before.act(), Some(Act::Follow))
                         });
-                    let dangles = new && (stands || goes_on);
+                    // "While passing the driveway, a van ...": who passes it is told before.
+                    let passes = waiting.form == Form::Ing
+                        && self.world.topic == SUBJECT
+                        && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
+                        && waiting.object != Some(SUBJECT)
+                        && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
+                    let dangles = new && (stands || goes_on || passes);
                     self.frames[pending].who = Some(if dangles { self.world.topic } else { actor });
                 }
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {

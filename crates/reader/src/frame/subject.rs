@@ -6,6 +6,26 @@ use crate::lexicon::{Form, Sense};
 use recrash_model::account::{Act, LeftRight};
 
 impl Parser<'_> {
+    /// What an adjective says that somebody does: "a passing van", "a left-turning bus".
+    pub(super) fn doing(&self, placed: &Placed) -> Option<(Act, Option<LeftRight>)> {
+        (placed.first..placed.end).find_map(|at| {
+            let act = match self.tokens[at].text.as_str() {
+                "passing" | "overtaking" => Act::Pass,
+                "merging" => Act::LaneChange,
+                "turning" => Act::Turn,
+                "reversing" | "backing" => Act::Reverse,
+                "crossing" => Act::Cross,
+                _ => return None,
+            };
+            let side = match self.tokens[at.saturating_sub(1)].text.as_str() {
+                "left" if act == Act::Turn => Some(LeftRight::Left),
+                "right" if act == Act::Turn => Some(LeftRight::Right),
+                _ => None,
+            };
+            Some((act, side))
+        })
+    }
+
     /// The side that the words of a verb name: "moved into the left lane".
     pub(super) fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
         self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
