@@ -1,6 +1,7 @@
 //! How both came to where they touch: courses and speeds, told backwards from the contact.
 
 use crate::control;
+use crate::door::Opening;
 use crate::told::{Side, Told, Turning};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
@@ -8,8 +9,8 @@ use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::scenario::{
-    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Place,
-    SCENARIO_FORMAT, ScenarioDraft, Size, Source, Trigger,
+    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Part,
+    Place, SCENARIO_FORMAT, ScenarioDraft, Size, Source, Trigger,
 };
 use recrash_roads::Course;
 
@@ -194,8 +195,16 @@ const AT_LINE_M: f64 = 0.5;
 /// The scenario of a staging.
 pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> ScenarioDraft {
     let ground = &staging.ground;
-    let recorded = ego_plan(told, staging);
+    let mut recorded = ego_plan(told, staging);
     let (mut actors, objects) = partner(told, staging);
+    let mut parts = Vec::new();
+    if let Some(door) = &staging.door {
+        let cp = actors.iter_mut().find(|actor| actor.id == "cp");
+        match cp.filter(|_| !door.of_sv) {
+            Some(cp) => opens(door, &mut cp.plan, &mut cp.parts),
+            None => opens(door, &mut recorded, &mut parts),
+        }
+    }
     actors.extend(told.lead.then(|| lead(told, staging)));
     let control = control::devices(told, ground);
     let handover_s = match told.sv.state {
@@ -227,6 +236,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             recorded: Some(recorded),
             handover_s,
             stops: mission_stop(told, staging),
+            parts,
             ..EgoSpec::default()
         },
         control,
@@ -235,6 +245,13 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         duration_s: 14.0,
         ..ScenarioDraft::default()
     }
+}
+
+/// Somebody opens a door.
+fn opens(door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<Part>) {
+    let (to_deg, over_s) = Opening::SWING;
+    parts.push(door.part.clone());
+    plan.acts.push(when(CONTACT_S - door.before_s, Deed::Part { part: door.part.id.clone(), to_deg, over_s }));
 }
 
 /// Where the task of the system under test has it stop: where it stood, unless something in the scene makes it stop there. What
@@ -358,6 +375,11 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
         back_m += pace.driven_m - found;
         back_m = back_m.max(0.1);
     }
+    if let Some((begin, mut course)) = behind_in_its_turn(told, staging, &pace, arm_m) {
+        course.push(beyond);
+        let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
+        return ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
+    }
     let mut begin = start_at(back_m);
     let fits = length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02);
     if !fits || (!bent && beside(told).is_none()) {
@@ -367,6 +389,31 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
     let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
     ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) }
 }
+
+/// Who comes from behind an ego that turns comes by the ego's way: where it begins, and the poses that it drives by to the contact.
+fn behind_in_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let (ground, reverses) = (&staging.ground, told.cp.state == ContactState::Reversing);
+    if told.origin != Origin::Behind || told.sv.turning == Turning::No || reverses || !ground.junction {
+        return None;
+    }
+    let met_m = ground.s_of(staging.cp.position);
+    let last_m = met_m - JOINS_M;
+    let mut join = Course::begin(arm_m);
+    if last_m < ground.first_m() || !join.curve(ground.sv_pose(last_m), staging.cp, false) {
+        return None;
+    }
+    let begin_m = last_m - (pace.driven_m - join.length_m());
+    if begin_m > last_m - 1.0 {
+        return None;
+    }
+    let steps = ((last_m - ground.first_m()) / JOINS_M).floor() as usize;
+    let on_way = (0..=steps).map(|step| last_m - JOINS_M * (steps - step) as f64);
+    let poses = std::iter::once(ground.first_m()).chain(on_way).filter(|s_m| *s_m > begin_m + 0.5);
+    Some((ground.sv_pose(begin_m), poses.map(|s_m| ground.sv_pose(s_m)).chain([staging.cp]).collect()))
+}
+
+/// Who follows somebody's way leaves it this far before the contact; and it is drawn in pieces of this length. [m]
+const JOINS_M: f64 = 3.0;
 
 /// Where the partner begins, this far back: on a line with the contact or in the lane it comes from, headed as it came.
 fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Vec2) -> Pose {

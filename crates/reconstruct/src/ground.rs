@@ -2,7 +2,7 @@
 
 use crate::told::{Told, Turning};
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
-use recrash_model::geometry::Pose;
+use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_roads::{LanePath, RoadNetwork};
 
@@ -38,6 +38,11 @@ impl Ground {
     /// Length of the first road of the way. [m]
     pub(crate) fn first_m(&self) -> f64 {
         if self.junction { APPROACH_M } else { 2.0 * APPROACH_M }
+    }
+
+    /// How far along the ego's way a place is. [m]
+    pub(crate) fn s_of(&self, place: Vec2) -> f64 {
+        self.way.project(place, 0).s
     }
 
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {

@@ -9,6 +9,7 @@
 mod came;
 mod choices;
 mod control;
+mod door;
 mod facts;
 mod ground;
 mod told;

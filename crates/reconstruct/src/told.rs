@@ -66,7 +66,8 @@ pub(crate) struct Told {
     pub(crate) reasons: Vec<StandReason>,
     /// Others than the two.
     pub(crate) others: usize,
-    pub(crate) door: bool,
+    /// Whose door took part.
+    pub(crate) door: Option<Striker>,
     /// Somebody stands ahead of the ego, as the reason why it stood.
     pub(crate) lead: bool,
     pub(crate) choices: Choices,
@@ -118,7 +119,7 @@ impl Told {
             lanes: told(&account.place.lanes),
             reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
             others: account.others.len(),
-            door: account.door.is_some(),
+            door: told(&account.door),
             lead: false,
             choices: Choices::default(),
             assumed,
@@ -154,7 +155,7 @@ impl Told {
             (CheckKind::CpControl, cp.control.is_some() && moves),
             (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),
             (CheckKind::Others, self.others > 0),
-            (CheckKind::Door, self.door),
+            (CheckKind::Door, self.door.is_some()),
         ];
         of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
     }
