@@ -2,16 +2,19 @@
 
 use crate::control;
 use crate::door::Opening;
-use crate::told::{Side, Told, Turning};
+use crate::ground::Ground;
+use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::rollout::{ActorState, STEP_S};
 use recrash_model::scenario::{
     Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Part,
     Place, SCENARIO_FORMAT, ScenarioDraft, Size, Source, Trigger,
 };
+use recrash_model::template::Movement;
 use recrash_roads::Course;
 
 /// When they touch. [s]
@@ -110,11 +113,28 @@ fn partner_pace(told: &Told) -> Pace {
         ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
             sets_off(cp.speed_mps, (0.8 * ego.driven_m).max(0.2))
         }
+        // Who comes from the kerb or out of a stall stood there.
+        ContactState::Moving if cp.movement == Some(Movement::EnteringTraffic) && from_stand(told.origin) => {
+            let moving_s = (2.0 * PULL_OUT_M / cp.speed_mps * 10.0).round() / 10.0;
+            let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
+            Pace {
+                speed_mps: 0.0,
+                acts: vec![when(CONTACT_S - moving_s, go)],
+                driven_m: 0.5 * cp.speed_mps * moving_s,
+            }
+        }
         ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
             Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 }
         }
         _ => usual,
     }
+}
+
+/// From how far away somebody pulls out. [m]
+const PULL_OUT_M: f64 = 8.0;
+
+fn from_stand(origin: Origin) -> bool {
+    !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)
 }
 
 fn first_time(acts: &[Act]) -> f64 {
@@ -164,12 +184,12 @@ fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
 }
 
 /// Who stopped at a stop line, and is past it at the contact, sets off from that line.
-fn from_line(told: &Told, staging: &Staging) -> Option<Pace> {
-    let (sv, ground) = (&told.sv, &staging.ground);
+fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
+    let sv = &told.sv;
     let said = sv.control.filter(|said| said.obeyed != Some(Obeyed::No))?;
     let stops = sv.state == ContactState::SettingOff
         || sv.state == ContactState::Moving && said.device == ControlDevice::StopSign;
-    let driven_m = staging.sv_s_m - (ground.first_m() - 0.5 * size_of(sv).0 - AT_LINE_M);
+    let driven_m = sv_s_m - (ground.first_m() - 0.5 * size_of(sv).0 - AT_LINE_M);
     if !stops || !ground.junction || driven_m < 0.3 {
         return None;
     }
@@ -195,7 +215,7 @@ const AT_LINE_M: f64 = 0.5;
 /// The scenario of a staging.
 pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> ScenarioDraft {
     let ground = &staging.ground;
-    let mut recorded = ego_plan(told, staging);
+    let mut recorded = ego_plan(told, &staging.ground, staging.sv_s_m, staging.sv);
     let (mut actors, objects) = partner(told, staging);
     let mut parts = Vec::new();
     if let Some(door) = &staging.door {
@@ -273,21 +293,65 @@ fn lead(told: &Told, staging: &Staging) -> Actor {
     Actor { id: LEAD.to_owned(), kind: PartnerKind::PassengerCar, size: None, parts: Vec::new(), plan }
 }
 
-fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
-    let ground = &staging.ground;
-    let pace = from_line(told, staging).unwrap_or_else(|| ego_pace(told));
+/// Where the ego is at the contact, when its centre has come so far along its way; nothing where it cannot come there. Who leaves its
+/// line is driven there alone.
+pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pose> {
+    let on_way = ground.sv_pose(sv_s_m);
+    if told.sv_aside().is_none() {
+        return Some(on_way);
+    }
+    let alone = ScenarioDraft {
+        format: SCENARIO_FORMAT.to_owned(),
+        id: "alone".to_owned(),
+        map: MapSpec::G(ground.map.clone()),
+        ego: EgoSpec {
+            kind: told.sv.kind,
+            size: told.sv.size,
+            lane: ground.lane,
+            target_speed_mps: 10.0,
+            route: ground.route.clone(),
+            recorded: Some(ego_plan(told, ground, sv_s_m, on_way)),
+            ..EgoSpec::default()
+        },
+        duration_s: 14.0,
+        ..ScenarioDraft::default()
+    };
+    let scenario = recrash_roads::check(alone).ok()?.value;
+    let rollout = recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded);
+    rollout.ego_track().states.get((CONTACT_S / STEP_S).round() as usize).map(ActorState::pose)
+}
+
+/// How long a lane change or a drift takes, and the least and the most that is driven meanwhile. [s, m]
+const ASIDE_S: f64 = 4.0;
+const ASIDE_M: (f64, f64) = (14.0, 60.0);
+
+/// The move out of the ego's line, half done at the contact.
+fn shift(aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
+    let half_m = (0.5 * ASIDE_S * speed_mps).clamp(0.5 * ASIDE_M.0, 0.5 * ASIDE_M.1);
+    let (half_m, from_s) = if half_m < pace.driven_m && pace.acts.is_empty() {
+        (half_m, CONTACT_S - half_m / speed_mps)
+    } else {
+        (pace.driven_m.max(1.0), first_time(&pace.acts))
+    };
+    when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
+}
+
+fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
+    let mut pace = from_line(told, ground, sv_s_m).unwrap_or_else(|| ego_pace(told));
+    let aside = told.sv_aside();
+    pace.acts.extend(aside.map(|aside| shift(aside, &pace, told.sv.speed_mps)));
     let lane = |s_m: f64| Place::Lane {
         road: ground.route[0].clone(),
         lane: ground.lane,
         along: Along::FromStart(s_m),
-        t_m: 0.0,
+        t_m: aside.map_or(0.0, |aside| aside.from_t_m),
         heading_deg: 0.0,
     };
     if told.sv.state == ContactState::Reversing {
-        let back = Vec2::from_heading(staging.sv.heading);
-        let start = staging.sv.position + back * pace.driven_m;
-        let to = staging.sv.position - back * beyond_m(told.sv.speed_mps);
-        let degrees = staging.sv.heading.to_degrees();
+        let back = Vec2::from_heading(sv.heading);
+        let start = sv.position + back * pace.driven_m;
+        let to = sv.position - back * beyond_m(told.sv.speed_mps);
+        let degrees = sv.heading.to_degrees();
         return ActorPlan {
             speed_mps: 0.0,
             course: vec![Leg::Curve { to: Place::at(to.x, to.y, degrees), reverse: true }],
@@ -295,7 +359,7 @@ fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
             ..ActorPlan::standing(Place::at(start.x, start.y, degrees))
         };
     }
-    let start_m = staging.sv_s_m - pace.driven_m;
+    let start_m = sv_s_m - pace.driven_m;
     let course = if pace.driven_m == 0.0 {
         Vec::new()
     } else {
@@ -362,76 +426,78 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
     let motion = |heading: f64| Vec2::from_heading(heading) * gear;
     let beyond =
         Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(cp.speed_mps), ..staging.cp };
-    let bent = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > 0.01;
     let length = |start: Pose| -> Option<f64> {
         let mut course = Course::begin(arm_m);
         course.curve(start, staging.cp, reverse).then(|| course.length_m())
     };
-    let start_at = |back_m: f64| start(told, staging, back_m, motion);
     // As far back as makes the line as long as what is driven.
-    let mut back_m = pace.driven_m;
-    for _ in 0..30 {
-        let Some(found) = length(start_at(back_m)) else { break };
-        back_m += pace.driven_m - found;
-        back_m = back_m.max(0.1);
-    }
-    if let Some((begin, mut course)) = behind_in_its_turn(told, staging, &pace, arm_m) {
+    let fitted = |aside: bool| -> Option<Pose> {
+        let mut back_m = pace.driven_m;
+        for _ in 0..30 {
+            let found = length(start(told, staging, back_m, aside, motion))?;
+            back_m = (back_m + pace.driven_m - found).max(0.1);
+        }
+        let begin = start(told, staging, back_m, aside, motion);
+        length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
+    };
+    if let Some((begin, mut course)) = with_its_turn(told, staging, &pace, arm_m) {
         course.push(beyond);
         let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
         return ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
     }
-    let mut begin = start_at(back_m);
-    let fits = length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02);
-    if !fits || (!bent && beside(told).is_none()) {
-        // Straight on.
-        begin = Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
-    }
+    let straight = || Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
+    let begin = fitted(true).or_else(|| fitted(false)).unwrap_or_else(straight);
     let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
     ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) }
 }
 
-/// Who comes from behind an ego that turns comes by the ego's way: where it begins, and the poses that it drives by to the contact.
-fn behind_in_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
-    let (ground, reverses) = (&staging.ground, told.cp.state == ContactState::Reversing);
-    if told.origin != Origin::Behind || told.sv.turning == Turning::No || reverses || !ground.junction {
+/// Who turns with the ego, behind it or beside it, comes by its way: where it begins, and the poses that it drives by to the contact.
+fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let (ground, cp) = (&staging.ground, staging.cp);
+    let reverses = told.cp.state == ContactState::Reversing;
+    if !matches!(told.origin, Origin::Behind | Origin::Beside { .. }) || told.sv.turning == Turning::No || reverses {
         return None;
     }
-    let met_m = ground.s_of(staging.cp.position);
-    let last_m = met_m - JOINS_M;
-    let mut join = Course::begin(arm_m);
-    if last_m < ground.first_m() || !join.curve(ground.sv_pose(last_m), staging.cp, false) {
-        return None;
-    }
-    let begin_m = last_m - (pace.driven_m - join.length_m());
-    if begin_m > last_m - 1.0 {
-        return None;
-    }
-    let steps = ((last_m - ground.first_m()) / JOINS_M).floor() as usize;
-    let on_way = (0..=steps).map(|step| last_m - JOINS_M * (steps - step) as f64);
-    let poses = std::iter::once(ground.first_m()).chain(on_way).filter(|s_m| *s_m > begin_m + 0.5);
-    Some((ground.sv_pose(begin_m), poses.map(|s_m| ground.sv_pose(s_m)).chain([staging.cp]).collect()))
+    let (met_m, beside_m) = ground.beside(cp.position);
+    [3.0, 5.0, 8.0].into_iter().find_map(|joins_m| {
+        let last_m = met_m - joins_m;
+        let mut join = Course::begin(arm_m);
+        if !join.curve(ground.pose(last_m, beside_m), cp, false) {
+            return None;
+        }
+        let begin_m = last_m - (pace.driven_m - join.length_m());
+        let turn_m = (last_m - ground.first_m()).max(0.0);
+        let steps = (turn_m / PIECE_M).ceil() as usize;
+        let on_way = (0..=steps).map(|step| last_m - turn_m * (1.0 - step as f64 / steps.max(1) as f64));
+        let on_way = on_way.filter(|s_m| *s_m > begin_m + 0.5).map(|s_m| ground.pose(s_m, beside_m));
+        (begin_m < last_m - 1.0).then(|| (ground.pose(begin_m, beside_m), on_way.chain([cp]).collect()))
+    })
 }
 
-/// Who follows somebody's way leaves it this far before the contact; and it is drawn in pieces of this length. [m]
-const JOINS_M: f64 = 3.0;
+/// The way through a turn is drawn in pieces of about this length. [m]
+const PIECE_M: f64 = 3.0;
 
-/// Where the partner begins, this far back: on a line with the contact or in the lane it comes from, headed as it came.
-fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Vec2) -> Pose {
+/// Where the partner begins, this far back, headed as it came: in the lane it comes from, or so that an arc leads to the contact.
+fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl Fn(f64) -> Vec2) -> Pose {
     let came = staging.cp_came;
     let way = motion(came);
     let turn = math::wrap_angle(staging.cp.heading - came);
     let mut position = staging.cp.position - way * back_m;
-    if told.cp.turning != Turning::No && turn.abs() > 0.1 {
+    let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
+    let from_left_m = told.cp_from_left_m().filter(|_| aside && !turns);
+    let beside = beside(told).filter(|_| aside && !turns);
+    if let Some(from_left_m) = from_left_m {
+        position.y = staging.cp.position.y + from_left_m;
+    } else if let Some(side) = beside {
+        let right = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        position.y = staging.sv.position.y - right * crate::ground::LANE_M;
+    } else if turn.abs() > 0.01 {
         // An arc of a usual radius before the contact: beside the line of the contact, by what the arc gains.
-        let radius = 8.0_f64.min(back_m / turn.abs());
+        let radius = if turns { 8.0_f64 } else { 15.0 }.min(back_m / turn.abs());
         let (gain, along) = (radius * (1.0 - math::cos(turn)), radius * math::sin(turn.abs()));
         position = staging.cp.position
             - way * (along + (back_m - radius * turn.abs()).max(0.0))
             - way.left() * (gain * turn.signum());
-    } else if let Some(side) = beside(told) {
-        let right = if side == LeftRight::Left { -1.0 } else { 1.0 };
-        let lane_y = staging.sv.position.y - right * crate::ground::LANE_M;
-        position.y = lane_y;
     }
     Pose { position, heading: came }
 }
@@ -439,7 +505,8 @@ fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Ve
 /// On which side of the ego's lane the partner comes along.
 fn beside(told: &Told) -> Option<LeftRight> {
     match told.origin {
-        Origin::Beside { side } => Some(side),
+        // It keeps its lane where the ego changes lanes.
+        Origin::Beside { side } => told.sv_aside().is_none().then_some(side),
         Origin::Behind if told.cp.lane == Some(LaneWord::Opposing) => Some(LeftRight::Left),
         _ => None,
     }

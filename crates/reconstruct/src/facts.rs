@@ -3,7 +3,8 @@
 use crate::came::LEAD;
 use crate::control;
 use crate::door;
-use crate::told::{Told, Turning};
+use crate::movement::{self, Way};
+use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
@@ -127,16 +128,19 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let observed = if before { "touched by another before" } else { "touched by nobody before" };
         fact(CheckKind::PassedOn, before, "another touched the partner first".to_owned(), observed.to_owned());
     }
-    if told.sv.movement.is_some() && told.sv.turning != Turning::Round {
-        let turned = turned(ego_track, touch.time_s);
-        fact(CheckKind::SvMovement, fits(told.sv.turning, turned), turn_word(told.sv.turning), turned_words(turned));
-    }
-    if let Some(track) = touch.track {
-        if told.cp.movement.is_some() && told.cp.turning != Turning::Round && told.cp.state != ContactState::Reversing {
-            let turned = turned(track, touch.time_s);
-            let shown = fits(told.cp.turning, turned);
-            fact(CheckKind::CpMovement, shown, turn_word(told.cp.turning), turned_words(turned));
+    let mut ways = vec![(CheckKind::SvMovement, &told.sv, ego_track, touch.track, touch.other)];
+    ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
+    for (kind, side, track, other, met) in ways {
+        let way = Way { scenario, track, other, met, time_s: touch.time_s };
+        if let Some((expected, result, observed)) = movement::check(side, &way) {
+            list.push(Check { kind, expected, observed, result });
         }
+    }
+    let mut fact = |kind: CheckKind, shown: bool, expected: String, observed: String| {
+        let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
+        list.push(Check { kind, expected, observed, result });
+    };
+    if let Some(track) = touch.track {
         if told.origin_told {
             let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
             fact(CheckKind::Approach, shown, told.origin.words(), observed);
@@ -380,41 +384,6 @@ fn state(told: ContactState, track: &ActorTrack, now: &ActorState, time_s: f64) 
         ContactState::Parked => {
             track.states[..=step.min(track.states.len() - 1)].iter().all(|state| state.velocity().length() < STANDS_MPS)
         }
-    }
-}
-
-/// How far somebody has turned until the contact, to the left. [rad]
-fn turned(track: &ActorTrack, time_s: f64) -> f64 {
-    let step = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
-    track.states[..=step].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading)).sum()
-}
-
-fn fits(told: Turning, turned: f64) -> bool {
-    let degrees = turned.to_degrees();
-    match told {
-        Turning::Left => degrees > 10.0,
-        Turning::Right => degrees < -10.0,
-        Turning::No => degrees.abs() < 50.0,
-        Turning::Round => true,
-    }
-}
-
-fn turn_word(told: Turning) -> String {
-    let word = match told {
-        Turning::No => "no turn",
-        Turning::Left => "a turn to the left",
-        Turning::Right => "a turn to the right",
-        Turning::Round => "a U-turn",
-    };
-    word.to_owned()
-}
-
-fn turned_words(turned: f64) -> String {
-    let degrees = turned.to_degrees().round();
-    match degrees {
-        d if d >= 1.0 => format!("{d:.0} degrees to the left"),
-        d if d <= -1.0 => format!("{:.0} degrees to the right", -d),
-        _ => "straight on".to_owned(),
     }
 }
 

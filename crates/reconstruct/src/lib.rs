@@ -12,6 +12,7 @@ mod control;
 mod door;
 mod facts;
 mod ground;
+mod movement;
 mod told;
 mod touch;
 

@@ -1,6 +1,8 @@
 //! What an account tells, in the terms of a staging; and what has to be assumed.
 
 use crate::choices::Choices;
+use crate::ground::LANE_M;
+use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     SpeedMeaning, Striker, Untold, told,
@@ -15,6 +17,15 @@ use recrash_model::zones::ContactZone;
 
 /// Speed at which a partner that is thrown at the ego meets it, about. [m/s]
 const THROWN_MPS: f64 = 4.0;
+
+/// Who leaves its lane leaves it by so much, who comes from the kerb or goes there by so much, and who changes lanes has done so much
+/// of it at the contact. [m]
+const DEPARTS_M: f64 = 1.6;
+const KERB_M: f64 = 2.6;
+const CHANGES_M: f64 = 2.2;
+
+/// Who pulls out has left the kerb by so much. [m]
+const PULLS_OUT_M: f64 = 1.5;
 
 /// How somebody turns before the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +46,8 @@ pub(crate) struct Side {
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
     pub(crate) turning: Turning,
+    /// To which side it moves out of its line, where told.
+    pub(crate) aside: Option<LeftRight>,
     pub(crate) zones: Vec<ContactZone>,
     /// Speed at the contact, where told. [m/s]
     pub(crate) impact_mps: Option<f64>,
@@ -43,6 +56,13 @@ pub(crate) struct Side {
     pub(crate) lane: Option<LaneWord>,
     /// The signal or sign in front of it, where told.
     pub(crate) control: Option<Control>,
+}
+
+impl Side {
+    /// Whether it parks, or comes from the kerb or out of a stall.
+    pub(crate) fn is_slow(&self) -> bool {
+        matches!(self.movement, Some(Movement::EnteringTraffic | Movement::ParkingManeuver))
+    }
 }
 
 /// An account, in the terms of a staging.
@@ -134,7 +154,6 @@ impl Told {
     pub(crate) fn kinds(&self) -> Vec<CheckKind> {
         let (sv, cp) = (&self.sv, &self.cp);
         let moves = !(self.thing.is_some() && cp.state.stands());
-        let straight_or_turn = |side: &Side| side.movement.is_some() && side.turning != Turning::Round;
         let of = [
             (CheckKind::Contact, true),
             (CheckKind::Partner, true),
@@ -144,8 +163,8 @@ impl Told {
             (CheckKind::CpState, cp.state_told && moves),
             (CheckKind::SvSpeed, sv.impact_mps.is_some()),
             (CheckKind::CpSpeed, cp.impact_mps.is_some()),
-            (CheckKind::SvMovement, straight_or_turn(sv)),
-            (CheckKind::CpMovement, straight_or_turn(cp) && cp.state != ContactState::Reversing && moves),
+            (CheckKind::SvMovement, sv.movement.is_some()),
+            (CheckKind::CpMovement, cp.movement.is_some() && moves),
             (CheckKind::Approach, self.origin_told && moves),
             (CheckKind::Order, self.order.is_some() && moves),
             (CheckKind::PassedOn, self.pushed),
@@ -236,6 +255,7 @@ impl Told {
             ContactState::Stopped | ContactState::Parked => 0.0,
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
+            ContactState::Moving if side.is_slow() => 3.0,
             ContactState::Moving => match side.kind {
                 PartnerKind::Pedestrian => 1.4,
                 PartnerKind::Animal => 4.0,
@@ -279,6 +299,67 @@ impl Told {
     }
 }
 
+/// A move out of the line that somebody drives on, to the right of it. [m]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Aside {
+    pub(crate) from_t_m: f64,
+    pub(crate) to_t_m: f64,
+}
+
+impl Told {
+    /// How the ego leaves its line.
+    pub(crate) fn sv_aside(&self) -> Option<Aside> {
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        if self.sv.turning != Turning::No || self.sv.state.stands() || self.sv.state == ContactState::Reversing {
+            return None;
+        }
+        let movement = self.sv.movement?;
+        let towards = self.sv.aside.or_else(|| match self.origin {
+            Origin::Beside { side } | Origin::Cross { side } => Some(side),
+            _ => None,
+        });
+        let towards = towards.or_else(|| match side_of(&self.sv.zones) {
+            Some(side) => Some(if side > 0.0 { left } else { right }),
+            None => None,
+        });
+        let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
+        let (from_t_m, to_t_m) = match movement {
+            Movement::ChangingLanes | Movement::Merging => (0.0, by(left, LANE_M)),
+            Movement::CrossingIntoOpposingLane => (0.0, -LANE_M),
+            Movement::LaneDeparture => (0.0, by(right, DEPARTS_M)),
+            // From the kerb, or the one told.
+            Movement::EnteringTraffic => (if self.sv.aside == Some(right) { -KERB_M } else { KERB_M }, 0.0),
+            Movement::ParkingManeuver => (0.0, by(right, KERB_M)),
+            _ => return None,
+        };
+        Some(Aside { from_t_m, to_t_m })
+    }
+
+    /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]
+    pub(crate) fn cp_from_left_m(&self) -> Option<f64> {
+        let against = match self.origin {
+            Origin::Behind | Origin::Ahead | Origin::Beside { .. } => 1.0,
+            Origin::Opposite => -1.0,
+            Origin::Parked { .. } if self.cp.state != ContactState::Reversing => 1.0,
+            _ => return None,
+        };
+        let way_m = match self.cp.movement? {
+            Movement::ChangingLanes | Movement::Merging => CHANGES_M,
+            Movement::CrossingIntoOpposingLane => CHANGES_M,
+            Movement::LaneDeparture => DEPARTS_M,
+            Movement::EnteringTraffic | Movement::ParkingManeuver => PULLS_OUT_M,
+            _ => return None,
+        };
+        // Who moves to its left came along on its right.
+        let own_left = self.cp.aside.map(|side| if side == LeftRight::Left { -1.0 } else { 1.0 });
+        let from_left = own_left.map(|own| own * against).or_else(|| match self.origin {
+            Origin::Beside { side } | Origin::Parked { side: Some(side) } => Some(if side == LeftRight::Left { 1.0 } else { -1.0 }),
+            _ => side_of(&self.sv.zones),
+        });
+        Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
+    }
+}
+
 fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
     let kind = kind.or_else(|| told(&party.kind));
     let partner_kind = kind.and_then(Kind::partner_kind);
@@ -298,6 +379,9 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
         _ if kind.is_some_and(|kind| kind.group() == KindGroup::Object) => ContactState::Stopped,
         _ => ContactState::Moving,
     });
+    // Who moves backwards moves.
+    let backs = state == ContactState::Moving && movement == Some(Movement::Backing);
+    let state = if backs { ContactState::Reversing } else { state };
     if !state_told {
         assumed.push(format!("the {who} is {state:?} at the contact"));
     }
@@ -312,7 +396,12 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
         None if turned(LeftRight::Right) => Turning::Right,
         _ => Turning::No,
     };
+    let goes_aside =
+        |act: Act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver);
+    let aside =
+        party.acts.iter().filter(|fact| goes_aside(fact.act) && !fact.after_contact).find_map(|fact| fact.side);
     Side {
+        aside,
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),
         state,

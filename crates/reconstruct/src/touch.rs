@@ -2,6 +2,7 @@
 //!
 //! Everything is seen from the road that the ego came along: x ahead, y to its left.
 
+use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::told::{Side, Told, Turning};
@@ -78,7 +79,7 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
     let mut found: Vec<Staging> = Vec::new();
     let mut trial = 0;
     for sv_s_m in ground.places() {
-        let sv = ground.sv_pose(sv_s_m);
+        let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         for (came, heading) in headings(told, sv.heading) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
                 for &sv_point in points(sv_zone) {
@@ -174,14 +175,20 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
     };
     match told.origin {
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } => {
-            let base = if told.cp.turning == Turning::No { sv_heading } else { 0.0 };
+            // Along the road, or as the ego has turned.
+            let follows = told.origin == Origin::Behind && told.sv.turning != Turning::No;
+            let bases = match (sv_heading.abs() > 0.02, follows) {
+                (false, _) => vec![0.0],
+                (true, true) => vec![sv_heading, 0.0],
+                (true, false) => vec![0.0, sv_heading],
+            };
             if told.cp.turning == Turning::No {
-                list.extend(aside.iter().map(|off| (base, base + degrees(*off))));
+                list.extend(bases.iter().flat_map(|base| aside.iter().map(move |off| (0.0, base + degrees(*off)))));
             } else {
                 turned(0.0, &mut list);
             }
             if reverses {
-                list.extend([90.0, -90.0, 60.0, -60.0, 30.0, -30.0].map(|off| (base, base + degrees(off))));
+                list.extend([90.0, -90.0, 60.0, -60.0, 30.0, -30.0].map(|off| (0.0, degrees(off))));
             }
         }
         Origin::Opposite => {
