@@ -41,6 +41,9 @@ const STOOD_S: f64 = 2.0;
 /// Acceleration of who sets off. [m/s^2]
 const SETS_OFF_MPS2: f64 = 1.2;
 
+/// Acceleration of who stood before, and is under way at the contact. [m/s^2]
+const STARTS_MPS2: f64 = 1.6;
+
 /// Speed of others on their way to a stop. [m/s]
 const ROLLING_MPS: f64 = 7.0;
 
@@ -87,7 +90,8 @@ fn next(deed: Deed) -> Act {
 
 /// How the ego's speed comes to what it is at the contact.
 fn ego_pace(told: &Told) -> Pace {
-    let waits_behind = told.origin == Origin::Behind && told.cp.state == ContactState::SettingOff;
+    let waits_behind =
+        told.origin == Origin::Behind && (told.cp.state == ContactState::SettingOff || told.cp.stood_first);
     pace(&told.sv, told.choices.rolling_mps, if waits_behind { STOOD_LONG_S } else { told.choices.stood_s })
 }
 
@@ -100,7 +104,9 @@ fn partner_pace(told: &Told) -> Pace {
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     match cp.state {
         // It came to a stop behind the ego before it set off.
-        ContactState::SettingOff if told.origin == Origin::Behind && ego.driven_m > usual.driven_m => {
+        ContactState::SettingOff | ContactState::Moving
+            if told.origin == Origin::Behind && ego.driven_m > usual.driven_m && !usual.acts.is_empty() =>
+        {
             let moving_s = CONTACT_S - first_time(&usual.acts);
             let braking_s = ROLLING_MPS / STOPPING_MPS2;
             let from_s = ((CONTACT_S - moving_s - WAITED_S - braking_s) * 10.0).floor() / 10.0;
@@ -113,15 +119,12 @@ fn partner_pace(told: &Told) -> Pace {
         ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
             sets_off(cp.speed_mps, (0.8 * ego.driven_m).max(0.2))
         }
+        ContactState::Reversing => start_over(cp.speed_mps, REVERSES_M).unwrap_or(usual),
         // Who comes from the kerb or out of a stall stood there.
         ContactState::Moving if cp.movement == Some(Movement::EnteringTraffic) && from_stand(told.origin) => {
             let moving_s = (2.0 * PULL_OUT_M / cp.speed_mps * 10.0).round() / 10.0;
             let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
-            Pace {
-                speed_mps: 0.0,
-                acts: vec![when(CONTACT_S - moving_s, go)],
-                driven_m: 0.5 * cp.speed_mps * moving_s,
-            }
+            Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
         }
         ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
             Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 }
@@ -129,6 +132,9 @@ fn partner_pace(told: &Told) -> Pace {
         _ => usual,
     }
 }
+
+/// How far somebody has reversed at the contact. [m]
+const REVERSES_M: f64 = 2.5;
 
 /// From how far away somebody pulls out. [m]
 const PULL_OUT_M: f64 = 8.0;
@@ -169,6 +175,12 @@ fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
             ];
             Pace { speed_mps: rolling_mps, acts, driven_m }
         }
+        ContactState::Moving if side.stood_first => {
+            let moving_s = ((side.speed_mps / STARTS_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
+            let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2: side.speed_mps / moving_s };
+            let driven_m = 0.5 * side.speed_mps * moving_s;
+            Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m }
+        }
         ContactState::SettingOff | ContactState::Reversing => {
             // So that it sets off at a step: the rate gives way.
             let moving_s = ((side.speed_mps / SETS_OFF_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
@@ -183,26 +195,45 @@ fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
     }
 }
 
-/// Who stopped at a stop line, and is past it at the contact, sets off from that line.
+/// Who stood before a junction, and is in it at the contact, sets off from its stop line.
 fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
     let sv = &told.sv;
-    let said = sv.control.filter(|said| said.obeyed != Some(Obeyed::No))?;
-    let stops = sv.state == ContactState::SettingOff
-        || sv.state == ContactState::Moving && said.device == ControlDevice::StopSign;
+    let stops = match sv.control.filter(|said| said.obeyed != Some(Obeyed::No)) {
+        Some(said) => sv.state == ContactState::SettingOff || sv.stood_first || said.device == ControlDevice::StopSign,
+        None => sv.stood_first,
+    };
+    let stops = stops && matches!(sv.state, ContactState::SettingOff | ContactState::Moving);
     let driven_m = sv_s_m - (ground.first_m() - 0.5 * size_of(sv).0 - AT_LINE_M);
-    if !stops || !ground.junction || driven_m < 0.3 {
+    if !stops || !ground.junction {
         return None;
     }
-    // It gains its speed on the way, or earlier and keeps it.
-    let rate_mps2 = (0.5 * sv.speed_mps * sv.speed_mps / driven_m).max(SETS_OFF_MPS2);
-    let gaining_s = sv.speed_mps / rate_mps2;
-    let moving_s = gaining_s + (driven_m - 0.5 * sv.speed_mps * gaining_s) / sv.speed_mps;
+    start_over(sv.speed_mps, driven_m)
+}
+
+/// Who stood beside the ego before a junction sets off from the same line.
+fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
+    let (cp, ground) = (&told.cp, &staging.ground);
+    if !cp.stood_first || !ground.junction || !matches!(told.origin, Origin::Beside { .. }) {
+        return None;
+    }
+    let line_m = ground.first_m() - 0.5 * size_of(cp).0 - AT_LINE_M;
+    start_over(cp.speed_mps, ground.beside(staging.cp.position).0 - line_m)
+}
+
+/// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.
+fn start_over(speed_mps: f64, driven_m: f64) -> Option<Pace> {
+    if driven_m < 0.3 {
+        return None;
+    }
+    let rate_mps2 = (0.5 * speed_mps * speed_mps / driven_m).max(SETS_OFF_MPS2);
+    let gaining_s = speed_mps / rate_mps2;
+    let moving_s = gaining_s + (driven_m - 0.5 * speed_mps * gaining_s) / speed_mps;
     if moving_s > CONTACT_S - 1.0 || rate_mps2 > STRONGEST_START_MPS2 {
         return None;
     }
     // It sets off at a step.
     let from_s = ((CONTACT_S - moving_s) * 10.0).round() / 10.0;
-    let go = Deed::Speed { to_mps: sv.speed_mps, rate_mps2 };
+    let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
     Some(Pace { speed_mps: 0.0, acts: vec![when(from_s, go)], driven_m })
 }
 
@@ -388,7 +419,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if told.is_thrown() {
         return (thrown(told, staging), Vec::new());
     }
-    let pace = partner_pace(told);
+    let pace = beside_from_line(told, staging).unwrap_or_else(|| partner_pace(told));
     let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());

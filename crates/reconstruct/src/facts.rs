@@ -97,17 +97,17 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
         fact(CheckKind::CpZones, near, zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
     }
-    let speed_words = |state: &ActorState| format!("{:.2} m/s", state.speed());
-    if told.sv.state_told {
-        let shown = state(told.sv.state, ego_track, &touch.ego, touch.time_s);
-        fact(CheckKind::SvState, shown, told.sv.state.label().to_owned(), speed_words(&touch.ego));
-    }
-    if told.cp.state_told
-        && let Some(track) = touch.track
-    {
+    let mut states = vec![(CheckKind::SvState, &told.sv, ego_track, &touch.ego)];
+    states.extend(touch.track.map(|track| (CheckKind::CpState, &told.cp, track, &touch.other)));
+    for (kind, side, track, seen) in states.into_iter().filter(|(_, side, ..)| side.state_told) {
         // Who is pushed moves when it touches.
-        let shown = told.pushed || state(told.cp.state, track, &touch.other, touch.time_s);
-        fact(CheckKind::CpState, shown, told.cp.state.label().to_owned(), speed_words(&touch.other));
+        let pushed = kind == CheckKind::CpState && told.pushed;
+        let stood = stood(track, touch.time_s);
+        let shown = pushed || state(side.state, track, seen, touch.time_s) && (stood || !side.stood_first);
+        let (before, after) =
+            (if side.stood_first { ", had stood" } else { "" }, if stood { ", had stood" } else { "" });
+        let expected = format!("{}{before}", side.state.label());
+        fact(kind, shown, expected, format!("{:.2} m/s{after}", seen.speed()));
     }
     for (kind, impact_mps, seen) in
         [(CheckKind::SvSpeed, told.sv.impact_mps, &touch.ego), (CheckKind::CpSpeed, told.cp.impact_mps, &touch.other)]
@@ -366,6 +366,12 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
         }
         _ => None,
     })
+}
+
+/// Whether somebody stood before a time.
+fn stood(track: &ActorTrack, time_s: f64) -> bool {
+    let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+    track.states[..=until].iter().any(|state| state.velocity().length() < STANDS_MPS)
 }
 
 /// Whether somebody is in a state when it touches, and was before as the state says.

@@ -202,7 +202,8 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         all
     } else {
         // At the line, or behind who stands there.
-        vec![APPROACH_M - if told.lead { 13.0 } else { 5.0 }]
+        let behind = told.lead || told.origin == Origin::Ahead && told.thing.is_none();
+        vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
     };
     with_way(map, vec!["own-".to_owned(), exit.to_owned()], lane as u8, places, true)
 }

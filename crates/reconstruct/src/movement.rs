@@ -48,8 +48,7 @@ impl Way<'_> {
 
     /// How far it has turned until the contact, to the left. [deg]
     fn turned_deg(&self) -> f64 {
-        let turned: f64 =
-            self.until().windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading)).sum();
+        let turned: f64 = self.until().windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading)).sum();
         turned.to_degrees()
     }
 
@@ -69,9 +68,10 @@ impl Way<'_> {
 
     /// Whether it came from behind the other and is faster.
     fn passed(&self) -> bool {
-        let (first, last) = (&self.until()[0], &self.until()[self.until().len() - 1]);
+        let sets_out = self.until().iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let (first, last) = (&self.until()[sets_out], &self.until()[self.until().len() - 1]);
         let ahead = Vec2::from_heading(last.heading);
-        let other = self.other.map_or(self.met, |other| other.states[0]);
+        let other = self.other.map_or(self.met, |other| other.states[sets_out]);
         let faster = (last.velocity() - self.met.velocity()).dot(ahead) > FASTER_MPS;
         faster && (other.position() - first.position()).dot(ahead) > 0.0
     }
@@ -84,7 +84,8 @@ impl Way<'_> {
         let lanes = [0.0, math::PI].map(|turn| network.lane_at(last.position(), last.heading + turn));
         let [along, against] = lanes;
         let (along, against) = (along?, against?);
-        let faces = |id| math::wrap_angle(network.lane(id).heading(network.lane(id).local(last.position()).0) - last.heading);
+        let faces =
+            |id| math::wrap_angle(network.lane(id).heading(network.lane(id).local(last.position()).0) - last.heading);
         let (first, second) = (faces(along).abs(), faces(against).abs());
         Some(first > math::FRAC_PI_2 && second > math::FRAC_PI_2)
     }
@@ -124,7 +125,10 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         Movement::EnteringTraffic => {
             let (words, degrees) = bent();
             let out = way.starts_off_lanes() || way.stood();
-            (out && (beside_m.abs() >= LEFT_LINE_M || degrees >= TURNS_DEG), format!("{words}, {:.1} m aside", beside_m.abs()))
+            (
+                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= TURNS_DEG),
+                format!("{words}, {:.1} m aside", beside_m.abs()),
+            )
         }
         Movement::ParkingManeuver => {
             let (words, degrees) = bent();

@@ -42,6 +42,8 @@ pub(crate) struct Side {
     pub(crate) kind: PartnerKind,
     pub(crate) size: Option<Size>,
     pub(crate) state: ContactState,
+    /// It stood before it moved, where told.
+    pub(crate) stood_first: bool,
     /// Whether the state is told.
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
@@ -256,6 +258,7 @@ impl Told {
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
             ContactState::Moving if side.is_slow() => 3.0,
+            ContactState::Moving if side.stood_first => 4.0,
             ContactState::Moving => match side.kind {
                 PartnerKind::Pedestrian => 1.4,
                 PartnerKind::Animal => 4.0,
@@ -280,7 +283,9 @@ impl Told {
         if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving {
             let sv = self.sv.speed_mps;
             match self.origin {
-                Origin::Behind | Origin::Beside { .. } if self.sv.state != ContactState::Reversing => {
+                Origin::Behind | Origin::Beside { .. }
+                    if self.sv.state != ContactState::Reversing && !self.cp.stood_first =>
+                {
                     self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
                 }
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
@@ -353,7 +358,9 @@ impl Told {
         // Who moves to its left came along on its right.
         let own_left = self.cp.aside.map(|side| if side == LeftRight::Left { -1.0 } else { 1.0 });
         let from_left = own_left.map(|own| own * against).or_else(|| match self.origin {
-            Origin::Beside { side } | Origin::Parked { side: Some(side) } => Some(if side == LeftRight::Left { 1.0 } else { -1.0 }),
+            Origin::Beside { side } | Origin::Parked { side: Some(side) } => {
+                Some(if side == LeftRight::Left { 1.0 } else { -1.0 })
+            }
             _ => side_of(&self.sv.zones),
         });
         Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
@@ -398,10 +405,13 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     };
     let goes_aside =
         |act: Act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver);
-    let aside =
-        party.acts.iter().filter(|fact| goes_aside(fact.act) && !fact.after_contact).find_map(|fact| fact.side);
+    let aside = party.acts.iter().filter(|fact| goes_aside(fact.act) && !fact.after_contact).find_map(|fact| fact.side);
+    let stands = |act: Act| matches!(act, Act::Hold | Act::Stop | Act::SetOff);
+    let stood_first = state == ContactState::Moving
+        && party.acts.iter().any(|fact| stands(fact.act) && !fact.after_contact && !fact.begun);
     Side {
         aside,
+        stood_first,
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),
         state,
