@@ -2,6 +2,7 @@
 
 use crate::choices::Choices;
 use crate::ground::LANE_M;
+use crate::others::{self, Extra};
 use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
@@ -90,8 +91,10 @@ pub(crate) struct Told {
     pub(crate) others: usize,
     /// Whose door took part.
     pub(crate) door: Option<Striker>,
-    /// Somebody stands ahead of the ego, as the reason why it stood.
-    pub(crate) lead: bool,
+    /// Whom the ego stood for, by what is told.
+    pub(crate) wanted: Vec<Extra>,
+    /// Those of them in the scene.
+    pub(crate) extras: Vec<Extra>,
     pub(crate) choices: Choices,
     pub(crate) assumed: Vec<String>,
 }
@@ -142,10 +145,12 @@ impl Told {
             reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
             others: account.others.len(),
             door: told(&account.door),
-            lead: false,
+            wanted: Vec::new(),
+            extras: Vec::new(),
             choices: Choices::default(),
             assumed,
         };
+        this.wanted = others::wanted(&this, &account.others);
         if this.origin_told {
             this.speeds();
         }
@@ -191,28 +196,19 @@ impl Told {
         self
     }
 
-    /// Whether somebody stood ahead of the ego, who is not the partner.
-    fn wants_lead(&self) -> bool {
-        let waits = |reason: &StandReason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle);
-        self.sv.state == ContactState::Stopped
-            && self.reasons.iter().any(waits)
-            && self.thing.is_none()
-            && self.origin != Origin::Ahead
-    }
-
     /// Whether a signal or sign is told.
     pub(crate) fn is_controlled(&self) -> bool {
         self.sv.control.is_some() || self.cp.control.is_some()
     }
 
-    /// Everything to try: with who stood ahead of the ego, then without.
+    /// Everything to try: with those whom the ego stood for, then without them.
     pub(crate) fn variants(self) -> Vec<Self> {
-        let all = self.by_origin().into_iter();
-        let with_lead = |told: Self| {
-            let lead = told.wants_lead().then(|| Self { lead: true, ..told.clone() });
-            lead.into_iter().chain([told])
+        let with_extras = |told: Self| {
+            let extras = told.wanted.clone();
+            let with = (!extras.is_empty()).then(|| Self { extras, ..told.clone() });
+            with.into_iter().chain([told])
         };
-        all.flat_map(with_lead).collect()
+        self.by_origin().into_iter().flat_map(with_extras).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
@@ -319,14 +315,11 @@ impl Told {
             return None;
         }
         let movement = self.sv.movement?;
-        let towards = self.sv.aside.or_else(|| match self.origin {
+        let towards = self.sv.aside.or(match self.origin {
             Origin::Beside { side } | Origin::Cross { side } => Some(side),
             _ => None,
         });
-        let towards = towards.or_else(|| match side_of(&self.sv.zones) {
-            Some(side) => Some(if side > 0.0 { left } else { right }),
-            None => None,
-        });
+        let towards = towards.or_else(|| side_of(&self.sv.zones).map(|side| if side > 0.0 { left } else { right }));
         let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
         let (from_t_m, to_t_m) = match movement {
             Movement::ChangingLanes | Movement::Merging => (0.0, by(left, LANE_M)),
