@@ -377,7 +377,7 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
-    let driven_over = account.sv.zones.iter().all(|zone| zone.value == Z::Bottom) && forward(account);
+    let driven_over = has_zone(&account.sv, |zone| zone == Z::Bottom) && forward(account);
     (animal && (driven_over || has_zone(&account.sv, |zone| zone.is_front())))
         .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
 }
