@@ -9,14 +9,17 @@ pub mod causes;
 pub mod comparison;
 pub mod coverage;
 pub mod evaluation;
+mod harm;
 mod judging;
 pub mod minimal;
 pub mod parity;
 pub mod perturb;
+mod ranks;
 pub mod robustness;
 mod scoring;
 mod triage;
 
+pub use harm::{HarmCase, severity_agreement};
 pub use judging::{judge, judge_by, run_scenario, situation};
 pub use scoring::{Scoring, is_sound_contact};
 pub use triage::triage;
