@@ -20,7 +20,7 @@ pub struct CoverageTable {
     pub name: String,
     /// What each cell's values are values of.
     pub axes: Vec<String>,
-    /// Cells that the table has, seen or not.
+    /// Cells that the table has, seen or not; those of which a value is not told do not count.
     pub possible: usize,
     /// An incident may stand in several cells, so that cells do not add up to all.
     pub overlapping: bool,
@@ -35,6 +35,8 @@ pub struct CoverageTable {
 pub struct CoverageCell {
     /// One for each axis.
     pub values: Vec<String>,
+    /// A value is not told: the cell is none of the table's own, and no hole.
+    pub untold: bool,
     /// What of it is told and tested.
     pub counts: CoverageCounts,
 }
@@ -87,16 +89,6 @@ impl Hole {
 }
 
 impl CoverageCounts {
-    /// What is missing; `None` where an incident of the cell was told and tested.
-    pub fn hole(&self) -> Option<Hole> {
-        match self {
-            Self { incidents: 0, .. } => Some(Hole::NotSeen),
-            Self { told: 0, .. } => Some(Hole::NotTold),
-            Self { met: 0, .. } => Some(Hole::NotMet),
-            _ => None,
-        }
-    }
-
     /// Counts one more incident.
     pub fn add(&mut self, other: Self) {
         self.incidents += other.incidents;
@@ -131,12 +123,12 @@ impl CoverageTable {
     }
 
     fn count(&self, holds: fn(&CoverageCounts) -> bool) -> usize {
-        self.cells.iter().filter(|cell| holds(&cell.counts)).count()
+        self.cells.iter().filter(|cell| !cell.untold && holds(&cell.counts)).count()
     }
 
     /// Cells with this hole, those with the most incidents first.
     pub fn holes(&self, hole: Hole) -> Vec<&CoverageCell> {
-        let mut holes: Vec<&CoverageCell> = self.cells.iter().filter(|cell| cell.counts.hole() == Some(hole)).collect();
+        let mut holes: Vec<&CoverageCell> = self.cells.iter().filter(|cell| cell.hole() == Some(hole)).collect();
         holes.sort_by_key(|cell| std::cmp::Reverse(cell.counts.incidents));
         holes
     }
@@ -148,6 +140,17 @@ impl CoverageTable {
 }
 
 impl CoverageCell {
+    /// What is missing; `None` where an incident of the cell was told and tested, and where a value is not told.
+    pub fn hole(&self) -> Option<Hole> {
+        match self.counts {
+            _ if self.untold => None,
+            CoverageCounts { incidents: 0, .. } => Some(Hole::NotSeen),
+            CoverageCounts { told: 0, .. } => Some(Hole::NotTold),
+            CoverageCounts { met: 0, .. } => Some(Hole::NotMet),
+            _ => None,
+        }
+    }
+
     /// Its values in a row.
     pub fn name(&self) -> String {
         self.values.join(", ")

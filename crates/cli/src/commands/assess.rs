@@ -4,7 +4,7 @@ use crate::output::{self, Output, title};
 use crate::screen::println;
 use crate::table::{Cell, Table, number, table};
 use clap::Args;
-use recrash_model::coverage::{CorpusCoverage, CoverageCounts, CoverageTable, Hole};
+use recrash_model::coverage::{CorpusCoverage, CoverageCell, CoverageCounts, CoverageTable, Hole};
 use recrash_model::severity::{Interval, SeverityAgreement};
 use recrash_pipeline::{PipelineError, SevereFailure, suite_coverage, suite_severity};
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ pub struct CoverageArgs {
     #[arg(long, value_name = "TABLE")]
     pub table: Vec<String>,
     /// Holes that are named of each table.
-    #[arg(long, value_name = "N", default_value_t = 8)]
+    #[arg(long, value_name = "N", default_value_t = 5)]
     pub holes: usize,
     /// Write every cell of every table.
     #[arg(long, value_name = "FILE")]
@@ -121,9 +121,9 @@ fn counted(names: &[&str]) -> Table {
         .without_first(&["can be told", "failed"])
 }
 
-fn counts(counts: &CoverageCounts) -> impl Iterator<Item = Cell> {
-    let hole = counts.hole().map_or("", Hole::label);
-    let CoverageCounts { incidents, tellable, told, met, failed } = *counts;
+fn counts(cell: &CoverageCell) -> impl Iterator<Item = Cell> {
+    let hole = cell.hole().map_or("", Hole::label);
+    let CoverageCounts { incidents, tellable, told, met, failed } = cell.counts;
     [incidents, tellable, told, met, failed].map(number).into_iter().chain([Cell::new(hole)])
 }
 
@@ -132,7 +132,7 @@ fn cells(table: &CoverageTable) {
     let axes: Vec<&str> = table.axes.iter().map(String::as_str).collect();
     let mut rows = counted(&axes);
     for cell in &table.cells {
-        rows.add_row(cell.values.iter().map(Cell::new).chain(counts(&cell.counts)));
+        rows.add_row(cell.values.iter().map(Cell::new).chain(counts(cell)));
     }
     println!("{rows}");
     for outside in &table.outside {
@@ -187,13 +187,15 @@ pub fn severity(args: &SeverityArgs, output: Output) -> Result<(), PipelineError
 
 fn failures(failures: &[SevereFailure], most: usize) {
     title("Failures with a contact, the worst first, and what the record reports of its own crash");
-    let header = ["scenario", "delta-v ego", "other", "serious injury", "failure", "injury", "towed", "air bags"];
-    let mut rows = table(&header).without_first(&["air bags", "towed", "failure"]);
+    let header =
+        ["scenario", "situation", "delta-v ego", "other", "serious injury", "failure", "injury", "towed", "air bags"];
+    let mut rows = table(&header).without_first(&["air bags", "towed", "failure", "situation"]);
     let known = |value: Option<bool>| Cell::new(value.map_or("unknown", |yes| if yes { "yes" } else { "no" }));
     for failure in failures.iter().take(most) {
         let [ego, other] = failure.delta_v_mps.map(|value| number(format!("{value:.1} m/s")));
         rows.add_row([
             Cell::new(&failure.id),
+            Cell::new(if failure.met { "met" } else { "not met" }),
             ego,
             other,
             number(failure.serious_injury.map_or_else(|| "-".to_owned(), |risk| format!("{:.1} %", 100.0 * risk))),

@@ -74,6 +74,7 @@ const TUNE_EXAMPLES: &str = "\
 Examples:
   recrash tune                                           160 points for each scenario of suite/
   recrash tune --out paper-suite --searcher halton --tune-budget 500
+  recrash tune --aim severity                            the worst contact instead of the nearest failure
 
 Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
 const REPORT_EXAMPLES: &str = "\

@@ -14,7 +14,7 @@ const FALLBACK: &str = "fallback";
 /// A competency, and whether an account asks for it.
 type Competency = (&'static str, &'static str, fn(&Account) -> bool);
 
-const COMPETENCIES: [Competency; 34] = {
+const COMPETENCIES: [Competency; 35] = {
     use MatrixEvent as E;
     [
         (RESPOND, "a vehicle ahead that slows, stops or sets off", |a| {
@@ -68,6 +68,7 @@ const COMPETENCIES: [Competency; 34] = {
         (MANOEUVRE, "stop and stand in traffic", |a| told(&a.sv.state) == Some(ContactState::Stopped)),
         (MANOEUVRE, "stand parked", |a| told(&a.sv.state) == Some(ContactState::Parked)),
         (MANOEUVRE, "let passengers in or out", |a| stood_for(a, StandReason::PickupDropoff)),
+        (MANOEUVRE, "let a door of its own open", |a| matches!(told(&a.door), Some(Striker::Sv | Striker::Both))),
         (MANOEUVRE, "give way standing", |a| stood_for(a, StandReason::Yield)),
         (FALLBACK, "a human takes over before the contact", |a| told(&a.driver) == Some(Driver::HumanTookOver)),
     ]

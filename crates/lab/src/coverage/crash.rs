@@ -1,5 +1,6 @@
 //! Crash type, role, road, control and kind of partner: each alone, in pairs, and all five together.
 
+use super::competency::group;
 use super::{NOT_TOLD, Place, Plan, Values, words, words_or_not_told};
 use recrash_model::account::{
     Account, Control, ControlDevice, CrashType, KindGroup, Party, PlaceKind, RoadFeature, Role, told,
@@ -20,21 +21,21 @@ const AXES: [Axis; 5] = [
         name: "crash type",
         value: crash_type,
         place: |account| alone(crash_type(account)),
-        values: || with_untold(CrashType::ALL.iter().map(|kind| kind.label().to_lowercase())),
+        values: || CrashType::ALL.iter().map(|kind| kind.label().to_lowercase()).collect(),
     },
     Axis {
         id: "role",
         name: "role",
         value: role,
         place: |account| alone(role(account)),
-        values: || with_untold([Role::Initiator, Role::Responder, Role::Both].iter().map(words)),
+        values: || [Role::Initiator, Role::Responder, Role::Both].iter().map(words).collect(),
     },
     Axis {
         id: "road",
         name: "road",
         value: road,
         place: |account| alone(road(account)),
-        values: || with_untold(ROADS.iter().map(words)),
+        values: || ROADS.iter().map(words).collect(),
     },
     Axis {
         id: "control",
@@ -48,7 +49,7 @@ const AXES: [Axis; 5] = [
         name: "partner",
         value: partner,
         place: |account| alone(partner(account)),
-        values: || PARTNERS.iter().map(words).chain([NOBODY.to_owned(), NOT_TOLD.to_owned()]).collect(),
+        values: || PARTNERS.iter().map(words).collect(),
     },
 ];
 
@@ -65,7 +66,6 @@ const PARTNERS: [KindGroup; 8] = {
     use KindGroup::{Animal, Car, Cyclist, Motorcycle, Object, OnFoot, Other, Truck};
     [Car, Truck, Motorcycle, Cyclist, OnFoot, Animal, Object, Other]
 };
-const NOBODY: &str = "nobody";
 
 /// The five alone, in pairs and together.
 pub(super) fn plans() -> Vec<Plan> {
@@ -115,10 +115,6 @@ fn alone(value: String) -> Place {
     Place::In(vec![vec![value]])
 }
 
-fn with_untold(values: impl Iterator<Item = String>) -> Vec<String> {
-    values.chain([NOT_TOLD.to_owned()]).collect()
-}
-
 fn crash_type(account: &Account) -> String {
     told(&account.crash_type).map_or_else(|| NOT_TOLD.to_owned(), |kind| kind.label().to_lowercase())
 }
@@ -154,8 +150,5 @@ pub(super) fn has_control(party: &Party, wanted: ControlDevice) -> bool {
 }
 
 fn partner(account: &Account) -> String {
-    match &account.partner {
-        None => NOBODY.to_owned(),
-        Some(partner) => words_or_not_told(told(&partner.kind).map(recrash_model::account::Kind::group)),
-    }
+    words_or_not_told(group(account))
 }

@@ -64,18 +64,16 @@ const WEATHER: &str = "weather";
 const LIMIT: &str = "posted limit";
 
 pub(super) fn plan() -> Plan {
-    let of = |attribute: &str, values: Vec<String>, untold: bool| -> Vec<Values> {
-        let untold = untold.then(|| NOT_TOLD.to_owned());
-        values.into_iter().chain(untold).map(|value| vec![attribute.to_owned(), value]).collect()
+    let of = |attribute: &str, values: Vec<String>| -> Vec<Values> {
+        values.into_iter().map(|value| vec![attribute.to_owned(), value]).collect()
     };
     let listed = [
-        of(PLACE, ROADS.iter().map(words).collect(), true),
-        // Who tells no feature does not say that there is none.
-        of(FEATURE, FEATURES.iter().map(words).collect(), false),
-        of(SURFACE, SURFACES.iter().map(words).collect(), true),
-        of(LIGHT, LIGHTS.iter().map(words).collect(), true),
-        of(WEATHER, WEATHERS.iter().map(words).collect(), true),
-        of(LIMIT, (0..=BANDS_MPH.len()).map(band_name).collect(), true),
+        of(PLACE, ROADS.iter().map(words).collect()),
+        of(FEATURE, FEATURES.iter().map(words).collect()),
+        of(SURFACE, SURFACES.iter().map(words).collect()),
+        of(LIGHT, LIGHTS.iter().map(words).collect()),
+        of(WEATHER, WEATHERS.iter().map(words).collect()),
+        of(LIMIT, (0..=BANDS_MPH.len()).map(band_name).collect()),
     ];
     Plan::listing(
         ("operational-environment", "Operational environment"),
@@ -92,6 +90,7 @@ fn values(account: &Account) -> Vec<Values> {
     let weather = if place.weather.is_empty() { vec![NOT_TOLD.to_owned()] } else { weather.collect() };
     let all = [
         (PLACE, vec![words_or_not_told(told(&place.kind))]),
+        // Who tells no feature does not say that there is none.
         (FEATURE, place.features.iter().map(|told| words(&told.value)).collect()),
         (SURFACE, vec![words_or_not_told(told(&place.surface))]),
         (LIGHT, vec![words_or_not_told(told(&place.lighting))]),

@@ -113,7 +113,8 @@ impl Plan {
                 Place::Outside(why) => outside.entry(why).or_default().add(incident.counts()),
             }
         }
-        let cell = |(values, counts): (Values, CoverageCounts)| CoverageCell { values, counts };
+        let cell =
+            |(values, counts): (Values, CoverageCounts)| CoverageCell { untold: is_untold(&values), values, counts };
         let listed: Vec<CoverageCell> =
             self.listed.iter().map(|values| cell((values.clone(), cells.remove(values).unwrap_or_default()))).collect();
         // What is not listed is there because it was seen: the most frequent first.
@@ -136,6 +137,11 @@ impl Plan {
 
 /// What a value that nobody tells is called.
 const NOT_TOLD: &str = "not told";
+
+/// Whether a value of a cell is not told; of a pair, the value stands behind its axis.
+fn is_untold(values: &[String]) -> bool {
+    values.iter().any(|value| value.rsplit(": ").next() == Some(NOT_TOLD))
+}
 
 /// A value in words: its name in files, without underscores.
 fn words<T: Serialize>(value: &T) -> String {

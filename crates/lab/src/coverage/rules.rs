@@ -18,8 +18,6 @@ enum Side {
 }
 
 impl Side {
-    const ALL: [Self; 2] = [Self::Sv, Self::Other];
-
     fn name(self) -> &'static str {
         match self {
             Self::Sv => "subject vehicle",
@@ -49,61 +47,63 @@ impl Bound<'_> {
     }
 }
 
-/// A rule, and whether it binds this side.
-type Rule = (&'static str, fn(&Bound<'_>) -> bool);
+/// A rule, whom it can bind as far as an account tells, and whether it binds this side.
+type Rule = (&'static str, &'static [Side], fn(&Bound<'_>) -> bool);
+
+const BOTH: &[Side] = &[Side::Sv, Side::Other];
 
 const RULES: [Rule; 19] = [
-    ("art. 5: signals", |of| has_control(of.party, ControlDevice::Signal) || of.did(&[Act::RunRed])),
-    ("art. 5: stop and yield signs", |of| {
+    ("art. 5: signals", BOTH, |of| has_control(of.party, ControlDevice::Signal) || of.did(&[Act::RunRed])),
+    ("art. 5: stop and yield signs", BOTH, |of| {
         [ControlDevice::StopSign, ControlDevice::YieldSign].into_iter().any(|device| has_control(of.party, device))
             || of.did(&[Act::RunStop])
     }),
-    ("art. 10: place on the carriageway", |of| {
+    ("art. 10: place on the carriageway", BOTH, |of| {
         let across = [Movement::CrossingIntoOpposingLane, Movement::WrongWay, Movement::LaneDeparture];
         of.did(&[Act::WrongWay, Act::Drift]) || of.moved(&across)
     }),
-    ("art. 11: passing", |of| of.did(&[Act::Pass]) || of.moved(&[Movement::Passing])),
-    ("art. 13: posted limit, where a speed is told", |of| {
+    ("art. 11: passing", BOTH, |of| of.did(&[Act::Pass]) || of.moved(&[Movement::Passing])),
+    ("art. 13: posted limit, where a speed is told", BOTH, |of| {
         of.account.place.posted_mps.is_some() && !of.party.speeds.is_empty()
     }),
-    ("art. 13: distance to the vehicle ahead", |of| {
+    ("art. 13: distance to the vehicle ahead", BOTH, |of| {
         let follows = match of.side {
             Side::Sv => Origin::Ahead,
             Side::Other => Origin::Behind,
         };
         of.is(CrashType::FrontToRear) && told(&of.account.came_from) == Some(follows)
     }),
-    ("art. 14: changing lanes and merging", |of| {
+    ("art. 14: changing lanes and merging", BOTH, |of| {
         of.did(&[Act::LaneChange]) || of.moved(&[Movement::ChangingLanes, Movement::Merging])
     }),
-    ("art. 14: entering traffic", |of| of.did(&[Act::PullOut]) || of.moved(&[Movement::EnteringTraffic])),
-    ("art. 14: turning round", |of| of.did(&[Act::UTurn]) || of.moved(&[Movement::UTurn])),
-    ("art. 14: going backwards", |of| {
+    ("art. 14: entering traffic", BOTH, |of| of.did(&[Act::PullOut]) || of.moved(&[Movement::EnteringTraffic])),
+    ("art. 14: turning round", BOTH, |of| of.did(&[Act::UTurn]) || of.moved(&[Movement::UTurn])),
+    ("art. 14: going backwards", BOTH, |of| {
         let state = told(&of.party.state) == Some(ContactState::Reversing);
         state || of.did(&[Act::Reverse]) || of.moved(&[Movement::Backing])
     }),
-    ("art. 16: turning", |of| of.did(&[Act::Turn]) || of.moved(&[Movement::LeftTurn, Movement::RightTurn])),
-    ("art. 18: giving way at junctions", |of| {
+    ("art. 16: turning", BOTH, |of| of.did(&[Act::Turn]) || of.moved(&[Movement::LeftTurn, Movement::RightTurn])),
+    ("art. 18: giving way at junctions", BOTH, |of| {
         let junction = told(&of.account.place.kind) == Some(PlaceKind::Intersection);
         of.did(&[Act::FailToYield]) || junction && of.is(CrashType::Intersection)
     }),
-    ("art. 19: level crossings", |of| has(of.account, RoadFeature::Rails)),
-    ("art. 21: towards people on foot", |of| of.side == Side::Sv && group(of.account) == Some(KindGroup::OnFoot)),
-    ("art. 23: standing and parking", |of| {
+    ("art. 19: level crossings", BOTH, |of| has(of.account, RoadFeature::Rails)),
+    ("art. 21: towards people on foot", &[Side::Sv], |of| group(of.account) == Some(KindGroup::OnFoot)),
+    ("art. 23: standing and parking", BOTH, |of| {
         let for_itself = [StandReason::PickupDropoff, StandReason::Parked];
         told(&of.party.state) == Some(ContactState::Parked)
             || of.did(&[Act::Park, Act::PullOver])
             || of.party.reasons.iter().any(|reason| for_itself.contains(&reason.value))
     }),
-    ("art. 24: doors", |of| match told(&of.account.door) {
+    ("art. 24: doors", BOTH, |of| match told(&of.account.door) {
         Some(Striker::Sv) => of.side == Side::Sv,
         Some(Striker::Cp) => of.side == Side::Other,
         Some(Striker::Both) => true,
         None => false,
     }),
-    ("art. 25: motorways", |of| told(&of.account.place.kind) == Some(PlaceKind::Highway)),
-    ("art. 31: after a crash", |of| of.side == Side::Other && told(&of.account.partner_left) == Some(true)),
-    ("art. 34: vehicles with priority, rail vehicles", |of| {
+    ("art. 25: motorways", BOTH, |of| told(&of.account.place.kind) == Some(PlaceKind::Highway)),
+    ("art. 31: after a crash", &[Side::Other], |of| told(&of.account.partner_left) == Some(true)),
+    ("art. 34: vehicles with priority, rail vehicles", BOTH, |of| {
         emergency(of.account) || partner_kind(of.account) == Some(Kind::Tram)
     }),
 ];
@@ -111,7 +111,7 @@ const RULES: [Rule; 19] = [
 pub(super) fn plan() -> Plan {
     let listed = RULES
         .iter()
-        .flat_map(|(rule, _)| Side::ALL.map(|side| vec![(*rule).to_owned(), side.name().to_owned()]))
+        .flat_map(|(rule, sides, _)| sides.iter().map(|side| vec![(*rule).to_owned(), side.name().to_owned()]))
         .collect();
     Plan::listing(("rules-of-the-road", "Rules of the road"), &["rule", "who is bound"], listed, |account| {
         let at_stake = values(account);
@@ -127,8 +127,8 @@ fn values(account: &Account) -> Vec<Values> {
     let other = partner.map(|party| Bound { account, side: Side::Other, party });
     let sides = [Some(Bound { account, side: Side::Sv, party: &account.sv }), other];
     let of_side = |bound: Bound<'_>| {
-        let binds = RULES.iter().filter(|(_, binds)| binds(&bound));
-        binds.map(|(rule, _)| vec![(*rule).to_owned(), bound.side.name().to_owned()]).collect::<Vec<_>>()
+        let binds = RULES.iter().filter(|(_, sides, binds)| sides.contains(&bound.side) && binds(&bound));
+        binds.map(|(rule, _, _)| vec![(*rule).to_owned(), bound.side.name().to_owned()]).collect::<Vec<_>>()
     };
     sides.into_iter().flatten().flat_map(of_side).collect()
 }

@@ -166,7 +166,7 @@ fn cells_csv(corpus: &CorpusCoverage) -> Vec<u8> {
     row("all", String::new(), "all readable incidents".to_owned(), &corpus.all, None);
     for table in &corpus.tables {
         for cell in &table.cells {
-            row(&table.id, table.axes.join(" | "), cell.values.join(" | "), &cell.counts, cell.counts.hole());
+            row(&table.id, table.axes.join(" | "), cell.values.join(" | "), &cell.counts, cell.hole());
         }
         for outside in &table.outside {
             row(&table.id, "outside".to_owned(), outside.why.clone(), &outside.counts, None);

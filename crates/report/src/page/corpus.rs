@@ -48,8 +48,8 @@ fn cells(table: &CoverageTable) -> Markup {
                 th.right scope="col" { "Incidents" } th.right scope="col" { "Told" } th.right scope="col" { "Tested" } th.right scope="col" { "Failed" } th scope="col" { "Hole" }
             } }
             tbody {
-                @for cell in &table.cells { tr { @for value in &cell.values { td { (value) } } (numbers(&cell.counts)) } }
-                @for outside in &table.outside { tr.muted { td colspan=(table.axes.len()) { "in no cell: " (outside.why) } (numbers(&outside.counts)) } }
+                @for cell in &table.cells { tr { @for value in &cell.values { td { (value) } } (numbers(&cell.counts)) td { (cell.hole().map_or("", Hole::label)) } } }
+                @for outside in &table.outside { tr.muted { td colspan=(table.axes.len()) { "in no cell: " (outside.why) } (numbers(&outside.counts)) td {} } }
             }
         } }
     }
@@ -58,7 +58,6 @@ fn cells(table: &CoverageTable) -> Markup {
 fn numbers(counts: &CoverageCounts) -> Markup {
     html! {
         @for count in [counts.incidents, counts.told, counts.met, counts.failed] { td.right.number { (thousands(count)) } }
-        td { (counts.hole().map_or("", Hole::label)) }
     }
 }
 
