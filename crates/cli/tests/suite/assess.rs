@@ -5,9 +5,8 @@ use serde_json::Value;
 
 fn made() -> Place {
     let place = Place::new();
-    let run =
-        [&["run", "--profile", "open", "--budget", "12", "--tune-budget", "1", "--seed", "3"], arguments].concat();
-    let (code, _, remarks) = place.run(&run);
+    let (code, _, remarks) =
+        place.run(&["run", "--profile", "open", "--budget", "12", "--tune-budget", "1", "--seed", "3"]);
     assert_eq!(code, 0, "{remarks}");
     place
 }
