@@ -9,8 +9,10 @@
 mod came;
 mod choices;
 mod control;
+mod door;
 mod facts;
 mod ground;
+mod movement;
 mod told;
 mod touch;
 

@@ -13,7 +13,7 @@ use crate::lexicon::{Lexicon, Sense};
 use crate::world::{Actor, SUBJECT};
 use contact::Contacts;
 use recrash_model::account::{
-    ACCOUNT_FORMAT, Account, Act, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker,
+    ACCOUNT_FORMAT, Account, Act, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker, told,
 };
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
@@ -130,6 +130,10 @@ pub fn account(incident: &Incident) -> Option<Account> {
         contradictions: Vec::new(),
     };
     party::columns(&reading, &mut account);
+    // A gate that swings open is no door.
+    let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
+    let is_thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Door);
+    account.door = account.door.filter(|_| !is_thing);
     account.came_from = origin::came_from(&reading, &account);
     movement::movements(&reading, &mut account);
     account.striker = types::striker(&reading, &account);
