@@ -8,8 +8,6 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import numpy as np
-
 if TYPE_CHECKING:
     from recrash._recrash import Run, Scenario, Table
     from recrash.suite import Suite
@@ -91,6 +89,9 @@ def suite_html(suite: Suite) -> str:
 
 def replay(run: Run) -> str:
     """A run as a picture that moves (SVG, no script): the roads, and everybody's box from start to end, again and again."""
+    # Not above: the package is imported quickly.
+    import numpy as np
+
     states, actors, times = run.states, run.actors, run.times
     least = [number for number, actor in enumerate(actors) if actor["role"] in ("ego", "partner")]
     seen = states[:, least, :2].reshape(-1, 2)
