@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import hashlib
 import itertools
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -38,8 +39,10 @@ from recrash.suite import Location, as_result, load_scenarios, read, row_of, run
 
 __all__ = ["corpus", "sweep", "test", "tune"]
 
-#: How often a batch is tried again whose worker or machine was lost.
-RETRIES = 3
+#: How often Ray tries a batch again whose worker or machine was lost.
+RETRIES = 2
+#: How often it is then sent to another actor, and how long is waited before, longer each time: until a lost machine is known. [s]
+SENT_AGAIN, PAUSE_S = 2, 2.0
 #: Batches under way for each processor: enough that none waits, few enough that results do not pile up.
 AHEAD = 4
 #: Kinds of the columns of a test, so that every batch has the same, whatever is missing in it.
@@ -341,6 +344,9 @@ class _Actor:
     def __init__(self, function: Callable[..., pyarrow.Table], shared: Any, seat: type[_Seat]) -> None:
         self.function, self.shared, self.seat = function, shared, seat()
 
+    def ready(self) -> None:
+        pass
+
     def answer(self, batch_id: str, given: Any) -> Any:
         return _answer(self.function, self.shared, self.seat, batch_id, given)
 
@@ -361,12 +367,13 @@ def _on_cluster(work: _Work, batches: Sequence[Batch], actors: int | None) -> It
             return task.remote(work.function, shared, None, batch.id, batch.given)
     else:
         # It reserves no processor: one whose machine is lost would wait for another machine for ever.
-        # What it loses is sent to the next one, see `_received`.
         kind = ray.remote(_Actor)
         near = [NodeAffinitySchedulingStrategy(place, soft=True) for place in places] or ["DEFAULT"]
         homes = itertools.islice(itertools.cycle(near), min(actors or processors, len(batches)))
-        made = (kind.options(scheduling_strategy=home, max_restarts=-1) for home in homes)
+        made = (kind.options(scheduling_strategy=home, max_restarts=-1, max_task_retries=RETRIES) for home in homes)
         workers = [each.remote(work.function, work.shared, work.seat) for each in made]
+        for worker in workers[:1]:
+            _must_start(worker)
         turns = itertools.cycle(workers)
 
         def send(batch: Batch) -> Any:
@@ -379,7 +386,7 @@ def _on_cluster(work: _Work, batches: Sequence[Batch], actors: int | None) -> It
             waiting.append((batch, send(batch)))
         while waiting:
             batch, answer = waiting.popleft()
-            yield _received(batch, answer, send, RETRIES)
+            yield _received(batch, answer, send, SENT_AGAIN)
             for following in itertools.islice(to_send, 1):
                 waiting.append((following, send(following)))
     finally:
@@ -389,12 +396,23 @@ def _on_cluster(work: _Work, batches: Sequence[Batch], actors: int | None) -> It
             ray.kill(worker)
 
 
+def _must_start(worker: Any) -> None:
+    """Say why where no worker can be made: an ego's module that only this machine has, for one."""
+    try:
+        ray.get(worker.ready.remote())
+    except ray.exceptions.RayError as error:
+        why = str(error).strip().splitlines()[-1]
+        told = f"no worker can be started on the cluster: {why}; the package and the ego's module must be there"
+        raise RecrashError(told) from error
+
+
 def _received(batch: Batch, answer: Any, send: Callable[[Batch], Any], tries: int) -> pyarrow.Table:
     """A batch's table. Of a batch whose worker is lost for good what its pieces give, or what stands for it, or an exception."""
     try:
         batch_id, table = ray.get(answer)
     except ray.exceptions.RayError as error:
         if tries > 0 and isinstance(error, ray.exceptions.RayActorError):
+            time.sleep(PAUSE_S * (SENT_AGAIN - tries + 1))
             return _received(batch, send(batch), send, tries - 1)
         cause = getattr(error, "cause", None)
         why = cause if isinstance(cause, RecrashError) else error

@@ -149,7 +149,8 @@ def test_searches_are_those_of_one_process(cluster, scenarios):
 def test_what_kills_its_worker_is_named_and_the_rest_goes_on(cluster, scenarios, monkeypatch):
     import recrash.ray
 
-    monkeypatch.setattr(recrash.ray, "RETRIES", 0)
+    monkeypatch.setattr(recrash.ray, "RETRIES", 1)
+    monkeypatch.setattr(recrash.ray, "SENT_AGAIN", 0)
     few = [each for each in scenarios if each.id >= "crashes-31"][:4]
     assert "crashes-32-lead-reverses" in [each.id for each in few]
     rows = recrash.ray.test(few, Fatal, batch=4).to_pylist()
@@ -166,6 +167,17 @@ def test_an_ego_that_raises_fails_its_scenario_alone(cluster, scenarios):
     assert rows == recrash.test(scenarios, Careless).to_dicts()
     (failed,) = [row for row in rows if row["error"]]
     assert "Careless raised ValueError: no map at reset" in failed["error"]
+
+
+def test_an_ego_that_workers_cannot_load_is_told(cluster, scenarios, tmp_path, monkeypatch):
+    import recrash.ray
+
+    (tmp_path / "only_here.py").write_text("def drive(_):\n    return 0.0, 0.0\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    import only_here
+
+    with pytest.raises(RecrashError, match=r"no worker can be started on the cluster: .*only_here.*must be there"):
+        recrash.ray.test(scenarios, only_here.drive)
 
 
 def test_what_cannot_be_done_is_told_and_leaves_no_file(cluster, scenarios, tmp_path, monkeypatch):
