@@ -7,7 +7,7 @@ highway-env sees is the route as one lane of its own, and everybody else as a ve
 import math
 
 import numpy as np
-from highway_env.road.lane import PolyLane
+from highway_env.road.lane import PolyLaneFixedWidth
 from highway_env.road.road import Road, RoadNetwork
 from highway_env.vehicle.behavior import IDMVehicle
 from highway_env.vehicle.kinematics import Vehicle
@@ -26,7 +26,7 @@ class HighwayIdm:
         points = [(point["x"], -point["y"]) for point in world["route"]]
         thinned = points[:-1:THINNED] + points[-1:] if len(points) > 2 * THINNED else points
         network = RoadNetwork()
-        network.add_lane("start", "end", PolyLane([np.array(point) for point in thinned], width=3.5))
+        network.add_lane("start", "end", PolyLaneFixedWidth([np.array(point) for point in thinned], width=3.5))
         self.road = Road(network=network, np_random=np.random.default_rng(0))
         self.dt_s, self.target_mps = world["dt_s"], world["target_speed_mps"]
         self.wheelbase_m = world["vehicle"]["wheelbase_m"]
