@@ -75,7 +75,7 @@ pub fn step(tally: &mut Tally) -> Result {
 fn source_distribution(maturin: &Path, package: &Path) -> Result {
     let folder = target().join("sdist");
     let _ = fs::remove_dir_all(&folder);
-    run(Command::new(maturin).args(["sdist", "--quiet", "--out"]).arg(&folder).current_dir(package))?;
+    run(Command::new(maturin).args(["sdist", "--out"]).arg(&folder).current_dir(package))?;
     let sdist = only_file(&folder)?;
     let listed = Command::new("tar").arg("tzf").arg(&sdist).output().map_err(|error| format!("tar: {error}"))?;
     let listed = String::from_utf8_lossy(&listed.stdout);
