@@ -259,6 +259,15 @@ class FreePolicy(IDMPolicy):
         return False
 
 
+class ExpertPolicy(FreePolicy):
+    """The PPO expert that MetaDrive ships: the mean of its network over its own lasers and navigation. It knows no target speed."""
+
+    def act(self):
+        from metadrive.examples.ppo_expert.numpy_expert import expert
+
+        return expert(self.control_object, deterministic=True)
+
+
 class TrafficPolicy(FreePolicy):
     """Stands until the ego has left the entrance of its road."""
 
@@ -441,8 +450,11 @@ class World:
         env.reset(seed=0)
         self.engine = env.engine
         self.network = self.engine.current_map.road_network
-        policy = self.engine.get_policy(env.agent.name)
-        driver = OpenLoopPolicy(ego["controls"]) if ego.get("controls") is not None else policy
+        driver = self.engine.get_policy(env.agent.name)
+        if ego.get("controls") is not None:
+            driver = OpenLoopPolicy(ego["controls"])
+        elif ego.get("policy") == "expert":
+            driver = ExpertPolicy(env.agent, 0)
         self.actors = [self.introduce(env.agent, driver, ego)]
         for partner in spec["partners"]:
             vehicle = self.spawn(partner)
