@@ -3,6 +3,7 @@
 use crate::control;
 use crate::door::Opening;
 use crate::ground::Ground;
+use crate::others::{self, Extra};
 use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
@@ -25,12 +26,6 @@ const HANDOVER_BEFORE_S: f64 = 5.0;
 
 /// Before it began to brake for its stop, the ego still rolls for so long under the system under test. [s]
 const ROLLS_S: f64 = 1.0;
-
-/// Name of who stands ahead of the ego, as the reason why it stood.
-pub(crate) const LEAD: &str = "lead";
-
-/// From the ego's front to the rear of who stands ahead of it. [m]
-const LEAD_GAP_M: f64 = 2.5;
 
 /// Deceleration of who comes to a stop before it is hit. [m/s^2]
 const STOPPING_MPS2: f64 = 2.0;
@@ -256,7 +251,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             None => opens(door, &mut recorded, &mut parts),
         }
     }
-    actors.extend(told.lead.then(|| lead(told, staging)));
+    actors.extend(others::actors(told, staging));
     let control = control::devices(told, ground);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
@@ -309,19 +304,21 @@ fn opens(door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<Part>) {
 /// made the recorded driver stop is then part of the task.
 fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
     let at_line = staging.ground.junction && told.sv.control.is_some();
-    if told.sv.state != ContactState::Stopped || told.lead || at_line {
+    if told.sv.state != ContactState::Stopped || told.extras.contains(&Extra::Lead) || at_line {
         return Vec::new();
     }
     vec![MissionStop { s_m: staging.sv_s_m, t_m: 0.0, for_s: None }]
 }
 
-/// Somebody who stands ahead of the ego where it comes to its stop.
-fn lead(told: &Told, staging: &Staging) -> Actor {
-    let car_m = recrash_model::vehicle::VehicleSpec::of(PartnerKind::PassengerCar).length_m;
-    let ahead_m = 0.5 * (size_of(&told.sv).0 + car_m) + LEAD_GAP_M;
-    let at = staging.sv.position + Vec2::from_heading(staging.sv.heading) * ahead_m;
-    let plan = ActorPlan::standing(Place::at(at.x, at.y, staging.sv.heading.to_degrees()));
-    Actor { id: LEAD.to_owned(), kind: PartnerKind::PassengerCar, size: None, parts: Vec::new(), plan }
+/// Straight on at a speed.
+pub(crate) fn straight_plan(start: Vec2, way: Vec2, speed_mps: f64) -> ActorPlan {
+    let degrees = math::atan2(way.y, way.x).to_degrees();
+    let to = start + way * (speed_mps * CONTACT_S + beyond_m(speed_mps));
+    ActorPlan {
+        speed_mps,
+        course: vec![Leg::Curve { to: Place::at(to.x, to.y, degrees), reverse: false }],
+        ..ActorPlan::standing(Place::at(start.x, start.y, degrees))
+    }
 }
 
 /// Where the ego is at the contact, when its centre has come so far along its way; nothing where it cannot come there. Who leaves its

@@ -64,6 +64,15 @@ pub(crate) fn zone_of(owner: &OrientedBox, door: &OrientedBox) -> ContactZone {
     ContactZone::at(owner, owner.to_world(Vec2::new(hinge.x - 0.5 * DOOR_M, side)))
 }
 
+/// Whether a door stands open: it points away from its owner's side by more than 10 degrees.
+pub(crate) fn is_open(owner: &OrientedBox, door: &OrientedBox) -> bool {
+    // Shut, it points back along the body.
+    owner.axis.dot(door.axis) > -OPEN_COSINE
+}
+
+/// Cosine of 10 degrees.
+const OPEN_COSINE: f64 = 0.9848;
+
 /// Who has doors on its sides.
 fn has_doors(kind: PartnerKind) -> bool {
     !matches!(

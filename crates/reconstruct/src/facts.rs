@@ -1,9 +1,9 @@
 //! Told facts, held against a rollout. Nothing here reads the scenario: only who was where.
 
-use crate::came::LEAD;
 use crate::control;
 use crate::door;
 use crate::movement::{self, Way};
+use crate::others;
 use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
@@ -140,11 +140,9 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
         list.push(Check { kind, expected, observed, result });
     };
-    if let Some(track) = touch.track {
-        if told.origin_told {
-            let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
-            fact(CheckKind::Approach, shown, told.origin.words(), observed);
-        }
+    if let Some(track) = touch.track.filter(|_| told.origin_told) {
+        let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
+        fact(CheckKind::Approach, shown, told.origin.words(), observed);
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
         // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens.
@@ -240,9 +238,6 @@ fn lane(word: LaneWord, scenario: &Scenario, ego: &ActorTrack, track: &ActorTrac
     (result, format!("lane {} of {}, from the left", number + 1, lanes.len()))
 }
 
-/// Who stands behind somebody is no farther from it. [m]
-const BEHIND_M: f64 = 8.0;
-
 /// Whether the scene holds what the ego stood for.
 fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (CheckResult, String) {
     let (draft, ego) = (scenario.draft(), rollout.ego_track());
@@ -250,23 +245,13 @@ fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (
         let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
         control::check(said, scenario, ego, time_s).0 == CheckResult::Shown
     };
-    let ahead = || {
-        let step = ((time_s * 10.0) as usize).min(ego.states.len() - 1);
-        let state = &ego.states[step];
-        rollout.actors.iter().filter(|track| track.id == LEAD).any(|track| {
-            let way = track.states[step.min(track.states.len() - 1)].position() - state.position();
-            way.dot(Vec2::from_heading(state.heading)) > 0.0 && way.length() < BEHIND_M + ego.length_m
-        })
-    };
     let holds = |reason: &StandReason| match reason {
         StandReason::RedLight => controlled(ControlDevice::Signal),
         StandReason::StopSign => controlled(ControlDevice::StopSign),
-        StandReason::Queue | StandReason::LeadVehicle => ahead(),
         StandReason::PickupDropoff => !draft.ego.stops.is_empty(),
-        StandReason::Parked => told.sv.state == ContactState::Parked,
-        _ => false,
+        other => others::holds(told, *other, rollout, time_s),
     };
-    match told.reasons.iter().any(holds) {
+    match told.reasons.iter().all(holds) {
         true => (CheckResult::Shown, "in the scene".to_owned()),
         false => (CheckResult::CannotBeShown, "not in the scene".to_owned()),
     }
@@ -317,7 +302,8 @@ fn parts_that_touch(
     let number = touch.track.and_then(|track| rollout.actors.iter().position(|other| other.id == track.id));
     let met = |owner: Option<usize>, other: &OrientedBox| {
         let of_owner = rollout.actors.iter().filter(|track| owner.is_some() && track.part_of == owner);
-        let boxes = of_owner.map(|track| outline_at(track, touch.time_s));
+        let body = if owner == Some(0) { ego_box } else { &touch.other_box };
+        let boxes = of_owner.map(|track| outline_at(track, touch.time_s)).filter(|part| door::is_open(body, part));
         boxes
             .map(|part| (part.nearest_points(other).2, part))
             .filter(|(gap, _)| *gap < MET_M)

@@ -1,5 +1,6 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
+use crate::others::Extra;
 use crate::told::{Told, Turning};
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
@@ -202,7 +203,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         all
     } else {
         // At the line, or behind who stands there.
-        let behind = told.lead || told.origin == Origin::Ahead && told.thing.is_none();
+        let behind = told.extras.contains(&Extra::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
         vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
     };
     with_way(map, vec!["own-".to_owned(), exit.to_owned()], lane as u8, places, true)

@@ -13,6 +13,7 @@ mod door;
 mod facts;
 mod ground;
 mod movement;
+mod others;
 mod told;
 mod touch;
 

@@ -2,6 +2,7 @@
 
 use crate::choices::Choices;
 use crate::ground::LANE_M;
+use crate::others::{self, Extra};
 use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
@@ -26,6 +27,12 @@ const CHANGES_M: f64 = 2.2;
 
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
+
+/// Who comes after an ego that comes to a stop, and does not stop, is no slower. [m/s]
+const AFTER_MPS: f64 = 5.2;
+
+/// Speed in a turn. [m/s]
+const TURNS_MPS: f64 = 5.0;
 
 /// How somebody turns before the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,8 +97,12 @@ pub(crate) struct Told {
     pub(crate) others: usize,
     /// Whose door took part.
     pub(crate) door: Option<Striker>,
-    /// Somebody stands ahead of the ego, as the reason why it stood.
-    pub(crate) lead: bool,
+    /// Posted speed, where told. [m/s]
+    pub(crate) posted_mps: Option<f64>,
+    /// Whom the ego stood for, by what is told.
+    pub(crate) wanted: Vec<Extra>,
+    /// Those of them in the scene.
+    pub(crate) extras: Vec<Extra>,
     pub(crate) choices: Choices,
     pub(crate) assumed: Vec<String>,
 }
@@ -142,10 +153,13 @@ impl Told {
             reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
             others: account.others.len(),
             door: told(&account.door),
-            lead: false,
+            posted_mps: told(&account.place.posted_mps),
+            wanted: Vec::new(),
+            extras: Vec::new(),
             choices: Choices::default(),
             assumed,
         };
+        this.wanted = others::wanted(&this, &account.others);
         if this.origin_told {
             this.speeds();
         }
@@ -191,28 +205,19 @@ impl Told {
         self
     }
 
-    /// Whether somebody stood ahead of the ego, who is not the partner.
-    fn wants_lead(&self) -> bool {
-        let waits = |reason: &StandReason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle);
-        self.sv.state == ContactState::Stopped
-            && self.reasons.iter().any(waits)
-            && self.thing.is_none()
-            && self.origin != Origin::Ahead
-    }
-
     /// Whether a signal or sign is told.
     pub(crate) fn is_controlled(&self) -> bool {
         self.sv.control.is_some() || self.cp.control.is_some()
     }
 
-    /// Everything to try: with who stood ahead of the ego, then without.
+    /// Everything to try: with those whom the ego stood for, then without them.
     pub(crate) fn variants(self) -> Vec<Self> {
-        let all = self.by_origin().into_iter();
-        let with_lead = |told: Self| {
-            let lead = told.wants_lead().then(|| Self { lead: true, ..told.clone() });
-            lead.into_iter().chain([told])
+        let with_extras = |told: Self| {
+            let extras = told.wanted.clone();
+            let with = (!extras.is_empty()).then(|| Self { extras, ..told.clone() });
+            with.into_iter().chain([told])
         };
-        all.flat_map(with_lead).collect()
+        self.by_origin().into_iter().flat_map(with_extras).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
@@ -251,8 +256,29 @@ impl Told {
         self.pushed && self.origin == Origin::Behind && self.thing.is_none() && self.cp.state != ContactState::Reversing
     }
 
+    /// Speed at the contact of somebody who drives, by the posted speed, or the usual one of such a place: who comes up behind
+    /// somebody that stands brakes, late; who passes or drifts has slowed; who crosses has slowed a little. [m/s]
+    fn driven_mps(&self) -> f64 {
+        let usual_mps = match self.place {
+            PlaceKind::Highway => 27.0,
+            PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley => 5.0,
+            _ => 11.2,
+        };
+        let share = match self.origin {
+            Origin::Behind | Origin::Ahead => 0.5,
+            Origin::Beside { .. } => 0.6,
+            Origin::Cross { .. } | Origin::Opposite => 0.7,
+            _ => 0.4,
+        };
+        let speed_mps = share * self.posted_mps.unwrap_or(usual_mps);
+        // Else it would be ahead of an ego that comes to a stop.
+        let comes_after = matches!(self.origin, Origin::Behind | Origin::Beside { .. }) && usual_mps > 6.0;
+        if comes_after { speed_mps.max(AFTER_MPS) } else { speed_mps }
+    }
+
     /// Speeds at the contact: as told, or such that who closes on whom does.
     fn speeds(&mut self) {
+        let driven_mps = self.driven_mps();
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             ContactState::SettingOff => 1.5,
@@ -263,7 +289,8 @@ impl Told {
                 PartnerKind::Pedestrian => 1.4,
                 PartnerKind::Animal => 4.0,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
-                _ => 6.0,
+                _ if side.turning != Turning::No => TURNS_MPS,
+                _ => driven_mps,
             },
         };
         let slow = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
@@ -319,14 +346,11 @@ impl Told {
             return None;
         }
         let movement = self.sv.movement?;
-        let towards = self.sv.aside.or_else(|| match self.origin {
+        let towards = self.sv.aside.or(match self.origin {
             Origin::Beside { side } | Origin::Cross { side } => Some(side),
             _ => None,
         });
-        let towards = towards.or_else(|| match side_of(&self.sv.zones) {
-            Some(side) => Some(if side > 0.0 { left } else { right }),
-            None => None,
-        });
+        let towards = towards.or_else(|| side_of(&self.sv.zones).map(|side| if side > 0.0 { left } else { right }));
         let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
         let (from_t_m, to_t_m) = match movement {
             Movement::ChangingLanes | Movement::Merging => (0.0, by(left, LANE_M)),
