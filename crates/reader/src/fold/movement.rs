@@ -1,6 +1,7 @@
 //! Movement of both sides just before the conflict, from their acts, states and columns.
 
 use super::Reading;
+use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Source, StandReason, told,
 };
@@ -8,7 +9,16 @@ use recrash_model::template::Movement;
 
 /// Movement of both sides just before the conflict.
 pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
-    account.sv.movement = movement(&account.sv, reading.record.sv_movement.known(), "SV Pre-Crash Movement");
+    // Whom else it passed is not what led to the conflict.
+    let passes_partner = reading.contacts.partner.is_none_or(|partner| {
+        let mut passed = reading.before(SUBJECT).filter(|(_, frame)| frame.act() == Some(Act::Pass)).peekable();
+        passed.peek().is_none() || passed.any(|(_, frame)| frame.object.is_none_or(|object| object == partner))
+    });
+    let column = reading.record.sv_movement.known();
+    let elsewhere = !passes_partner && column.is_some_and(|column| column != Movement::Passing);
+    let mut sv = account.sv.clone();
+    sv.acts.retain(|fact| fact.act != Act::Pass || !elsewhere);
+    account.sv.movement = movement(&sv, column, "SV Pre-Crash Movement");
     // Who stops in the lane for passengers is parked by the column, and stopped by the words.
     let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
     let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
@@ -163,6 +173,21 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
         {
             best = None;
         }
+        // Who came out and then travels along has come out.
+        if fact.act == Act::Follow
+            && column != Some(Movement::EnteringTraffic)
+            && words_of(fact).starts_with("travel")
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::EnteringTraffic)
+        {
+            best = None;
+        }
+        // Who changed lanes and then draws near is in its lane.
+        if fact.act == Act::Follow
+            && words_of(fact).starts_with("approach")
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::ChangingLanes)
+        {
+            best = None;
+        }
         let Some((weight, value)) = weight(fact, column) else { continue };
         // The last of those that say as much.
         if best.as_ref().is_none_or(|(known, ..)| weight >= *known) {
@@ -192,6 +217,7 @@ fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
         (Act::UTurn, _) => (4, Movement::UTurn),
         (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
         (Act::Reverse, _) => (4, Movement::Backing),
+        (Act::LaneChange, _) if column == Some(Movement::EnteringTraffic) => (3, Movement::EnteringTraffic),
         (Act::LaneChange, _) if words_of(fact).starts_with("merg") => (3, Movement::Merging),
         (Act::LaneChange, _) => (3, Movement::ChangingLanes),
         (Act::Pass, _) if column == Some(Movement::Passing) => (3, Movement::Passing),

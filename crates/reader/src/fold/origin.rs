@@ -105,6 +105,9 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             "what stands beside the way is on the side that touches it",
         ));
     }
+    if let (true, Some(side)) = (clues.reading.did(clues.actor, Act::Roll), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "what rolls comes from the side that it touches"));
+    }
     let lies =
         matches!(kind, Some(Kind::Debris | Kind::Pothole | Kind::Object)) && account.partner.as_ref()?.acts.is_empty();
     let on_road = forward(account)
@@ -202,7 +205,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         if let Some(side) = side {
             return told_as(Origin::Beside { side }, clues.source(|frame| frame.act() == Some(Act::Reverse)));
         }
-        if has_zone(&account.sv, |zone| zone.is_front()) {
+        if has_zone(&account.sv, |zone| zone.is_front()) && !matches!(turn, Some(2..=6)) {
             return Some(Fact::by_rule(Origin::Ahead, "who goes backwards into the front was ahead"));
         }
     }

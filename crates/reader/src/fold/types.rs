@@ -32,6 +32,7 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         let flies = account
             .partner
             .as_ref()
+            .filter(|partner| !is_fixed(partner))
             .is_some_and(|partner| partner.did(Act::Fall) || partner.did(Act::Roll) || partner.did(Act::Pushed));
         let sv_stands = sv_state(account).is_some_and(ContactState::stands);
         return match (flies, sv_stands) {
@@ -423,18 +424,22 @@ fn lay(reading: &Reading<'_>) -> bool {
     })
 }
 
-/// Whether a thing came into the way: one that is fixed does not, whatever a sentence makes its subject.
-fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
-    let fixed = matches!(
+/// Things that stay where they are.
+fn is_fixed(partner: &Party) -> bool {
+    matches!(
         told(&partner.kind),
         Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier | Kind::Sign | Kind::Pothole | Kind::Chain)
-    );
+    )
+}
+
+/// Whether a thing came into the way: one that is fixed does not, whatever a sentence makes its subject.
+fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
     let thrown = || {
         let Some(actor) = reading.contacts.partner else { return false };
         reading.before(actor).any(|(_, frame)| frame.sense == Sense::Push && frame.happened())
     };
     let moved = partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop));
-    !fixed && (moved || thrown())
+    !is_fixed(partner) && (moved || thrown())
 }
 
 /// Whose move brought it about.

@@ -158,6 +158,8 @@ impl Parser<'_> {
                 self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             }
             Chunk::Relative => {
+                // "at which time the operator ...": the operator is not behind "at".
+                (carry.preposition, carry.relation) = (None, None);
                 if let Some(last) = carry.last.clone() {
                     if !carry.relative {
                         carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
