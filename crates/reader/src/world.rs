@@ -183,13 +183,18 @@ impl World {
         }
         let has = |adjective: Adjective| noun.adjectives.contains(&adjective);
         // "The shuttle" of a story that a shuttle tells, and that knows no other one.
-        let own = self.actors[SUBJECT].kind.is_some_and(|own| own == kind && kind.group() == KindGroup::Truck);
+        let truck = |kind: Kind| matches!(kind, Kind::HeavyTruck | Kind::SemiTrailerTruck);
+        let own = self.actors[SUBJECT]
+            .kind
+            .is_some_and(|own| own == kind && kind.group() == KindGroup::Truck || truck(own) && truck(kind));
         if own
             && noun.article == Article::Definite
             && !noun.several
             && !has(Adjective::Other)
             && !has(Adjective::Another)
-            && !self.actors[1..].iter().any(|known| known.kind == Some(kind))
+            && !self.actors[1..]
+                .iter()
+                .any(|known| known.kind.is_some_and(|known| known == kind || truck(known) && truck(kind)))
         {
             return Some(SUBJECT);
         }

@@ -171,6 +171,24 @@ impl Chunker<'_> {
                         make = true;
                         noun.names.push(self.text(at).to_owned());
                     }
+                    // "May's vehicle", "Nuro's Prius".
+                    Meaning::Company if self.tokens[at].capital && self.text(at + found.length) == "'s" => {
+                        let behind = at + found.length + 1;
+                        let vehicle = |at: usize| {
+                            self.head(at).is_some_and(|(meaning, _)| {
+                                matches!(meaning, Meaning::Subject)
+                                    || matches!(meaning, Meaning::Kind(kind) if kind.is_vehicle())
+                            })
+                        };
+                        if !(vehicle(behind) || vehicle(behind + 1)) || self.part(behind).is_some() {
+                            company = true;
+                            at += found.length;
+                            return self.only_named(noun, first, at, company, make);
+                        }
+                        company = true;
+                        at = behind;
+                        continue;
+                    }
                     Meaning::Company if self.tokens[at].capital => company = true,
                     _ => return self.only_named(noun, first, at, company, make),
                 }

@@ -19,6 +19,16 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     let mut sv = account.sv.clone();
     sv.acts.retain(|fact| fact.act != Act::Pass || !elsewhere);
     account.sv.movement = movement(&sv, column, "SV Pre-Crash Movement");
+    // Who veers off the road leaves its lane.
+    let fixed = account
+        .partner
+        .as_ref()
+        .and_then(|partner| told(&partner.kind))
+        .is_some_and(|kind| matches!(kind, Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier));
+    let veers = account.sv.acts.iter().find(|fact| fact.act == Act::Swerve && !fact.after_contact && !fact.begun);
+    if let (true, Some(veers), Some(Movement::Straight) | None) = (fixed, veers, told(&account.sv.movement)) {
+        account.sv.movement = Some(Fact { value: Movement::LaneDeparture, source: veers.source.clone() });
+    }
     // Who stops in the lane for passengers is parked by the column, and stopped by the words.
     let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
     let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
@@ -37,6 +47,11 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
             let drives = group.is_some_and(|group| {
                 matches!(group, KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle | KindGroup::Cyclist)
             });
+            let thrown = partner.did(Act::Pushed)
+                && !partner.acts.iter().any(|fact| matches!(fact.act, Act::Follow | Act::Turn | Act::Enter));
+            if movement.is_none() && thrown {
+                movement = Some(Fact::by_rule(Movement::Stopped, "who is told to be struck alone"));
+            }
             if movement.is_none() && drives && account.came_from.is_some() {
                 movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
             }
@@ -57,9 +72,17 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                 movement = Some(on_foot(partner, column, way, from_side));
             }
             if let Some(fact) = &mut movement {
+                let same_way = account
+                    .came_from
+                    .as_ref()
+                    .is_some_and(|from| matches!(from.value, Origin::Behind | Origin::Beside { .. }));
                 let oncoming = account.came_from.as_ref().is_some_and(|from| from.value == Origin::Opposite);
                 if crosses {
                     fact.value = Movement::NmCrossing;
+                } else if let (Movement::LeftTurn | Movement::RightTurn, true, Some(passed)) =
+                    (fact.value, same_way, passed_last(partner))
+                {
+                    *fact = Fact { value: Movement::Passing, source: passed.source.clone() };
                 } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
                     fact.value = Movement::Straight;
                 }
@@ -72,6 +95,13 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
             movement
         };
     }
+}
+
+/// The pass that came behind every turn.
+fn passed_last(party: &Party) -> Option<&ActFact> {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let turned = before().filter(|fact| fact.act == Act::Turn).map(|fact| fact.step).max()?;
+    before().find(|fact| fact.act == Act::Pass && fact.step > turned)
 }
 
 /// Ways that are not for vehicles.

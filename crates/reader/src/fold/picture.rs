@@ -154,7 +154,9 @@ impl Scene<'_> {
             return 0;
         }
         // Who has turned can be on either side.
-        let turns = turn(self.sv) != (0, 0) || turn(self.cp) != (0, 0) || self.backs_across(way);
+        let by_its_rear = self.cp.zones.iter().any(|zone| faces(zone.value).contains(&4));
+        let turns =
+            if self.backs_across(way) { !by_its_rear } else { turn(self.sv) != (0, 0) || turn(self.cp) != (0, 0) };
         let backs = told(&self.sv.state) == Some(ContactState::Reversing);
         let side = |here: bool, there: bool| match (here, there) {
             (true, _) => 2,

@@ -45,7 +45,7 @@ impl Parser<'_> {
                         taken.sense,
                         Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
                     )
-                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass)) && taken.passive;
+                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass | Act::LaneChange)) && taken.passive;
                 if passive {
                     if !matches!(taken.sense, Sense::ContactMade) && taken.object.is_none() {
                         taken.object = taken.who;

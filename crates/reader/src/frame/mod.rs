@@ -197,6 +197,10 @@ pub fn zone_of(piece: &Piece) -> Option<recrash_model::zones::ContactZone> {
     let has = |part: Part| piece.parts.contains(&part);
     let (front, rear) = (has(Part::Front), has(Part::Rear));
     let (left, right) = (has(Part::Left), has(Part::Right));
+    // Doors are on the sides, whether in front or behind.
+    if piece.door && (left != right) {
+        return Some(if left { Z::Left } else { Z::Right });
+    }
     Some(match (front && !rear, rear && !front, left && !right, right && !left) {
         (true, _, true, _) => Z::FrontLeft,
         (true, _, _, true) => Z::FrontRight,

@@ -463,7 +463,11 @@ impl Parser<'_> {
             (carry.progress, carry.negated) = (None, false);
         }
         if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            carry.negated = false;
+            // "did not slow down or stop" denies both.
+            let or = behind.first().is_some_and(|next| next.first > 0 && self.tokens[next.first - 1].text == "or");
+            carry.negated = or
+                && matches!(next, Some(Chunk::Verb(_, Form::Base)))
+                && carry.frame.is_some_and(|frame| self.frames[frame].negated);
             carry.row = true;
             if carry.relative {
                 // "a van that was behind it and struck it" goes on with the van.
@@ -654,6 +658,12 @@ impl Parser<'_> {
         carry.lead_who = None;
         if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "between" {
             carry.preposition = Some("between");
+        }
+        // "contact by a cyclist was made".
+        if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "by" {
+            let frame = &mut self.frames[number];
+            (frame.form, frame.who, frame.with) = (Form::Past, None, None);
+            carry.preposition = Some("by");
         }
         carry.row = false;
         carry.negated = false;

@@ -5,6 +5,7 @@ use recrash_model::account::{
     Standing, told,
 };
 use recrash_model::labelled::{CameFrom, LabelledAccount, Since};
+use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone as Z;
 
 /// An account in the terms of the labels.
@@ -117,7 +118,7 @@ fn came_from(account: &Account) -> Option<CameFrom> {
     })
 }
 
-/// The side on which one from behind is met: where the flank is touched, or a rear corner by more than a front.
+/// The side on which one from behind is met: where the flank is touched, or a rear corner by one that is past it with its front.
 fn alongside(account: &Account) -> Option<LeftRight> {
     let partner = account.partner.as_ref()?;
     let sv = account.sv.zone_values();
@@ -130,8 +131,11 @@ fn alongside(account: &Account) -> Option<LeftRight> {
     };
     let flank = any(&[Z::FrontLeft, Z::Left, Z::FrontRight, Z::Right]);
     let cp = partner.zone_values();
-    let not_front_alone = cp.iter().any(|zone| !zone.is_front());
-    (!sv.contains(&Z::Rear) && (flank || not_front_alone)).then_some(side)
+    // A rear corner by one that passes, and whose front is past it.
+    let passes =
+        matches!(told(&partner.movement), Some(Movement::Passing | Movement::ChangingLanes | Movement::Merging));
+    let past = !cp.is_empty() && cp.iter().all(|zone| !zone.is_front());
+    (!sv.contains(&Z::Rear) && (flank || passes && past)).then_some(side)
 }
 
 fn beside(side: LeftRight) -> CameFrom {
