@@ -68,6 +68,8 @@ pub struct Piece {
     pub parts: Vec<Part>,
     /// It is a door.
     pub door: bool,
+    /// It is a mirror.
+    pub mirror: bool,
     /// It is open, or opened.
     pub open: bool,
     /// Whose; `None` where that is not said.

@@ -14,7 +14,7 @@ impl Chunker<'_> {
             its = matches!(self.text(at), "its" | "their" | "his" | "her");
             at += 1;
         }
-        let (mut parts, mut door, mut open, mut nouns) = (Vec::new(), false, false, 0);
+        let (mut parts, mut door, mut mirror, mut open, mut nouns) = (Vec::new(), false, false, false, 0);
         let mut last_joined = at;
         while at < self.tokens.len().min(first + LONGEST_PIECE) {
             let word = self.text(at);
@@ -28,6 +28,7 @@ impl Chunker<'_> {
             }
             let Some((part, length)) = self.part(at) else { break };
             door |= (at..at + length).any(|at| matches!(self.text(at), "door" | "doors"));
+            mirror |= (at..at + length).any(|at| self.text(at) == "mirror");
             nouns +=
                 usize::from(part == Part::Noun || (at..at + length).any(|at| matches!(self.text(at), "side" | "end")));
             if !parts.contains(&part) {
@@ -85,7 +86,7 @@ impl Chunker<'_> {
         if side_of_road {
             return None;
         }
-        Some((Piece { parts, door, open, owner, its }, at - first))
+        Some((Piece { parts, door, mirror, open, owner, its }, at - first))
     }
 
     pub(super) fn ends_clause(&self, at: usize) -> bool {

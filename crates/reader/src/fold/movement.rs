@@ -18,6 +18,10 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     let elsewhere = !passes_partner && column.is_some_and(|column| column != Movement::Passing);
     let mut sv = account.sv.clone();
     sv.acts.retain(|fact| fact.act != Act::Pass || !elsewhere);
+    // Who touches a thing on its way out of a lot is in no traffic yet.
+    let thing =
+        account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group) == Some(KindGroup::Object);
+    sv.acts.retain(|fact| fact.act != Act::PullOut || !thing || column.is_none());
     account.sv.movement = movement(&sv, column, "SV Pre-Crash Movement");
     // Who veers off the road leaves its lane.
     let fixed = account

@@ -6,7 +6,7 @@ use crate::chunk::Spot;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
+    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
 };
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone as Z;
@@ -147,8 +147,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let heading = account.partner.as_ref()?.heading.as_ref();
     // After a turn that is done, its new direction counts.
     let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
-    let turn =
-        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
+    let own = turned.map(|fact| fact.value).or_else(|| after_its_turn(account));
+    let turn = own.zip(heading).map(|(own, other)| own.eighths_to(other.value));
     // Out of a spot at the other side of the road, and then on: it comes the other way.
     let drove_on = |number: usize| {
         turn == Some(4)
@@ -262,6 +262,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let source = Source::Rule { name: "directions of both".to_owned() };
         let opposite_side = clues.any(Relation::Opposite) || account.partner.as_ref()?.did(Act::WrongWay);
         match eighths {
+            // Facing the other way and going backwards it goes the same way, beside.
+            4 if did(Act::Reverse) && zone_side(account).is_some() => {
+                let side = zone_side(account)?;
+                return told_as(Origin::Beside { side }, heading?.source.clone());
+            }
             2 => return told_as(Origin::Cross { side: LeftRight::Left }, heading?.source.clone()),
             6 => return told_as(Origin::Cross { side: LeftRight::Right }, heading?.source.clone()),
             3..=5 if !did(Act::Pass) || opposite_side || eighths == 4 => {
@@ -368,6 +373,21 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return Some(Fact::by_rule(if by_subject { Origin::Ahead } else { Origin::Behind }, "front on rear"));
     }
     None
+}
+
+/// Direction of the subject vehicle, after a turn that is done where no street is told.
+fn after_its_turn(account: &Account) -> Option<Compass> {
+    let heading = account.sv.heading.as_ref()?.value;
+    let mut turns = account.sv.acts.iter().filter(|fact| !fact.after_contact && matches!(fact.act, Act::Turn));
+    let (only, more) = (turns.next(), turns.next());
+    match only {
+        Some(only) if more.is_none() && !super::types::turning(&account.sv) => match only.side {
+            Some(LeftRight::Left) => Some(heading.turned(6)),
+            Some(LeftRight::Right) => Some(heading.turned(2)),
+            None => Some(heading),
+        },
+        _ => Some(heading),
+    }
 }
 
 /// Who moves over without a side told comes from the side that was touched, and who is parked stands there; an animal in the way is ahead.

@@ -305,7 +305,9 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             let column = told(&account.sv.movement) == Some(Movement::LeftTurn) && turn_side(&account.sv).is_none();
             let across = column
                 || (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
-                || (cp_turns && turn_side(partner) == Some(LeftRight::Left) && !sv_turns)
+                || (cp_turns
+                    && turn_side(partner) == Some(LeftRight::Left)
+                    && !(sv_turns && turn_side(&account.sv) == Some(LeftRight::Left)))
                 || told(&partner.movement) == Some(Movement::UTurn);
             // Left side on left side they passed each other, and only then it turned, or began to.
             let left = |party: &Party, corner: bool| {
@@ -515,6 +517,11 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         if sv_turns && matches!(told(&account.crash_type), Some(CrashType::Intersection)) {
             return rule(Role::Both, "it stood across another's way in a turn");
         }
+        let over = account.sv.acts.iter().filter(|fact| !fact.after_contact).rev().nth(1).map(|fact| fact.act);
+        let passed = told(&partner.movement) == Some(Movement::Passing);
+        if over == Some(Act::LaneChange) && passed && !has_zone(&account.sv, |zone| zone.is_rear()) {
+            return rule(Role::Both, "it stood in a change of lanes");
+        }
         return rule(Role::Responder, "it stood");
     }
     if group(account) == Some(KindGroup::Object) {
@@ -705,7 +712,8 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
             && party.zones.iter().filter(|zone| zone.value.is_front()).all(|zone| zone.value != Z::Front)
             && party.zones.iter().any(|zone| zone.source.is_told())
     };
-    let flank = |party: &Party| !party.zones.is_empty() && (side(party) || !has_zone(party, |zone| zone.is_front()));
+    let under = |party: &Party| party.zones.iter().all(|zone| matches!(zone.value, Z::Bottom | Z::Top));
+    let flank = |party: &Party| !under(party) && (side(party) || !has_zone(party, |zone| zone.is_front()));
     if partner.zones.is_empty() && !account.sv.zones.is_empty() {
         let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
         return rule(value, "whose flank is touched is there first");

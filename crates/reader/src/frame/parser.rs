@@ -178,7 +178,8 @@ impl Parser<'_> {
             Chunk::Not => {
                 carry.negated = true;
                 // "Neither car made contact": said before who it is.
-                carry.nobody |= carry.fresh && matches!(self.tokens[placed.first].text.as_str(), "neither" | "no");
+                let word = self.tokens[placed.first].text.as_str();
+                carry.nobody |= word == "neither" || carry.fresh && word == "no";
             }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
