@@ -289,6 +289,13 @@ impl World {
             return self.find(&owner, None).unwrap_or_else(|| self.add(&owner));
         }
         match who {
+            // "A driver ran the light": nobody who was named.
+            Occupant::Driver if plain && noun.article == Article::Indefinite => {
+                self.latest(|known| known.announced).unwrap_or_else(|| {
+                    self.actors.push(Known { kind: Some(Kind::Vehicle), ..Known::default() });
+                    self.actors.len() - 1
+                })
+            }
             Occupant::Driver if plain && !self.own_driver => {
                 self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT)
             }
@@ -300,6 +307,11 @@ impl World {
         let another = noun.adjectives.contains(&Adjective::Another);
         self.actors.push(Known { several: noun.several, another, ..Known::default() });
         self.actors.len() - 1
+    }
+
+    /// Who else was named last.
+    pub fn other(&self) -> Option<Actor> {
+        self.latest(|known| known.kind.is_none_or(acts) && known.mentions > 0)
     }
 
     /// Somebody else of its kind, the one named last.

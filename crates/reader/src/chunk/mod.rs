@@ -78,6 +78,13 @@ pub struct Piece {
     pub its: bool,
 }
 
+impl Piece {
+    /// A part of which no more is said than on which side it is.
+    pub(crate) fn of(part: Part) -> Self {
+        Self { parts: vec![part], door: false, mirror: false, open: false, owner: None, its: false }
+    }
+}
+
 /// A chunk of a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Chunk {
@@ -301,6 +308,8 @@ impl Chunker<'_> {
             "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
             "we" | "us" => Chunk::Noun(Noun { subject: true, ..Noun::unnamed() }),
             "that" | "which" | "who" | "whom" => Chunk::Relative,
+            // "it got sideswiped by a bus".
+            "got" | "gets" if matches!(self.verb(at + 1, &[]), Some((_, Form::Past, _))) => Chunk::Be,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
             "no" if at == self.first => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"

@@ -1,7 +1,7 @@
 //! Who or what is named, and parts of vehicles.
 
 use super::{Article, COLOURS, Chunker, DETERMINERS, LONGEST_PIECE, Noun, PREPOSITIONS, Piece};
-use crate::lexicon::{Adjective, Meaning, Part};
+use crate::lexicon::{Adjective, Meaning, Occupant, Part};
 use crate::token::TokenKind;
 use recrash_model::account::{Kind, KindGroup};
 
@@ -380,6 +380,10 @@ impl Chunker<'_> {
                     noun.kind = Some(Kind::PickupWithTrailer)
                 }
                 Meaning::Kind(kind) => {
+                    // "a passenger sedan" carries passengers, and is none.
+                    if kind.is_vehicle() && matches!(noun.occupant, Some((Occupant::Rider, _))) {
+                        (noun.occupant, noun.owner) = (None, None);
+                    }
                     noun.kind = Some(kind);
                     plural = matches!(self.text(at + length - 1), "people" | "personnel" | "traffic")
                         || self.text(at + length - 1).ends_with('s')

@@ -23,6 +23,11 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
         account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group) == Some(KindGroup::Object);
     sv.acts.retain(|fact| fact.act != Act::PullOut || !thing || column.is_none());
     account.sv.movement = movement(&sv, column, "SV Pre-Crash Movement");
+    let drives =
+        told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff));
+    if account.sv.movement.is_none() && drives {
+        account.sv.movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
+    }
     // Who veers off the road leaves its lane.
     let fixed = account
         .partner
@@ -56,7 +61,10 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
             if movement.is_none() && thrown {
                 movement = Some(Fact::by_rule(Movement::Stopped, "who is told to be struck alone"));
             }
-            if movement.is_none() && drives && account.came_from.is_some() {
+            let strikes = reading.contacts.first.is_some_and(|number| {
+                reading.contacts.partner.is_some() && reading.story.frames[number].who == reading.contacts.partner
+            });
+            if movement.is_none() && drives && (account.came_from.is_some() || strikes) {
                 movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
             }
             let passes = column == Some(Movement::Passing) || partner.did(Act::Pass);

@@ -148,7 +148,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     // After a turn that is done, its new direction counts.
     let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
     let own = turned.map(|fact| fact.value).or_else(|| after_its_turn(account));
-    let turn = own.zip(heading).map(|(own, other)| own.eighths_to(other.value));
+    // Who faces one way and goes backwards comes from there.
+    let backs_from = did(Act::Reverse) && faces_only(reading, actor);
+    let turn = own.zip(heading).map(|(own, other)| own.eighths_to(other.value.turned(if backs_from { 4 } else { 0 })));
     // Out of a spot at the other side of the road, and then on: it comes the other way.
     let drove_on = |number: usize| {
         turn == Some(4)
@@ -249,6 +251,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return told_as(Origin::Beside { side }, clues.has(Relation::Beside));
     }
     let crossing = did(Act::Cross)
+        || ((did(Act::RunRed) || did(Act::RunStop)) && first_is_side(clues))
         || frames().any(|(_, frame)| {
             matches!(frame.sense, Sense::Act(Act::Enter | Act::RunRed | Act::RunStop))
                 && frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
@@ -373,6 +376,15 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return Some(Fact::by_rule(if by_subject { Origin::Ahead } else { Origin::Behind }, "front on rear"));
     }
     None
+}
+
+/// Whether the direction of somebody is the one that it faces, and not the one that it drives.
+fn faces_only(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading.story.world.actors[actor].heading.is_some_and(|(_, first, _)| {
+        reading.story.tokens[first.saturating_sub(2)..first]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "facing" | "faced" | "oriented" | "pointed" | "pointing"))
+    })
 }
 
 /// Direction of the subject vehicle, after a turn that is done where no street is told.
@@ -509,6 +521,11 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
         _ => {}
     }
     if let (true, Some(side)) = (partner.did(Act::LaneChange), zone_side(account)) {
+        return rule(Origin::Beside { side });
+    }
+    // It moved over before one in the next lane: corner on corner.
+    let corner = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value != Z::Rear);
+    if let (true, true, Some(side)) = (account.sv.did(Act::LaneChange), corner && sv_rear, zone_side(account)) {
         return rule(Origin::Beside { side });
     }
     if sv_rear && cp_front && !sv_front {

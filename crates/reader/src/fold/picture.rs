@@ -253,6 +253,7 @@ impl Scene<'_> {
                 Way::Opposite | Way::Cross(_) => -1,
             },
             Some(M::LeftTurn) if way == Way::Opposite => 2,
+            Some(M::EnteringTraffic) if matches!(way, Way::Cross(_)) => 2,
             _ => 0,
         };
         let passed = match way {

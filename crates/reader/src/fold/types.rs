@@ -295,6 +295,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             if rear_end
                 || front_rear(account)
                 || (front(&account.sv) && partner.zones.is_empty())
+                || (account.sv.zones.is_empty() && partner.zones.is_empty() && !sideways && !account.sv.did(Act::Pass))
                 || (front(&account.sv) && !sideways && !account.sv.did(Act::Pass))
             {
                 return Some((CrashType::FrontToRear, "front on rear, one way"));

@@ -67,6 +67,8 @@ pub(super) struct Carry {
     pub(super) place: bool,
     /// "Neither", "no" stands before the subject.
     pub(super) nobody: bool,
+    /// Where who is named next is: "From the right, a van ..."
+    pub(super) lead: Option<Relation>,
     /// "Between" waits for the second of a pair.
     pub(super) pair: bool,
 }
@@ -179,7 +181,7 @@ impl Parser<'_> {
                 carry.negated = true;
                 // "Neither car made contact": said before who it is.
                 let word = self.tokens[placed.first].text.as_str();
-                carry.nobody |= word == "neither" || carry.fresh && word == "no";
+                carry.nobody |= matches!(word, "neither" | "nor") || carry.fresh && word == "no";
             }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
@@ -256,6 +258,23 @@ impl Parser<'_> {
 
     /// Who is meant by `it` and `its`.
     fn its(&self, carry: &Carry) -> Actor {
+        let actor = self.of_sentence(carry);
+        // "The van drifted over and hit its right side": nobody hits itself.
+        let hits = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
+            matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact)
+                && frame.who == Some(actor)
+                && frame.object.is_none()
+                && !carry.fresh
+        });
+        match hits {
+            true if actor != SUBJECT => SUBJECT,
+            true => self.world.other().unwrap_or(actor),
+            false => actor,
+        }
+    }
+
+    /// Who the sentence is about, as far as it can be meant by a pronoun.
+    fn of_sentence(&self, carry: &Carry) -> Actor {
         let of_sentence = carry.main.as_ref().or(carry.subject.as_ref()).map(|mention| mention.actor);
         match of_sentence {
             Some(actor) if actor == SUBJECT || acts(self.world.actors[actor].kind) => actor,
@@ -414,6 +433,9 @@ impl Parser<'_> {
                     carry.also = None;
                 }
                 self.world.actors[actor].acted = true;
+                if let Some(relation) = carry.lead.take().filter(|_| actor != SUBJECT) {
+                    self.note(actor, relation);
+                }
                 carry.subject = Some(mention.clone());
                 carry.last = Some(mention);
                 carry.has_verb = false;

@@ -122,6 +122,10 @@ fn came_from(account: &Account) -> Option<CameFrom> {
 fn alongside(account: &Account) -> Option<LeftRight> {
     let partner = account.partner.as_ref()?;
     let sv = account.sv.zone_values();
+    if sv.is_empty() {
+        // Nobody tells where it was touched, and it was passed on a side.
+        return partner.acts.iter().find(|fact| fact.act == Act::Pass && !fact.after_contact)?.side;
+    }
     let any = |zones: &[Z]| zones.iter().any(|zone| sv.contains(zone));
     let (left, right) = (any(&[Z::FrontLeft, Z::Left, Z::RearLeft]), any(&[Z::FrontRight, Z::Right, Z::RearRight]));
     let side = match (left, right) {
@@ -130,7 +134,9 @@ fn alongside(account: &Account) -> Option<LeftRight> {
         _ => return None,
     };
     let flank = any(&[Z::FrontLeft, Z::Left, Z::FrontRight, Z::Right]);
-    let cp = partner.zone_values();
+    // What the words name, and not the corner that a column adds to it.
+    let worded: Vec<Z> = partner.zones.iter().filter(|zone| zone.source.is_told()).map(|zone| zone.value).collect();
+    let cp = if worded.is_empty() { partner.zone_values() } else { worded };
     // A rear corner by one that passes, and whose front is past it.
     let passes =
         matches!(told(&partner.movement), Some(Movement::Passing | Movement::ChangingLanes | Movement::Merging));
