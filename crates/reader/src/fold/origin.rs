@@ -251,7 +251,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return told_as(Origin::Beside { side }, clues.has(Relation::Beside));
     }
     let crossing = did(Act::Cross)
-        || ((did(Act::RunRed) || did(Act::RunStop)) && first_is_side(clues))
+        || account.partner.as_ref().is_some_and(|partner| partner.did(Act::RunRed) || partner.did(Act::RunStop))
+            && first_is_side(clues)
         || frames().any(|(_, frame)| {
             matches!(frame.sense, Sense::Act(Act::Enter | Act::RunRed | Act::RunStop))
                 && frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
@@ -367,6 +368,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let (true, Some(side)) = (turning && !has_zone(&account.sv, |zone| zone.is_rear()), zone_side(account)) {
         if parked {
             return Some(Fact::by_rule(Origin::Beside { side }, "the side that a parked one is touched with"));
+        }
+        let left = super::types::turn_side(&account.sv) == Some(LeftRight::Left);
+        if left && side == LeftRight::Right {
+            return Some(Fact::by_rule(Origin::Opposite, "the right side of a vehicle turning left that was touched"));
         }
         return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));
     }

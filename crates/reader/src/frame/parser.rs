@@ -235,6 +235,12 @@ impl Parser<'_> {
                     (carry.after_comma, carry.filled) = (false, false);
                     return;
                 }
+                // "a child chasing a ball": who chases goes on.
+                let beside_noun = at > 0 && matches!(all[at - 1].chunk, Chunk::Noun(_));
+                if word.ends_with("ing") && beside_noun && matches!(next, Some(Chunk::Noun(_))) {
+                    carry.preposition = Some("of");
+                    return;
+                }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
                 carry.filled |= waits && (is_determiner(word) || self.tokens[placed.first].capital);
                 return;
@@ -681,6 +687,11 @@ impl Parser<'_> {
         carry.lead_who = None;
         if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "between" {
             carry.preposition = Some("between");
+        }
+        // "fell from a truck": the truck is behind "from".
+        let last = self.tokens[placed.end - 1].text.as_str();
+        if matches!(sense, Sense::Act(Act::Fall | Act::Roll | Act::Enter)) && placed.end > placed.first + 1 {
+            carry.preposition = ["from", "off", "onto", "into", "over"].into_iter().find(|known| *known == last);
         }
         // "contact by a cyclist was made".
         if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "by" {
