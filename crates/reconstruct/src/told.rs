@@ -28,6 +28,12 @@ const CHANGES_M: f64 = 2.2;
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
 
+/// Who comes after an ego that comes to a stop, and does not stop, is no slower. [m/s]
+const AFTER_MPS: f64 = 5.2;
+
+/// Speed in a turn. [m/s]
+const TURNS_MPS: f64 = 5.0;
+
 /// How somebody turns before the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Turning {
@@ -91,6 +97,8 @@ pub(crate) struct Told {
     pub(crate) others: usize,
     /// Whose door took part.
     pub(crate) door: Option<Striker>,
+    /// Posted speed, where told. [m/s]
+    pub(crate) posted_mps: Option<f64>,
     /// Whom the ego stood for, by what is told.
     pub(crate) wanted: Vec<Extra>,
     /// Those of them in the scene.
@@ -145,6 +153,7 @@ impl Told {
             reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
             others: account.others.len(),
             door: told(&account.door),
+            posted_mps: told(&account.place.posted_mps),
             wanted: Vec::new(),
             extras: Vec::new(),
             choices: Choices::default(),
@@ -247,8 +256,29 @@ impl Told {
         self.pushed && self.origin == Origin::Behind && self.thing.is_none() && self.cp.state != ContactState::Reversing
     }
 
+    /// Speed at the contact of somebody who drives, by the posted speed, or the usual one of such a place: who comes up behind
+    /// somebody that stands brakes, late; who passes or drifts has slowed; who crosses has slowed a little. [m/s]
+    fn driven_mps(&self) -> f64 {
+        let usual_mps = match self.place {
+            PlaceKind::Highway => 27.0,
+            PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley => 5.0,
+            _ => 11.2,
+        };
+        let share = match self.origin {
+            Origin::Behind | Origin::Ahead => 0.5,
+            Origin::Beside { .. } => 0.6,
+            Origin::Cross { .. } | Origin::Opposite => 0.7,
+            _ => 0.4,
+        };
+        let speed_mps = share * self.posted_mps.unwrap_or(usual_mps);
+        // Else it would be ahead of an ego that comes to a stop.
+        let comes_after = matches!(self.origin, Origin::Behind | Origin::Beside { .. }) && usual_mps > 6.0;
+        if comes_after { speed_mps.max(AFTER_MPS) } else { speed_mps }
+    }
+
     /// Speeds at the contact: as told, or such that who closes on whom does.
     fn speeds(&mut self) {
+        let driven_mps = self.driven_mps();
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             ContactState::SettingOff => 1.5,
@@ -259,7 +289,8 @@ impl Told {
                 PartnerKind::Pedestrian => 1.4,
                 PartnerKind::Animal => 4.0,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
-                _ => 6.0,
+                _ if side.turning != Turning::No => TURNS_MPS,
+                _ => driven_mps,
             },
         };
         let slow = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
