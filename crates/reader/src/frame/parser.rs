@@ -720,7 +720,7 @@ impl Carry {
                     | Sense::ContactMade
                     | Sense::Approach
                     | Sense::RearEnd
-                    | Sense::Act(Act::Pass | Act::Follow)
+                    | Sense::Act(Act::Pass | Act::Follow | Act::Cross)
             )
     }
 }
