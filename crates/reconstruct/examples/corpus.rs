@@ -4,7 +4,9 @@ use rayon::prelude::*;
 use recrash_model::account::{Account, told};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::profile::SystemProfile;
-use recrash_reconstruct::reconstruct;
+use recrash_model::rollout::ActorTrack;
+use recrash_model::vehicle::VehicleSpec;
+use recrash_reconstruct::{Reconstruction, reconstruct};
 use recrash_records::{SourceText, ingest};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -12,6 +14,14 @@ use std::collections::BTreeMap;
 /// Rules are written looking at this half only: SHA-256 of the report id is even.
 fn is_developed(account: &Account) -> bool {
     Sha256::digest(account.report.report_id.as_bytes())[31] % 2 == 0
+}
+
+/// Whether the partner, where it is a vehicle, is beside the road at some second before they touch.
+fn drives_beside(made: &Reconstruction) -> bool {
+    let scenario = recrash_roads::check(made.draft.clone()).expect("it ran").value;
+    let vehicle = |track: &&ActorTrack| track.id == "cp" && VehicleSpec::of(track.kind).length_m > 2.5;
+    let Some(track) = made.rollout.actors.iter().find(vehicle) else { return false };
+    track.states.iter().take(90).step_by(10).any(|state| !scenario.network().on_road(state.position()))
 }
 
 fn main() {
@@ -115,6 +125,10 @@ fn main() {
         100.0 * sum[2] as f64 / sum[0] as f64
     );
     println!("not staged: {reasons:?}");
+    let beside = results
+        .par_iter()
+        .filter(|(_, result)| result.as_ref().is_ok_and(|made| made.is_true() && drives_beside(made)));
+    println!("partners of told ones that are beside the road at some second before the contact: {}", beside.count());
     for (kind, [told, shown]) in &facts {
         println!("  {:<20} told {told:>5}, shown {shown:>5}", kind.label());
     }

@@ -354,6 +354,20 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
     })
 }
 
+/// Whether a partner that drives along or across the road is beside it on its way to the contact. Nobody tells that it was not.
+pub(crate) fn leaves_road(told: &Told, scenario: &Scenario, rollout: &Rollout) -> bool {
+    let drives = !matches!(told.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal | PartnerKind::FixedObject);
+    let on_road = matches!(
+        told.origin,
+        Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
+    );
+    let Some(touch) = first_touch(rollout).filter(|_| drives && on_road) else { return false };
+    let Some(track) = touch.track else { return false };
+    let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
+    // Every second.
+    track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()))
+}
+
 /// Whether somebody stood before a time.
 fn stood(track: &ActorTrack, time_s: f64) -> bool {
     let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);

@@ -82,7 +82,8 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 }
 
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    let mut best: Option<Reconstruction> = None;
+    // The best so far: told facts that are not shown, then whether the partner leaves the road.
+    let mut best: Option<((usize, bool), Reconstruction)> = None;
     let mut refused = 0;
     for told in told.variants() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
@@ -94,14 +95,15 @@ fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold>
             let scenario = checked.value;
             let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
             let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
-            if best.as_ref().is_none_or(|best| verdict.failures().count() < best.verdict.failures().count()) {
+            let cost = (verdict.failures().count(), facts::leaves_road(&told, &scenario, &rollout));
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
-                best = Some(Reconstruction { draft, rollout, verdict, assumed });
+                best = Some((cost, Reconstruction { draft, rollout, verdict, assumed }));
             }
-            if best.as_ref().is_some_and(Reconstruction::is_true) {
-                return best.ok_or(Untold::NoContact);
+            if cost == (0, false) {
+                return best.map(|(_, best)| best).ok_or(Untold::NoContact);
             }
         }
     }
-    best.ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })
+    best.map(|(_, best)| best).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })
 }

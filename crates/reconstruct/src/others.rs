@@ -129,12 +129,19 @@ fn crosses(rollout: &Rollout, track: &ActorTrack, time_s: f64, within_m: f64) ->
 
 /// Them, on the road.
 pub(crate) fn actors(told: &Told, staging: &Staging) -> Vec<Actor> {
-    let there = |extra: &&Extra| **extra != Extra::Crosser || staging.ground.junction;
+    // Who crosses has a road to cross on, ahead of the ego.
+    let crossing = staging.ground.junction && crossing_m(staging) > 0.5 * size_of(&told.sv).0 + WALKER_GAP_M;
+    let there = |extra: &&Extra| **extra != Extra::Crosser || crossing;
     told.extras.iter().filter(there).map(|extra| actor(*extra, told, staging)).collect()
 }
 
+/// From the ego to the lane of who crosses from the left. [m]
+fn crossing_m(staging: &Staging) -> f64 {
+    staging.ground.first_m() + CROSSING_LANE_M - staging.sv_s_m
+}
+
 fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
-    let (sv, ground) = (staging.sv, &staging.ground);
+    let sv = staging.sv;
     let ahead = Vec2::from_heading(sv.heading);
     let front_m = 0.5 * size_of(&told.sv).0;
     let crossing = |ahead_m: f64, way: Vec2, speed_mps: f64| {
@@ -152,9 +159,8 @@ fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
         Extra::Walker => (PartnerKind::Pedestrian, crossing(front_m + WALKER_GAP_M, ahead.left(), WALKS_MPS)),
         Extra::Animal => (PartnerKind::Animal, crossing(front_m + WALKER_GAP_M, ahead.left(), RUNS_MPS)),
         Extra::Crosser => {
-            let line_m = (ground.first_m() - staging.sv_s_m).max(front_m);
             let way = Vec2::from_heading(sv.heading - math::FRAC_PI_2);
-            (PartnerKind::PassengerCar, crossing(line_m + CROSSING_LANE_M, way, CROSSES_MPS))
+            (PartnerKind::PassengerCar, crossing(crossing_m(staging), way, CROSSES_MPS))
         }
     };
     Actor { id: extra.id().to_owned(), kind, size: None, parts: Vec::new(), plan }

@@ -56,6 +56,34 @@ fn every_readable_incident_stands_in_its_cell_and_only_own_crashes_told_count_as
 }
 
 #[test]
+fn evidence_of_a_suite_counts_what_of_the_corpus_it_holds_and_the_checker_counts_again() {
+    let place = made();
+    let (code, _, remarks) = place.run(&["evidence", "suite", "--out", "evidence", "--quiet"]);
+    assert_eq!(code, 0, "{remarks}");
+    let check = || std::process::Command::new("python3").arg(place.path("evidence/check.py")).output().unwrap();
+    let checked = check();
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+    let claims = std::fs::read_to_string(place.path("evidence/claims.json")).unwrap();
+    let corpus = told(&place, &["coverage", "suite"]);
+    let eu = corpus["tables"].as_array().unwrap().iter().find(|table| table["id"] == "eu-2022-1426").unwrap();
+    let cells = |count: &str| {
+        eu["cells"].as_array().unwrap().iter().filter(|cell| cell["counts"][count].as_u64() > Some(0)).count()
+    };
+    let wanted = format!(
+        "Of the 24 cells of the objects-by-events matrix of EU 2022/1426, Annex III, Appendix 1 the crash files have \
+         readable incidents in {}, and of {} the suite tells one.",
+        cells("incidents"),
+        cells("told")
+    );
+    assert!(claims.contains(&wanted), "{wanted}\n{claims}");
+
+    let file = place.path("evidence/reports/coverage.json");
+    let changed = std::fs::read_to_string(&file).unwrap().replacen("\"told\": false", "\"told\": true", 1);
+    std::fs::write(&file, changed).unwrap();
+    assert!(!check().status.success(), "a cell changed by hand is found");
+}
+
+#[test]
 fn failures_are_ranked_by_severity_with_what_their_records_report() {
     let place = made();
     let severity = told(&place, &["severity", "suite"]);
@@ -80,21 +108,27 @@ fn failures_are_ranked_by_severity_with_what_their_records_report() {
 }
 
 #[test]
-fn a_search_that_aims_at_severity_finds_no_milder_contacts() {
-    let run = |aim: &str| {
-        let place = Place::new();
-        let arguments =
-            ["run", "--profile", "open", "--budget", "6", "--tune-budget", "12", "--seed", "3", "--aim", aim];
-        let (code, _, remarks) = place.run(&arguments);
-        assert_eq!(code, 0, "{remarks}");
-        let failures = told(&place, &["severity", "suite"])["failures"].as_array().unwrap().clone();
-        let total = |failure: &Value| {
-            failure["delta_v_mps"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).fold(0.0, f64::max)
-        };
-        failures.iter().map(total).sum::<f64>()
+fn a_search_that_aims_at_severity_keeps_no_milder_contact_than_the_first() {
+    let place = Place::new();
+    let arguments =
+        ["run", "--profile", "open", "--budget", "8", "--tune-budget", "16", "--seed", "3", "--aim", "severity"];
+    let (code, _, remarks) = place.run(&arguments);
+    assert_eq!(code, 0, "{remarks}");
+    let summary: Value = serde_json::from_slice(&std::fs::read(place.path("suite/summary.json")).unwrap()).unwrap();
+    assert!(summary["command"].as_str().unwrap().ends_with("--aim severity --seed 3"), "{}", summary["command"]);
+    let harm = |run: &Value| {
+        let sides = run["delta_v_mps"].as_array().map_or(&[][..], Vec::as_slice);
+        sides.iter().map(|value| value.as_f64().unwrap()).fold(0.0, f64::max)
     };
-    let (nearest, worst) = (run("failure"), run("severity"));
-    assert!(worst > nearest + 0.5, "{worst} m/s in all, {nearest} m/s where the nearest failure is looked for");
+    let cases = summary["cases"].as_array().unwrap();
+    let searched: Vec<(f64, f64)> = cases
+        .iter()
+        .filter(|case| case["points"].as_u64() > Some(1) && case["first"]["faithful"] == "yes")
+        .map(|case| (harm(&case["first"]), harm(&case["tuned"])))
+        .collect();
+    // Among equal contacts odd behaviour and the distance from the record count for some tenths.
+    assert!(searched.iter().all(|(first, tuned)| *tuned > first - 0.5), "{searched:?}");
+    assert!(searched.iter().any(|(first, tuned)| *tuned > first + 0.1), "{searched:?}");
 }
 
 #[test]

@@ -64,6 +64,16 @@ pub fn suite_coverage(dir: &Path, csv: Option<&Path>) -> Result<CorpusCoverage, 
     Ok(corpus)
 }
 
+/// The same where there is a report of a suite that goes by accounts.
+///
+/// # Errors
+/// There is no suite in the folder, or its summary is damaged.
+pub(crate) fn coverage_where_told(dir: &Path) -> Result<Option<CorpusCoverage>, PipelineError> {
+    let suite = Suite::look(dir)?;
+    let told = suite.store().stamp(names::SUMMARY).is_some();
+    Ok(told.then(|| summary(&suite)).transpose()?.and_then(|summary| summary.corpus))
+}
+
 /// How bad a suite's failures are, and how far that goes with what records report.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! The claims of the evidence, as a goal structure (GSN): goals, strategies, solutions, contexts, assumptions.
 
-use super::Runs;
 use super::numbers::{Number, find};
+use super::{Runs, corpus};
 use recrash_model::profile::SystemProfile;
 use serde::Serialize;
 use serde_json::Value;
@@ -23,13 +23,14 @@ pub struct Claim {
 }
 
 /// Makes claims with numbers.
-struct Structure<'a> {
+pub struct Structure<'a> {
     numbers: &'a [Number],
     claims: Vec<Claim>,
 }
 
 impl Structure<'_> {
-    fn add(&mut self, id: &str, kind: &'static str, template: &str, supported_by: &[&str], in_context_of: &[&str]) {
+    /// Adds an element: its template has the names of numbers in braces.
+    pub fn add(&mut self, id: &str, kind: &'static str, template: &str, supported_by: &[&str], in_context_of: &[&str]) {
         let names: Vec<String> = template
             .split('{')
             .skip(1)
@@ -71,7 +72,7 @@ pub fn all(
         "G1",
         "goal",
         &format!("What {ego} does in the tests of suite {suite} is known: of {{tests}} it passes {{passed}}, fails {{failed}}, and {{not_run}} were not run."),
-        &["S1", "S2", "S3"],
+        &["S1", "S2", "S3", "S4"],
         &["C1", "C2", "C3", "A1"],
     );
     all.add(
@@ -122,6 +123,7 @@ pub fn all(
     );
     groups(&mut all, runs);
     tools(&mut all, reports);
+    corpus::claims(&mut all, reports.contains_key(corpus::NAME));
     all.claims
 }
 

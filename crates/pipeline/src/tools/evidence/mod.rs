@@ -2,6 +2,7 @@
 //! `docs/evidence.md`.
 
 mod claims;
+mod corpus;
 mod numbers;
 
 use crate::error::PipelineError;
@@ -113,7 +114,11 @@ pub fn evidence(request: &EvidenceRequest, progress: &dyn Progress) -> Result<Ev
     if let Some(expected) = &request.results {
         must_be_given_again(expected, &facts)?;
     }
-    let reports = take_reports(&request.reports, &bench, &mut files)?;
+    let mut reports = take_reports(&request.reports, &bench, &mut files)?;
+    if let Some(covered) = corpus::of(&request.test.frozen)? {
+        files.write(corpus::FILE, &to_json(&covered))?;
+        reports.insert(corpus::NAME, covered);
+    }
     let runs = Runs {
         format: "recrash.evidence-runs/1",
         recrash: env!("CARGO_PKG_VERSION"),

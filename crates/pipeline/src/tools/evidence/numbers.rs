@@ -1,6 +1,6 @@
 //! The numbers of the evidence, each with the formula that the checker works it out by.
 
-use super::TestFacts;
+use super::{TestFacts, corpus};
 use recrash_model::results::TestOutcome;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -58,7 +58,10 @@ pub fn all(tests: &[TestFacts], reports: &BTreeMap<&'static str, Value>) -> Vec<
     }
     numbers.push(greatest_delta_v(&numbers));
     for (report, value) in reports {
-        of_report(report, value, &mut numbers);
+        match *report {
+            corpus::NAME => corpus::numbers(value, &mut numbers),
+            report => of_report(report, value, &mut numbers),
+        }
     }
     numbers
 }
@@ -147,7 +150,7 @@ fn of_report(report: &str, value: &Value, numbers: &mut Vec<Number>) {
 }
 
 /// Whether a member of a list has these values; a name may be a path.
-fn holds(member: &Value, filter: &Value) -> bool {
+pub fn holds(member: &Value, filter: &Value) -> bool {
     let wanted = filter.as_object().into_iter().flatten();
     wanted.into_iter().all(|(path, wanted)| {
         let found = path.split('/').try_fold(member, |value, name| value.get(name));
@@ -155,7 +158,8 @@ fn holds(member: &Value, filter: &Value) -> bool {
     })
 }
 
-fn counted(id: &str, list: [&str; 2], filter: Value, count: usize) -> Number {
+/// A count of the members of a list with these values.
+pub fn counted(id: &str, list: [&str; 2], filter: Value, count: usize) -> Number {
     let value = Value::from(count);
     Number {
         id: id.to_owned(),
