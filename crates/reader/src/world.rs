@@ -183,13 +183,18 @@ impl World {
         }
         let has = |adjective: Adjective| noun.adjectives.contains(&adjective);
         // "The shuttle" of a story that a shuttle tells, and that knows no other one.
-        let own = self.actors[SUBJECT].kind.is_some_and(|own| own == kind && kind.group() == KindGroup::Truck);
+        let truck = |kind: Kind| matches!(kind, Kind::HeavyTruck | Kind::SemiTrailerTruck);
+        let own = self.actors[SUBJECT]
+            .kind
+            .is_some_and(|own| own == kind && kind.group() == KindGroup::Truck || truck(own) && truck(kind));
         if own
             && noun.article == Article::Definite
             && !noun.several
             && !has(Adjective::Other)
             && !has(Adjective::Another)
-            && !self.actors[1..].iter().any(|known| known.kind == Some(kind))
+            && !self.actors[1..]
+                .iter()
+                .any(|known| known.kind.is_some_and(|known| known == kind || truck(known) && truck(kind)))
         {
             return Some(SUBJECT);
         }
@@ -284,6 +289,13 @@ impl World {
             return self.find(&owner, None).unwrap_or_else(|| self.add(&owner));
         }
         match who {
+            // "A driver ran the light": nobody who was named.
+            Occupant::Driver if plain && noun.article == Article::Indefinite => {
+                self.latest(|known| known.announced).unwrap_or_else(|| {
+                    self.actors.push(Known { kind: Some(Kind::Vehicle), ..Known::default() });
+                    self.actors.len() - 1
+                })
+            }
             Occupant::Driver if plain && !self.own_driver => {
                 self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT)
             }
@@ -295,6 +307,11 @@ impl World {
         let another = noun.adjectives.contains(&Adjective::Another);
         self.actors.push(Known { several: noun.several, another, ..Known::default() });
         self.actors.len() - 1
+    }
+
+    /// Who else was named last.
+    pub fn other(&self) -> Option<Actor> {
+        self.latest(|known| known.kind.is_none_or(acts) && known.mentions > 0)
     }
 
     /// Somebody else of its kind, the one named last.

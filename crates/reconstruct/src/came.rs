@@ -97,6 +97,7 @@ fn partner_pace(told: &Told) -> Pace {
     let rolling_mps = if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 };
     let usual = pace(cp, rolling_mps, STOOD_S);
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
+    let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
     match cp.state {
         // It came to a stop behind the ego before it set off.
         ContactState::SettingOff | ContactState::Moving
@@ -109,6 +110,15 @@ fn partner_pace(told: &Told) -> Pace {
             acts.extend(usual.acts);
             let driven_m = ROLLING_MPS * from_s + 0.5 * ROLLING_MPS * braking_s + usual.driven_m;
             Pace { speed_mps: ROLLING_MPS, acts, driven_m }
+        }
+        // It slows with the ego that it follows.
+        ContactState::Moving if told.sv.slowed_from.is_some() && follows && usual.driven_m < ego.driven_m + 5.0 => {
+            let from_mps = (ego.speed_mps + FOLLOWS_BY_MPS).max(cp.speed_mps);
+            let braking_s = CONTACT_S - first_time(&ego.acts);
+            let brake =
+                Deed::Speed { to_mps: cp.speed_mps, rate_mps2: ((from_mps - cp.speed_mps) / braking_s).max(0.05) };
+            let driven_m = from_mps * (CONTACT_S - braking_s) + 0.5 * (from_mps + cp.speed_mps) * braking_s;
+            Pace { speed_mps: from_mps, acts: vec![when(CONTACT_S - braking_s, brake)], driven_m }
         }
         // Who is ahead and slower has not come from behind the ego: it has just set off.
         ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
@@ -184,11 +194,32 @@ fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
             let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2 };
             Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m }
         }
+        ContactState::Moving if side.slowed_from.is_some() => slows(side),
         ContactState::Moving => {
             Pace { speed_mps: side.speed_mps, acts: Vec::new(), driven_m: side.speed_mps * CONTACT_S }
         }
     }
 }
+
+/// It brakes down to its speed at the contact.
+fn slows(side: &Side) -> Pace {
+    let told_mps = side.slowed_from.and_then(|slowed| slowed.0).filter(|from| *from > side.speed_mps + 1.0);
+    let from_mps = told_mps.unwrap_or(side.speed_mps + SLOWS_BY_MPS).min(side.speed_mps + MOST_SLOWED_MPS);
+    let by_mps = from_mps - side.speed_mps;
+    let braking_s = (by_mps / SLOWS_MPS2 * 10.0).ceil() / 10.0;
+    let brake = Deed::Speed { to_mps: side.speed_mps, rate_mps2: by_mps / braking_s };
+    let driven_m = from_mps * (CONTACT_S - braking_s) + 0.5 * (from_mps + side.speed_mps) * braking_s;
+    Pace { speed_mps: from_mps, acts: vec![when(CONTACT_S - braking_s, brake)], driven_m }
+}
+
+/// Who follows an ego that slows is faster than it by so much before. [m/s]
+const FOLLOWS_BY_MPS: f64 = 1.0;
+
+/// Who slowed before the contact came faster by so much where nobody says from which speed, at most so much, and brakes so. [m/s, m/s,
+/// m/s^2]
+const SLOWS_BY_MPS: f64 = 4.0;
+const MOST_SLOWED_MPS: f64 = 12.0;
+const SLOWS_MPS2: f64 = 2.5;
 
 /// Who stood before a junction, and is in it at the contact, sets off from its stop line.
 fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
@@ -356,7 +387,8 @@ const ASIDE_M: (f64, f64) = (14.0, 60.0);
 /// The move out of the ego's line, half done at the contact.
 fn shift(aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
     let half_m = (0.5 * ASIDE_S * speed_mps).clamp(0.5 * ASIDE_M.0, 0.5 * ASIDE_M.1);
-    let (half_m, from_s) = if half_m < pace.driven_m && pace.acts.is_empty() {
+    let drives = pace.speed_mps > 0.0;
+    let (half_m, from_s) = if half_m < pace.driven_m && drives {
         (half_m, CONTACT_S - half_m / speed_mps)
     } else {
         (pace.driven_m.max(1.0), first_time(&pace.acts))
@@ -514,7 +546,11 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
     let from_left_m = told.cp_from_left_m().filter(|_| aside && !turns);
     let beside = beside(told).filter(|_| aside && !turns);
-    if let Some(from_left_m) = from_left_m {
+    let pulls_out = aside && !turns && told.origin == Origin::Behind && told.cp.movement == Some(Movement::Passing);
+    if pulls_out {
+        // Out of the ego's lane.
+        position.y = staging.sv.position.y;
+    } else if let Some(from_left_m) = from_left_m {
         position.y = staging.cp.position.y + from_left_m;
     } else if let Some(side) = beside {
         let right = if side == LeftRight::Left { -1.0 } else { 1.0 };

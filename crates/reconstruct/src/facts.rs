@@ -103,11 +103,18 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         // Who is pushed moves when it touches.
         let pushed = kind == CheckKind::CpState && told.pushed;
         let stood = stood(track, touch.time_s);
-        let shown = pushed || state(side.state, track, seen, touch.time_s) && (stood || !side.stood_first);
-        let (before, after) =
-            (if side.stood_first { ", had stood" } else { "" }, if stood { ", had stood" } else { "" });
-        let expected = format!("{}{before}", side.state.label());
-        fact(kind, shown, expected, format!("{:.2} m/s{after}", seen.speed()));
+        let slowed = slowed(track, touch.time_s);
+        let shown = pushed
+            || state(side.state, track, seen, touch.time_s)
+                && (stood || !side.stood_first)
+                && (slowed || side.slowed_from.is_none());
+        let before = |stood: bool, slowed: bool| match (stood, slowed) {
+            (true, _) => ", had stood",
+            (false, true) => ", had slowed",
+            (false, false) => "",
+        };
+        let expected = format!("{}{}", side.state.label(), before(side.stood_first, side.slowed_from.is_some()));
+        fact(kind, shown, expected, format!("{:.2} m/s{}", seen.speed(), before(stood, slowed)));
     }
     for (kind, impact_mps, seen) in
         [(CheckKind::SvSpeed, told.sv.impact_mps, &touch.ego), (CheckKind::CpSpeed, told.cp.impact_mps, &touch.other)]
@@ -164,7 +171,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         [(CheckKind::SvLane, &told.sv, Some(ego_track)), (CheckKind::CpLane, &told.cp, touch.track)]
     {
         if let (Some(word), Some(track)) = (side.lane, track) {
-            held(kind, lane_words(word).to_owned(), lane(word, scenario, ego_track, track));
+            held(kind, lane_words(word).to_owned(), lane(word, scenario, [ego_track, track], touch.time_s));
         }
     }
     for (kind, side, track) in
@@ -212,10 +219,12 @@ fn lane_words(word: LaneWord) -> &'static str {
     }
 }
 
-/// Whether somebody begins in the told lane of its road.
-fn lane(word: LaneWord, scenario: &Scenario, ego: &ActorTrack, track: &ActorTrack) -> (CheckResult, String) {
+/// Whether somebody begins in the told lane of its road; on the opposite side it is when they touch.
+fn lane(word: LaneWord, scenario: &Scenario, [ego, track]: [&ActorTrack; 2], time_s: f64) -> (CheckResult, String) {
     let network = scenario.network();
-    let first = &track.states[0];
+    // Who is told to be on the opposite side went there.
+    let at = if word == LaneWord::Opposing { ((time_s * 10.0) as usize).min(track.states.len() - 1) } else { 0 };
+    let first = &track.states[at];
     let Some(id) = network.lane_at(first.position(), first.heading) else {
         return (CheckResult::CannotBeShown, "on no lane".to_owned());
     };
@@ -354,8 +363,22 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
     })
 }
 
-/// Whether a partner that drives along or across the road is beside it on its way to the contact. Nobody tells that it was not.
-pub(crate) fn leaves_road(told: &Told, scenario: &Scenario, rollout: &Rollout) -> bool {
+/// Who turns back by more than this on its way swings. [deg]
+const MOST_BACK_DEG: f64 = 30.0;
+
+/// Who slowed has lost at least this. [m/s]
+const SLOWED_MPS: f64 = 1.0;
+
+/// Whether somebody slowed before a time.
+fn slowed(track: &ActorTrack, time_s: f64) -> bool {
+    let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+    let now_mps = track.states[until].velocity().length();
+    track.states[..=until].iter().any(|state| state.velocity().length() > now_mps + SLOWED_MPS)
+}
+
+/// Whether a partner that drives along or across the road is beside it on its way to the contact, or swings one way and back the other.
+/// Nobody tells that it did not.
+pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> bool {
     let drives = !matches!(told.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal | PartnerKind::FixedObject);
     let on_road = matches!(
         told.origin,
@@ -365,7 +388,10 @@ pub(crate) fn leaves_road(told: &Told, scenario: &Scenario, rollout: &Rollout) -
     let Some(track) = touch.track else { return false };
     let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
     // Every second.
-    track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()))
+    let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
+    let turns = track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+    let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
+    beside || (all - net.abs()).to_degrees() > MOST_BACK_DEG
 }
 
 /// Whether somebody stood before a time.

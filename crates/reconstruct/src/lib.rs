@@ -82,7 +82,7 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 }
 
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    // The best so far: told facts that are not shown, then whether the partner leaves the road.
+    // The best so far: told facts that are not shown, then whether the partner strays.
     let mut best: Option<((usize, bool), Reconstruction)> = None;
     let mut refused = 0;
     for told in told.variants() {
@@ -95,7 +95,7 @@ fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold>
             let scenario = checked.value;
             let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
             let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
-            let cost = (verdict.failures().count(), facts::leaves_road(&told, &scenario, &rollout));
+            let cost = (verdict.failures().count(), facts::strays(&told, &scenario, &rollout));
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
                 best = Some((cost, Reconstruction { draft, rollout, verdict, assumed }));

@@ -43,6 +43,10 @@ pub(crate) enum Turning {
     Round,
 }
 
+/// That somebody slowed, and from which speed, where told. [m/s]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Slowed(pub(crate) Option<f64>);
+
 /// One side of the crash.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Side {
@@ -51,6 +55,8 @@ pub(crate) struct Side {
     pub(crate) state: ContactState,
     /// It stood before it moved, where told.
     pub(crate) stood_first: bool,
+    /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
+    pub(crate) slowed_from: Option<Slowed>,
     /// Whether the state is told.
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
@@ -359,6 +365,8 @@ impl Told {
             // From the kerb, or the one told.
             Movement::EnteringTraffic => (if self.sv.aside == Some(right) { -KERB_M } else { KERB_M }, 0.0),
             Movement::ParkingManeuver => (0.0, by(right, KERB_M)),
+            // It dodged, or drifted, while it drove on.
+            Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, DEPARTS_M)),
             _ => return None,
         };
         Some(Aside { from_t_m, to_t_m })
@@ -430,11 +438,25 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     let goes_aside =
         |act: Act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver);
     let aside = party.acts.iter().filter(|fact| goes_aside(fact.act) && !fact.after_contact).find_map(|fact| fact.side);
-    let stands = |act: Act| matches!(act, Act::Hold | Act::Stop | Act::SetOff);
+    // It stood where it did something after it, or held its place.
+    let last = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.step).max();
     let stood_first = state == ContactState::Moving
-        && party.acts.iter().any(|fact| stands(fact.act) && !fact.after_contact && !fact.begun);
+        && party.acts.iter().any(|fact| {
+            let stands = match fact.act {
+                Act::Hold | Act::SetOff => true,
+                Act::Stop => Some(fact.step) < last,
+                _ => false,
+            };
+            stands && !fact.after_contact && !fact.begun
+        });
+    let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
+    let slowed_from = (slows && !stood_first && state == ContactState::Moving).then(|| {
+        let approach = party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Approach);
+        Slowed(approach.map(|speed| speed.value.mps))
+    });
     Side {
         aside,
+        slowed_from,
         stood_first,
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),

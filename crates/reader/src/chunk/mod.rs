@@ -68,12 +68,21 @@ pub struct Piece {
     pub parts: Vec<Part>,
     /// It is a door.
     pub door: bool,
+    /// It is a mirror.
+    pub mirror: bool,
     /// It is open, or opened.
     pub open: bool,
     /// Whose; `None` where that is not said.
     pub owner: Option<Noun>,
     /// `its`.
     pub its: bool,
+}
+
+impl Piece {
+    /// A part of which no more is said than on which side it is.
+    pub(crate) fn of(part: Part) -> Self {
+        Self { parts: vec![part], door: false, mirror: false, open: false, owner: None, its: false }
+    }
 }
 
 /// A chunk of a sentence.
@@ -299,6 +308,8 @@ impl Chunker<'_> {
             "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
             "we" | "us" => Chunk::Noun(Noun { subject: true, ..Noun::unnamed() }),
             "that" | "which" | "who" | "whom" => Chunk::Relative,
+            // "it got sideswiped by a bus".
+            "got" | "gets" if matches!(self.verb(at + 1, &[]), Some((_, Form::Past, _))) => Chunk::Be,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
             "no" if at == self.first => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
@@ -380,7 +391,12 @@ impl Chunker<'_> {
         if token.capital && at > self.first {
             return None;
         }
-        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
+        let mut found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
+        // "rolled into the roadway" touches nobody.
+        if matches!(found.meaning, Meaning::Verb(Sense::Contact, _)) && self.goes_to_a_place(at + found.length) {
+            let others = |meaning: Meaning| matches!(meaning, Meaning::Verb(sense, _) if sense != Sense::Contact);
+            found = self.lexicon.longest(self.tokens, at, others)?;
+        }
         let Meaning::Verb(sense, form) = found.meaning else { return None };
         let word_before = if at > self.first { self.text(at - 1) } else { "" };
         // Behind an article or an adjective it is a noun: "the stop", "a lane change", "initial contact".
@@ -464,6 +480,24 @@ impl Chunker<'_> {
             return None;
         }
         Some((sense, form, found.length))
+    }
+
+    /// Whether the words behind "into" or "onto" name a place: "the roadway", "the van's lane".
+    fn goes_to_a_place(&self, at: usize) -> bool {
+        if !matches!(self.text(at - 1), "into" | "onto") {
+            return false;
+        }
+        let begins = match self.noun(at) {
+            Some((_, length)) if self.text(at + length) == "'s" => at + length + 1,
+            Some(_) => return false,
+            None => at,
+        };
+        (begins..begins + 4).any(|at| {
+            matches!(
+                self.text(at),
+                "roadway" | "road" | "street" | "lane" | "lanes" | "intersection" | "path" | "crosswalk" | "traffic"
+            )
+        })
     }
 
     /// A base form is a verb only behind the words that call for one: "to stop", "did not stop", "to stop and wait".

@@ -1,7 +1,7 @@
 //! Who or what is named, and parts of vehicles.
 
 use super::{Article, COLOURS, Chunker, DETERMINERS, LONGEST_PIECE, Noun, PREPOSITIONS, Piece};
-use crate::lexicon::{Adjective, Meaning, Part};
+use crate::lexicon::{Adjective, Meaning, Occupant, Part};
 use crate::token::TokenKind;
 use recrash_model::account::{Kind, KindGroup};
 
@@ -14,7 +14,7 @@ impl Chunker<'_> {
             its = matches!(self.text(at), "its" | "their" | "his" | "her");
             at += 1;
         }
-        let (mut parts, mut door, mut open, mut nouns) = (Vec::new(), false, false, 0);
+        let (mut parts, mut door, mut mirror, mut open, mut nouns) = (Vec::new(), false, false, false, 0);
         let mut last_joined = at;
         while at < self.tokens.len().min(first + LONGEST_PIECE) {
             let word = self.text(at);
@@ -28,6 +28,7 @@ impl Chunker<'_> {
             }
             let Some((part, length)) = self.part(at) else { break };
             door |= (at..at + length).any(|at| matches!(self.text(at), "door" | "doors"));
+            mirror |= (at..at + length).any(|at| self.text(at) == "mirror");
             nouns +=
                 usize::from(part == Part::Noun || (at..at + length).any(|at| matches!(self.text(at), "side" | "end")));
             if !parts.contains(&part) {
@@ -85,7 +86,7 @@ impl Chunker<'_> {
         if side_of_road {
             return None;
         }
-        Some((Piece { parts, door, open, owner, its }, at - first))
+        Some((Piece { parts, door, mirror, open, owner, its }, at - first))
     }
 
     pub(super) fn ends_clause(&self, at: usize) -> bool {
@@ -170,6 +171,24 @@ impl Chunker<'_> {
                     Meaning::Make if self.tokens[at].capital || make => {
                         make = true;
                         noun.names.push(self.text(at).to_owned());
+                    }
+                    // "May's vehicle", "Nuro's Prius".
+                    Meaning::Company if self.tokens[at].capital && self.text(at + found.length) == "'s" => {
+                        let behind = at + found.length + 1;
+                        let vehicle = |at: usize| {
+                            self.head(at).is_some_and(|(meaning, _)| {
+                                matches!(meaning, Meaning::Subject)
+                                    || matches!(meaning, Meaning::Kind(kind) if kind.is_vehicle())
+                            })
+                        };
+                        if !(vehicle(behind) || vehicle(behind + 1)) || self.part(behind).is_some() {
+                            company = true;
+                            at += found.length;
+                            return self.only_named(noun, first, at, company, make);
+                        }
+                        company = true;
+                        at = behind;
+                        continue;
                     }
                     Meaning::Company if self.tokens[at].capital => company = true,
                     _ => return self.only_named(noun, first, at, company, make),
@@ -361,6 +380,10 @@ impl Chunker<'_> {
                     noun.kind = Some(Kind::PickupWithTrailer)
                 }
                 Meaning::Kind(kind) => {
+                    // "a passenger sedan" carries passengers, and is none.
+                    if kind.is_vehicle() && matches!(noun.occupant, Some((Occupant::Rider, _))) {
+                        (noun.occupant, noun.owner) = (None, None);
+                    }
                     noun.kind = Some(kind);
                     plural = matches!(self.text(at + length - 1), "people" | "personnel" | "traffic")
                         || self.text(at + length - 1).ends_with('s')

@@ -122,6 +122,8 @@ fn with_whom(story: &Story, record: &CrashRecord, frame: &Frame, number: usize) 
         (Some(SUBJECT), Some(SUBJECT)) => None,
         (Some(SUBJECT), None) | (None, Some(SUBJECT)) => near(story, record, number),
         // "The van made contact": with whom, if not with the subject vehicle.
+        // "two vehicles ahead collided".
+        (Some(other), None) if story.world.actors[other].several && frame.on.is_none() => None,
         (Some(other), None) if frame.sense != Sense::ReverseContact => {
             let kind = story.world.actors[other].kind;
             // "The debris touched the rear bumper": of a thing that has none.

@@ -359,12 +359,19 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
         .iter()
         .enumerate()
         .find(|(number, frame)| frame.act() == Some(Act::OpenDoor) && frame.happened() && !reading.is_after(*number));
+    let door = |piece: &Option<Piece>| piece.as_ref().is_some_and(|piece| piece.door);
+    let stands_open = |frame: &Frame| {
+        let words = &reading.story.tokens[..reading.story.sentences[frame.sentence].end];
+        words.windows(2).any(|pair| pair[0].text == "door" && pair[1].text == "open")
+    };
     let (_, frame) = opened.or_else(|| {
-        frames.iter().enumerate().find(|(_, frame)| frame.is_contact() && (open(&frame.with) || open(&frame.on)))
+        frames.iter().enumerate().find(|(_, frame)| {
+            frame.is_contact() && (open(&frame.with) || open(&frame.on) || door(&frame.with) && stands_open(frame))
+        })
     })?;
     let owner = match frame.act() {
         Some(Act::OpenDoor) => frame.who,
-        _ if open(&frame.with) => frame.who,
+        _ if open(&frame.with) || door(&frame.with) && !open(&frame.on) => frame.who,
         _ => frame.object,
     }?;
     let value = if owner == SUBJECT { Striker::Sv } else { Striker::Cp };

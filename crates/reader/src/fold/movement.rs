@@ -1,6 +1,7 @@
 //! Movement of both sides just before the conflict, from their acts, states and columns.
 
 use super::Reading;
+use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Source, StandReason, told,
 };
@@ -8,7 +9,35 @@ use recrash_model::template::Movement;
 
 /// Movement of both sides just before the conflict.
 pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
-    account.sv.movement = movement(&account.sv, reading.record.sv_movement.known(), "SV Pre-Crash Movement");
+    // Whom else it passed is not what led to the conflict.
+    let passes_partner = reading.contacts.partner.is_none_or(|partner| {
+        let mut passed = reading.before(SUBJECT).filter(|(_, frame)| frame.act() == Some(Act::Pass)).peekable();
+        passed.peek().is_none() || passed.any(|(_, frame)| frame.object.is_none_or(|object| object == partner))
+    });
+    let column = reading.record.sv_movement.known();
+    let elsewhere = !passes_partner && column.is_some_and(|column| column != Movement::Passing);
+    let mut sv = account.sv.clone();
+    sv.acts.retain(|fact| fact.act != Act::Pass || !elsewhere);
+    // Who touches a thing on its way out of a lot is in no traffic yet.
+    let thing =
+        account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group) == Some(KindGroup::Object);
+    sv.acts.retain(|fact| fact.act != Act::PullOut || !thing || column.is_none());
+    account.sv.movement = movement(&sv, column, "SV Pre-Crash Movement");
+    let drives =
+        told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff));
+    if account.sv.movement.is_none() && drives {
+        account.sv.movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
+    }
+    // Who veers off the road leaves its lane.
+    let fixed = account
+        .partner
+        .as_ref()
+        .and_then(|partner| told(&partner.kind))
+        .is_some_and(|kind| matches!(kind, Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier));
+    let veers = account.sv.acts.iter().find(|fact| fact.act == Act::Swerve && !fact.after_contact && !fact.begun);
+    if let (true, Some(veers), Some(Movement::Straight) | None) = (fixed, veers, told(&account.sv.movement)) {
+        account.sv.movement = Some(Fact { value: Movement::LaneDeparture, source: veers.source.clone() });
+    }
     // Who stops in the lane for passengers is parked by the column, and stopped by the words.
     let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
     let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
@@ -27,7 +56,15 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
             let drives = group.is_some_and(|group| {
                 matches!(group, KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle | KindGroup::Cyclist)
             });
-            if movement.is_none() && drives && account.came_from.is_some() {
+            let thrown = partner.did(Act::Pushed)
+                && !partner.acts.iter().any(|fact| matches!(fact.act, Act::Follow | Act::Turn | Act::Enter));
+            if movement.is_none() && thrown {
+                movement = Some(Fact::by_rule(Movement::Stopped, "who is told to be struck alone"));
+            }
+            let strikes = reading.contacts.first.is_some_and(|number| {
+                reading.contacts.partner.is_some() && reading.story.frames[number].who == reading.contacts.partner
+            });
+            if movement.is_none() && drives && (account.came_from.is_some() || strikes) {
                 movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
             }
             let passes = column == Some(Movement::Passing) || partner.did(Act::Pass);
@@ -47,9 +84,17 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                 movement = Some(on_foot(partner, column, way, from_side));
             }
             if let Some(fact) = &mut movement {
+                let same_way = account
+                    .came_from
+                    .as_ref()
+                    .is_some_and(|from| matches!(from.value, Origin::Behind | Origin::Beside { .. }));
                 let oncoming = account.came_from.as_ref().is_some_and(|from| from.value == Origin::Opposite);
                 if crosses {
                     fact.value = Movement::NmCrossing;
+                } else if let (Movement::LeftTurn | Movement::RightTurn, true, Some(passed)) =
+                    (fact.value, same_way, passed_last(partner))
+                {
+                    *fact = Fact { value: Movement::Passing, source: passed.source.clone() };
                 } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
                     fact.value = Movement::Straight;
                 }
@@ -62,6 +107,13 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
             movement
         };
     }
+}
+
+/// The pass that came behind every turn.
+fn passed_last(party: &Party) -> Option<&ActFact> {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let turned = before().filter(|fact| fact.act == Act::Turn).map(|fact| fact.step).max()?;
+    before().find(|fact| fact.act == Act::Pass && fact.step > turned)
 }
 
 /// Ways that are not for vehicles.
@@ -163,6 +215,21 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
         {
             best = None;
         }
+        // Who came out and then travels along has come out.
+        if fact.act == Act::Follow
+            && column != Some(Movement::EnteringTraffic)
+            && words_of(fact).starts_with("travel")
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::EnteringTraffic)
+        {
+            best = None;
+        }
+        // Who changed lanes and then draws near is in its lane.
+        if fact.act == Act::Follow
+            && words_of(fact).starts_with("approach")
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::ChangingLanes)
+        {
+            best = None;
+        }
         let Some((weight, value)) = weight(fact, column) else { continue };
         // The last of those that say as much.
         if best.as_ref().is_none_or(|(known, ..)| weight >= *known) {
@@ -192,6 +259,7 @@ fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
         (Act::UTurn, _) => (4, Movement::UTurn),
         (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
         (Act::Reverse, _) => (4, Movement::Backing),
+        (Act::LaneChange, _) if column == Some(Movement::EnteringTraffic) => (3, Movement::EnteringTraffic),
         (Act::LaneChange, _) if words_of(fact).starts_with("merg") => (3, Movement::Merging),
         (Act::LaneChange, _) => (3, Movement::ChangingLanes),
         (Act::Pass, _) if column == Some(Movement::Passing) => (3, Movement::Passing),

@@ -6,7 +6,7 @@ use crate::chunk::Spot;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
+    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
 };
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone as Z;
@@ -105,6 +105,9 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             "what stands beside the way is on the side that touches it",
         ));
     }
+    if let (true, Some(side)) = (clues.reading.did(clues.actor, Act::Roll), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "what rolls comes from the side that it touches"));
+    }
     let lies =
         matches!(kind, Some(Kind::Debris | Kind::Pothole | Kind::Object)) && account.partner.as_ref()?.acts.is_empty();
     let on_road = forward(account)
@@ -144,8 +147,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let heading = account.partner.as_ref()?.heading.as_ref();
     // After a turn that is done, its new direction counts.
     let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
-    let turn =
-        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
+    let own = turned.map(|fact| fact.value).or_else(|| after_its_turn(account));
+    // Who faces one way and goes backwards comes from there.
+    let backs_from = did(Act::Reverse) && faces_only(reading, actor);
+    let turn = own.zip(heading).map(|(own, other)| own.eighths_to(other.value.turned(if backs_from { 4 } else { 0 })));
     // Out of a spot at the other side of the road, and then on: it comes the other way.
     let drove_on = |number: usize| {
         turn == Some(4)
@@ -202,7 +207,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         if let Some(side) = side {
             return told_as(Origin::Beside { side }, clues.source(|frame| frame.act() == Some(Act::Reverse)));
         }
-        if has_zone(&account.sv, |zone| zone.is_front()) {
+        if has_zone(&account.sv, |zone| zone.is_front()) && !matches!(turn, Some(2..=6)) {
             return Some(Fact::by_rule(Origin::Ahead, "who goes backwards into the front was ahead"));
         }
     }
@@ -246,6 +251,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return told_as(Origin::Beside { side }, clues.has(Relation::Beside));
     }
     let crossing = did(Act::Cross)
+        || account.partner.as_ref().is_some_and(|partner| partner.did(Act::RunRed) || partner.did(Act::RunStop))
+            && first_is_side(clues)
         || frames().any(|(_, frame)| {
             matches!(frame.sense, Sense::Act(Act::Enter | Act::RunRed | Act::RunStop))
                 && frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
@@ -259,6 +266,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let source = Source::Rule { name: "directions of both".to_owned() };
         let opposite_side = clues.any(Relation::Opposite) || account.partner.as_ref()?.did(Act::WrongWay);
         match eighths {
+            // Facing the other way and going backwards it goes the same way, beside.
+            4 if did(Act::Reverse) && zone_side(account).is_some() => {
+                let side = zone_side(account)?;
+                return told_as(Origin::Beside { side }, heading?.source.clone());
+            }
             2 => return told_as(Origin::Cross { side: LeftRight::Left }, heading?.source.clone()),
             6 => return told_as(Origin::Cross { side: LeftRight::Right }, heading?.source.clone()),
             3..=5 if !did(Act::Pass) || opposite_side || eighths == 4 => {
@@ -357,6 +369,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         if parked {
             return Some(Fact::by_rule(Origin::Beside { side }, "the side that a parked one is touched with"));
         }
+        let left = super::types::turn_side(&account.sv) == Some(LeftRight::Left);
+        if left && side == LeftRight::Right {
+            return Some(Fact::by_rule(Origin::Opposite, "the right side of a vehicle turning left that was touched"));
+        }
         return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));
     }
     let rear_ended = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);
@@ -365,6 +381,30 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return Some(Fact::by_rule(if by_subject { Origin::Ahead } else { Origin::Behind }, "front on rear"));
     }
     None
+}
+
+/// Whether the direction of somebody is the one that it faces, and not the one that it drives.
+fn faces_only(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading.story.world.actors[actor].heading.is_some_and(|(_, first, _)| {
+        reading.story.tokens[first.saturating_sub(2)..first]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "facing" | "faced" | "oriented" | "pointed" | "pointing"))
+    })
+}
+
+/// Direction of the subject vehicle, after a turn that is done where no street is told.
+fn after_its_turn(account: &Account) -> Option<Compass> {
+    let heading = account.sv.heading.as_ref()?.value;
+    let mut turns = account.sv.acts.iter().filter(|fact| !fact.after_contact && matches!(fact.act, Act::Turn));
+    let (only, more) = (turns.next(), turns.next());
+    match only {
+        Some(only) if more.is_none() && !super::types::turning(&account.sv) => match only.side {
+            Some(LeftRight::Left) => Some(heading.turned(6)),
+            Some(LeftRight::Right) => Some(heading.turned(2)),
+            None => Some(heading),
+        },
+        _ => Some(heading),
+    }
 }
 
 /// Who moves over without a side told comes from the side that was touched, and who is parked stands there; an animal in the way is ahead.
@@ -486,6 +526,11 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
         _ => {}
     }
     if let (true, Some(side)) = (partner.did(Act::LaneChange), zone_side(account)) {
+        return rule(Origin::Beside { side });
+    }
+    // It moved over before one in the next lane: corner on corner.
+    let corner = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value != Z::Rear);
+    if let (true, true, Some(side)) = (account.sv.did(Act::LaneChange), corner && sv_rear, zone_side(account)) {
         return rule(Origin::Beside { side });
     }
     if sv_rear && cp_front && !sv_front {

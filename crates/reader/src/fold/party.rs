@@ -522,7 +522,7 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
     }
     sv_state(reading, account);
     if account.sv.zones.is_empty() {
-        account.sv.zones = record.sv_zones.iter().map(|zone| Fact::of_column(*zone, "SV Contact Area")).collect();
+        account.sv.zones = ticked(reading, SUBJECT, &record.sv_zones, "SV Contact Area");
     }
     let partner_told = account.partner.is_some()
         || !matches!(record.partner, Coded::Blank | Coded::Unknown)
@@ -532,7 +532,8 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
     }
     let partner = account.partner.get_or_insert_with(Party::default);
     if partner.zones.is_empty() {
-        partner.zones = record.cp_zones.iter().map(|zone| Fact::of_column(*zone, "CP Contact Area")).collect();
+        let actor = reading.contacts.partner.unwrap_or(usize::MAX);
+        partner.zones = ticked(reading, actor, &record.cp_zones, "CP Contact Area");
     }
     let column = match record.partner {
         Coded::Known(kind) => Some(kind_of(kind)),
@@ -556,6 +557,28 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
         };
         partner.state = state.map(|state| Fact::of_column(state, "CP Pre-Crash Movement"));
     }
+}
+
+/// Zones of a column; of a mirror its corner is the side.
+fn ticked(reading: &Reading<'_>, actor: Actor, zones: &[ContactZone], name: &str) -> Vec<Fact<ContactZone>> {
+    use ContactZone as Z;
+    let frame = reading.contacts.first.map(|number| &reading.story.frames[number]);
+    let piece = frame.and_then(|frame| {
+        if frame.who == Some(actor) {
+            frame.with.as_ref()
+        } else if frame.object == Some(actor) {
+            frame.on.as_ref()
+        } else {
+            None
+        }
+    });
+    let mirror = piece.is_some_and(|piece| piece.mirror);
+    let zone = |zone: ContactZone| match zone {
+        Z::FrontLeft | Z::RearLeft if mirror => Z::Left,
+        Z::FrontRight | Z::RearRight if mirror => Z::Right,
+        zone => zone,
+    };
+    zones.iter().map(|known| Fact::of_column(zone(*known), name)).collect()
 }
 
 /// Whether the words tell a contact, and of no other road user.

@@ -68,6 +68,15 @@ impl Way {
         }
     }
 
+    /// The same on the other side.
+    fn mirrored(self) -> Option<Self> {
+        match self {
+            Self::Beside(side) => Some(Self::Beside(side.other())),
+            Self::Cross(side) => Some(Self::Cross(side.other())),
+            _ => None,
+        }
+    }
+
     /// Eighths of a turn by which the partner points clockwise of the subject vehicle before any turn.
     fn points(self) -> i32 {
         match self {
@@ -154,7 +163,9 @@ impl Scene<'_> {
             return 0;
         }
         // Who has turned can be on either side.
-        let turns = turn(self.sv) != (0, 0) || turn(self.cp) != (0, 0) || self.backs_across(way);
+        let by_its_rear = self.cp.zones.iter().any(|zone| faces(zone.value).contains(&4));
+        let turns =
+            if self.backs_across(way) { !by_its_rear } else { turn(self.sv) != (0, 0) || turn(self.cp) != (0, 0) };
         let backs = told(&self.sv.state) == Some(ContactState::Reversing);
         let side = |here: bool, there: bool| match (here, there) {
             (true, _) => 2,
@@ -251,6 +262,7 @@ impl Scene<'_> {
                 Way::Opposite | Way::Cross(_) => -1,
             },
             Some(M::LeftTurn) if way == Way::Opposite => 2,
+            Some(M::EnteringTraffic) if matches!(way, Way::Cross(_)) => 2,
             _ => 0,
         };
         let passed = match way {
@@ -351,7 +363,11 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
     let Some(told_way) = told_way else {
         // An origin whose side nobody told gets the side, and stays what it is.
         return match now.map(|fact| fact.value) {
-            None => (weight >= UNTOLD).then(|| Fact::by_rule(way.origin(), RULE)),
+            // Left and right that weigh the same are told by nobody.
+            None => {
+                let tie = way.mirrored().is_some_and(|mirrored| scene.weigh(mirrored) == weight);
+                (weight >= UNTOLD && !tie).then(|| Fact::by_rule(way.origin(), RULE))
+            }
             Some(origin) => {
                 let left = scene.weigh(Way::Cross(LeftRight::Left)).max(scene.weigh(Way::Beside(LeftRight::Left)));
                 let right = scene.weigh(Way::Cross(LeftRight::Right)).max(scene.weigh(Way::Beside(LeftRight::Right)));

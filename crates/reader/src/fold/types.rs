@@ -32,6 +32,7 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         let flies = account
             .partner
             .as_ref()
+            .filter(|partner| !is_fixed(partner))
             .is_some_and(|partner| partner.did(Act::Fall) || partner.did(Act::Roll) || partner.did(Act::Pushed));
         let sv_stands = sv_state(account).is_some_and(ContactState::stands);
         return match (flies, sv_stands) {
@@ -64,6 +65,15 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     if let (true, Some(front)) = (crossing, front_on_flank(account)) {
         return rule(front, FRONT_ON_SIDE);
     }
+    if let Some(both) = converge(account) {
+        return Some(both);
+    }
+    // Who backs away is met at its front by who comes.
+    let alone = frame.who == Some(SUBJECT) && frame.object.is_some();
+    let fore = |party: &Party| !party.zones.is_empty() && party.zones.iter().all(|zone| zone.value.is_front());
+    if sv == Some(ContactState::Reversing) && fore(&account.sv) && !alone {
+        return rule(Striker::Cp, BACKED_AWAY);
+    }
     let value = match (frame.who, frame.object) {
         (Some(SUBJECT), _) => {
             // "The rear of the subject vehicle made contact with the front of the car": who moved forward into whom.
@@ -76,6 +86,37 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         _ => return by_fronts(account),
     };
     Some(Fact { value, source: reading.of(frame) })
+}
+
+fn striker_backed_away(account: &Account) -> bool {
+    matches!(&account.striker, Some(Fact { source: Source::Rule { name }, .. }) if name == BACKED_AWAY)
+}
+
+/// Rule of a striker who comes to one that backs away.
+const BACKED_AWAY: &str = "it backed away from one that came";
+
+/// Whether both moved into each other: corner on corner where paths cross, side on side where one of them turns.
+fn converge(account: &Account) -> Option<Fact<Striker>> {
+    use recrash_model::zones::ContactZone as Z;
+    let partner = account.partner.as_ref()?;
+    let moving = |state: Option<ContactState>| state == Some(ContactState::Moving);
+    if !moving(sv_state(account)) || !moving(cp_state(account)) {
+        return None;
+    }
+    let told_as = |party: &Party, wanted: fn(Z) -> bool| {
+        !party.zones.is_empty() && party.zones.iter().all(|zone| wanted(zone.value) && zone.source.is_told())
+    };
+    let corner = |zone: Z| matches!(zone, Z::FrontLeft | Z::FrontRight);
+    let side = |zone: Z| matches!(zone, Z::Left | Z::Right);
+    let over = |party: &Party| [Act::LaneChange, Act::Swerve, Act::Drift].into_iter().any(|act| party.did(act));
+    let crossing = matches!(told(&account.came_from), Some(Origin::Cross { .. } | Origin::Opposite));
+    let turns = turning(&account.sv) || turning(partner);
+    let straight = !over(&account.sv) && !over(partner);
+    if crossing && straight && told_as(&account.sv, corner) && told_as(partner, corner) {
+        return Some(Fact::by_rule(Striker::Both, "corner on corner where paths cross"));
+    }
+    (turns && straight && told_as(&account.sv, side) && told_as(partner, side))
+        .then(|| Fact::by_rule(Striker::Both, "side on side where one of them turns"))
 }
 
 /// Rule of a striker by whose front touches whose side.
@@ -254,6 +295,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             if rear_end
                 || front_rear(account)
                 || (front(&account.sv) && partner.zones.is_empty())
+                || (account.sv.zones.is_empty() && partner.zones.is_empty() && !sideways && !account.sv.did(Act::Pass))
                 || (front(&account.sv) && !sideways && !account.sv.did(Act::Pass))
             {
                 return Some((CrashType::FrontToRear, "front on rear, one way"));
@@ -264,7 +306,9 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             let column = told(&account.sv.movement) == Some(Movement::LeftTurn) && turn_side(&account.sv).is_none();
             let across = column
                 || (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
-                || (cp_turns && turn_side(partner) == Some(LeftRight::Left) && !sv_turns)
+                || (cp_turns
+                    && turn_side(partner) == Some(LeftRight::Left)
+                    && !(sv_turns && turn_side(&account.sv) == Some(LeftRight::Left)))
                 || told(&partner.movement) == Some(Movement::UTurn);
             // Left side on left side they passed each other, and only then it turned, or began to.
             let left = |party: &Party, corner: bool| {
@@ -282,6 +326,16 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             } else {
                 (CrashType::HeadOn, "from opposite directions")
             })
+        }
+        // It had turned into the road of the one that stands, and passed it left side on left side.
+        Some(Origin::Cross { .. })
+            if sv.is_some_and(ContactState::stands)
+                && partner.did(Act::Turn)
+                && !cp_turns
+                && on_left(&account.sv)
+                && on_left(partner) =>
+        {
+            Some((CrashType::HeadOn, "from opposite directions"))
         }
         Some(Origin::Cross { .. }) => Some((CrashType::Intersection, "crossing paths")),
         Some(Origin::Stall { .. } | Origin::Driveway { .. }) => {
@@ -310,6 +364,12 @@ pub(crate) fn turn_side(party: &Party) -> Option<LeftRight> {
         Act::UTurn => Some(LeftRight::Left),
         _ => None,
     })
+}
+
+/// Touched on the left, corners too.
+fn on_left(party: &Party) -> bool {
+    use recrash_model::zones::ContactZone as Z;
+    !party.zones.is_empty() && party.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::FrontLeft | Z::RearLeft))
 }
 
 /// The plain rear on the plain front.
@@ -423,18 +483,22 @@ fn lay(reading: &Reading<'_>) -> bool {
     })
 }
 
-/// Whether a thing came into the way: one that is fixed does not, whatever a sentence makes its subject.
-fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
-    let fixed = matches!(
+/// Things that stay where they are.
+fn is_fixed(partner: &Party) -> bool {
+    matches!(
         told(&partner.kind),
         Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier | Kind::Sign | Kind::Pothole | Kind::Chain)
-    );
+    )
+}
+
+/// Whether a thing came into the way: one that is fixed does not, whatever a sentence makes its subject.
+fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
     let thrown = || {
         let Some(actor) = reading.contacts.partner else { return false };
         reading.before(actor).any(|(_, frame)| frame.sense == Sense::Push && frame.happened())
     };
     let moved = partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop));
-    !fixed && (moved || thrown())
+    !is_fixed(partner) && (moved || thrown())
 }
 
 /// Whose move brought it about.
@@ -453,6 +517,11 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     if sv.stands() {
         if sv_turns && matches!(told(&account.crash_type), Some(CrashType::Intersection)) {
             return rule(Role::Both, "it stood across another's way in a turn");
+        }
+        let over = account.sv.acts.iter().filter(|fact| !fact.after_contact).rev().nth(1).map(|fact| fact.act);
+        let passed = told(&partner.movement) == Some(Movement::Passing);
+        if over == Some(Act::LaneChange) && passed && !has_zone(&account.sv, |zone| zone.is_rear()) {
+            return rule(Role::Both, "it stood in a change of lanes");
         }
         return rule(Role::Responder, "it stood");
     }
@@ -473,7 +542,7 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return rule(Role::Responder, "the other broke a rule");
     }
     if sv == ContactState::Reversing {
-        let both = cp_state(account) == Some(ContactState::Reversing);
+        let both = striker_backed_away(account) || cp_state(account) == Some(ContactState::Reversing);
         return if both { rule(Role::Responder, "it backed away") } else { rule(Role::Initiator, "it went backwards") };
     }
     let cp_stands = cp_state(account).is_some_and(ContactState::stands) && !partner.did(Act::OpenDoor);
@@ -627,6 +696,7 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
                 {
                     FirstMover::Cp
                 }
+                (ContactState::Reversing, _) if striker_backed_away(account) => FirstMover::Sv,
                 (ContactState::Reversing, _) => FirstMover::Cp,
                 _ => FirstMover::Sv,
             };
@@ -643,7 +713,8 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
             && party.zones.iter().filter(|zone| zone.value.is_front()).all(|zone| zone.value != Z::Front)
             && party.zones.iter().any(|zone| zone.source.is_told())
     };
-    let flank = |party: &Party| !party.zones.is_empty() && (side(party) || !has_zone(party, |zone| zone.is_front()));
+    let under = |party: &Party| party.zones.iter().all(|zone| matches!(zone.value, Z::Bottom | Z::Top));
+    let flank = |party: &Party| !under(party) && (side(party) || !has_zone(party, |zone| zone.is_front()));
     if partner.zones.is_empty() && !account.sv.zones.is_empty() {
         let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
         return rule(value, "whose flank is touched is there first");
@@ -653,7 +724,8 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
         !party.zones.is_empty() && party.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::Right))
     };
     let thrown = told(&account.crash_type) == Some(CrashType::Secondary);
-    if plain_side(&account.sv) && plain_side(partner) && !thrown {
+    let drives = matches!(group(account), Some(KindGroup::Car | KindGroup::Truck));
+    if plain_side(&account.sv) && plain_side(partner) && !thrown && drives {
         return rule(FirstMover::Both, "side on side they converge");
     }
     match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {

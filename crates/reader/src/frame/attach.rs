@@ -3,7 +3,7 @@
 use super::parser::{Carry, Mention, Parser, transitive};
 use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, Spot};
-use crate::lexicon::{Form, Progress, Relation, Sense};
+use crate::lexicon::{Form, Part, Progress, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
 
@@ -45,7 +45,7 @@ impl Parser<'_> {
                         taken.sense,
                         Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
                     )
-                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass)) && taken.passive;
+                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass | Act::LaneChange)) && taken.passive;
                 if passive {
                     if !matches!(taken.sense, Sense::ContactMade) && taken.object.is_none() {
                         taken.object = taken.who;
@@ -126,6 +126,19 @@ impl Parser<'_> {
                 self.note(actor, Relation::Ahead);
                 self.frames[frame].object.get_or_insert(actor);
             }
+            // "a truck coming towards it".
+            "toward" | "towards"
+                if actor == SUBJECT
+                    && mention.piece.is_none()
+                    && matches!(sense, Sense::Act(Act::Follow) | Sense::Approach)
+                    && self.frames[frame].happened() =>
+            {
+                let comes = self.frames[frame].who.filter(|who| *who != SUBJECT);
+                if let Some(who) = comes.filter(|who| self.world.actors[*who].kind.is_some_and(Kind::is_vehicle)) {
+                    self.note(who, Relation::Opposite);
+                    self.frames[frame].relations.push((Relation::Opposite, Some(SUBJECT)));
+                }
+            }
             "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
                 let taken = &mut self.frames[frame];
                 if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
@@ -137,7 +150,7 @@ impl Parser<'_> {
     }
 
     /// Where somebody is: of the frame, or of the noun before.
-    pub(super) fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &Carry) {
+    pub(super) fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &mut Carry) {
         let mut who = None;
         if let Some(frame) = carry.frame {
             // "made contact with the van ahead": the van.
@@ -160,12 +173,26 @@ impl Parser<'_> {
             }
         } else if let Some(subject) = &carry.subject {
             who = Some(subject.actor);
+        } else if carry.main.is_none() && to.is_none_or(|to| to == SUBJECT) {
+            carry.lead = Some(relation);
         }
         let Some(who) = who else { return };
         // "turned in front of it", "passed in front of it": where the act ends, and not where it was.
         let across = carry.frame.and_then(|frame| self.frames[frame].act());
-        let ends_there =
-            matches!(across, Some(Act::Turn | Act::UTurn | Act::Cross | Act::Pass | Act::PullOut | Act::Enter));
+        let ends_there = matches!(
+            across,
+            Some(
+                Act::Turn
+                    | Act::UTurn
+                    | Act::Cross
+                    | Act::Pass
+                    | Act::PullOut
+                    | Act::Enter
+                    | Act::LoseControl
+                    | Act::Fall
+                    | Act::Roll
+            )
+        );
         if relation == Relation::Ahead && ends_there {
             return;
         }
@@ -239,6 +266,24 @@ impl Parser<'_> {
                 carry.relation = None;
                 carry.preposition = Some("around");
             }
+            return;
+        }
+        // "struck the AV on the passenger side": where it was struck.
+        let struck = |frame: &super::Frame| frame.is_contact() && frame.object.is_some() && frame.on.is_none();
+        if let (Some(part), Some(frame), false) = (
+            match relation {
+                Relation::Left => Some(Part::Left),
+                Relation::Right => Some(Part::Right),
+                _ => None,
+            },
+            carry.frame,
+            governs,
+        ) && struck(&self.frames[frame])
+            && self.tokens[placed.first].text == "on"
+            && self.tokens[placed.end - 1].text == "side"
+        {
+            self.frames[frame].on = Some(Piece::of(part));
+            self.frames[frame].end = placed.end;
             return;
         }
         if governs {

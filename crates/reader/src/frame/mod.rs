@@ -145,10 +145,25 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         parser.read(*sentence);
     }
     let (mut frames, world) = (parser.frames, parser.world);
+    // "a sedan and a van collided": with each other.
+    for at in 1..frames.len() {
+        let (before, after) = frames.split_at_mut(at);
+        let (one, other) = (&mut before[at - 1], &mut after[0]);
+        let pair = one.first == other.first && one.is_contact() && one.object.is_none() && other.object.is_none();
+        if pair && one.who != other.who {
+            (one.object, other.object) = (other.who, one.who);
+        }
+    }
+    let about: Vec<(usize, Actor)> = frames
+        .iter()
+        .filter(|frame| frame.act().is_some() && !frame.aside)
+        .filter_map(|frame| Some((frame.sentence, frame.who.filter(|who| *who != SUBJECT)?)))
+        .collect();
     for frame in &mut frames {
         // Nobody touches itself.
         if frame.is_contact() && frame.who == Some(SUBJECT) && frame.object == Some(SUBJECT) {
-            frame.who = None;
+            // "A cyclist behind did not stop when it slowed and struck its rear": whom the sentence is about.
+            frame.who = about.iter().find(|(sentence, _)| *sentence == frame.sentence).map(|(_, who)| *who);
         }
     }
     Story { tokens, sentences, standing, frames, world }
@@ -197,6 +212,10 @@ pub fn zone_of(piece: &Piece) -> Option<recrash_model::zones::ContactZone> {
     let has = |part: Part| piece.parts.contains(&part);
     let (front, rear) = (has(Part::Front), has(Part::Rear));
     let (left, right) = (has(Part::Left), has(Part::Right));
+    // Doors are on the sides, whether in front or behind.
+    if piece.door && (left != right) {
+        return Some(if left { Z::Left } else { Z::Right });
+    }
     Some(match (front && !rear, rear && !front, left && !right, right && !left) {
         (true, _, true, _) => Z::FrontLeft,
         (true, _, _, true) => Z::FrontRight,

@@ -67,6 +67,8 @@ pub(super) struct Carry {
     pub(super) place: bool,
     /// "Neither", "no" stands before the subject.
     pub(super) nobody: bool,
+    /// Where who is named next is: "From the right, a van ..."
+    pub(super) lead: Option<Relation>,
     /// "Between" waits for the second of a pair.
     pub(super) pair: bool,
 }
@@ -158,6 +160,8 @@ impl Parser<'_> {
                 self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             }
             Chunk::Relative => {
+                // "at which time the operator ...": the operator is not behind "at".
+                (carry.preposition, carry.relation) = (None, None);
                 if let Some(last) = carry.last.clone() {
                     if !carry.relative {
                         carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
@@ -176,7 +180,8 @@ impl Parser<'_> {
             Chunk::Not => {
                 carry.negated = true;
                 // "Neither car made contact": said before who it is.
-                carry.nobody |= carry.fresh && matches!(self.tokens[placed.first].text.as_str(), "neither" | "no");
+                let word = self.tokens[placed.first].text.as_str();
+                carry.nobody |= matches!(word, "neither" | "nor") || carry.fresh && word == "no";
             }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
@@ -230,6 +235,12 @@ impl Parser<'_> {
                     (carry.after_comma, carry.filled) = (false, false);
                     return;
                 }
+                // "a child chasing a ball": who chases goes on.
+                let beside_noun = at > 0 && matches!(all[at - 1].chunk, Chunk::Noun(_));
+                if word.ends_with("ing") && beside_noun && matches!(next, Some(Chunk::Noun(_))) {
+                    carry.preposition = Some("of");
+                    return;
+                }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
                 carry.filled |= waits && (is_determiner(word) || self.tokens[placed.first].capital);
                 return;
@@ -253,6 +264,23 @@ impl Parser<'_> {
 
     /// Who is meant by `it` and `its`.
     fn its(&self, carry: &Carry) -> Actor {
+        let actor = self.of_sentence(carry);
+        // "The van drifted over and hit its right side": nobody hits itself.
+        let hits = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
+            matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact)
+                && frame.who == Some(actor)
+                && frame.object.is_none()
+                && !carry.fresh
+        });
+        match hits {
+            true if actor != SUBJECT => SUBJECT,
+            true => self.world.other().unwrap_or(actor),
+            false => actor,
+        }
+    }
+
+    /// Who the sentence is about, as far as it can be meant by a pronoun.
+    fn of_sentence(&self, carry: &Carry) -> Actor {
         let of_sentence = carry.main.as_ref().or(carry.subject.as_ref()).map(|mention| mention.actor);
         match of_sentence {
             Some(actor) if actor == SUBJECT || acts(self.world.actors[actor].kind) => actor,
@@ -411,6 +439,9 @@ impl Parser<'_> {
                     carry.also = None;
                 }
                 self.world.actors[actor].acted = true;
+                if let Some(relation) = carry.lead.take().filter(|_| actor != SUBJECT) {
+                    self.note(actor, relation);
+                }
                 carry.subject = Some(mention.clone());
                 carry.last = Some(mention);
                 carry.has_verb = false;
@@ -461,7 +492,11 @@ impl Parser<'_> {
             (carry.progress, carry.negated) = (None, false);
         }
         if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            carry.negated = false;
+            // "did not slow down or stop" denies both.
+            let or = behind.first().is_some_and(|next| next.first > 0 && self.tokens[next.first - 1].text == "or");
+            carry.negated = or
+                && matches!(next, Some(Chunk::Verb(_, Form::Base)))
+                && carry.frame.is_some_and(|frame| self.frames[frame].negated);
             carry.row = true;
             if carry.relative {
                 // "a van that was behind it and struck it" goes on with the van.
@@ -653,6 +688,17 @@ impl Parser<'_> {
         if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "between" {
             carry.preposition = Some("between");
         }
+        // "fell from a truck": the truck is behind "from".
+        let last = self.tokens[placed.end - 1].text.as_str();
+        if matches!(sense, Sense::Act(Act::Fall | Act::Roll | Act::Enter)) && placed.end > placed.first + 1 {
+            carry.preposition = ["from", "off", "onto", "into", "over"].into_iter().find(|known| *known == last);
+        }
+        // "contact by a cyclist was made".
+        if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "by" {
+            let frame = &mut self.frames[number];
+            (frame.form, frame.who, frame.with) = (Form::Past, None, None);
+            carry.preposition = Some("by");
+        }
         carry.row = false;
         carry.negated = false;
     }
@@ -674,7 +720,7 @@ impl Carry {
                     | Sense::ContactMade
                     | Sense::Approach
                     | Sense::RearEnd
-                    | Sense::Act(Act::Pass | Act::Follow)
+                    | Sense::Act(Act::Pass | Act::Follow | Act::Cross)
             )
     }
 }

@@ -137,7 +137,9 @@ impl Parser<'_> {
         if !near || !lively {
             return false;
         }
-        carry.frame.is_some_and(|frame| {
+        // "and then for a cyclist approaching from behind": right behind the noun.
+        let bare = carry.frame.is_none() && carry.governed && between.is_empty() && form == Form::Ing;
+        bare || carry.frame.is_some_and(|frame| {
             let frame = &self.frames[frame];
             frame.object == Some(last.actor)
                 || frame.relations.iter().any(|(_, actor)| *actor == Some(last.actor))

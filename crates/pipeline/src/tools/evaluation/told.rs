@@ -5,6 +5,7 @@ use recrash_model::account::{
     Standing, told,
 };
 use recrash_model::labelled::{CameFrom, LabelledAccount, Since};
+use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone as Z;
 
 /// An account in the terms of the labels.
@@ -117,10 +118,14 @@ fn came_from(account: &Account) -> Option<CameFrom> {
     })
 }
 
-/// The side on which one from behind is met: where the flank is touched, or a rear corner by more than a front.
+/// The side on which one from behind is met: where the flank is touched, or a rear corner by one that is past it with its front.
 fn alongside(account: &Account) -> Option<LeftRight> {
     let partner = account.partner.as_ref()?;
     let sv = account.sv.zone_values();
+    if sv.is_empty() {
+        // Nobody tells where it was touched, and it was passed on a side.
+        return partner.acts.iter().find(|fact| fact.act == Act::Pass && !fact.after_contact)?.side;
+    }
     let any = |zones: &[Z]| zones.iter().any(|zone| sv.contains(zone));
     let (left, right) = (any(&[Z::FrontLeft, Z::Left, Z::RearLeft]), any(&[Z::FrontRight, Z::Right, Z::RearRight]));
     let side = match (left, right) {
@@ -129,9 +134,14 @@ fn alongside(account: &Account) -> Option<LeftRight> {
         _ => return None,
     };
     let flank = any(&[Z::FrontLeft, Z::Left, Z::FrontRight, Z::Right]);
-    let cp = partner.zone_values();
-    let not_front_alone = cp.iter().any(|zone| !zone.is_front());
-    (!sv.contains(&Z::Rear) && (flank || not_front_alone)).then_some(side)
+    // What the words name, and not the corner that a column adds to it.
+    let worded: Vec<Z> = partner.zones.iter().filter(|zone| zone.source.is_told()).map(|zone| zone.value).collect();
+    let cp = if worded.is_empty() { partner.zone_values() } else { worded };
+    // A rear corner by one that passes, and whose front is past it.
+    let passes =
+        matches!(told(&partner.movement), Some(Movement::Passing | Movement::ChangingLanes | Movement::Merging));
+    let past = !cp.is_empty() && cp.iter().all(|zone| !zone.is_front());
+    (!sv.contains(&Z::Rear) && (flank || passes && past)).then_some(side)
 }
 
 fn beside(side: LeftRight) -> CameFrom {
