@@ -127,8 +127,8 @@ def test_a_node_killed_in_the_middle_changes_no_byte(killed_after_two, scenarios
 def test_a_corpus_is_reconstructed_and_tested_in_parts(cluster):
     import recrash.ray
 
-    rows = recrash.ray.corpus(where="road = parking_lot", ego="idm", batch=7).to_pylist()
-    accounts = recrash.read(where="road = parking_lot")
+    rows = recrash.ray.corpus(where="road = street", ego="idm", batch=20).to_pylist()
+    accounts = recrash.read(where="road = street")
     scenarios, made = accounts.reconstruct()
     assert [row["incident"] for row in rows] == accounts.table.to_dict()["incident"]
     assert [row["standing"] for row in rows] == made.to_dict()["standing"]
