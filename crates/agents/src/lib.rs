@@ -12,6 +12,7 @@
 //! text: they are matched against patterns, never followed.
 
 mod account;
+mod agreement;
 mod contradiction;
 mod expectation;
 mod expressible;
@@ -20,6 +21,7 @@ mod parameters;
 mod rules;
 
 pub use account::account_of;
+pub use agreement::disagreement;
 pub use contradiction::narrative_contradictions;
 pub use expectation::expectation;
 pub use expressible::inexpressible;
@@ -42,8 +44,10 @@ pub struct Brief<'a> {
     pub scenario_id: &'a str,
     /// The template it must keep.
     pub template: Template,
-    /// The pick first, then a few members of its cluster.
+    /// The pick first, then the other reports of its incident.
     pub records: &'a [&'a CrashRecord],
+    /// Why the pick's own crash is not told, where that is known: then one is invented.
+    pub untold: Option<&'a str>,
     /// What the system under test and its simulator can express.
     pub profile: &'a SystemProfile,
     /// Seed of the agent's choices.

@@ -13,6 +13,7 @@ mod export;
 mod live;
 mod nightly;
 mod outputs;
+mod paper;
 mod read;
 mod reconstruct;
 mod records;

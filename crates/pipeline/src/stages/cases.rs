@@ -17,9 +17,6 @@ use recrash_model::template::Template;
 use recrash_roads::Scenario;
 use serde::Serialize;
 
-/// Members of a cluster that the agents see beside the pick.
-const MEMBERS_SHOWN: usize = 4;
-
 /// Records and picks.
 pub(crate) struct Cases {
     /// All records.
@@ -53,10 +50,16 @@ impl Cases {
         self.accounts.as_ref()?.of(&cluster.pick)
     }
 
-    /// Where the records stand that a case shows: the pick first, then a few members of its cluster.
+    /// Where the records of a case stand: the pick first, then the other reports of its incident.
     pub fn shown(&self, cluster: &Cluster) -> Vec<usize> {
-        let others = cluster.members.iter().filter(|&&m| m != cluster.pick_index).take(MEMBERS_SHOWN);
-        std::iter::once(&cluster.pick_index).chain(others).copied().collect()
+        let records = &self.records.records;
+        let pick = &records[cluster.pick_index];
+        let same = |record: &CrashRecord| {
+            record.id.report_id == pick.id.report_id
+                || record.incident_id.is_some() && record.incident_id == pick.incident_id
+        };
+        let others = (0..records.len()).filter(|&at| at != cluster.pick_index && same(&records[at]));
+        std::iter::once(cluster.pick_index).chain(others).collect()
     }
 
     /// Those records.
@@ -84,17 +87,25 @@ impl Cases {
             inputs.push(text_of(&CrashRecord { provenance: nowhere, ..record.clone() }));
         }
         inputs.extend(self.account(cluster).map(text_of));
+        inputs.extend(self.untold(cluster).map(str::to_owned));
         inputs
     }
 
-    /// The records that count once a narrative is written: the pick, and the one that is told in its place; all of them where
-    /// the narrative cannot be read.
-    pub fn records_told(&self, suite: &Suite, cluster: &Cluster) -> Vec<&CrashRecord> {
-        let file = names::narrative(&cluster.scenario_id);
-        let Ok(narrative) = suite.store().read_json::<Narrative>(&file) else { return self.records_of(cluster) };
-        let pick = &self.records.records[cluster.pick_index];
-        let told = self.told(cluster, &narrative);
-        if told.id == pick.id { vec![pick] } else { vec![pick, told] }
+    /// What an agent is told about a case. A model is shown all of its records, the rules read the pick.
+    pub fn brief<'a>(&'a self, suite: &'a Suite, cluster: &'a Cluster, records: &'a [&'a CrashRecord]) -> Brief<'a> {
+        Brief {
+            scenario_id: &cluster.scenario_id,
+            template: cluster.template,
+            records,
+            untold: self.untold(cluster),
+            profile: suite.profile(),
+            seed: case_seed(suite, cluster),
+        }
+    }
+
+    /// Why the pick's own crash is not told, where it is not.
+    fn untold(&self, cluster: &Cluster) -> Option<&str> {
+        self.records.untold.get(&cluster.pick_index).map(String::as_str)
     }
 
     /// The record whose crash a narrative tells; of an invented one the pick.
@@ -117,20 +128,14 @@ pub(crate) fn text_of<T: Serialize>(value: &T) -> String {
     serde_json::to_string(value).expect("nouns serialise")
 }
 
-/// What an agent is told about a case.
-pub(crate) fn brief<'a>(suite: &'a Suite, cluster: &'a Cluster, records: &'a [&'a CrashRecord]) -> Brief<'a> {
-    Brief {
-        scenario_id: &cluster.scenario_id,
-        template: cluster.template,
-        records,
-        profile: suite.profile(),
-        seed: case_seed(suite, cluster),
-    }
-}
-
 /// Seed of a case's random choices.
 pub(crate) fn case_seed(suite: &Suite, cluster: &Cluster) -> Seed {
-    suite.seed().child("case").child(&cluster.scenario_id)
+    case_seed_of(suite.seed(), &cluster.scenario_id)
+}
+
+/// The same, of the suite's seed.
+pub(crate) fn case_seed_of(suite: Seed, scenario_id: &str) -> Seed {
+    suite.child("case").child(scenario_id)
 }
 
 /// Reads and checks a scenario file of the suite; one that a person spoiled stops its case alone.

@@ -1,6 +1,6 @@
 //! Narratives to scenarios: the loop of design, check, rollout and verdict.
 
-use super::cases::{brief, text_of};
+use super::cases::text_of;
 use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
 use crate::files::store::to_json;
@@ -37,7 +37,7 @@ pub(super) const DECLARED: CaseStage = CaseStage {
 fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let suite = bench.suite;
     let records = bench.cases.records_of(cluster);
-    let brief = brief(suite, cluster, &records);
+    let brief = bench.cases.brief(suite, cluster, &records);
     let (narrative, expectation) = bench.cases.expectation(suite, cluster)?;
     refuse_contradictions(&narrative, &brief)?;
     let cast = &suite.options().cast;
@@ -63,6 +63,22 @@ fn refuse_contradictions(narrative: &Narrative, brief: &Brief) -> Result<(), Pip
         brief.scenario_id,
         format!("the narrative contradicts its template ({why}); mend it, or remove its file"),
     ))
+}
+
+/// What the best design of the rules does not show; nothing where it shows everything.
+///
+/// # Errors
+/// None of the designs can be run.
+pub(super) fn staged_by_rules(
+    brief: &Brief,
+    narrative: &Narrative,
+    expectation: &Expectation,
+    simulator: &dyn Simulator,
+) -> Result<Option<Check>, PipelineError> {
+    let by_rules = Designer { name: RULES, agent: &Rules, tries: MAX_DESIGNS };
+    let (_, log) = design_case(&[by_rules], brief, narrative, expectation, simulator)?;
+    let missed = log.attempts.get(log.taken).and_then(|attempt| attempt.unfaithful.as_ref()?.first().cloned());
+    Ok(missed)
 }
 
 /// What became of the designs of one scenario.

@@ -1,6 +1,6 @@
 //! The first stage: crash files to records.
 
-use super::{StageReport, StageWork, cases};
+use super::{StageReport, StageWork, cases, own};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
 use crate::reading::records::RecordInput;
@@ -10,6 +10,7 @@ use crate::suite::names;
 use recrash_model::account::{Account, AccountSet, CrashType};
 use recrash_model::diagnostic::{Location, Severity};
 use recrash_model::profile::Tells;
+use recrash_model::record::RecordSet;
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::{Diagnostic, Outcome};
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,7 +23,9 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let mut report = work.whole(&inputs(suite, &input), || {
         let profile = suite.profile();
         if profile.records.tells == Tells::Templates {
-            let Outcome { value, diagnostics } = input.ingest(profile)?;
+            let Outcome { mut value, mut diagnostics } = input.ingest(profile)?;
+            own::find_untold(&mut value, profile, suite.seed());
+            diagnostics.push(what_is_told(&value));
             return Ok(vec![
                 (names::RECORDS.into(), to_compact_json(&value)),
                 (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
@@ -76,10 +79,24 @@ fn what_is_new(before: &AccountSet, now: &AccountSet) -> Option<Diagnostic> {
     Some(Diagnostic::new(Severity::Note, "records.new", Location::default(), message))
 }
 
+/// How many of the usable records of a suite of templates are told as their own crash.
+fn what_is_told(set: &RecordSet) -> Diagnostic {
+    let copies = set.untold.values().filter(|why| why.ends_with(own::TOLD_BY_ANOTHER)).count();
+    let message = format!(
+        "{} of {} usable records are told as their own crash, {copies} more by another record of their incident, and {} cannot be",
+        set.usable.len() - set.untold.len(),
+        set.usable.len(),
+        set.untold.len() - copies
+    );
+    Diagnostic::new(Severity::Note, "records.told", Location::default(), message)
+}
+
 /// Roads and movements that are named.
 const TRIPLES_SHOWN: usize = 20;
 
 /// What decides which records come out.
 pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
-    std::iter::once(cases::text_of(suite.profile())).chain(input.parts()).collect()
+    // Where nobody tells who was first, the seed decides which of two scenarios is made.
+    let seed = (suite.profile().records.tells == Tells::Templates).then(|| cases::text_of(&suite.seed()));
+    std::iter::once(cases::text_of(suite.profile())).chain(seed).chain(input.parts()).collect()
 }

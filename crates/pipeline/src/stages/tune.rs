@@ -1,6 +1,6 @@
 //! Scenarios to tuned scenarios: the nearest failure that stays true to the record.
 
-use super::cases::{brief, case_seed, scenario, text_of};
+use super::cases::{case_seed, scenario, text_of};
 use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
@@ -61,7 +61,7 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
             let (name, repairs) = (&cast.tune, Cell::new(0));
             let model = models.model(name, cast, &repairs);
             let records = bench.cases.records_of(cluster);
-            let brief = brief(suite, cluster, &records);
+            let brief = bench.cases.brief(suite, cluster, &records);
             let (narrative, draft, metrics) = (&narrative, &draft, &first.metrics);
             let propose = |history: &[TunePoint]| {
                 let told = TuneBrief { narrative, draft, metrics, parameters: &parameters, history };

@@ -222,7 +222,8 @@ fn model_accounts(
             continue;
         };
         let scenario_id = format!("eval-{}-{}", label.record.report_id, label.record.version);
-        let brief = Brief { scenario_id: &scenario_id, template, records: &[record], profile, seed: Seed(1) };
+        let brief =
+            Brief { scenario_id: &scenario_id, template, records: &[record], untold: None, profile, seed: Seed(1) };
         let repairs = Cell::new(0);
         let account = match models.model(&request.agent, &cast, &repairs).paraphrase(&brief) {
             Ok(told) => account_of(&told.value, profile),

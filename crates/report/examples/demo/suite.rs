@@ -508,6 +508,7 @@ pub fn demo_of(count: usize) -> Demo {
                 sha256: "5f2b51ca2fdc5baa31ec02e002f69aec0e48a8ad7cbf1c0a2f1fb1b8a1a3cf11".into(),
             }],
             usable: (0..usable).collect(),
+            untold: Default::default(),
             rejects: rejects.collect(),
             funnel: vec![
                 FunnelStep { name: "rows read".into(), remaining: usable + 5, lost: vec![] },
