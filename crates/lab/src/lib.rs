@@ -17,5 +17,5 @@ mod scoring;
 mod triage;
 
 pub use judging::{judge, judge_by, run_scenario, situation};
-pub use scoring::{Scoring, is_sound_contact};
+pub use scoring::{Scoring, is_sound, is_sound_contact};
 pub use triage::triage;

@@ -76,7 +76,7 @@ fn cluster(records: &RecordSet, space: &ClusteringSpace, number: usize, group: &
 
 /// Name of the scenario of a pick: its template and its report. Neither changes when other records come or go, or a later
 /// version of the report does.
-pub fn scenario_id(template: &Template, pick: &RecordRef) -> String {
+fn scenario_id(template: &Template, pick: &RecordRef) -> String {
     let report = &pick.report_id;
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if report.len() <= LONGEST_REPORT_ID && report.chars().all(plain) {

@@ -27,7 +27,6 @@ mod stratified;
 mod study;
 mod words;
 
-pub use assemble::scenario_id;
 pub use embedding::{EMBEDDING_GRID, Embedding};
 pub use lexical::{LEXICAL_DIMENSIONS, LEXICAL_NAME, lexical_embedding};
 pub use study::{budget_table, elbow, stability};

@@ -19,6 +19,9 @@ pub(crate) mod staged {
     pub(crate) use super::writing::Facts;
 }
 
+pub(crate) use paraphrase::narrative_of;
+pub(crate) use reading::collision_of;
+
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;
 use recrash_model::labelled::LabelledAccount;

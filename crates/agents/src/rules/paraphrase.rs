@@ -1,10 +1,11 @@
 //! From a record to a narrative: its own crash where it can be retold, else an invented one of the same template.
 
 use super::limits::LEAST_TOLD_SPEED_MPS;
-use super::reading::{Reading, Relation, read, side_from_zones};
+use super::reading::{Reading, Relation, read, reading_of_account, side_from_zones};
 use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
 use super::writing::{self, Facts};
 use crate::{AgentError, Brief, narrative_contradictions};
+use recrash_model::account::Account;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side};
@@ -41,7 +42,22 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
             (invent(&pick, brief, ways), Origin::Invented { reason })
         }
     };
-    let facts = complete(told, brief, &mut diagnostics);
+    let value = written(told, origin, brief, Author::Rules, &mut diagnostics);
+    Ok(Outcome { value, diagnostics })
+}
+
+/// The narrative of an account that somebody else has read.
+///
+/// # Errors
+/// Why it cannot be retold as the template, in a sentence.
+pub fn narrative_of(account: &Account, brief: &Brief, author: Author) -> Result<Narrative, String> {
+    let record = brief.records.first().ok_or("there is no record")?;
+    let told = retell(&reading_of_account(record, account), brief, stagings(&brief.template))?;
+    Ok(written(told, Origin::Own, brief, author, &mut Vec::new()))
+}
+
+fn written(told: Told, origin: Origin, brief: &Brief, author: Author, diagnostics: &mut Vec<Diagnostic>) -> Narrative {
+    let facts = complete(told, brief, diagnostics);
     let mut narrative = Narrative {
         format: NARRATIVE_FORMAT.to_owned(),
         scenario_id: brief.scenario_id.to_owned(),
@@ -50,10 +66,10 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
         text: String::new(),
         facts,
         origin,
-        author: Author::Rules,
+        author,
     };
     narrative.text = writing::text(&narrative);
-    Ok(Outcome { value: narrative, diagnostics })
+    narrative
 }
 
 /// What a record tells, or why it cannot be retold.

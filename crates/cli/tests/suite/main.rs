@@ -18,6 +18,7 @@ mod read;
 mod reconstruct;
 mod records;
 mod repeatable;
+mod second_reading;
 mod selection;
 mod stranger;
 mod suite_folder;

@@ -2,6 +2,7 @@
 
 use super::failures;
 use crate::error::PipelineError;
+use crate::models::cast::AgentLog;
 use crate::reading::scenarios::read_scenario;
 use crate::suite::names;
 use crate::suite::{Stage, Suite};
@@ -16,6 +17,7 @@ use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
 use recrash_roads::Scenario;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Records and picks.
 pub(crate) struct Cases {
@@ -25,6 +27,8 @@ pub(crate) struct Cases {
     pub selection: Selection,
     /// Accounts, in a suite that goes by them.
     pub accounts: Option<AccountSet>,
+    /// Who was asked to read which incident again.
+    pub readers: BTreeMap<String, AgentLog>,
 }
 
 impl Cases {
@@ -38,11 +42,13 @@ impl Cases {
         if selection.clusters.iter().any(|c| !named(c) || c.members.iter().any(|&m| m >= bound)) {
             return Err(suite.stale(Stage::Select));
         }
-        let accounts = match suite.profile().records.tells {
-            Tells::Templates => None,
-            Tells::Accounts => Some(suite.store().read_json(names::ACCOUNTS)?),
+        let (accounts, readers) = match suite.profile().records.tells {
+            Tells::Templates => (None, BTreeMap::new()),
+            Tells::Accounts => {
+                (Some(suite.store().read_json(names::ACCOUNTS)?), suite.store().read_json(names::ACCOUNT_READERS)?)
+            }
         };
-        Ok(Self { records, selection, accounts })
+        Ok(Self { records, selection, accounts, readers })
     }
 
     /// The account of a cluster's pick, in a suite that goes by accounts.
@@ -65,6 +71,13 @@ impl Cases {
     /// Those records.
     pub fn records_of(&self, cluster: &Cluster) -> Vec<&CrashRecord> {
         self.shown(cluster).into_iter().map(|index| &self.records.records[index]).collect()
+    }
+
+    /// What the built-in reader makes of these records of one incident.
+    pub fn read_by_rules(records: &[&CrashRecord]) -> Option<Account> {
+        let records: Vec<CrashRecord> = records.iter().copied().cloned().collect();
+        let incidents = recrash_reader::incidents(&records);
+        incidents.iter().find_map(recrash_reader::account)
     }
 
     /// The clusters that no stage before this one failed on.
@@ -92,13 +105,20 @@ impl Cases {
     }
 
     /// What an agent is told about a case. A model is shown all of its records, the rules read the pick.
-    pub fn brief<'a>(&'a self, suite: &'a Suite, cluster: &'a Cluster, records: &'a [&'a CrashRecord]) -> Brief<'a> {
+    pub fn brief<'a>(
+        &'a self,
+        suite: &'a Suite,
+        cluster: &'a Cluster,
+        records: &'a [&'a CrashRecord],
+        account: Option<&'a Account>,
+    ) -> Brief<'a> {
         Brief {
             scenario_id: &cluster.scenario_id,
             template: cluster.template,
             records,
             untold: self.untold(cluster),
             profile: suite.profile(),
+            account,
             seed: case_seed(suite, cluster),
         }
     }
@@ -130,12 +150,7 @@ pub(crate) fn text_of<T: Serialize>(value: &T) -> String {
 
 /// Seed of a case's random choices.
 pub(crate) fn case_seed(suite: &Suite, cluster: &Cluster) -> Seed {
-    case_seed_of(suite.seed(), &cluster.scenario_id)
-}
-
-/// The same, of the suite's seed.
-pub(crate) fn case_seed_of(suite: Seed, scenario_id: &str) -> Seed {
-    suite.child("case").child(scenario_id)
+    suite.seed().child("case").child(&cluster.scenario_id)
 }
 
 /// Reads and checks a scenario file of the suite; one that a person spoiled stops its case alone.

@@ -12,6 +12,7 @@ mod own;
 mod records;
 mod report;
 mod retold;
+mod second_reading;
 mod select;
 mod simulate;
 mod summary;

@@ -1,7 +1,6 @@
 //! Which records of a suite that goes by templates can be told as their own crash: what the rules read in them is what the
 //! account of their incident says, and a scenario of it is true to them.
 
-use super::cases::case_seed_of;
 use super::design::staged_by_rules;
 use rayon::prelude::*;
 use recrash_agents::{Brief, Paraphrase, Rules, disagreement, expectation};
@@ -20,7 +19,7 @@ pub(super) const TOLD_BY_ANOTHER: &str = "tells the same crash";
 /// speaks for it, else the first that can.
 ///
 /// The paper's ego drives, whatever the suite tests: which records are chosen does not depend on the system under test.
-pub(super) fn find_untold(set: &mut RecordSet, profile: &SystemProfile, seed: Seed) {
+pub(super) fn find_untold(set: &mut RecordSet, profile: &SystemProfile) {
     let place = |record: &CrashRecord| (record.provenance.file.clone(), record.provenance.row);
     let at: BTreeMap<_, usize> = set.usable.iter().map(|&at| (place(&set.records[at]), at)).collect();
     let untold_of = |incident: &recrash_model::incident::Incident| -> Vec<(usize, String)> {
@@ -35,7 +34,7 @@ pub(super) fn find_untold(set: &mut RecordSet, profile: &SystemProfile, seed: Se
             let record = &set.records[at];
             match told {
                 Some(told) => untold.push((at, format!("{} {TOLD_BY_ANOTHER}", told.id))),
-                None => match why_untold(record, account.as_ref(), profile, seed) {
+                None => match why_untold(record, account.as_ref(), profile) {
                     Some(why) => untold.push((at, why)),
                     None => told = Some(record),
                 },
@@ -49,12 +48,11 @@ pub(super) fn find_untold(set: &mut RecordSet, profile: &SystemProfile, seed: Se
 }
 
 /// Why a record's own crash cannot be told; nothing where it can.
-fn why_untold(record: &CrashRecord, account: Option<&Account>, profile: &SystemProfile, seed: Seed) -> Option<String> {
+fn why_untold(record: &CrashRecord, account: Option<&Account>, profile: &SystemProfile) -> Option<String> {
     let id = &record.id;
     let Some(template) = record.template() else { return Some(format!("{id} has no template")) };
-    let scenario_id = recrash_select::scenario_id(&template, id);
-    let seed = case_seed_of(seed, &scenario_id);
-    let brief = Brief { scenario_id: &scenario_id, template, records: &[record], untold: None, profile, seed };
+    let (scenario_id, seed) = (&id.to_string(), Seed(0));
+    let brief = Brief { scenario_id, template, records: &[record], untold: None, profile, account, seed };
     let narrative = match Rules.paraphrase(&brief) {
         Ok(outcome) => outcome.value,
         Err(why) => return Some(why.to_string()),

@@ -1,10 +1,11 @@
 //! The first stage: crash files to records.
 
-use super::{StageReport, StageWork, cases, own};
+use super::second_reading::{SecondReading, read_again};
+use super::{StageReport, StageWork, cases, own, player};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
 use crate::reading::records::RecordInput;
-use crate::reading::retelling::tell;
+use crate::reading::retelling::{Unread, tell};
 use crate::suite::Suite;
 use crate::suite::names;
 use recrash_model::account::{Account, AccountSet, CrashType};
@@ -24,7 +25,7 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         let profile = suite.profile();
         if profile.records.tells == Tells::Templates {
             let Outcome { mut value, mut diagnostics } = input.ingest(profile)?;
-            own::find_untold(&mut value, profile, suite.seed());
+            own::find_untold(&mut value, profile);
             diagnostics.push(what_is_told(&value));
             return Ok(vec![
                 (names::RECORDS.into(), to_compact_json(&value)),
@@ -32,8 +33,15 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
             ]);
         }
         let (Outcome { value, diagnostics }, filter) = input.ingest_all(profile)?;
-        let (told, accounts) = tell(value, filter.as_ref(), work.progress);
+        let mut logs = BTreeMap::new();
+        let mut again = |unread: &[Unread], all: usize| {
+            let SecondReading { accounts, logs: told } = read_again(suite, unread, all, work.progress)?;
+            logs = told;
+            Ok(accounts)
+        };
+        let (told, accounts) = tell(value, filter.as_ref(), work.progress, &mut again)?;
         Ok(vec![
+            (names::ACCOUNT_READERS.into(), to_json(&logs)),
             (names::RECORDS.into(), to_compact_json(&told)),
             (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
             (names::ACCOUNTS.into(), to_compact_json(&accounts)),
@@ -96,7 +104,7 @@ const TRIPLES_SHOWN: usize = 20;
 
 /// What decides which records come out.
 pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
-    // Where nobody tells who was first, the seed decides which of two scenarios is made.
-    let seed = (suite.profile().records.tells == Tells::Templates).then(|| cases::text_of(&suite.seed()));
-    std::iter::once(cases::text_of(suite.profile())).chain(seed).chain(input.parts()).collect()
+    let by_accounts = suite.profile().records.tells == Tells::Accounts;
+    let reader = by_accounts.then(|| player(suite, &suite.options().cast.paraphrase));
+    std::iter::once(cases::text_of(suite.profile())).chain(reader).chain(input.parts()).collect()
 }

@@ -18,6 +18,7 @@ use recrash_model::account::{
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::{Coded, CrashRecord, Engagement, Severity};
+use recrash_model::scenario::Author;
 use recrash_model::zones::ContactZone;
 
 /// Everything the fold looks at.
@@ -128,6 +129,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         damage: None,
         partner_left: left(&reading),
         contradictions: Vec::new(),
+        author: Author::Rules,
     };
     party::columns(&reading, &mut account);
     account.came_from = origin::came_from(&reading, &account);
@@ -145,6 +147,12 @@ pub fn account(incident: &Incident) -> Option<Account> {
         party::refine(&mut partner.zones, &record.cp_zones, "CP Contact Area");
     }
     Some(account)
+}
+
+/// Works out again what follows from the other facts of an account, where somebody else has read some of them.
+pub fn refold(account: &mut Account) {
+    account.scenario = types::scenario(account);
+    account.matrix = types::matrix(account);
 }
 
 /// Kind of the subject vehicle, by its make, where that makes trucks only.

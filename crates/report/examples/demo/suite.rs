@@ -321,7 +321,16 @@ fn tune_log(cluster: &Cluster, plan: &Plan, designed: f64) -> (TuneLog, f64) {
                 }
                 .into(),
                 values: vec![value, plan.ego_speed],
-                score: Score { objective, min_gap: Some(gap), findings, failed, refused },
+                score: Score {
+                    objective,
+                    min_gap: Some(gap),
+                    depth_m: None,
+                    contact_mps: None,
+                    braking: None,
+                    findings,
+                    failed,
+                    refused,
+                },
             }
         })
         .collect();
