@@ -1,7 +1,7 @@
 //! Whether a narrative tells the crash that the account of its incident tells.
 
 use crate::rules::staged::Facts;
-use recrash_model::account::{Account, ContactState, CrashType, LeftRight, Origin, told};
+use recrash_model::account::{Account, ContactState, CrashType, Kind, KindGroup, LeftRight, Origin, Source, told};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Narrative, Side};
 use recrash_model::profile::SystemProfile;
@@ -37,7 +37,18 @@ pub fn disagreement(narrative: &Narrative, account: &Account, profile: &SystemPr
         }
     }
     let facts = Facts(&narrative.facts);
-    let from = told(&account.came_from)?;
+    let came_from = account.came_from.as_ref()?;
+    let from = came_from.value;
+    let rides = partner.and_then(|partner| told(&partner.kind)).map(Kind::group);
+    let on_the_sidewalk = matches!(rides, Some(KindGroup::Cyclist | KindGroup::OnFoot))
+        && matches!(came_from.source, Source::Rule { .. })
+        && facts.approach() == Some(Approach::Same)
+        && side_of(from) == facts.side();
+    // Who goes along on the sidewalk and over the crosswalk is beside the road, and crosses it: where that is only inferred, both are
+    // the same.
+    if on_the_sidewalk {
+        return None;
+    }
     (!is_same_way(from, facts.approach()?, facts.side())).then(|| format!("the partner came {}", from.words()))
 }
 
@@ -66,18 +77,28 @@ fn goes_as(said: Movement, wanted: Movement, who: Who) -> bool {
     }
 }
 
+/// On which side a place of origin is.
+fn side_of(from: Origin) -> Option<Side> {
+    let side = match from {
+        Origin::Beside { side } | Origin::Cross { side } => Some(side),
+        Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => side,
+        Origin::Behind | Origin::Ahead | Origin::Opposite | Origin::Parked { .. } | Origin::Above => None,
+    };
+    side.map(|side| if side == LeftRight::Left { Side::Left } else { Side::Right })
+}
+
 /// Whether a place of origin is an approach of the templates.
 fn is_same_way(from: Origin, approach: Approach, side: Option<Side>) -> bool {
-    let side_of = |of: LeftRight| if of == LeftRight::Left { Side::Left } else { Side::Right };
-    let by_side = |of: LeftRight| match side_of(of) {
-        Side::Left => approach == Approach::Left,
-        Side::Right => approach == Approach::Right,
-    };
     match from {
         Origin::Opposite => approach == Approach::Opposite,
-        Origin::Beside { side: told } => approach == Approach::Same && side.is_none_or(|side| side == side_of(told)),
-        Origin::Cross { side } => by_side(side),
-        Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => side.is_none_or(by_side),
+        Origin::Beside { .. } => approach == Approach::Same && (side.is_none() || side == side_of(from)),
+        Origin::Cross { .. } | Origin::Stall { .. } | Origin::Driveway { .. } | Origin::Sidewalk { .. } => {
+            match side_of(from) {
+                Some(Side::Left) => approach == Approach::Left,
+                Some(Side::Right) => approach == Approach::Right,
+                None => true,
+            }
+        }
         Origin::Behind | Origin::Ahead | Origin::Parked { .. } | Origin::Above => false,
     }
 }

@@ -5,6 +5,7 @@ use clap::Args;
 use recrash_model::comparison::Change;
 use recrash_model::profile::Dedupe;
 use recrash_model::selection::{Strategy, Weighting};
+use recrash_model::tuning::Aim;
 use recrash_pipeline::{
     EmbeddingKind, FILTER_HELP, Options, Patience, Permissions, PipelineError, RecordSource, Resources, SimulatorKind,
     Suite,
@@ -122,6 +123,10 @@ pub struct SuiteArgs {
     /// Optimiser of the search: cma, halton. [default: cma]
     #[arg(long, value_name = "NAME")]
     pub searcher: Option<String>,
+    /// What the search looks for: failure (the nearest one) or severity (the contact with the greatest change of velocity).
+    /// [default: failure]
+    #[arg(long, value_name = "NAME", value_parser = aim)]
+    pub aim: Option<Aim>,
     /// Seed of everything random. [default: 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
@@ -263,6 +268,7 @@ impl SuiteArgs {
             ego: self.ego.clone().or(base.ego),
             tune_budget: self.tune_budget.map_or(base.tune_budget, |n| n as usize),
             searcher: self.searcher.clone().unwrap_or(base.searcher),
+            aim: self.aim.unwrap_or(base.aim),
             seed: self.seed.unwrap_or(base.seed),
             ..base
         }
@@ -294,6 +300,10 @@ fn dedupe(name: &str) -> Result<Dedupe, String> {
 
 fn strategy(name: &str) -> Result<Strategy, String> {
     one_of(&Strategy::ALL, Strategy::name, name)
+}
+
+fn aim(name: &str) -> Result<Aim, String> {
+    one_of(&Aim::ALL, Aim::name, name)
 }
 
 fn weighting(name: &str) -> Result<Weighting, String> {

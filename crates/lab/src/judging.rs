@@ -1,6 +1,6 @@
 //! Runs of scenarios, judged: whichever simulator gave the rollout, what is measured and said is the same.
 
-use recrash_metrics::{faithfulness, findings, measure};
+use recrash_metrics::{faithfulness, findings, measure, severity_of};
 use recrash_model::metrics::{Check, CheckKind, CheckResult, Expectation, Timed, Verdict};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::Rollout;
@@ -38,7 +38,8 @@ pub fn judge(
 pub fn judge_by(scenario: &Scenario, rollout: Rollout, profile: &SystemProfile, verdict: Verdict) -> JudgedRun {
     let metrics = measure(scenario, &rollout, &profile.failure);
     let found = findings(scenario, &rollout, &metrics, &profile.failure);
-    JudgedRun::new(rollout, metrics, found, verdict)
+    let severity = severity_of(&rollout);
+    JudgedRun::new(rollout, metrics, found, severity, verdict)
 }
 
 /// Nearer than this to what it crashed with in the record, the ego is in the situation of the record. [m]

@@ -8,7 +8,8 @@ use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Role, Rollout, STEP_S};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
-use recrash_model::tuning::{Parameter, Score, apply};
+use recrash_model::severity::Severity;
+use recrash_model::tuning::{Aim, Parameter, Score, apply};
 use recrash_roads::{RunError, Scenario, Simulator};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -34,6 +35,9 @@ const MAX_FAULTS: usize = 3;
 /// Worth of each kind of odd behaviour. [m]
 const ODD_BEHAVIOUR_WORTH_M: f64 = 0.1;
 
+/// Worth of a contact's change of velocity, where the search aims at severity: more than all else together. [m for each m/s]
+const HARM_WORTH: f64 = 1.0;
+
 /// Makes the scenario of a point.
 type Make<'a> = Box<dyn Fn(&[f64]) -> Result<Scenario, String> + 'a>;
 /// Runs and judges it.
@@ -47,6 +51,8 @@ pub struct Scoring<'a> {
     judge: Judge<'a>,
     /// Hardest braking of partners as designed, which the narrative asks for. [m/s^2]
     designed_braking_mps2: f64,
+    /// What the search looks for.
+    aim: Aim,
     /// Points that could not be run.
     faults: AtomicUsize,
 }
@@ -80,7 +86,13 @@ impl<'a> Scoring<'a> {
     ) -> Self {
         let designed_braking_mps2 = hardest_partner_braking(&first.rollout);
         let (make, judge) = (Box::new(make), Box::new(judge));
-        Self { parameters, make, judge, designed_braking_mps2, faults: AtomicUsize::new(0) }
+        Self { parameters, make, judge, designed_braking_mps2, aim: Aim::default(), faults: AtomicUsize::new(0) }
+    }
+
+    /// The same with another aim.
+    #[must_use]
+    pub fn aiming_at(self, aim: Aim) -> Self {
+        Self { aim, ..self }
     }
 
     /// Makes the scenario of the values, runs, measures and judges it.
@@ -119,8 +131,14 @@ impl<'a> Scoring<'a> {
             Some(depth_m) => -depth_m.min(MARGIN_M),
             None => run.metrics.min_gap.map_or(1e3, |gap| gap.value.max(MARGIN_M)),
         };
+        let harm = match self.aim {
+            Aim::Failure => 0.0,
+            Aim::Severity => run.severity.as_ref().map_or(0.0, Severity::harm_mps),
+        };
         Score {
-            objective: gap + DISTANCE_PRICE_M * self.distance(values) - ODD_BEHAVIOUR_WORTH_M * odd as f64,
+            objective: gap + DISTANCE_PRICE_M * self.distance(values)
+                - ODD_BEHAVIOUR_WORTH_M * odd as f64
+                - HARM_WORTH * harm,
             min_gap: run.metrics.min_gap,
             depth_m,
             contact_mps: run.metrics.contact.as_ref().map(|contact| (contact.ego_speed_mps, contact.other_speed_mps)),

@@ -1,15 +1,16 @@
-//! Failures of random scenarios: what they need, and how robust they are.
+//! Failures of random scenarios: what they need, how robust they are, and what a search for them aims at.
 
 use recrash_lab::minimal::{minimal, without_each};
 use recrash_lab::parity::random_scenario;
 use recrash_lab::robustness::robustness;
-use recrash_lab::run_scenario;
+use recrash_lab::{Scoring, run_scenario};
 use recrash_model::Seed;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::profile::{
     Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
 };
 use recrash_model::scenario::ScenarioDraft;
+use recrash_model::tuning::Aim;
 use recrash_sim::{Ego, Native};
 
 /// Failures that are looked at.
@@ -119,4 +120,28 @@ fn robustness_repeats_and_finds_what_lives_on_little() {
     assert!(marginal > 0 && share(true) < share(false) - 0.2);
     // The ego in the way of somebody far deeper than any change: nothing undoes it.
     assert!(all.iter().any(|found| found.share() == 1.0));
+}
+
+#[test]
+fn a_search_for_severity_takes_the_worse_contact_and_one_for_failures_does_not_ask() {
+    let (simulator, profile) = (Native::new(Ego::MetadriveIdm), profile());
+    let run = |scenario: &recrash_roads::Scenario| run_scenario(scenario, &simulator, &profile, None).unwrap();
+    let scenario = (0..)
+        .map(|number| random_scenario(14, number))
+        .find(|scenario| run(scenario).severity.is_some())
+        .expect("one that crashes");
+    let first = run(&scenario);
+    let objective = |aim: Aim, delta_v_mps: f64| {
+        let judge = |_: &recrash_roads::Scenario| {
+            let mut worse = first.clone();
+            let severity = worse.judgement.severity.as_mut().expect("it crashes");
+            (severity.first.delta_v_mps, severity.second.delta_v_mps) = (delta_v_mps, 1.0);
+            Ok(worse)
+        };
+        Scoring::of(&[], |_| Ok(scenario.clone()), judge, &first).aiming_at(aim).score(&[]).objective
+    };
+    assert_eq!(objective(Aim::Failure, 9.0), objective(Aim::Failure, 3.0));
+    assert!((objective(Aim::Severity, 3.0) - objective(Aim::Severity, 9.0) - 6.0).abs() < 1e-9);
+    // A contact of any harm is nearer to what is looked for than a gap.
+    assert!(objective(Aim::Severity, 0.0) < 0.1);
 }

@@ -10,6 +10,7 @@
 pub mod account;
 pub mod cause;
 pub mod comparison;
+pub mod coverage;
 pub mod diagnostic;
 pub mod frozen;
 pub mod geometry;

@@ -131,6 +131,26 @@ pub enum Severity {
     Fatality,
 }
 
+/// What is reported of the vehicles of both sides: whether one was towed, or its air bags deployed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct OfVehicles {
+    /// Of the subject vehicle; `None` where that is not known.
+    pub sv: Option<bool>,
+    /// Of the crash partner; `Some(false)` too where it has no such thing.
+    pub cp: Option<bool>,
+}
+
+impl OfVehicles {
+    /// Of any of the two; not known where one is not known and the other was not.
+    pub fn any(self) -> Option<bool> {
+        match (self.sv, self.cp) {
+            (Some(true), _) | (_, Some(true)) => Some(true),
+            (Some(false), Some(false)) => Some(false),
+            _ => None,
+        }
+    }
+}
+
 /// Which automation system was engaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -198,6 +218,12 @@ pub struct CrashRecord {
     pub cp_zones: Vec<ContactZone>,
     /// Highest injury severity alleged.
     pub severity: Coded<Severity>,
+    /// Whose vehicle was towed.
+    #[serde(default)]
+    pub towed: OfVehicles,
+    /// Whose air bags deployed.
+    #[serde(default)]
+    pub airbags: OfVehicles,
     /// Which automation was engaged.
     pub engagement: Coded<Engagement>,
     /// Narrative, as it stands in the file (characters that were encoded twice are mended). Untrusted text.

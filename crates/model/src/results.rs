@@ -130,8 +130,7 @@ impl TestOutcome {
 
     /// Greater change of velocity of the two in the contact; 0 where there is none. [m/s]
     pub fn harm_mps(&self) -> f64 {
-        let of = |severity: &Severity| severity.first.delta_v_mps.max(severity.second.delta_v_mps);
-        self.severity.as_ref().map_or(0.0, of)
+        self.severity.as_ref().map_or(0.0, Severity::harm_mps)
     }
 }
 

@@ -4,6 +4,7 @@
 use crate::hash::Fnv;
 use crate::metrics::{Answer, Finding, FindingKind, Metrics, Verdict};
 use crate::rollout::Rollout;
+use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 
 /// The judged runs' format tag.
@@ -39,11 +40,20 @@ pub struct Judgement {
     pub findings: Vec<Finding>,
     /// Whether the rollout is true to its record.
     pub verdict: Verdict,
+    /// How bad the ego's first contact with a road user is, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub severity: Option<Severity>,
 }
 
 impl JudgedRun {
     /// A run and what is said about it.
-    pub fn new(rollout: Rollout, metrics: Metrics, findings: Vec<Finding>, verdict: Verdict) -> Self {
+    pub fn new(
+        rollout: Rollout,
+        metrics: Metrics,
+        findings: Vec<Finding>,
+        severity: Option<Severity>,
+        verdict: Verdict,
+    ) -> Self {
         let judgement = Judgement {
             format: RUN_FORMAT.to_owned(),
             id: run_id(&rollout),
@@ -54,6 +64,7 @@ impl JudgedRun {
             metrics,
             findings,
             verdict,
+            severity,
         };
         Self { judgement, rollout }
     }

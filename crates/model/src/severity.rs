@@ -17,6 +17,21 @@ pub struct Severity {
     pub second: Suffered,
 }
 
+impl Severity {
+    /// What findings are ranked by: the greater change of velocity of the two. [m/s]
+    pub fn harm_mps(&self) -> f64 {
+        self.first.delta_v_mps.max(self.second.delta_v_mps)
+    }
+
+    /// The greater probability that somebody on one of the two sides is at least seriously injured; `None` where no published
+    /// curve covers the contact.
+    pub fn serious_injury(&self) -> Option<f64> {
+        let risks = self.first.risks.iter().chain(&self.second.risks);
+        let serious = risks.filter(|risk| risk.outcome == InjuryOutcome::Mais3).map(|risk| risk.probability);
+        serious.max_by(f64::total_cmp)
+    }
+}
+
 /// What one road user suffers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Suffered {
@@ -59,6 +74,58 @@ pub enum InjuryOutcome {
     Mais5,
     /// Dead.
     Fatal,
+}
+
+/// How far computed severity goes with what records report (`docs/models/severity.md`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SeverityAgreement {
+    /// Scenarios that tell their own crash with a contact of two road users.
+    pub contacts: usize,
+    /// Of those, the ones where the speeds of both at the contact are told, or they stood.
+    pub speeds_told: usize,
+    /// Rank correlations.
+    pub ranks: Vec<RankAgreement>,
+    /// Computed delta-v by reported injury, least harm first.
+    pub by_injury: Vec<HarmLevel>,
+}
+
+/// A quantity against an outcome.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RankAgreement {
+    /// The quantity.
+    pub measure: String,
+    /// What the record reports.
+    pub outcome: String,
+    /// Incidents of which both are known.
+    pub incidents: usize,
+    /// Of those, the ones with any harm.
+    pub harmed: usize,
+    /// Spearman's rho, ties at their mean rank; `None` where all are alike.
+    pub spearman: Option<Interval>,
+    /// Kendall's tau-b; `None` where all are alike.
+    pub kendall: Option<Interval>,
+}
+
+/// An estimate and its interval of 95 %.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// The estimate.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Incidents of one reported injury.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HarmLevel {
+    /// The injury that the record reports.
+    pub injury: String,
+    /// Incidents.
+    pub incidents: usize,
+    /// Median of the computed delta-v. [m/s]
+    pub median_delta_v_mps: f64,
 }
 
 /// A published risk curve (`docs/models/severity.md`).

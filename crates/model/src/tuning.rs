@@ -27,6 +27,30 @@ pub struct Parameter {
     pub reason: String,
 }
 
+/// What a search looks for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Aim {
+    /// The nearest failure: a small gap, a contact where there is one (the default).
+    #[default]
+    Failure,
+    /// The worst contact: a great change of velocity.
+    Severity,
+}
+
+impl Aim {
+    /// Every aim, the default first.
+    pub const ALL: [Self; 2] = [Self::Failure, Self::Severity];
+
+    /// Name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Failure => "failure",
+            Self::Severity => "severity",
+        }
+    }
+}
+
 /// What one point of a search scored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Score {

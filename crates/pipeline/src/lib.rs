@@ -46,7 +46,6 @@ pub use recrash_export::{Format, PartnersAs};
 pub use recrash_fetch::Limits as FetchLimits;
 pub use recrash_lab::causes::{CauseGroup, by_cause};
 pub use recrash_lab::run_scenario;
-pub use recrash_metrics::severity_of;
 pub use recrash_model::run::JudgedRun;
 pub use recrash_records::{Column, Distribution, FILTER_HELP, RecordTable, TableRows, distributions, record_table};
 pub use recrash_report::comparison::{github as github_annotations, sentence as comparison_sentence};
@@ -61,6 +60,7 @@ pub use stages::{
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
 pub use tools::accounts::{account_table, write_accounts};
+pub use tools::assessing::{SevereFailure, SuiteSeverity, suite_coverage, suite_severity};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};
 pub use tools::check_driver::{
     AvoidedBy, CheckDriverRequest, DriverCheck, GridCheck, LimitCheck, SpeedCheck, Survived, check_driver,

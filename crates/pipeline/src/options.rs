@@ -8,6 +8,7 @@ use crate::profiles::load_profile;
 use crate::simulators::SimulatorKind;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::selection::{Strategy, Weighting};
+use recrash_model::tuning::Aim;
 use recrash_select::SelectOptions;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -74,6 +75,9 @@ pub struct Options {
     pub tune_budget: usize,
     /// Optimiser of the search.
     pub searcher: String,
+    /// What the search looks for.
+    #[serde(default)]
+    pub aim: Aim,
     /// Seed of everything random.
     pub seed: u64,
 }
@@ -111,6 +115,7 @@ impl Default for Options {
             ego: None,
             tune_budget: 160,
             searcher: "cma".into(),
+            aim: Aim::default(),
             seed: 1,
         }
     }
@@ -152,6 +157,7 @@ impl Options {
         option("ego", self.ego.clone().unwrap_or_default(), String::new());
         option("tune-budget", self.tune_budget.to_string(), default.tune_budget.to_string());
         option("searcher", self.searcher.clone(), default.searcher);
+        option("aim", self.aim.name().into(), default.aim.name().into());
         option("seed", self.seed.to_string(), default.seed.to_string());
         words.join(" ")
     }

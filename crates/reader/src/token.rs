@@ -144,6 +144,9 @@ fn ends_sentence(tokens: &[Token], at: usize) -> bool {
             }
             let Some(before) = at.checked_sub(1).map(|at| &tokens[at]) else { return true };
             let Some(after) = tokens.get(at + 1) else { return true };
+            if after.text == "," {
+                return false;
+            }
             let initial = before.text.chars().count() == 1 && before.capital && before.kind == TokenKind::Word;
             let abbreviated = ABBREVIATIONS.contains(&before.text.as_str());
             let begins = after.capital || after.kind != TokenKind::Word || after.text == "\u{b6}";

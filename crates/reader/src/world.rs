@@ -21,6 +21,8 @@ pub struct Known {
     pub names: Vec<String>,
     /// The number of "Vehicle 2".
     pub number: Option<u8>,
+    /// "A second one", "another": it was brought on as another one of its kind.
+    pub another: bool,
     /// More than one.
     pub several: bool,
     /// The headline named it, and the story has not yet.
@@ -180,11 +182,28 @@ impl World {
             return Some(SUBJECT);
         }
         let has = |adjective: Adjective| noun.adjectives.contains(&adjective);
+        // "The shuttle" of a story that a shuttle tells, and that knows no other one.
+        let own = self.actors[SUBJECT].kind.is_some_and(|own| own == kind && kind.group() == KindGroup::Truck);
+        if own
+            && noun.article == Article::Definite
+            && !noun.several
+            && !has(Adjective::Other)
+            && !has(Adjective::Another)
+            && !self.actors[1..].iter().any(|known| known.kind == Some(kind))
+        {
+            return Some(SUBJECT);
+        }
         let fits = |known: &Known| {
             (known.kind.is_none() || known.kind.is_some_and(|known| same_kind(known, kind)))
                 && (noun.number.is_none() || known.number.is_none() || noun.number == known.number)
                 && !contradicts(&known.names, &noun.names)
         };
+        if has(Adjective::Another) && noun.article == Article::Definite {
+            let known = self.latest(|known| known.another && fits(known));
+            if known.is_some() {
+                return known;
+            }
+        }
         if has(Adjective::Another) {
             // A second one of a kind; the announced one only where nobody of the kind was met.
             let met = self.latest(|known| fits(known) && !known.announced).is_some();
@@ -204,8 +223,10 @@ impl World {
             return self.latest(|known| known.several && fits(known));
         }
         if has(Adjective::First) {
-            let first =
-                (1..self.actors.len()).find(|&actor| fits(&self.actors[actor]) && self.actors[actor].mentions > 0);
+            let first = (1..self.actors.len()).find(|&actor| {
+                let known = &self.actors[actor];
+                fits(known) && known.mentions > 0 && known.several == noun.several && !known.another
+            });
             if first.is_some() {
                 return first;
             }
@@ -221,7 +242,11 @@ impl World {
         });
         let exact = self.latest(|known| known.kind == Some(kind) && fits(known) && known.several == noun.several);
         let wide = self.latest(|known| fits(known) && known.several == noun.several);
-        let found = named.or(exact).or(wide);
+        // "the scooter rider" of "two people riding scooters".
+        let rider = matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle);
+        let one_of =
+            || self.latest(|known| rider && known.several && !noun.several && known.kind == Some(kind) && fits(known));
+        let found = named.or(exact).or(wide).or_else(one_of);
         // "The vehicle" of a story that knows no other one.
         if found.is_none()
             && hint.is_none()
@@ -267,8 +292,23 @@ impl World {
     }
 
     fn add(&mut self, noun: &Noun) -> Actor {
-        self.actors.push(Known { several: noun.several, ..Known::default() });
+        let another = noun.adjectives.contains(&Adjective::Another);
+        self.actors.push(Known { several: noun.several, another, ..Known::default() });
         self.actors.len() - 1
+    }
+
+    /// Somebody else of its kind, the one named last.
+    pub fn like(&self, actor: Actor) -> Option<Actor> {
+        let kind = self.actors[actor].kind?;
+        (1..self.actors.len())
+            .filter(|&other| other != actor && !self.actors[other].announced && !self.actors[other].several)
+            .filter(|&other| self.actors[other].kind.is_some_and(|known| same_kind(known, kind)))
+            .max_by_key(|&other| self.actors[other].last)
+    }
+
+    /// Who is called by this name.
+    pub fn by_name(&self, name: &str) -> Option<Actor> {
+        (1..self.actors.len()).rfind(|&actor| self.actors[actor].names.iter().any(|known| known == name))
     }
 }
 

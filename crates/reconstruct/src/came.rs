@@ -1,16 +1,21 @@
 //! How both came to where they touch: courses and speeds, told backwards from the contact.
 
 use crate::control;
-use crate::told::{Side, Told, Turning};
+use crate::door::Opening;
+use crate::ground::Ground;
+use crate::others::{self, Extra};
+use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::rollout::{ActorState, STEP_S};
 use recrash_model::scenario::{
-    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Place,
-    SCENARIO_FORMAT, ScenarioDraft, Size, Source, Trigger,
+    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Part,
+    Place, SCENARIO_FORMAT, ScenarioDraft, Size, Source, Trigger,
 };
+use recrash_model::template::Movement;
 use recrash_roads::Course;
 
 /// When they touch. [s]
@@ -22,12 +27,6 @@ const HANDOVER_BEFORE_S: f64 = 5.0;
 /// Before it began to brake for its stop, the ego still rolls for so long under the system under test. [s]
 const ROLLS_S: f64 = 1.0;
 
-/// Name of who stands ahead of the ego, as the reason why it stood.
-pub(crate) const LEAD: &str = "lead";
-
-/// From the ego's front to the rear of who stands ahead of it. [m]
-const LEAD_GAP_M: f64 = 2.5;
-
 /// Deceleration of who comes to a stop before it is hit. [m/s^2]
 const STOPPING_MPS2: f64 = 2.0;
 
@@ -36,6 +35,9 @@ const STOOD_S: f64 = 2.0;
 
 /// Acceleration of who sets off. [m/s^2]
 const SETS_OFF_MPS2: f64 = 1.2;
+
+/// Acceleration of who stood before, and is under way at the contact. [m/s^2]
+const STARTS_MPS2: f64 = 1.6;
 
 /// Speed of others on their way to a stop. [m/s]
 const ROLLING_MPS: f64 = 7.0;
@@ -83,7 +85,8 @@ fn next(deed: Deed) -> Act {
 
 /// How the ego's speed comes to what it is at the contact.
 fn ego_pace(told: &Told) -> Pace {
-    let waits_behind = told.origin == Origin::Behind && told.cp.state == ContactState::SettingOff;
+    let waits_behind =
+        told.origin == Origin::Behind && (told.cp.state == ContactState::SettingOff || told.cp.stood_first);
     pace(&told.sv, told.choices.rolling_mps, if waits_behind { STOOD_LONG_S } else { told.choices.stood_s })
 }
 
@@ -96,7 +99,9 @@ fn partner_pace(told: &Told) -> Pace {
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     match cp.state {
         // It came to a stop behind the ego before it set off.
-        ContactState::SettingOff if told.origin == Origin::Behind && ego.driven_m > usual.driven_m => {
+        ContactState::SettingOff | ContactState::Moving
+            if told.origin == Origin::Behind && ego.driven_m > usual.driven_m && !usual.acts.is_empty() =>
+        {
             let moving_s = CONTACT_S - first_time(&usual.acts);
             let braking_s = ROLLING_MPS / STOPPING_MPS2;
             let from_s = ((CONTACT_S - moving_s - WAITED_S - braking_s) * 10.0).floor() / 10.0;
@@ -109,11 +114,28 @@ fn partner_pace(told: &Told) -> Pace {
         ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
             sets_off(cp.speed_mps, (0.8 * ego.driven_m).max(0.2))
         }
+        ContactState::Reversing => start_over(cp.speed_mps, REVERSES_M).unwrap_or(usual),
+        // Who comes from the kerb or out of a stall stood there.
+        ContactState::Moving if cp.movement == Some(Movement::EnteringTraffic) && from_stand(told.origin) => {
+            let moving_s = (2.0 * PULL_OUT_M / cp.speed_mps * 10.0).round() / 10.0;
+            let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
+            Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
+        }
         ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
             Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 }
         }
         _ => usual,
     }
+}
+
+/// How far somebody has reversed at the contact. [m]
+const REVERSES_M: f64 = 2.5;
+
+/// From how far away somebody pulls out. [m]
+const PULL_OUT_M: f64 = 8.0;
+
+fn from_stand(origin: Origin) -> bool {
+    !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)
 }
 
 fn first_time(acts: &[Act]) -> f64 {
@@ -148,6 +170,12 @@ fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
             ];
             Pace { speed_mps: rolling_mps, acts, driven_m }
         }
+        ContactState::Moving if side.stood_first => {
+            let moving_s = ((side.speed_mps / STARTS_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
+            let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2: side.speed_mps / moving_s };
+            let driven_m = 0.5 * side.speed_mps * moving_s;
+            Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m }
+        }
         ContactState::SettingOff | ContactState::Reversing => {
             // So that it sets off at a step: the rate gives way.
             let moving_s = ((side.speed_mps / SETS_OFF_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
@@ -162,26 +190,45 @@ fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
     }
 }
 
-/// Who stopped at a stop line, and is past it at the contact, sets off from that line.
-fn from_line(told: &Told, staging: &Staging) -> Option<Pace> {
-    let (sv, ground) = (&told.sv, &staging.ground);
-    let said = sv.control.filter(|said| said.obeyed != Some(Obeyed::No))?;
-    let stops = sv.state == ContactState::SettingOff
-        || sv.state == ContactState::Moving && said.device == ControlDevice::StopSign;
-    let driven_m = staging.sv_s_m - (ground.first_m() - 0.5 * size_of(sv).0 - AT_LINE_M);
-    if !stops || !ground.junction || driven_m < 0.3 {
+/// Who stood before a junction, and is in it at the contact, sets off from its stop line.
+fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
+    let sv = &told.sv;
+    let stops = match sv.control.filter(|said| said.obeyed != Some(Obeyed::No)) {
+        Some(said) => sv.state == ContactState::SettingOff || sv.stood_first || said.device == ControlDevice::StopSign,
+        None => sv.stood_first,
+    };
+    let stops = stops && matches!(sv.state, ContactState::SettingOff | ContactState::Moving);
+    let driven_m = sv_s_m - (ground.first_m() - 0.5 * size_of(sv).0 - AT_LINE_M);
+    if !stops || !ground.junction {
         return None;
     }
-    // It gains its speed on the way, or earlier and keeps it.
-    let rate_mps2 = (0.5 * sv.speed_mps * sv.speed_mps / driven_m).max(SETS_OFF_MPS2);
-    let gaining_s = sv.speed_mps / rate_mps2;
-    let moving_s = gaining_s + (driven_m - 0.5 * sv.speed_mps * gaining_s) / sv.speed_mps;
+    start_over(sv.speed_mps, driven_m)
+}
+
+/// Who stood beside the ego before a junction sets off from the same line.
+fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
+    let (cp, ground) = (&told.cp, &staging.ground);
+    if !cp.stood_first || !ground.junction || !matches!(told.origin, Origin::Beside { .. }) {
+        return None;
+    }
+    let line_m = ground.first_m() - 0.5 * size_of(cp).0 - AT_LINE_M;
+    start_over(cp.speed_mps, ground.beside(staging.cp.position).0 - line_m)
+}
+
+/// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.
+fn start_over(speed_mps: f64, driven_m: f64) -> Option<Pace> {
+    if driven_m < 0.3 {
+        return None;
+    }
+    let rate_mps2 = (0.5 * speed_mps * speed_mps / driven_m).max(SETS_OFF_MPS2);
+    let gaining_s = speed_mps / rate_mps2;
+    let moving_s = gaining_s + (driven_m - 0.5 * speed_mps * gaining_s) / speed_mps;
     if moving_s > CONTACT_S - 1.0 || rate_mps2 > STRONGEST_START_MPS2 {
         return None;
     }
     // It sets off at a step.
     let from_s = ((CONTACT_S - moving_s) * 10.0).round() / 10.0;
-    let go = Deed::Speed { to_mps: sv.speed_mps, rate_mps2 };
+    let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
     Some(Pace { speed_mps: 0.0, acts: vec![when(from_s, go)], driven_m })
 }
 
@@ -194,9 +241,17 @@ const AT_LINE_M: f64 = 0.5;
 /// The scenario of a staging.
 pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> ScenarioDraft {
     let ground = &staging.ground;
-    let recorded = ego_plan(told, staging);
+    let mut recorded = ego_plan(told, &staging.ground, staging.sv_s_m, staging.sv);
     let (mut actors, objects) = partner(told, staging);
-    actors.extend(told.lead.then(|| lead(told, staging)));
+    let mut parts = Vec::new();
+    if let Some(door) = &staging.door {
+        let cp = actors.iter_mut().find(|actor| actor.id == "cp");
+        match cp.filter(|_| !door.of_sv) {
+            Some(cp) => opens(door, &mut cp.plan, &mut cp.parts),
+            None => opens(door, &mut recorded, &mut parts),
+        }
+    }
+    actors.extend(others::actors(told, staging));
     let control = control::devices(told, ground);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
@@ -227,6 +282,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             recorded: Some(recorded),
             handover_s,
             stops: mission_stop(told, staging),
+            parts,
             ..EgoSpec::default()
         },
         control,
@@ -237,40 +293,93 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     }
 }
 
+/// Somebody opens a door.
+fn opens(door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<Part>) {
+    let (to_deg, over_s) = Opening::SWING;
+    parts.push(door.part.clone());
+    plan.acts.push(when(CONTACT_S - door.before_s, Deed::Part { part: door.part.id.clone(), to_deg, over_s }));
+}
+
 /// Where the task of the system under test has it stop: where it stood, unless something in the scene makes it stop there. What
 /// made the recorded driver stop is then part of the task.
 fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
     let at_line = staging.ground.junction && told.sv.control.is_some();
-    if told.sv.state != ContactState::Stopped || told.lead || at_line {
+    if told.sv.state != ContactState::Stopped || told.extras.contains(&Extra::Lead) || at_line {
         return Vec::new();
     }
     vec![MissionStop { s_m: staging.sv_s_m, t_m: 0.0, for_s: None }]
 }
 
-/// Somebody who stands ahead of the ego where it comes to its stop.
-fn lead(told: &Told, staging: &Staging) -> Actor {
-    let car_m = recrash_model::vehicle::VehicleSpec::of(PartnerKind::PassengerCar).length_m;
-    let ahead_m = 0.5 * (size_of(&told.sv).0 + car_m) + LEAD_GAP_M;
-    let at = staging.sv.position + Vec2::from_heading(staging.sv.heading) * ahead_m;
-    let plan = ActorPlan::standing(Place::at(at.x, at.y, staging.sv.heading.to_degrees()));
-    Actor { id: LEAD.to_owned(), kind: PartnerKind::PassengerCar, size: None, parts: Vec::new(), plan }
+/// Straight on at a speed.
+pub(crate) fn straight_plan(start: Vec2, way: Vec2, speed_mps: f64) -> ActorPlan {
+    let degrees = math::atan2(way.y, way.x).to_degrees();
+    let to = start + way * (speed_mps * CONTACT_S + beyond_m(speed_mps));
+    ActorPlan {
+        speed_mps,
+        course: vec![Leg::Curve { to: Place::at(to.x, to.y, degrees), reverse: false }],
+        ..ActorPlan::standing(Place::at(start.x, start.y, degrees))
+    }
 }
 
-fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
-    let ground = &staging.ground;
-    let pace = from_line(told, staging).unwrap_or_else(|| ego_pace(told));
+/// Where the ego is at the contact, when its centre has come so far along its way; nothing where it cannot come there. Who leaves its
+/// line is driven there alone.
+pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pose> {
+    let on_way = ground.sv_pose(sv_s_m);
+    if told.sv_aside().is_none() {
+        return Some(on_way);
+    }
+    let alone = ScenarioDraft {
+        format: SCENARIO_FORMAT.to_owned(),
+        id: "alone".to_owned(),
+        map: MapSpec::G(ground.map.clone()),
+        ego: EgoSpec {
+            kind: told.sv.kind,
+            size: told.sv.size,
+            lane: ground.lane,
+            target_speed_mps: 10.0,
+            route: ground.route.clone(),
+            recorded: Some(ego_plan(told, ground, sv_s_m, on_way)),
+            ..EgoSpec::default()
+        },
+        duration_s: 14.0,
+        ..ScenarioDraft::default()
+    };
+    let scenario = recrash_roads::check(alone).ok()?.value;
+    let rollout = recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded);
+    rollout.ego_track().states.get((CONTACT_S / STEP_S).round() as usize).map(ActorState::pose)
+}
+
+/// How long a lane change or a drift takes, and the least and the most that is driven meanwhile. [s, m]
+const ASIDE_S: f64 = 4.0;
+const ASIDE_M: (f64, f64) = (14.0, 60.0);
+
+/// The move out of the ego's line, half done at the contact.
+fn shift(aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
+    let half_m = (0.5 * ASIDE_S * speed_mps).clamp(0.5 * ASIDE_M.0, 0.5 * ASIDE_M.1);
+    let (half_m, from_s) = if half_m < pace.driven_m && pace.acts.is_empty() {
+        (half_m, CONTACT_S - half_m / speed_mps)
+    } else {
+        (pace.driven_m.max(1.0), first_time(&pace.acts))
+    };
+    when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
+}
+
+fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
+    let mut pace = from_line(told, ground, sv_s_m).unwrap_or_else(|| ego_pace(told));
+    let aside = told.sv_aside();
+    pace.acts.extend(aside.map(|aside| shift(aside, &pace, told.sv.speed_mps)));
     let lane = |s_m: f64| Place::Lane {
         road: ground.route[0].clone(),
         lane: ground.lane,
         along: Along::FromStart(s_m),
-        t_m: 0.0,
+        t_m: aside.map_or(0.0, |aside| aside.from_t_m),
         heading_deg: 0.0,
     };
     if told.sv.state == ContactState::Reversing {
-        let back = Vec2::from_heading(staging.sv.heading);
-        let start = staging.sv.position + back * pace.driven_m;
-        let to = staging.sv.position - back * beyond_m(told.sv.speed_mps);
-        let degrees = staging.sv.heading.to_degrees();
+        let back = Vec2::from_heading(sv.heading);
+        let start = sv.position + back * pace.driven_m;
+        let to = sv.position - back * beyond_m(told.sv.speed_mps);
+        let degrees = sv.heading.to_degrees();
         return ActorPlan {
             speed_mps: 0.0,
             course: vec![Leg::Curve { to: Place::at(to.x, to.y, degrees), reverse: true }],
@@ -278,7 +387,7 @@ fn ego_plan(told: &Told, staging: &Staging) -> ActorPlan {
             ..ActorPlan::standing(Place::at(start.x, start.y, degrees))
         };
     }
-    let start_m = staging.sv_s_m - pace.driven_m;
+    let start_m = sv_s_m - pace.driven_m;
     let course = if pace.driven_m == 0.0 {
         Vec::new()
     } else {
@@ -307,7 +416,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if told.is_thrown() {
         return (thrown(told, staging), Vec::new());
     }
-    let pace = partner_pace(told);
+    let pace = beside_from_line(told, staging).unwrap_or_else(|| partner_pace(told));
     let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
@@ -345,46 +454,78 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
     let motion = |heading: f64| Vec2::from_heading(heading) * gear;
     let beyond =
         Pose { position: staging.cp.position + motion(staging.cp.heading) * beyond_m(cp.speed_mps), ..staging.cp };
-    let bent = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > 0.01;
     let length = |start: Pose| -> Option<f64> {
         let mut course = Course::begin(arm_m);
         course.curve(start, staging.cp, reverse).then(|| course.length_m())
     };
-    let start_at = |back_m: f64| start(told, staging, back_m, motion);
     // As far back as makes the line as long as what is driven.
-    let mut back_m = pace.driven_m;
-    for _ in 0..30 {
-        let Some(found) = length(start_at(back_m)) else { break };
-        back_m += pace.driven_m - found;
-        back_m = back_m.max(0.1);
+    let fitted = |aside: bool| -> Option<Pose> {
+        let mut back_m = pace.driven_m;
+        for _ in 0..30 {
+            let found = length(start(told, staging, back_m, aside, motion))?;
+            back_m = (back_m + pace.driven_m - found).max(0.1);
+        }
+        let begin = start(told, staging, back_m, aside, motion);
+        length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
+    };
+    if let Some((begin, mut course)) = with_its_turn(told, staging, &pace, arm_m) {
+        course.push(beyond);
+        let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
+        return ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
     }
-    let mut begin = start_at(back_m);
-    let fits = length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02);
-    if !fits || (!bent && beside(told).is_none()) {
-        // Straight on.
-        begin = Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
-    }
+    let straight = || Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
+    let begin = fitted(true).or_else(|| fitted(false)).unwrap_or_else(straight);
     let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
     ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) }
 }
 
-/// Where the partner begins, this far back: on a line with the contact or in the lane it comes from, headed as it came.
-fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Vec2) -> Pose {
+/// Who turns with the ego, behind it or beside it, comes by its way: where it begins, and the poses that it drives by to the contact.
+fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let (ground, cp) = (&staging.ground, staging.cp);
+    let reverses = told.cp.state == ContactState::Reversing;
+    if !matches!(told.origin, Origin::Behind | Origin::Beside { .. }) || told.sv.turning == Turning::No || reverses {
+        return None;
+    }
+    let (met_m, beside_m) = ground.beside(cp.position);
+    [3.0, 5.0, 8.0].into_iter().find_map(|joins_m| {
+        let last_m = met_m - joins_m;
+        let mut join = Course::begin(arm_m);
+        if !join.curve(ground.pose(last_m, beside_m), cp, false) {
+            return None;
+        }
+        let begin_m = last_m - (pace.driven_m - join.length_m());
+        let turn_m = (last_m - ground.first_m()).max(0.0);
+        let steps = (turn_m / PIECE_M).ceil() as usize;
+        let on_way = (0..=steps).map(|step| last_m - turn_m * (1.0 - step as f64 / steps.max(1) as f64));
+        let on_way = on_way.filter(|s_m| *s_m > begin_m + 0.5).map(|s_m| ground.pose(s_m, beside_m));
+        (begin_m < last_m - 1.0).then(|| (ground.pose(begin_m, beside_m), on_way.chain([cp]).collect()))
+    })
+}
+
+/// The way through a turn is drawn in pieces of about this length. [m]
+const PIECE_M: f64 = 3.0;
+
+/// Where the partner begins, this far back, headed as it came: in the lane it comes from, or so that an arc leads to the contact.
+fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl Fn(f64) -> Vec2) -> Pose {
     let came = staging.cp_came;
     let way = motion(came);
     let turn = math::wrap_angle(staging.cp.heading - came);
     let mut position = staging.cp.position - way * back_m;
-    if told.cp.turning != Turning::No && turn.abs() > 0.1 {
+    let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
+    let from_left_m = told.cp_from_left_m().filter(|_| aside && !turns);
+    let beside = beside(told).filter(|_| aside && !turns);
+    if let Some(from_left_m) = from_left_m {
+        position.y = staging.cp.position.y + from_left_m;
+    } else if let Some(side) = beside {
+        let right = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        position.y = staging.sv.position.y - right * crate::ground::LANE_M;
+    } else if turn.abs() > 0.01 {
         // An arc of a usual radius before the contact: beside the line of the contact, by what the arc gains.
-        let radius = 8.0_f64.min(back_m / turn.abs());
+        let radius = if turns { 8.0_f64 } else { 15.0 }.min(back_m / turn.abs());
         let (gain, along) = (radius * (1.0 - math::cos(turn)), radius * math::sin(turn.abs()));
         position = staging.cp.position
             - way * (along + (back_m - radius * turn.abs()).max(0.0))
             - way.left() * (gain * turn.signum());
-    } else if let Some(side) = beside(told) {
-        let right = if side == LeftRight::Left { -1.0 } else { 1.0 };
-        let lane_y = staging.sv.position.y - right * crate::ground::LANE_M;
-        position.y = lane_y;
     }
     Pose { position, heading: came }
 }
@@ -392,7 +533,8 @@ fn start(told: &Told, staging: &Staging, back_m: f64, motion: impl Fn(f64) -> Ve
 /// On which side of the ego's lane the partner comes along.
 fn beside(told: &Told) -> Option<LeftRight> {
     match told.origin {
-        Origin::Beside { side } => Some(side),
+        // It keeps its lane where the ego changes lanes.
+        Origin::Beside { side } => told.sv_aside().is_none().then_some(side),
         Origin::Behind if told.cp.lane == Some(LaneWord::Opposing) => Some(LeftRight::Left),
         _ => None,
     }

@@ -1,19 +1,21 @@
 //! Told facts, held against a rollout. Nothing here reads the scenario: only who was where.
 
-use crate::came::LEAD;
 use crate::control;
-use crate::told::{Told, Turning};
+use crate::door;
+use crate::movement::{self, Way};
+use crate::others;
+use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
-    ContactState, Control as Said, ControlDevice, LaneWord, LeftRight, Obeyed, Origin, StandReason,
+    ContactState, Control as Said, ControlDevice, LaneWord, LeftRight, Obeyed, Origin, StandReason, Striker,
 };
-use recrash_model::geometry::{OrientedBox, Vec2};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::narrative::FirstMover;
-use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout};
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
 use recrash_model::zones::ContactZone;
 use recrash_roads::Scenario;
 
@@ -74,7 +76,19 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     );
     let ego_track = rollout.ego_track();
     let ego_box = OrientedBox::new(touch.ego.pose(), ego_track.length_m, ego_track.width_m);
-    let geometry = contact_geometry(&ego_box, touch.ego.velocity(), &touch.other_box, touch.other.velocity());
+    let (ego_part, other_part) = parts_that_touch(rollout, &touch, &ego_box);
+    let mut geometry = contact_geometry(
+        ego_part.as_ref().unwrap_or(&ego_box),
+        touch.ego.velocity(),
+        other_part.as_ref().unwrap_or(&touch.other_box),
+        touch.other.velocity(),
+    );
+    if let Some(part) = &ego_part {
+        geometry.ego_zone = door::zone_of(&ego_box, part);
+    }
+    if let Some(part) = &other_part {
+        geometry.other_zone = door::zone_of(&touch.other_box, part);
+    }
     if !told.sv.zones.is_empty() {
         let near = is_near(&told.sv.zones, geometry.ego_zone, &ego_box, geometry.point);
         fact(CheckKind::SvZones, near, zone_words(&told.sv.zones), geometry.ego_zone.label().to_owned());
@@ -83,17 +97,17 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
         fact(CheckKind::CpZones, near, zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
     }
-    let speed_words = |state: &ActorState| format!("{:.2} m/s", state.speed());
-    if told.sv.state_told {
-        let shown = state(told.sv.state, ego_track, &touch.ego, touch.time_s);
-        fact(CheckKind::SvState, shown, told.sv.state.label().to_owned(), speed_words(&touch.ego));
-    }
-    if told.cp.state_told
-        && let Some(track) = touch.track
-    {
+    let mut states = vec![(CheckKind::SvState, &told.sv, ego_track, &touch.ego)];
+    states.extend(touch.track.map(|track| (CheckKind::CpState, &told.cp, track, &touch.other)));
+    for (kind, side, track, seen) in states.into_iter().filter(|(_, side, ..)| side.state_told) {
         // Who is pushed moves when it touches.
-        let shown = told.pushed || state(told.cp.state, track, &touch.other, touch.time_s);
-        fact(CheckKind::CpState, shown, told.cp.state.label().to_owned(), speed_words(&touch.other));
+        let pushed = kind == CheckKind::CpState && told.pushed;
+        let stood = stood(track, touch.time_s);
+        let shown = pushed || state(side.state, track, seen, touch.time_s) && (stood || !side.stood_first);
+        let (before, after) =
+            (if side.stood_first { ", had stood" } else { "" }, if stood { ", had stood" } else { "" });
+        let expected = format!("{}{before}", side.state.label());
+        fact(kind, shown, expected, format!("{:.2} m/s{after}", seen.speed()));
     }
     for (kind, impact_mps, seen) in
         [(CheckKind::SvSpeed, told.sv.impact_mps, &touch.ego), (CheckKind::CpSpeed, told.cp.impact_mps, &touch.other)]
@@ -114,23 +128,33 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let observed = if before { "touched by another before" } else { "touched by nobody before" };
         fact(CheckKind::PassedOn, before, "another touched the partner first".to_owned(), observed.to_owned());
     }
-    if told.sv.movement.is_some() && told.sv.turning != Turning::Round {
-        let turned = turned(ego_track, touch.time_s);
-        fact(CheckKind::SvMovement, fits(told.sv.turning, turned), turn_word(told.sv.turning), turned_words(turned));
+    let mut ways = vec![(CheckKind::SvMovement, &told.sv, ego_track, touch.track, touch.other)];
+    ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
+    for (kind, side, track, other, met) in ways {
+        let way = Way { scenario, track, other, met, time_s: touch.time_s };
+        if let Some((expected, result, observed)) = movement::check(side, &way) {
+            list.push(Check { kind, expected, observed, result });
+        }
     }
-    if let Some(track) = touch.track {
-        if told.cp.movement.is_some() && told.cp.turning != Turning::Round && told.cp.state != ContactState::Reversing {
-            let turned = turned(track, touch.time_s);
-            let shown = fits(told.cp.turning, turned);
-            fact(CheckKind::CpMovement, shown, turn_word(told.cp.turning), turned_words(turned));
-        }
-        if told.origin_told {
-            let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
-            fact(CheckKind::Approach, shown, told.origin.words(), observed);
-        }
+    let mut fact = |kind: CheckKind, shown: bool, expected: String, observed: String| {
+        let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
+        list.push(Check { kind, expected, observed, result });
+    };
+    if let Some(track) = touch.track.filter(|_| told.origin_told) {
+        let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
+        fact(CheckKind::Approach, shown, told.origin.words(), observed);
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
-        let (shown, observed) = order(first, ego_track, track, geometry.point, touch.time_s);
+        // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens.
+        let ego_reach_m = if ego_part.is_some() { door::DOOR_M } else { NEAR_M };
+        let number = rollout.actors.iter().position(|other| other.id == track.id);
+        let door = rollout.actors.iter().find(|other| other.part_of.is_some() && other.part_of == number);
+        let (partner, partner_reach_m) = match door.filter(|_| other_part.is_some()) {
+            Some(door) => (door, MET_M),
+            None => (track, NEAR_M),
+        };
+        let (shown, observed) =
+            order(first, [(ego_track, ego_reach_m), (partner, partner_reach_m)], geometry.point, touch.time_s);
         fact(CheckKind::Order, shown, first.words().to_owned(), observed);
     }
     let mut held = |kind: CheckKind, expected: String, (result, observed): (CheckResult, String)| {
@@ -159,10 +183,16 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let result = if drawn >= told.others { CheckResult::Shown } else { CheckResult::CannotBeShown };
         held(CheckKind::Others, format!("{} more", told.others), (result, format!("{drawn} more")));
     }
-    if told.door {
-        // The bodies touch where a door did: that is another crash.
-        let seen = (CheckResult::NotShown, "doors of reconstructions stay shut".to_owned());
-        held(CheckKind::Door, "a door took part".to_owned(), seen);
+    if let Some(owner) = told.door {
+        let by_door = if owner == Striker::Sv { ego_part.is_some() } else { other_part.is_some() };
+        let observed = match (ego_part.is_some(), other_part.is_some()) {
+            (false, false) => "bodies touched",
+            (true, _) => "the ego's door",
+            (_, true) => "the partner's door",
+        };
+        let result = if by_door { CheckResult::Shown } else { CheckResult::NotShown };
+        let whose = if owner == Striker::Sv { "the ego's door" } else { "the partner's door" };
+        held(CheckKind::Door, whose.to_owned(), (result, observed.to_owned()));
     }
     list
 }
@@ -208,9 +238,6 @@ fn lane(word: LaneWord, scenario: &Scenario, ego: &ActorTrack, track: &ActorTrac
     (result, format!("lane {} of {}, from the left", number + 1, lanes.len()))
 }
 
-/// Who stands behind somebody is no farther from it. [m]
-const BEHIND_M: f64 = 8.0;
-
 /// Whether the scene holds what the ego stood for.
 fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (CheckResult, String) {
     let (draft, ego) = (scenario.draft(), rollout.ego_track());
@@ -218,23 +245,13 @@ fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (
         let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
         control::check(said, scenario, ego, time_s).0 == CheckResult::Shown
     };
-    let ahead = || {
-        let step = ((time_s * 10.0) as usize).min(ego.states.len() - 1);
-        let state = &ego.states[step];
-        rollout.actors.iter().filter(|track| track.id == LEAD).any(|track| {
-            let way = track.states[step.min(track.states.len() - 1)].position() - state.position();
-            way.dot(Vec2::from_heading(state.heading)) > 0.0 && way.length() < BEHIND_M + ego.length_m
-        })
-    };
     let holds = |reason: &StandReason| match reason {
         StandReason::RedLight => controlled(ControlDevice::Signal),
         StandReason::StopSign => controlled(ControlDevice::StopSign),
-        StandReason::Queue | StandReason::LeadVehicle => ahead(),
         StandReason::PickupDropoff => !draft.ego.stops.is_empty(),
-        StandReason::Parked => told.sv.state == ContactState::Parked,
-        _ => false,
+        other => others::holds(told, *other, rollout, time_s),
     };
-    match told.reasons.iter().any(holds) {
+    match told.reasons.iter().all(holds) {
         true => (CheckResult::Shown, "in the scene".to_owned()),
         false => (CheckResult::CannotBeShown, "not in the scene".to_owned()),
     }
@@ -245,13 +262,13 @@ fn zone_words(zones: &[ContactZone]) -> String {
 }
 
 /// Whether who is told to have been first was at the place of the contact first, and by how much.
-fn order(first: FirstMover, ego: &ActorTrack, other: &ActorTrack, point: Vec2, time_s: f64) -> (bool, String) {
-    let there_s = |track: &ActorTrack| {
+fn order(first: FirstMover, [ego, other]: [(&ActorTrack, f64); 2], point: Vec2, time_s: f64) -> (bool, String) {
+    let there_s = |(track, reach_m): (&ActorTrack, f64)| {
         let until = ((time_s * 10.0).ceil() as usize + 1).min(track.states.len());
         let covers = |step: &usize| {
             let outline = track.outline(*step);
             let local = outline.to_local(point);
-            local.x.abs() <= outline.half_length + NEAR_M && local.y.abs() <= outline.half_width + NEAR_M
+            local.x.abs() <= outline.half_length + reach_m && local.y.abs() <= outline.half_width + reach_m
         };
         (0..until).find(covers).map_or(time_s, |step| 0.1 * step as f64)
     };
@@ -268,6 +285,45 @@ fn order(first: FirstMover, ego: &ActorTrack, other: &ActorTrack, point: Vec2, t
         (false, by_s) => format!("the partner, by {by_s:.1} s"),
     };
     (shown, observed)
+}
+
+/// A part is met where it is no farther from the other than this at the contact: tracks tell where it is every 0.1 s. [m]
+const MET_M: f64 = 0.06;
+
+/// The part of the ego's, or of the other's, that touched, where bodies did not.
+fn parts_that_touch(
+    rollout: &Rollout,
+    touch: &Touch<'_>,
+    ego_box: &OrientedBox,
+) -> (Option<OrientedBox>, Option<OrientedBox>) {
+    if ego_box.overlaps(&touch.other_box) {
+        return (None, None);
+    }
+    let number = touch.track.and_then(|track| rollout.actors.iter().position(|other| other.id == track.id));
+    let met = |owner: Option<usize>, other: &OrientedBox| {
+        let of_owner = rollout.actors.iter().filter(|track| owner.is_some() && track.part_of == owner);
+        let body = if owner == Some(0) { ego_box } else { &touch.other_box };
+        let boxes = of_owner.map(|track| outline_at(track, touch.time_s)).filter(|part| door::is_open(body, part));
+        boxes
+            .map(|part| (part.nearest_points(other).2, part))
+            .filter(|(gap, _)| *gap < MET_M)
+            .map(|(_, part)| part)
+            .next()
+    };
+    match met(Some(0), &touch.other_box) {
+        Some(part) => (Some(part), None),
+        None => (None, met(number, ego_box)),
+    }
+}
+
+/// A box between two steps.
+fn outline_at(track: &ActorTrack, time_s: f64) -> OrientedBox {
+    let at = (time_s / STEP_S).min((track.states.len() - 1) as f64);
+    let (step, share) = (at.floor() as usize, at - at.floor());
+    let (from, to) = (&track.states[step], &track.states[(step + 1).min(track.states.len() - 1)]);
+    let position = from.position() + (to.position() - from.position()) * share;
+    let heading = from.heading + math::wrap_angle(to.heading - from.heading) * share;
+    OrientedBox::new(Pose { position, heading }, track.length_m, track.width_m)
 }
 
 fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
@@ -298,6 +354,12 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
     })
 }
 
+/// Whether somebody stood before a time.
+fn stood(track: &ActorTrack, time_s: f64) -> bool {
+    let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+    track.states[..=until].iter().any(|state| state.velocity().length() < STANDS_MPS)
+}
+
 /// Whether somebody is in a state when it touches, and was before as the state says.
 fn state(told: ContactState, track: &ActorTrack, now: &ActorState, time_s: f64) -> bool {
     let step = (time_s * 10.0).floor() as usize;
@@ -317,44 +379,15 @@ fn state(told: ContactState, track: &ActorTrack, now: &ActorState, time_s: f64) 
     }
 }
 
-/// How far somebody has turned until the contact, to the left. [rad]
-fn turned(track: &ActorTrack, time_s: f64) -> f64 {
-    let step = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
-    track.states[..=step].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading)).sum()
-}
+/// Who is farther aside than this does not come along the ego's lane. [m]
+const BESIDE_M: f64 = 5.0;
 
-fn fits(told: Turning, turned: f64) -> bool {
-    let degrees = turned.to_degrees();
-    match told {
-        Turning::Left => degrees > 10.0,
-        Turning::Right => degrees < -10.0,
-        Turning::No => degrees.abs() < 50.0,
-        Turning::Round => true,
-    }
-}
-
-fn turn_word(told: Turning) -> String {
-    let word = match told {
-        Turning::No => "no turn",
-        Turning::Left => "a turn to the left",
-        Turning::Right => "a turn to the right",
-        Turning::Round => "a U-turn",
-    };
-    word.to_owned()
-}
-
-fn turned_words(turned: f64) -> String {
-    let degrees = turned.to_degrees().round();
-    match degrees {
-        d if d >= 1.0 => format!("{d:.0} degrees to the left"),
-        d if d <= -1.0 => format!("{:.0} degrees to the right", -d),
-        _ => "straight on".to_owned(),
-    }
-}
-
-/// Whether the partner comes from where it is told, seen from the ego at the start.
+/// Whether the partner comes from where it is told, seen from the ego when it sets out.
 fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactState) -> (bool, String) {
-    let (ego, other) = (&ego.states[0], &other.states[0]);
+    let on_foot = matches!(other.kind, PartnerKind::Pedestrian | PartnerKind::Animal);
+    // Seen when it sets out.
+    let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+    let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
     let forward = Vec2::from_heading(ego.heading);
     let way = other.position() - ego.position();
     let (ahead, left) = (way.dot(forward), forward.cross(way));
@@ -367,9 +400,10 @@ fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactStat
     };
     let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
     let beside = |side: LeftRight| if side == LeftRight::Left { left > 0.0 } else { left < 0.0 };
+    let same_way = facing.abs() < 60.0 || state == ContactState::Reversing;
     let shown = match told {
-        Origin::Behind => ahead < 2.0 && facing.abs() < 60.0 || state == ContactState::Reversing,
-        Origin::Ahead => ahead > -2.0,
+        Origin::Behind => ahead < 2.0 && same_way && left.abs() < BESIDE_M,
+        Origin::Ahead => ahead > -2.0 && (same_way || on_foot || state.stands()) && left.abs() < BESIDE_M,
         Origin::Opposite => facing.abs() > 120.0,
         Origin::Beside { side } => facing.abs() < 60.0 && beside(side),
         Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),

@@ -1,8 +1,9 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
+use crate::others::Extra;
 use crate::told::{Told, Turning};
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
-use recrash_model::geometry::Pose;
+use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_roads::{LanePath, RoadNetwork};
 
@@ -40,8 +41,19 @@ impl Ground {
         if self.junction { APPROACH_M } else { 2.0 * APPROACH_M }
     }
 
+    /// How far along the ego's way a place is, and how far beside it. [m]
+    pub(crate) fn beside(&self, place: Vec2) -> (f64, f64) {
+        let found = self.way.project(place, 0);
+        (found.s, found.t)
+    }
+
+    /// A pose along the ego's way, or beside it.
+    pub(crate) fn pose(&self, s_m: f64, t_m: f64) -> Pose {
+        self.way.pose(s_m, t_m)
+    }
+
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
-        self.way.pose(s_m, 0.0)
+        self.pose(s_m, 0.0)
     }
 }
 
@@ -70,7 +82,9 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let crossing = matches!(told.origin, Origin::Cross { .. })
         || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
         || told.cp.turning != Turning::No;
-    let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley);
+    // Aisles cross where somebody turns.
+    let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
+        && !matches!(told.sv.turning, Turning::Left | Turning::Right);
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
     if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
         return junction(told, crossing);
@@ -85,7 +99,8 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     // The rightmost lane, but for a partner that comes by on the right.
-    let usual = if lanes > 1 && passes_right(told) { lanes - 2 } else { lanes - 1 };
+    let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
+    let usual = if lanes > 1 && (to_right || passes_right(told)) { lanes - 2 } else { lanes - 1 };
     let lane = told_lane(told, lanes).unwrap_or(usual);
     let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * LANE_M, heading_deg: 0.0 };
     let map = GraphMap {
@@ -188,7 +203,8 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         all
     } else {
         // At the line, or behind who stands there.
-        vec![APPROACH_M - if told.lead { 13.0 } else { 5.0 }]
+        let behind = told.extras.contains(&Extra::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
+        vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
     };
     with_way(map, vec!["own-".to_owned(), exit.to_owned()], lane as u8, places, true)
 }

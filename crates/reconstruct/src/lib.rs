@@ -9,8 +9,11 @@
 mod came;
 mod choices;
 mod control;
+mod door;
 mod facts;
 mod ground;
+mod movement;
+mod others;
 mod told;
 mod touch;
 

@@ -1,6 +1,9 @@
 //! What an account tells, in the terms of a staging; and what has to be assumed.
 
 use crate::choices::Choices;
+use crate::ground::LANE_M;
+use crate::others::{self, Extra};
+use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     SpeedMeaning, Striker, Untold, told,
@@ -15,6 +18,21 @@ use recrash_model::zones::ContactZone;
 
 /// Speed at which a partner that is thrown at the ego meets it, about. [m/s]
 const THROWN_MPS: f64 = 4.0;
+
+/// Who leaves its lane leaves it by so much, who comes from the kerb or goes there by so much, and who changes lanes has done so much
+/// of it at the contact. [m]
+const DEPARTS_M: f64 = 1.6;
+const KERB_M: f64 = 2.6;
+const CHANGES_M: f64 = 2.2;
+
+/// Who pulls out has left the kerb by so much. [m]
+const PULLS_OUT_M: f64 = 1.5;
+
+/// Who comes after an ego that comes to a stop, and does not stop, is no slower. [m/s]
+const AFTER_MPS: f64 = 5.2;
+
+/// Speed in a turn. [m/s]
+const TURNS_MPS: f64 = 5.0;
 
 /// How somebody turns before the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,10 +49,14 @@ pub(crate) struct Side {
     pub(crate) kind: PartnerKind,
     pub(crate) size: Option<Size>,
     pub(crate) state: ContactState,
+    /// It stood before it moved, where told.
+    pub(crate) stood_first: bool,
     /// Whether the state is told.
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
     pub(crate) turning: Turning,
+    /// To which side it moves out of its line, where told.
+    pub(crate) aside: Option<LeftRight>,
     pub(crate) zones: Vec<ContactZone>,
     /// Speed at the contact, where told. [m/s]
     pub(crate) impact_mps: Option<f64>,
@@ -43,6 +65,13 @@ pub(crate) struct Side {
     pub(crate) lane: Option<LaneWord>,
     /// The signal or sign in front of it, where told.
     pub(crate) control: Option<Control>,
+}
+
+impl Side {
+    /// Whether it parks, or comes from the kerb or out of a stall.
+    pub(crate) fn is_slow(&self) -> bool {
+        matches!(self.movement, Some(Movement::EnteringTraffic | Movement::ParkingManeuver))
+    }
 }
 
 /// An account, in the terms of a staging.
@@ -66,9 +95,14 @@ pub(crate) struct Told {
     pub(crate) reasons: Vec<StandReason>,
     /// Others than the two.
     pub(crate) others: usize,
-    pub(crate) door: bool,
-    /// Somebody stands ahead of the ego, as the reason why it stood.
-    pub(crate) lead: bool,
+    /// Whose door took part.
+    pub(crate) door: Option<Striker>,
+    /// Posted speed, where told. [m/s]
+    pub(crate) posted_mps: Option<f64>,
+    /// Whom the ego stood for, by what is told.
+    pub(crate) wanted: Vec<Extra>,
+    /// Those of them in the scene.
+    pub(crate) extras: Vec<Extra>,
     pub(crate) choices: Choices,
     pub(crate) assumed: Vec<String>,
 }
@@ -118,11 +152,14 @@ impl Told {
             lanes: told(&account.place.lanes),
             reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
             others: account.others.len(),
-            door: account.door.is_some(),
-            lead: false,
+            door: told(&account.door),
+            posted_mps: told(&account.place.posted_mps),
+            wanted: Vec::new(),
+            extras: Vec::new(),
             choices: Choices::default(),
             assumed,
         };
+        this.wanted = others::wanted(&this, &account.others);
         if this.origin_told {
             this.speeds();
         }
@@ -133,7 +170,6 @@ impl Told {
     pub(crate) fn kinds(&self) -> Vec<CheckKind> {
         let (sv, cp) = (&self.sv, &self.cp);
         let moves = !(self.thing.is_some() && cp.state.stands());
-        let straight_or_turn = |side: &Side| side.movement.is_some() && side.turning != Turning::Round;
         let of = [
             (CheckKind::Contact, true),
             (CheckKind::Partner, true),
@@ -143,8 +179,8 @@ impl Told {
             (CheckKind::CpState, cp.state_told && moves),
             (CheckKind::SvSpeed, sv.impact_mps.is_some()),
             (CheckKind::CpSpeed, cp.impact_mps.is_some()),
-            (CheckKind::SvMovement, straight_or_turn(sv)),
-            (CheckKind::CpMovement, straight_or_turn(cp) && cp.state != ContactState::Reversing && moves),
+            (CheckKind::SvMovement, sv.movement.is_some()),
+            (CheckKind::CpMovement, cp.movement.is_some() && moves),
             (CheckKind::Approach, self.origin_told && moves),
             (CheckKind::Order, self.order.is_some() && moves),
             (CheckKind::PassedOn, self.pushed),
@@ -154,7 +190,7 @@ impl Told {
             (CheckKind::CpControl, cp.control.is_some() && moves),
             (CheckKind::Reason, sv.state.stands() && !self.reasons.is_empty()),
             (CheckKind::Others, self.others > 0),
-            (CheckKind::Door, self.door),
+            (CheckKind::Door, self.door.is_some()),
         ];
         of.into_iter().filter(|(_, told)| *told).map(|(kind, _)| kind).collect()
     }
@@ -169,28 +205,19 @@ impl Told {
         self
     }
 
-    /// Whether somebody stood ahead of the ego, who is not the partner.
-    fn wants_lead(&self) -> bool {
-        let waits = |reason: &StandReason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle);
-        self.sv.state == ContactState::Stopped
-            && self.reasons.iter().any(waits)
-            && self.thing.is_none()
-            && self.origin != Origin::Ahead
-    }
-
     /// Whether a signal or sign is told.
     pub(crate) fn is_controlled(&self) -> bool {
         self.sv.control.is_some() || self.cp.control.is_some()
     }
 
-    /// Everything to try: with who stood ahead of the ego, then without.
+    /// Everything to try: with those whom the ego stood for, then without them.
     pub(crate) fn variants(self) -> Vec<Self> {
-        let all = self.by_origin().into_iter();
-        let with_lead = |told: Self| {
-            let lead = told.wants_lead().then(|| Self { lead: true, ..told.clone() });
-            lead.into_iter().chain([told])
+        let with_extras = |told: Self| {
+            let extras = told.wanted.clone();
+            let with = (!extras.is_empty()).then(|| Self { extras, ..told.clone() });
+            with.into_iter().chain([told])
         };
-        all.flat_map(with_lead).collect()
+        self.by_origin().into_iter().flat_map(with_extras).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
@@ -229,17 +256,41 @@ impl Told {
         self.pushed && self.origin == Origin::Behind && self.thing.is_none() && self.cp.state != ContactState::Reversing
     }
 
+    /// Speed at the contact of somebody who drives, by the posted speed, or the usual one of such a place: who comes up behind
+    /// somebody that stands brakes, late; who passes or drifts has slowed; who crosses has slowed a little. [m/s]
+    fn driven_mps(&self) -> f64 {
+        let usual_mps = match self.place {
+            PlaceKind::Highway => 27.0,
+            PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley => 5.0,
+            _ => 11.2,
+        };
+        let share = match self.origin {
+            Origin::Behind | Origin::Ahead => 0.5,
+            Origin::Beside { .. } => 0.6,
+            Origin::Cross { .. } | Origin::Opposite => 0.7,
+            _ => 0.4,
+        };
+        let speed_mps = share * self.posted_mps.unwrap_or(usual_mps);
+        // Else it would be ahead of an ego that comes to a stop.
+        let comes_after = matches!(self.origin, Origin::Behind | Origin::Beside { .. }) && usual_mps > 6.0;
+        if comes_after { speed_mps.max(AFTER_MPS) } else { speed_mps }
+    }
+
     /// Speeds at the contact: as told, or such that who closes on whom does.
     fn speeds(&mut self) {
+        let driven_mps = self.driven_mps();
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
+            ContactState::Moving if side.is_slow() => 3.0,
+            ContactState::Moving if side.stood_first => 4.0,
             ContactState::Moving => match side.kind {
                 PartnerKind::Pedestrian => 1.4,
                 PartnerKind::Animal => 4.0,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
-                _ => 6.0,
+                _ if side.turning != Turning::No => TURNS_MPS,
+                _ => driven_mps,
             },
         };
         let slow = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
@@ -259,7 +310,9 @@ impl Told {
         if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving {
             let sv = self.sv.speed_mps;
             match self.origin {
-                Origin::Behind | Origin::Beside { .. } if self.sv.state != ContactState::Reversing => {
+                Origin::Behind | Origin::Beside { .. }
+                    if self.sv.state != ContactState::Reversing && !self.cp.stood_first =>
+                {
                     self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
                 }
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
@@ -275,6 +328,66 @@ impl Told {
         if self.cp.impact_mps.is_none() && !self.cp.state.stands() {
             self.assumed.push(format!("the partner's speed at the contact: {:.1} m/s", self.cp.speed_mps));
         }
+    }
+}
+
+/// A move out of the line that somebody drives on, to the right of it. [m]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Aside {
+    pub(crate) from_t_m: f64,
+    pub(crate) to_t_m: f64,
+}
+
+impl Told {
+    /// How the ego leaves its line.
+    pub(crate) fn sv_aside(&self) -> Option<Aside> {
+        let (left, right) = (LeftRight::Left, LeftRight::Right);
+        if self.sv.turning != Turning::No || self.sv.state.stands() || self.sv.state == ContactState::Reversing {
+            return None;
+        }
+        let movement = self.sv.movement?;
+        let towards = self.sv.aside.or(match self.origin {
+            Origin::Beside { side } | Origin::Cross { side } => Some(side),
+            _ => None,
+        });
+        let towards = towards.or_else(|| side_of(&self.sv.zones).map(|side| if side > 0.0 { left } else { right }));
+        let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
+        let (from_t_m, to_t_m) = match movement {
+            Movement::ChangingLanes | Movement::Merging => (0.0, by(left, LANE_M)),
+            Movement::CrossingIntoOpposingLane => (0.0, -LANE_M),
+            Movement::LaneDeparture => (0.0, by(right, DEPARTS_M)),
+            // From the kerb, or the one told.
+            Movement::EnteringTraffic => (if self.sv.aside == Some(right) { -KERB_M } else { KERB_M }, 0.0),
+            Movement::ParkingManeuver => (0.0, by(right, KERB_M)),
+            _ => return None,
+        };
+        Some(Aside { from_t_m, to_t_m })
+    }
+
+    /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]
+    pub(crate) fn cp_from_left_m(&self) -> Option<f64> {
+        let against = match self.origin {
+            Origin::Behind | Origin::Ahead | Origin::Beside { .. } => 1.0,
+            Origin::Opposite => -1.0,
+            Origin::Parked { .. } if self.cp.state != ContactState::Reversing => 1.0,
+            _ => return None,
+        };
+        let way_m = match self.cp.movement? {
+            Movement::ChangingLanes | Movement::Merging => CHANGES_M,
+            Movement::CrossingIntoOpposingLane => CHANGES_M,
+            Movement::LaneDeparture => DEPARTS_M,
+            Movement::EnteringTraffic | Movement::ParkingManeuver => PULLS_OUT_M,
+            _ => return None,
+        };
+        // Who moves to its left came along on its right.
+        let own_left = self.cp.aside.map(|side| if side == LeftRight::Left { -1.0 } else { 1.0 });
+        let from_left = own_left.map(|own| own * against).or_else(|| match self.origin {
+            Origin::Beside { side } | Origin::Parked { side: Some(side) } => {
+                Some(if side == LeftRight::Left { 1.0 } else { -1.0 })
+            }
+            _ => side_of(&self.sv.zones),
+        });
+        Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
     }
 }
 
@@ -297,6 +410,9 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
         _ if kind.is_some_and(|kind| kind.group() == KindGroup::Object) => ContactState::Stopped,
         _ => ContactState::Moving,
     });
+    // Who moves backwards moves.
+    let backs = state == ContactState::Moving && movement == Some(Movement::Backing);
+    let state = if backs { ContactState::Reversing } else { state };
     if !state_told {
         assumed.push(format!("the {who} is {state:?} at the contact"));
     }
@@ -311,7 +427,15 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
         None if turned(LeftRight::Right) => Turning::Right,
         _ => Turning::No,
     };
+    let goes_aside =
+        |act: Act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver);
+    let aside = party.acts.iter().filter(|fact| goes_aside(fact.act) && !fact.after_contact).find_map(|fact| fact.side);
+    let stands = |act: Act| matches!(act, Act::Hold | Act::Stop | Act::SetOff);
+    let stood_first = state == ContactState::Moving
+        && party.acts.iter().any(|fact| stands(fact.act) && !fact.after_contact && !fact.begun);
     Side {
+        aside,
+        stood_first,
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),
         state,

@@ -2,6 +2,8 @@
 //!
 //! Everything is seen from the road that the ego came along: x ahead, y to its left.
 
+use crate::came::sv_at_contact;
+use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::told::{Side, Told, Turning};
 use recrash_metrics::contact::contact_geometry;
@@ -25,12 +27,14 @@ pub(crate) struct Staging {
     pub(crate) cp: Pose,
     /// Heading of the partner some seconds before, of who does not reverse the way it moves. [rad]
     pub(crate) cp_came: f64,
+    /// The door that takes part.
+    pub(crate) door: Option<Opening>,
     /// How well it fits: zone steps off on both sides, then the order of trial.
-    cost: (u32, usize),
+    pub(crate) cost: (u32, usize),
 }
 
 /// Points of a box's outline, by zone, where it may be touched: shares of half of its length and width.
-fn points(zone: ContactZone) -> &'static [(f64, f64)] {
+pub(crate) fn points(zone: ContactZone) -> &'static [(f64, f64)] {
     match zone {
         ContactZone::Front => &[(1.0, 0.0), (1.0, 0.3), (1.0, -0.3)],
         ContactZone::FrontLeft => &[(1.0, 1.0), (1.0, 0.75), (0.75, 1.0)],
@@ -53,26 +57,7 @@ pub(crate) fn size_of(side: &Side) -> (f64, f64) {
 /// Ways of touching, the best first.
 pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
     let ground = ground_for(told);
-    let mut found: Vec<Staging> = Vec::new();
-    let mut trial = 0;
-    for sv_s_m in ground.places() {
-        let sv = ground.sv_pose(sv_s_m);
-        for (came, heading) in headings(told, sv.heading) {
-            for (sv_zone, cp_zone) in zone_pairs(told) {
-                for &sv_point in points(sv_zone) {
-                    for &cp_point in points(cp_zone) {
-                        trial += 1;
-                        let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
-                            continue;
-                        };
-                        let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
-                        let cost = (off, trial);
-                        found.push(Staging { ground: ground.clone(), sv_s_m, sv, cp, cp_came: came, cost });
-                    }
-                }
-            }
-        }
-    }
+    let mut found = if told.door.is_some() { door::stagings(told, &ground) } else { bodies(told, &ground) };
     found.sort_by_key(|staging| staging.cost);
     // Of those that are almost the same, one.
     let mut kept: Vec<Staging> = Vec::new();
@@ -87,6 +72,32 @@ pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
         }
     }
     kept
+}
+
+/// Ways in which their bodies touch.
+fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
+    let mut found: Vec<Staging> = Vec::new();
+    let mut trial = 0;
+    for sv_s_m in ground.places() {
+        let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
+        for (came, heading) in headings(told, sv.heading) {
+            for (sv_zone, cp_zone) in zone_pairs(told) {
+                for &sv_point in points(sv_zone) {
+                    for &cp_point in points(cp_zone) {
+                        trial += 1;
+                        let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
+                            continue;
+                        };
+                        let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
+                        let cost = (off, trial);
+                        let (ground, door) = (ground.clone(), None);
+                        found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, door, cost });
+                    }
+                }
+            }
+        }
+    }
+    found
 }
 
 /// Steps around the box from the nearest told zone; none where none is told.
@@ -129,7 +140,7 @@ const fn sign(side: LeftRight) -> f64 {
 }
 
 /// Headings of the partner to try: as it came, and at the contact. Of who reverses, the way it faces. [rad]
-fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
+pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
     let degrees = |deg: f64| deg * math::PI / 180.0;
     let reverses = told.cp.state == ContactState::Reversing;
     let unknown = |side: Option<LeftRight>| match side {
@@ -164,14 +175,20 @@ fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
     };
     match told.origin {
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } => {
-            let base = if told.cp.turning == Turning::No { sv_heading } else { 0.0 };
+            // Along the road, or as the ego has turned.
+            let follows = told.origin == Origin::Behind && told.sv.turning != Turning::No;
+            let bases = match (sv_heading.abs() > 0.02, follows) {
+                (false, _) => vec![0.0],
+                (true, true) => vec![sv_heading, 0.0],
+                (true, false) => vec![0.0, sv_heading],
+            };
             if told.cp.turning == Turning::No {
-                list.extend(aside.iter().map(|off| (base, base + degrees(*off))));
+                list.extend(bases.iter().flat_map(|base| aside.iter().map(move |off| (0.0, base + degrees(*off)))));
             } else {
                 turned(0.0, &mut list);
             }
             if reverses {
-                list.extend([90.0, -90.0, 60.0, -60.0, 30.0, -30.0].map(|off| (base, base + degrees(off))));
+                list.extend([90.0, -90.0, 60.0, -60.0, 30.0, -30.0].map(|off| (0.0, degrees(off))));
             }
         }
         Origin::Opposite => {
@@ -214,7 +231,7 @@ fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
 }
 
 /// Velocity at the contact. [m/s]
-fn velocity(side: &Side, heading: f64) -> Vec2 {
+pub(crate) fn velocity(side: &Side, heading: f64) -> Vec2 {
     let backwards = if side.state == ContactState::Reversing { -1.0 } else { 1.0 };
     Vec2::from_heading(heading) * (backwards * side.speed_mps)
 }

@@ -1,6 +1,6 @@
 //! Cells that hold numbers, dates, times and ticks. Each reader tells an empty cell from one it cannot read.
 
-use recrash_model::record::{MPS_PER_MPH, YearMonth};
+use recrash_model::record::{MPS_PER_MPH, OfVehicles, YearMonth};
 
 /// Above this a speed is a slip of the pen: no road vehicle of these reports goes faster. [mi/h, assumed]
 const GREATEST_SPEED_MPH: f64 = 150.0;
@@ -110,6 +110,31 @@ fn parse_month(text: &str) -> Option<YearMonth> {
     (2000..2100).contains(&year).then_some(YearMonth { year, month })
 }
 
+/// What is said of the vehicles of both sides: `Yes Subject Vehicle, No Crash Partner`, in either order; `Unknown` leaves a
+/// side open, `Not Applicable` both.
+pub fn of_vehicles(cell: &str) -> Cell<OfVehicles> {
+    let text = cell.trim().to_ascii_lowercase();
+    if text.is_empty() || is_withheld(&text.to_ascii_uppercase()) || text == "not applicable" || text == "unknown" {
+        return Cell::Empty;
+    }
+    let mut told = OfVehicles::default();
+    for part in text.split(',') {
+        let Some((word, side)) = part.trim().split_once(' ') else { return Cell::Unreadable };
+        let known = match word {
+            "yes" => Some(true),
+            "no" => Some(false),
+            "unknown" => None,
+            _ => return Cell::Unreadable,
+        };
+        match side.trim() {
+            "subject vehicle" => told.sv = known,
+            "crash partner" => told.cp = known,
+            _ => return Cell::Unreadable,
+        }
+    }
+    Cell::Value(told)
+}
+
 /// A tick: `Y` or `Yes`, in any letter case; blank is none.
 pub fn ticked(cell: &[u8]) -> Cell<()> {
     let cell = cell.trim_ascii();
@@ -130,6 +155,17 @@ fn whole_number(text: &str) -> Option<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_sides_stand_in_one_cell_in_either_order() {
+        let told = |sv, cp| Cell::Value(OfVehicles { sv, cp });
+        assert_eq!(of_vehicles("Yes Subject Vehicle, No Crash Partner"), told(Some(true), Some(false)));
+        assert_eq!(of_vehicles(" No Crash Partner, Unknown Subject Vehicle"), told(None, Some(false)));
+        assert_eq!(of_vehicles("Not Applicable"), Cell::Empty);
+        assert_eq!(of_vehicles("[REDACTED, MAY CONTAIN CONFIDENTIAL BUSINESS INFORMATION]"), Cell::Empty);
+        assert_eq!(of_vehicles("Yes"), Cell::Unreadable);
+        assert_eq!(of_vehicles("Perhaps Crash Partner"), Cell::Unreadable);
+    }
 
     #[test]
     fn ten_miles_per_hour_are_4_4704_metres_per_second() {

@@ -91,6 +91,10 @@ pub const SEVERITIES: &Table<Severity> = &[
     ("Fatality", Severity::Fatality),
 ];
 
+/// `... Was Vehicle Towed?` and `... Any Air Bags Deployed?` (first and second edition). Who has no vehicle, or none with air
+/// bags, had none towed and none deployed.
+pub const YES_OR_NO: &Table<bool> = &[("Yes", true), ("No", false), ("Not Applicable", false)];
+
 /// `Roadway Surface` (first and second edition; the third has flags).
 pub const SURFACES: &Table<Surface> =
     &[("Dry", Surface::Dry), ("Wet", Surface::Wet), ("Snow / Slush / Ice", Surface::SnowIce)];

@@ -130,6 +130,15 @@ pub enum WorkZoneColumn {
     Flag(usize),
 }
 
+/// Where a row says something of the vehicles of both sides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SidesColumns {
+    /// A column each, `Yes` or `No` (first and second edition).
+    Each { sv: Option<usize>, cp: Option<usize> },
+    /// One column that names both, `Yes Subject Vehicle, No Crash Partner` (third edition).
+    Both(usize),
+}
+
 /// Positions of the columns that are read. Columns that a file may lack are `None` then.
 #[derive(Debug, Clone)]
 pub struct Columns {
@@ -162,6 +171,8 @@ pub struct Columns {
     pub lighting: Option<usize>,
     pub crash_with: Option<usize>,
     pub severity: Option<usize>,
+    pub towed: SidesColumns,
+    pub airbags: SidesColumns,
     pub sv_speed: Option<usize>,
     pub sv_speed_unknown: Option<usize>,
     pub weather: Vec<(usize, Weather)>,
@@ -287,6 +298,16 @@ pub fn recognise(names: &[String]) -> Result<Recognised, NotAHeader> {
         lighting: wanted("Lighting"),
         crash_with: wanted("Crash With"),
         severity: wanted("Highest Injury Severity Alleged").or_else(|| find("Highest Injury Severity")),
+        towed: match find("Was Any Vehicle Towed?") {
+            Some(both) => SidesColumns::Both(both),
+            None => SidesColumns::Each { sv: wanted("SV Was Vehicle Towed?"), cp: wanted("CP Was Vehicle Towed?") },
+        },
+        airbags: match find("Any Air Bags Deployed?") {
+            Some(both) => SidesColumns::Both(both),
+            None => {
+                SidesColumns::Each { sv: wanted("SV Any Air Bags Deployed?"), cp: wanted("CP Any Air Bags Deployed?") }
+            }
+        },
         sv_speed: wanted("SV Precrash Speed (MPH)"),
         sv_speed_unknown: wanted("SV Pre-crash Speed - Unknown"),
         weather,

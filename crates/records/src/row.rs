@@ -2,11 +2,11 @@
 
 use crate::cells::{self, Cell};
 use crate::codes;
-use crate::columns::{Columns, WorkZoneColumn};
+use crate::columns::{Columns, SidesColumns, WorkZoneColumn};
 use crate::notes::{Notes, Remark};
 use crate::text::{decode, mend_twice_encoded, same_code};
 use csv::ByteRecord;
-use recrash_model::record::{Coded, CrashRecord, Engagement, Provenance, RecordRef, Redaction};
+use recrash_model::record::{Coded, CrashRecord, Engagement, OfVehicles, Provenance, RecordRef, Redaction};
 use recrash_model::surroundings::Surface;
 use std::borrow::Cow;
 
@@ -83,6 +83,8 @@ pub fn read(row: &ByteRecord, columns: &Columns, file: &str, number: u64, notes:
         sv_zones: cells.ticks(&columns.sv_zones, "SV Contact Area"),
         cp_zones: cells.ticks(&columns.cp_zones, "CP Contact Area"),
         severity: cells.code(columns.severity, "Highest Injury Severity Alleged", codes::SEVERITIES),
+        towed: cells.of_vehicles(columns.towed, "Was Vehicle Towed?"),
+        airbags: cells.of_vehicles(columns.airbags, "Any Air Bags Deployed?"),
         engagement: cells.engagement(columns),
         narrative,
         redaction,
@@ -205,6 +207,16 @@ impl<'a> Cells<'a> {
             return Some(Surface::Wet);
         }
         self.is_ticked(columns.surface_usual, "Roadway-No Unusual Conditions").then_some(Surface::Dry)
+    }
+
+    fn of_vehicles(&mut self, columns: SidesColumns, column: &'static str) -> OfVehicles {
+        match columns {
+            SidesColumns::Both(position) => self.read(Some(position), column, cells::of_vehicles).unwrap_or_default(),
+            SidesColumns::Each { sv, cp } => {
+                let mut known = |position| self.code(position, column, codes::YES_OR_NO).known();
+                OfVehicles { sv: known(sv), cp: known(cp) }
+            }
+        }
     }
 
     fn engagement(&mut self, columns: &Columns) -> Coded<Engagement> {

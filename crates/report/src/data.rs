@@ -84,6 +84,7 @@ fn rows(context: &Context) -> Value {
         "before": numbers(&|case| case.before.as_ref().and_then(|run| run.min_gap_m())),
         "after": numbers(&|case| last(case, |run| run.min_gap_m())),
         "impact": numbers(&|case| last(case, |run| Some(run.metrics.contact.as_ref()?.relative_speed_mps))),
+        "severity": numbers(&|case| last(case, |run| Some(run.severity.as_ref()?.harm_mps()))),
         "findings": numbers(&|case| last(case, |run| Some(finding_weight(&run.finding_kinds())))),
         "faithful": numbers(&|case| Some(match case.faithful()? { Answer::Yes => 3.0, Answer::Unchecked => 2.0, Answer::No => 1.0 })),
         "type": types(context),

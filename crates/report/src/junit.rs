@@ -118,7 +118,9 @@ fn test_case(
             let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
             let sentences: Vec<_> = failures.iter().map(|finding| safe(&finding.sentence)).collect();
             let class = triage_of(case, run).map_or_else(String::new, |t| format!(" ({})", t.class.label()));
-            let message = format!("{}{class}", kinds.join(", "));
+            let harm = run.severity.as_ref().and_then(|severity| fixed(severity.harm_mps(), 1));
+            let harm = harm.map_or_else(String::new, |harm| format!(", delta-v {harm} m/s"));
+            let message = format!("{}{class}{harm}", kinds.join(", "));
             let kind = kinds.first().copied().unwrap_or_default();
             let failure = writer.create_element("failure");
             let failure = failure.with_attributes(attributes(&[("type", kind), ("message", &message)]));
@@ -162,6 +164,14 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         Some(Answer::No) => listed(Answer::No, run_told.verdict.failures().collect()),
     };
     let origin = words::provenance(case.origin.as_ref(), case.told.as_ref());
+    let severity = run.severity.as_ref().map_or_else(String::new, |severity| {
+        let number = |value: f64| fixed(value, 1).unwrap_or_default();
+        let [ego, other] = [&severity.first, &severity.second].map(|side| number(side.delta_v_mps));
+        let risk = severity
+            .serious_injury()
+            .map_or_else(String::new, |risk| format!("; serious injury: {} %", number(100.0 * risk)));
+        format!("\ndelta-v: ego {ego} m/s, other {other} m/s{risk}")
+    });
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
         format!("\n{}: {}\nother egos: {}", triage.class.label(), triage.class.meaning(), other_egos(triage))
     });
@@ -174,7 +184,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         format!("crash type: {}\nincident: {}\nsituation met: {met}\n", account.crash_type.label(), account.incident)
     });
     format!(
-        "{what}template: {}\ntells: {origin}\nleast gap: {gap}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
+        "{what}template: {}\ntells: {origin}\nleast gap: {gap}{severity}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
         case.template,
         words::name(&run.metrics.termination),
         run.rerun_command

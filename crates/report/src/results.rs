@@ -3,10 +3,11 @@
 use crate::view::{CaseRow, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{Check, PartnerMetrics, Timed};
+use recrash_model::severity::Severity;
 use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 49] = [
+const HEADER: [&str; 52] = [
     "scenario",
     "run",
     "road",
@@ -56,6 +57,9 @@ const HEADER: [&str; 49] = [
     "crash_type",
     "role",
     "situation_met",
+    "ego_delta_v_mps",
+    "other_delta_v_mps",
+    "serious_injury_probability",
 ];
 
 /// The table.
@@ -115,6 +119,11 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(account.map_or_else(String::new, |account| words::name(&account.crash_type)));
     row.push(account.and_then(|account| account.role).map_or_else(String::new, |role| words::name(&role)));
     row.push(case.situation_met().filter(|_| is_last).map_or_else(String::new, |met| met.to_string()));
+    let severity = run.and_then(|run| run.severity.as_ref());
+    let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
+    row.push(number(severity.map(|severity| severity.first.delta_v_mps)));
+    row.push(number(severity.map(|severity| severity.second.delta_v_mps)));
+    row.push(number(severity.and_then(Severity::serious_injury)));
     row
 }
 

@@ -10,6 +10,7 @@ use crate::pairs::RunTrace;
 use crate::thumbnail::Thumbnail;
 use recrash_model::Diagnostic;
 use recrash_model::account::{AccountSet, CrashType, Role};
+use recrash_model::coverage::CorpusCoverage;
 use recrash_model::metrics::{Answer, CheckKind, CheckResult, Series};
 use recrash_model::narrative::{Narrative, Origin};
 use recrash_model::profile::SystemProfile;
@@ -56,6 +57,8 @@ pub struct SuiteView {
     pub diagnostics: Vec<Diagnostic>,
     /// What became of all incidents, in a suite that goes by accounts. Of [`AccountSet::told`] nothing is read.
     pub accounts: Option<AccountSet>,
+    /// What of all readable incidents the suite covers, where it goes by accounts.
+    pub corpus: Option<CorpusCoverage>,
 }
 
 /// What an account says of its crash.

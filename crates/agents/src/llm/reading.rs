@@ -184,7 +184,8 @@ impl Checked<'_> {
             .enumerate()
             .filter_map(|(number, zone)| self.quoted(&format!("{path}.zones[{number}]"), zone, cues::zone, zone_column))
             .collect();
-        if !zones.is_empty() {
+        // The columns are known: words alone say more.
+        if zones.iter().any(|zone| zone.source.is_told()) {
             party.zones = zones;
         }
     }
@@ -213,6 +214,7 @@ pub(super) fn account(
         let kind = partner.kind.as_ref().map(|kind| kind.value);
         if kind.is_some_and(|kind| told(&known.kind).is_some_and(|known| known != kind)) {
             *known = Party::default();
+            account.others.retain(|other| Some(other.kind.value) != kind);
         }
         checked.party("partner", partner, known);
     }

@@ -1,5 +1,6 @@
 //! The subcommands: one file each, with what may be typed, what is done and what is shown.
 
+mod assess;
 mod bench;
 mod bench_embed;
 mod bench_sim;
@@ -73,6 +74,7 @@ const TUNE_EXAMPLES: &str = "\
 Examples:
   recrash tune                                           160 points for each scenario of suite/
   recrash tune --out paper-suite --searcher halton --tune-budget 500
+  recrash tune --aim severity                            the worst contact instead of the nearest failure
 
 Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
 const REPORT_EXAMPLES: &str = "\
@@ -145,6 +147,11 @@ pub enum Command {
     Robustness(failures::RobustnessArgs),
     /// Strip the failures of a frozen suite to what they need, each with the nearest scenario that passes.
     Minimise(failures::MinimiseArgs),
+    /// Say what of all readable crashes a suite covers: by crash type, road and partner, by the matrix of EU 2022/1426, and
+    /// by the four dimensions of the UN guidance, with the holes.
+    Coverage(assess::CoverageArgs),
+    /// Rank a suite's failures by severity, and hold computed severity against what the records report.
+    Severity(assess::SeverityArgs),
     /// Write a folder of evidence: claims with numbers, and a checker that works each of them out again.
     Evidence(evidence::EvidenceArgs),
     /// Say how well the rules, or a model, read records: accuracy by field against labels that people wrote.
@@ -222,6 +229,8 @@ pub fn run(cli: &Cli) -> Result<(), PipelineError> {
         Command::Compare(args) => test::compare(args, output),
         Command::Robustness(args) => failures::robustness(args, output),
         Command::Minimise(args) => failures::minimise(args, output),
+        Command::Coverage(args) => assess::coverage(args, output),
+        Command::Severity(args) => assess::severity(args, output),
         Command::Evidence(args) => evidence::run(args, output),
         Command::Eval(args) => eval::run(args, output),
         Command::Prompt(args) => prompt::run(args, output),

@@ -87,6 +87,25 @@ fn gap(run: Option<&RunSummary>) -> String {
     }
 }
 
+/// The greater change of velocity of the two in the contact.
+fn delta_v(run: Option<&RunSummary>) -> String {
+    match run.filter(|run| run.delta_v_mps.is_some()) {
+        Some(run) => format!("{:.1} m/s", run.harm_mps()),
+        None => "-".into(),
+    }
+}
+
+/// Failures in the situation of their record first, by the harm they do; the others as the suite has them.
+fn by_harm(cases: &[CaseSummary]) -> Vec<&CaseSummary> {
+    let harm = |case: &CaseSummary| {
+        let failed = case.tuned.as_ref().filter(|run| run.failed && case.situation_met == Some(true));
+        failed.map_or(-1.0, RunSummary::harm_mps)
+    };
+    let mut ranked: Vec<&CaseSummary> = cases.iter().collect();
+    ranked.sort_by(|a, b| harm(b).total_cmp(&harm(a)));
+    ranked
+}
+
 /// Prints what this run has spent on models.
 fn spent(suite: &Suite) {
     if let Some(spent) = suite.spent().filter(|spent| spent.answers > 0) {
@@ -137,10 +156,10 @@ fn show_accounts(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
         println!("{rows}");
     }
     fact_table(&accounts.facts);
-    title("Scenarios");
-    let mut rows = table(&["scenario", "crash type", "as told", "situation", "least gap", "failure", "findings"])
-        .without_first(&["findings", "crash type", "failure"]);
-    for case in summary.cases.iter().take(CASES_SHOWN) {
+    title("Scenarios, the worst failures first");
+    let header = ["scenario", "crash type", "as told", "situation", "least gap", "delta-v", "failure", "findings"];
+    let mut rows = table(&header).without_first(&["findings", "crash type", "failure"]);
+    for case in by_harm(&summary.cases).into_iter().take(CASES_SHOWN) {
         let as_told = match case.faithful() {
             Some(Answer::Yes) => "yes",
             Some(Answer::Unchecked) => "not all checked",
@@ -159,6 +178,7 @@ fn show_accounts(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
             Cell::new(as_told),
             Cell::new(situation),
             Cell::new(gap(case.tuned.as_ref())),
+            number(delta_v(case.tuned.as_ref())),
             Cell::new(case.triage.as_ref().map_or("", |triage| triage.class.label())),
             Cell::new(case.tuned.as_ref().map_or_else(String::new, |run| run.findings.join(", "))),
         ]);

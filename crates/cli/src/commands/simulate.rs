@@ -8,7 +8,7 @@ use crate::table::{Cell, number, table};
 use clap::Args;
 use recrash_model::preventability::Preventability;
 use recrash_model::severity::{InjuryOutcome, Suffered};
-use recrash_pipeline::{FileRequest, FileRun, PipelineError, Stage, preventability, severity_of, simulate_file};
+use recrash_pipeline::{FileRequest, FileRun, PipelineError, Stage, preventability, simulate_file};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -112,7 +112,7 @@ pub(super) fn show(result: &FileRun) {
             contact.other_zone.label(),
             contact.relative_speed_mps
         );
-        if let Some(severity) = severity_of(&run.rollout) {
+        if let Some(severity) = &run.severity {
             println!("  {}", suffered("the ego", &severity.first));
             println!("  {}", suffered("the partner", &severity.second));
         }

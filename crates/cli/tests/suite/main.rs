@@ -1,6 +1,7 @@
 //! Tests of the crate as its users see it, in one binary: a file a subject.
 
 mod accounts;
+mod assess;
 mod bad_input;
 mod batch;
 mod check_driver;

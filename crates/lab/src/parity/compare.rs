@@ -2,7 +2,7 @@
 
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{FindingKind, Timed};
-use recrash_model::rollout::{Role, Rollout, STEP_S, TerminationKind};
+use recrash_model::rollout::{ActorTrack, Role, Rollout, STEP_S, TerminationKind};
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::{Policy, ScenarioDraft};
 use serde::Serialize;
@@ -12,6 +12,10 @@ pub const GAP_TOLERANCE_M: f64 = 0.5;
 
 /// Times of the least gap that differ by no more than this agree. [s]
 pub const TIME_TOLERANCE_S: f64 = 0.3;
+
+/// A gap that is no larger than the least by more than this is held: who stands beside somebody has its least gap all the time, and
+/// rounding decides which step is called the least. [m]
+pub const HELD_M: f64 = 0.02;
 
 /// Times at which positions are compared. [s]
 const TIMES_S: [f64; 8] = [1.0, 2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0];
@@ -27,6 +31,8 @@ pub struct PairOutcome {
     pub contact_s: Option<f64>,
     /// Least box gap of the ego to a scripted partner (background traffic where there is none). [m]
     pub min_gap: Option<Timed>,
+    /// From when until when the gap is held there: within [`HELD_M`] of the least. [s]
+    pub held_s: Option<(f64, f64)>,
     /// Whether the ego failed, by the profile's criteria.
     pub failed: bool,
     /// What was found, each kind once.
@@ -69,10 +75,28 @@ impl PairOutcome {
             end_s: run.metrics.duration_s,
             contact_s: run.metrics.contact.as_ref().map(|contact| contact.time_s),
             min_gap: run.metrics.min_gap,
+            held_s: run.metrics.min_gap.map(|least| held(&run.rollout, least)),
             failed: run.failed(),
             findings,
         }
     }
+}
+
+/// From when until when the gap to somebody is held at its least, around the time of the least.
+fn held(rollout: &Rollout, least: Timed) -> (f64, f64) {
+    let partners = rollout.actors.iter().any(|track| track.role == Role::Partner);
+    let role = if partners { Role::Partner } else { Role::Traffic };
+    let ego = rollout.ego_track();
+    let others: Vec<_> = rollout.actors.iter().filter(|track| track.role == role).collect();
+    let is_held = |step: &usize| {
+        let own = ego.outline(*step);
+        let there = |track: &&&ActorTrack| *step < track.states.len();
+        others.iter().filter(there).any(|track| own.gap(&track.outline(*step)) <= least.value + HELD_M)
+    };
+    let at = ((least.time_s / STEP_S).round() as usize).min(ego.states.len().saturating_sub(1));
+    let first = (0..at).rev().take_while(is_held).last().unwrap_or(at);
+    let last = (at + 1..ego.states.len()).take_while(is_held).last().unwrap_or(at);
+    (least.time_s.min(STEP_S * first as f64), least.time_s.max(STEP_S * last as f64))
 }
 
 impl Pair {
@@ -117,11 +141,14 @@ impl Pair {
         self.metadrive.as_ref().is_some_and(|other| other.contact_s.is_some() == self.native.contact_s.is_some())
     }
 
-    /// Difference of the least gaps and of their times; zero where neither has one. [m, s]
+    /// Difference of the least gaps, and of the times at which they are held; zero where neither has one. [m, s]
     pub fn gap_difference(&self) -> Option<(f64, f64)> {
         match (self.native.min_gap, self.metadrive.as_ref()?.min_gap) {
             (Some(ours), Some(theirs)) => {
-                Some(((ours.value - theirs.value).abs(), (ours.time_s - theirs.time_s).abs()))
+                let when = |outcome: &PairOutcome, least: Timed| outcome.held_s.unwrap_or((least.time_s, least.time_s));
+                let (first, second) = (when(&self.native, ours), when(self.metadrive.as_ref()?, theirs));
+                let apart_s = (first.0 - second.1).max(second.0 - first.1).max(0.0);
+                Some(((ours.value - theirs.value).abs(), apart_s))
             }
             (None, None) => Some((0.0, 0.0)),
             _ => None,
@@ -281,6 +308,32 @@ fn extras(draft: &ScenarioDraft) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_gap_is_held_while_nobody_moves_and_for_a_moment_when_somebody_drives_by() {
+        let text = |speed_mps: f64| {
+            format!(
+                r#"{{"format": "recrash.scenario/2", "id": "held", "source": {{}}, "duration_s": 8,
+                "map": {{"type": "G", "roads": [{{"id": "main", "start": {{"at": {{"x_m": 0, "y_m": 0, "heading_deg": 0}}}},
+                    "line": [{{"straight": {{"length_m": 120}}}}], "right": [{{"kind": "driving"}}, {{"kind": "driving"}}]}}]}},
+                "ego": {{"route": ["main+"], "lane": 1, "target_speed_mps": 5, "recorded": {{"start": {{"road": "main+", "lane": 1, "s_m": 40}}}}}},
+                "actors": [{{"id": "other", "plan": {{"start": {{"road": "main+", "lane": 0, "s_m": 20}},
+                    "speed_mps": {speed_mps}, "course": [{{"lanes": {{"roads": ["main+"]}}}}]}}}}]}}"#
+            )
+        };
+        let held_for = |speed_mps: f64| {
+            let draft: ScenarioDraft = serde_json::from_str(&text(speed_mps)).expect("a scenario");
+            let scenario = recrash_roads::check(draft).expect("it can run").value;
+            let rollout = recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded);
+            let gaps = recrash_metrics::series(&rollout).partners[0].gap_m.clone();
+            let least = gaps.iter().enumerate().min_by(|one, other| one.1.total_cmp(other.1)).expect("steps");
+            let (from_s, until_s) = held(&rollout, Timed { value: *least.1, time_s: STEP_S * least.0 as f64 });
+            until_s - from_s
+        };
+        assert!(held_for(0.0) > 7.0, "{}", held_for(0.0));
+        // Side by side for a length of both, at 5 m/s.
+        assert!((1.0..2.2).contains(&held_for(5.0)), "{}", held_for(5.0));
+    }
 
     #[test]
     fn quantiles_lie_between_their_neighbours() {

@@ -6,7 +6,7 @@ use crate::record::RecordRef;
 use serde::{Deserialize, Serialize};
 
 /// Format tag of [`AccountSet`].
-pub const ACCOUNTS_FORMAT: &str = "recrash.accounts/1";
+pub const ACCOUNTS_FORMAT: &str = "recrash.accounts/2";
 
 /// How often a kind of fact is told, and shown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ pub struct TypeShare {
 /// The accounts of a suite (`1-accounts.json`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AccountSet {
-    /// Always `recrash.accounts/1`.
+    /// Always [`ACCOUNTS_FORMAT`].
     pub format: String,
     /// Incidents of the files.
     pub incidents: usize,
@@ -56,12 +56,8 @@ pub struct AccountSet {
 /// An incident whose crash is not told.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct UntoldIncident {
-    /// Incident.
-    pub incident: String,
-    /// The report whose narrative speaks.
-    pub report: RecordRef,
-    /// Crash type, where told.
-    pub crash_type: Option<CrashType>,
+    /// What its reports tell.
+    pub account: Account,
     /// Why.
     pub why: Untold,
     /// The same, with the fact that is not shown.
@@ -71,8 +67,8 @@ pub struct UntoldIncident {
 impl AccountSet {
     /// Every readable incident and its crash type.
     pub fn all(&self) -> impl Iterator<Item = (&str, Option<CrashType>)> {
-        let told = self.told.iter().map(|account| (account.incident.as_str(), super::told(&account.crash_type)));
-        told.chain(self.untold.iter().map(|untold| (untold.incident.as_str(), untold.crash_type)))
+        let accounts = self.told.iter().chain(self.untold.iter().map(|untold| &untold.account));
+        accounts.map(|account| (account.incident.as_str(), super::told(&account.crash_type)))
     }
 
     /// The account of the incident that this report speaks for.

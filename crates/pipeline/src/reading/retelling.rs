@@ -196,9 +196,7 @@ pub(crate) fn tell(
     let shares = (type_shares(&accounts, &retold), fact_shares(&accounts, &retold));
     let untold = |(account, retold): (&Account, &Retold)| {
         Some(UntoldIncident {
-            incident: account.incident.clone(),
-            report: account.report.clone(),
-            crash_type: told(&account.crash_type),
+            account: account.clone(),
             why: retold.untold()?,
             reason: retold.reason().unwrap_or_default(),
         })

@@ -51,7 +51,7 @@ pub(super) fn find_untold(set: &mut RecordSet, profile: &SystemProfile) {
 fn why_untold(record: &CrashRecord, account: Option<&Account>, profile: &SystemProfile) -> Option<String> {
     let id = &record.id;
     let Some(template) = record.template() else { return Some(format!("{id} has no template")) };
-    let (scenario_id, seed) = (&id.to_string(), Seed(0));
+    let (scenario_id, seed) = ("own", Seed(0));
     let brief = Brief { scenario_id, template, records: &[record], untold: None, profile, account, seed };
     let narrative = match Rules.paraphrase(&brief) {
         Ok(outcome) => outcome.value,

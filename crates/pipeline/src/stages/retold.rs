@@ -18,7 +18,7 @@ use recrash_model::run::JudgedRun;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::selection::Cluster;
 use recrash_model::triage::TRIAGE_FORMAT;
-use recrash_model::tuning::TunePoint;
+use recrash_model::tuning::{Aim, TunePoint};
 use recrash_reconstruct::{held_against, open_choices, reconstruct, reconstruct_with};
 use recrash_roads::{RunError, Scenario};
 use recrash_sim::{Ego, Native};
@@ -59,7 +59,10 @@ pub(super) const DECLARED: [CaseStage; 5] = [
             ]
         },
         editable: |id| vec![names::tuned(id)],
-        decides: |suite| Ok(vec![format!("{:?}", tune_options(suite)?), text_of(&suite.options().seed)]),
+        decides: |suite| {
+            let chosen = suite.options();
+            Ok(vec![format!("{:?}", tune_options(suite)?), text_of(&chosen.aim), text_of(&chosen.seed)])
+        },
         runs_ego: true,
         work: tune,
     },
@@ -185,8 +188,9 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
             &judge_by(scenario, recorded, suite.profile(), Verdict::default()),
         )
     };
-    let scoring = Scoring::of(&open, make, run, &first);
-    let sound = is_sound_contact(&first.rollout) && first.faithful() == Answer::Yes;
+    let aim = suite.options().aim;
+    let scoring = Scoring::of(&open, make, run, &first).aiming_at(aim);
+    let sound = is_sound_contact(&first.rollout) && first.faithful() == Answer::Yes && aim == Aim::Failure;
     let enough = |point: &TunePoint| open.is_empty() || point.number == 0 && point.score.refused.is_empty() && sound;
     let seed = case_seed(suite, cluster).child("tune");
     let options = tune_options(suite)?;

@@ -6,12 +6,15 @@ use super::{Cases, DesignLog};
 use crate::models::cast::{AgentLog, Cast, RULES};
 use crate::options::RecordSource;
 use crate::suite::Suite;
+use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
+use recrash_model::coverage::CorpusCoverage;
 use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
 use recrash_model::narrative::Origin;
 use recrash_model::record::{FunnelStep, RecordRef};
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
+use recrash_model::severity::Severity;
 use recrash_model::template::Template;
 use recrash_model::triage::{FailureClass, Triage};
 use serde::{Deserialize, Serialize};
@@ -54,6 +57,9 @@ pub struct Summary {
     /// How much of the incidents is told, in a suite that goes by accounts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accounts: Option<AccountSummary>,
+    /// What of all readable incidents the suite covers, where it goes by accounts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub corpus: Option<CorpusCoverage>,
     /// One entry per scenario.
     pub cases: Vec<CaseSummary>,
 }
@@ -205,6 +211,12 @@ pub struct RunSummary {
     pub min_centre_distance_m: Option<f64>,
     /// Contact with a road user: kind of collision.
     pub contact: Option<String>,
+    /// Change of velocity of the ego and of the other in that contact. [m/s]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delta_v_mps: Option<[f64; 2]>,
+    /// Probability that it injures somebody seriously, where a published curve covers it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub serious_injury: Option<f64>,
     /// Whether the ego failed, by the profile's criteria.
     pub failed: bool,
     /// Kinds of findings, each once, failures first.
@@ -226,12 +238,22 @@ impl RunSummary {
             min_gap_time_s: run.metrics.min_gap.map(|gap| gap.time_s),
             min_centre_distance_m: run.metrics.min_centre_distance.map(|d| d.value),
             contact: run.metrics.contact.as_ref().map(|contact| contact.kind.label().to_owned()),
+            delta_v_mps: run
+                .severity
+                .as_ref()
+                .map(|severity| [severity.first.delta_v_mps, severity.second.delta_v_mps]),
+            serious_injury: run.severity.as_ref().and_then(Severity::serious_injury),
             failed: run.failed(),
             findings: run.finding_kinds().iter().map(|kind| kind.label().to_owned()).collect(),
             faithful: run.faithful(),
             unfaithful: run.verdict.failures().map(told).collect(),
             unchecked: run.verdict.unchecked().map(|check| check.kind.label().to_owned()).collect(),
         }
+    }
+
+    /// What findings are ranked by: the greater change of velocity of the two; 0 without a contact of two road users. [m/s]
+    pub fn harm_mps(&self) -> f64 {
+        self.delta_v_mps.map_or(0.0, |[ego, other]| ego.max(other))
     }
 }
 
@@ -337,8 +359,29 @@ pub(super) fn summarise(suite: &Suite, cases: &Cases, summaries: Vec<CaseSummary
         coverage: selection.coverage.clone(),
         models: models(&suite.options().cast, &summaries, &cases.readers),
         accounts: cases.accounts.as_ref().map(AccountSummary::of),
+        corpus: cases.accounts.as_ref().map(|accounts| corpus(accounts, &summaries)),
         cases: summaries,
     }
+}
+
+/// What of all readable incidents these cases cover.
+fn corpus(accounts: &AccountSet, cases: &[CaseSummary]) -> CorpusCoverage {
+    let told = |case: &CaseSummary| case.recorded.as_ref().is_some_and(|run| run.faithful != Answer::No);
+    let scenarios: BTreeMap<&RecordRef, Tested> = cases
+        .iter()
+        .filter(|case| told(case))
+        .filter_map(|case| {
+            let failed = case.tuned.as_ref().is_some_and(|run| run.failed);
+            Some((case.told.as_ref()?, Tested { met: case.situation_met == Some(true), failed }))
+        })
+        .collect();
+    let incident = |account, tellable| Incident { account, tellable, scenario: None };
+    let told = accounts
+        .told
+        .iter()
+        .map(|account| Incident { scenario: scenarios.get(&account.report).copied(), ..incident(account, true) });
+    let untold = accounts.untold.iter().map(|untold| incident(&untold.account, false));
+    coverage(&told.chain(untold).collect::<Vec<_>>())
 }
 
 fn agent(log: &AgentLog) -> RoleSummary {

@@ -12,7 +12,7 @@ use recrash_agents::parameters;
 use recrash_lab::{Scoring, is_sound, is_sound_contact};
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::Cluster;
-use recrash_model::tuning::{TuneLog, TunePoint};
+use recrash_model::tuning::{Aim, TuneLog, TunePoint};
 use recrash_search::{Task, TuneOptions};
 
 /// The stage.
@@ -29,7 +29,8 @@ pub(super) const DECLARED: CaseStage = CaseStage {
     decides: |suite| {
         let chosen = suite.options();
         let options = format!("{:?}", tune_options(suite)?);
-        Ok(vec![options, text_of(&chosen.seed), player(suite, &chosen.cast.tune), text_of(&chosen.cast.rounds)])
+        let seed = text_of(&chosen.seed);
+        Ok(vec![options, text_of(&chosen.aim), seed, player(suite, &chosen.cast.tune), text_of(&chosen.cast.rounds)])
     },
     runs_ego: true,
     work: tune,
@@ -47,9 +48,10 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let draft = scenario(suite, id, &names::scenario(id))?.draft().clone();
     let first: JudgedRun = suite.store().read_json(&names::first_run(id))?;
     let parameters = parameters(&draft, &narrative, suite.profile());
-    let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), bench.simulator(), &first);
+    let scoring = Scoring::new(&draft, &parameters, &expectation, suite.profile(), bench.simulator(), &first)
+        .aiming_at(suite.options().aim);
     // A contact as designed that is true to the record is what the search looks for, at no distance from the record.
-    let sound = is_sound_contact(&first.rollout);
+    let sound = is_sound_contact(&first.rollout) && suite.options().aim == Aim::Failure;
     let enough = |point: &TunePoint| point.number == 0 && point.score.refused.is_empty() && sound;
     let seed = case_seed(suite, cluster).child("tune");
     let search = || recrash_search::tune(id, &parameters, options, seed, |values| scoring.score(values), enough);

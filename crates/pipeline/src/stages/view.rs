@@ -36,6 +36,7 @@ pub(super) fn suite(
         records: cases.records,
         selection: cases.selection,
         accounts: cases.accounts,
+        corpus: summary.corpus.clone(),
         cases: rows,
         diagnostics: model_remarks(summary).into_iter().chain(remarks).collect(),
     }

@@ -1,6 +1,7 @@
 //! What is no stage of a suite: each file is one command's work.
 
 pub(crate) mod accounts;
+pub(crate) mod assessing;
 pub(crate) mod bench_sim;
 pub(crate) mod check_driver;
 pub(crate) mod comparing;

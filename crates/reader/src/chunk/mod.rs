@@ -43,6 +43,24 @@ pub struct Noun {
     pub owner: Option<Box<Noun>>,
 }
 
+impl Noun {
+    /// A noun of which nothing is said yet.
+    fn unnamed() -> Self {
+        Self {
+            article: Article::None,
+            subject: false,
+            kind: None,
+            number: None,
+            names: Vec::new(),
+            adjectives: Vec::new(),
+            compass: None,
+            several: false,
+            occupant: None,
+            owner: None,
+        }
+    }
+}
+
 /// A part of a vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
@@ -144,6 +162,11 @@ const PREPOSITIONS: [&str; 28] = [
 
 const DETERMINERS: [&str; 14] =
     ["the", "this", "that", "these", "those", "its", "their", "his", "her", "our", "a", "an", "one", "any"];
+
+/// Whether a noun begins with this word.
+pub fn is_determiner(word: &str) -> bool {
+    DETERMINERS.contains(&word)
+}
 
 /// Most tokens that name one part.
 const LONGEST_PIECE: usize = 14;
@@ -274,8 +297,10 @@ impl Chunker<'_> {
         let word = self.text(at);
         let chunk = match word {
             "it" | "they" | "them" | "itself" | "he" | "she" | "him" => Chunk::Pronoun,
+            "we" | "us" => Chunk::Noun(Noun { subject: true, ..Noun::unnamed() }),
             "that" | "which" | "who" | "whom" => Chunk::Relative,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
+            "no" if at == self.first => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
             | "avoiding" | "avoided" => Chunk::Not,
             "fail" | "failed" | "failing" | "fails" | "refused" => Chunk::Not,

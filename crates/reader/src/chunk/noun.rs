@@ -1,6 +1,6 @@
 //! Who or what is named, and parts of vehicles.
 
-use super::{Article, COLOURS, Chunker, DETERMINERS, LONGEST_PIECE, Noun, Piece};
+use super::{Article, COLOURS, Chunker, DETERMINERS, LONGEST_PIECE, Noun, PREPOSITIONS, Piece};
 use crate::lexicon::{Adjective, Meaning, Part};
 use crate::token::TokenKind;
 use recrash_model::account::{Kind, KindGroup};
@@ -41,7 +41,8 @@ impl Chunker<'_> {
             return None;
         }
         let placed = parts.iter().any(|part| *part != Part::Noun);
-        let mut owner = None;
+        let ours = self.text(first) == "our";
+        let mut owner = ours.then(|| Noun { subject: true, ..Noun::unnamed() });
         if self.text(at) == "of" || (self.text(at) == "on" && nouns > 0) {
             let mut behind = at + 1;
             // "the rear of both the van and the bus" has one owner: the first.
@@ -121,23 +122,17 @@ impl Chunker<'_> {
 
     /// Somebody or something that is named here.
     pub(super) fn noun(&self, first: usize) -> Option<(Noun, usize)> {
-        let mut noun = Noun {
-            article: Article::None,
-            subject: false,
-            kind: None,
-            number: None,
-            names: Vec::new(),
-            adjectives: Vec::new(),
-            compass: None,
-            several: false,
-            occupant: None,
-            owner: None,
-        };
+        let mut noun = Noun::unnamed();
         let mut at = first;
         match self.text(at) {
             "the" | "this" | "that" | "these" | "those" | "its" | "their" | "our" | "his" | "her" => {
                 noun.article = Article::Definite;
                 at += 1;
+            }
+            // "one of the cyclists", "each of the vans".
+            "one" if self.text(at + 1) == "of" && matches!(self.text(at + 2), "the" | "these" | "those") => {
+                noun.article = Article::Definite;
+                at += 3;
             }
             "a" | "an" | "one" => {
                 noun.article = Article::Indefinite;
@@ -151,7 +146,7 @@ impl Chunker<'_> {
         let mut strange = 0;
         let head = loop {
             if at >= self.tokens.len() || at > first + 10 || self.tokens[at].kind == TokenKind::Mark {
-                return None;
+                return self.only_named(noun, first, at.min(self.tokens.len()), company, make);
             }
             if let Some(found) = self.head(at) {
                 break found;
@@ -190,7 +185,8 @@ impl Chunker<'_> {
             // Words nobody knows, between an article and a noun: models of cars.
             let token = &self.tokens[at];
             let unknown = (token.capital || token.kind != TokenKind::Word) && at > first && strange < 3;
-            if !unknown || self.verb_stands(at) {
+            let described = noun.article != Article::None && strange < 2 && self.may_describe(at);
+            if !(unknown || described) || self.verb_stands(at) {
                 return self.only_named(noun, first, at, company, make);
             }
             if token.capital && token.kind == TokenKind::Word {
@@ -200,6 +196,73 @@ impl Chunker<'_> {
             at += 1;
         };
         self.heads(noun, first, at, company, make, head)
+    }
+
+    /// Whether a word that nobody knows may stand before a noun, as in "a charter bus": no small word, and the noun is next.
+    fn may_describe(&self, at: usize) -> bool {
+        let word = self.text(at);
+        let small = matches!(
+            word,
+            "and"
+                | "or"
+                | "but"
+                | "then"
+                | "when"
+                | "as"
+                | "while"
+                | "that"
+                | "which"
+                | "who"
+                | "where"
+                | "is"
+                | "was"
+                | "were"
+                | "are"
+                | "be"
+                | "been"
+                | "had"
+                | "has"
+                | "have"
+                | "it"
+                | "they"
+                | "not"
+                | "due"
+                | "because"
+                | "after"
+                | "before"
+                | "until"
+                | "once"
+                | "if"
+                | "than"
+                | "'s"
+                | "side"
+                | "part"
+                | "half"
+                | "end"
+                | "corner"
+                | "middle"
+                | "edge"
+                | "top"
+                | "back"
+                | "both"
+                | "all"
+                | "some"
+                | "only"
+                | "did"
+                | "could"
+                | "would"
+                | "time"
+                | "same"
+                | "during"
+                | "behind"
+                | "between"
+        ) || PREPOSITIONS.contains(&word)
+            || DETERMINERS.contains(&word)
+            || word.ends_with("ly")
+            || word.ends_with("ed")
+            || word.ends_with("ing");
+        let known = self.part(at).is_some() || self.spot(at).is_some() || self.lane(at).is_some();
+        !small && !known && self.tokens[at].kind == TokenKind::Word && self.head(at + 1).is_some()
     }
 
     pub(super) fn verb_stands(&self, at: usize) -> bool {
@@ -437,6 +500,15 @@ impl Chunker<'_> {
                 at = ride + length;
             }
         }
+        // "the truck's flatbed trailer" is the truck.
+        if let Some(behind) = (self.text(at) == "'s").then(|| self.trailer(at + 1)).flatten()
+            && noun.kind.is_some_and(Kind::is_vehicle)
+        {
+            if noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
+                noun.kind = Some(Kind::SemiTrailerTruck);
+            }
+            return Some((noun, behind - first));
+        }
         // Possessive: the owner of what follows, a part or somebody inside.
         if self.text(at) == "'s"
             && let Some((mut person, length)) = self.owned_person(at + 1)
@@ -445,6 +517,12 @@ impl Chunker<'_> {
             return Some((person, at + 1 + length - first));
         }
         Some((noun, at - first))
+    }
+
+    /// Behind a trailer that stands here, with at most two words before it.
+    fn trailer(&self, at: usize) -> Option<usize> {
+        let found = (at..at + 3).find(|&at| matches!(self.text(at), "trailer" | "chassis" | "container"))?;
+        (at..found).all(|at| self.tokens[at].kind == TokenKind::Word).then_some(found + 1)
     }
 
     pub(super) fn owned_person(&self, at: usize) -> Option<(Noun, usize)> {

@@ -81,6 +81,8 @@ impl Chunker<'_> {
                 }
                 ["lane", "from", "left" | "right", ..] => return Some((LaneWord::Center, 4)),
                 ["to", "the", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 5)),
+                ["to" | "from", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 4)),
+                ["leftmost" | "rightmost", "lane", ..] => return Some((LaneWord::Center, 3)),
                 _ => {}
             }
         }
@@ -162,7 +164,7 @@ impl Chunker<'_> {
         let turn = has("turn") || has("turning");
         let adjacent = has("adjacent") || has("next") || has("neighboring");
         // "the left adjacent lane" is a place beside somebody, and is told as a relation.
-        if adjacent && !turn {
+        if adjacent {
             return None;
         }
         let lane = if has("bike") || has("bicycle") {

@@ -3,8 +3,9 @@
 use crate::frame::{Frame, Story};
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT, same_kind};
-use recrash_model::account::{Act, KindGroup};
+use recrash_model::account::{Act, Kind, KindGroup};
 use recrash_model::record::CrashRecord;
+use recrash_model::template::Movement;
 
 /// The contacts of a story.
 #[derive(Debug, Clone, Default)]
@@ -21,13 +22,13 @@ pub(crate) struct Contacts {
 
 impl Contacts {
     /// Looks through a story.
-    pub fn find(story: &Story, _record: &CrashRecord) -> Self {
+    pub fn find(story: &Story, record: &CrashRecord) -> Self {
         let frames = &story.frames;
         let touching: Vec<(usize, Actor)> = frames
             .iter()
             .enumerate()
             .filter(|(_, frame)| frame.is_contact())
-            .filter_map(|(number, frame)| with_whom(story, frame, number).map(|partner| (number, partner)))
+            .filter_map(|(number, frame)| with_whom(story, record, frame, number).map(|partner| (number, partner)))
             .collect();
         let mut contacts = Self::default();
         if let Some(&(first, partner)) = touching.first() {
@@ -40,6 +41,10 @@ impl Contacts {
                     && (*other == partner || story.world.actors[*other].mentions > 1)
                     && alike(story, partner, *other)
             });
+            // "... struck it from behind. It then struck the left side": two events, no headline.
+            let told = &frames[first];
+            let full = told.on.is_some() || told.with.is_some() || !told.relations.is_empty();
+            let again = again.filter(|(number, _)| !(full && goes_on(story, *number)));
             let (first, partner) = again.copied().unwrap_or((first, partner));
             contacts.first = Some(first);
             contacts.partner = Some(partner);
@@ -48,11 +53,16 @@ impl Contacts {
                 .collect();
             return contacts;
         }
-        let others = (0..frames.len()).find(|&number| between_others(&frames[number]));
+        // The one that names parts tells most.
+        let apart = |&number: &usize| between_others(&frames[number]);
+        let others = (0..frames.len())
+            .filter(apart)
+            .find(|&number| frames[number].on.is_some() || frames[number].with.is_some())
+            .or_else(|| (0..frames.len()).find(apart));
         let untouched = frames.iter().any(|frame| {
             frame.negated && matches!(frame.sense, Sense::Contact) && [frame.who, frame.object].contains(&Some(SUBJECT))
         });
-        contacts.partner = announced(story).or_else(|| only_other(story));
+        contacts.partner = announced(story).or_else(|| only_other(story, record));
         if let (Some(number), Some(who)) = (others, others.and_then(|number| frames[number].who)) {
             let headline = frames
                 .iter()
@@ -88,6 +98,16 @@ impl Contacts {
     }
 }
 
+/// Whether the sentence of a frame says that it is one more event.
+fn goes_on(story: &Story, number: usize) -> bool {
+    let sentence = story.sentences[story.frames[number].sentence];
+    let words = &story.tokens[sentence.first..story.frames[number].first];
+    words.iter().any(|token| matches!(token.text.as_str(), "then" | "again" | "subsequently"))
+        || story.tokens[sentence.first..sentence.end]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "third" | "times"))
+}
+
 fn alike(story: &Story, one: Actor, other: Actor) -> bool {
     match (story.world.actors[one].kind, story.world.actors[other].kind) {
         (Some(one), Some(other)) => same_kind(one, other) || same_kind(other, one),
@@ -96,11 +116,11 @@ fn alike(story: &Story, one: Actor, other: Actor) -> bool {
 }
 
 /// Who touches the subject vehicle in this frame, or is touched by it.
-fn with_whom(story: &Story, frame: &Frame, number: usize) -> Option<Actor> {
+fn with_whom(story: &Story, record: &CrashRecord, frame: &Frame, number: usize) -> Option<Actor> {
     match (frame.who, frame.object) {
         (Some(SUBJECT), Some(other)) | (Some(other), Some(SUBJECT)) if other != SUBJECT => Some(other),
         (Some(SUBJECT), Some(SUBJECT)) => None,
-        (Some(SUBJECT), None) | (None, Some(SUBJECT)) => near(story, number),
+        (Some(SUBJECT), None) | (None, Some(SUBJECT)) => near(story, record, number),
         // "The van made contact": with whom, if not with the subject vehicle.
         (Some(other), None) if frame.sense != Sense::ReverseContact => {
             let kind = story.world.actors[other].kind;
@@ -108,7 +128,7 @@ fn with_whom(story: &Story, frame: &Frame, number: usize) -> Option<Actor> {
             let part = frame.on.as_ref().is_some_and(|piece| !piece.parts.is_empty());
             (part || kind.is_none_or(|kind| kind.group() != KindGroup::Object)).then_some(other)
         }
-        (None, None) if frame.sense == Sense::ContactMade => near(story, number),
+        (None, None) if frame.sense == Sense::ContactMade => near(story, record, number),
         _ => None,
     }
 }
@@ -119,7 +139,7 @@ fn between_others(frame: &Frame) -> bool {
         && !pair.contains(&Some(SUBJECT))
         && frame.who.is_some()
         && frame.object.is_some()
-        && frame.who != frame.object
+        && (frame.who != frame.object || frame.sense == Sense::ContactMade)
 }
 
 /// Whether a contact of two others came before the crash: told before it, told as the first, or followed by the crash told
@@ -131,11 +151,11 @@ fn comes_first(story: &Story, number: usize, crash: usize, touching: &[(usize, A
 }
 
 /// Who was named last before this frame, or announced.
-fn near(story: &Story, number: usize) -> Option<Actor> {
+fn near(story: &Story, record: &CrashRecord, number: usize) -> Option<Actor> {
     let named = story.frames[..number].iter().rev().find_map(|frame| {
         [frame.who, frame.object].into_iter().flatten().find(|&actor| actor != SUBJECT && lively(story, actor))
     });
-    named.or_else(|| announced(story)).or_else(|| only_other(story))
+    named.or_else(|| announced(story)).or_else(|| only_other(story, record))
 }
 
 fn lively(story: &Story, actor: Actor) -> bool {
@@ -148,9 +168,19 @@ fn announced(story: &Story) -> Option<Actor> {
     [headline.object, headline.who].into_iter().flatten().find(|&actor| actor != SUBJECT)
 }
 
-/// The one other road user of the story.
-fn only_other(story: &Story) -> Option<Actor> {
-    let mut others = (1..story.world.actors.len())
-        .filter(|&actor| lively(story, actor) && story.world.actors[actor].towed_by.is_none());
-    others.next()
+/// The other road user of the story; of several the first whom the column means and who does what the column says.
+fn only_other(story: &Story, record: &CrashRecord) -> Option<Actor> {
+    let others: Vec<Actor> = (1..story.world.actors.len())
+        .filter(|&actor| lively(story, actor) && story.world.actors[actor].towed_by.is_none())
+        .collect();
+    let stands = |actor: Actor| {
+        story.frames.iter().any(|frame| frame.who == Some(actor) && frame.sense == Sense::Parked && frame.happened())
+    };
+    let parked = record.cp_movement.known().map(|movement| movement == Movement::Parked);
+    let fits = |&&actor: &&Actor| {
+        let kind = story.world.actors[actor].kind.and_then(Kind::partner_kind);
+        let meant = kind.is_none() || record.partner.known().is_none_or(|column| kind == Some(column));
+        meant && parked.is_none_or(|parked| parked == stands(actor))
+    };
+    others.iter().find(fits).or(others.first()).copied()
 }

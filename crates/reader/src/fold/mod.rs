@@ -4,16 +4,18 @@ mod contact;
 mod movement;
 mod origin;
 mod party;
+mod picture;
 mod place;
+mod scenario;
 mod types;
 
 use crate::chunk::Piece;
 use crate::frame::{Frame, Own, Story, story};
-use crate::lexicon::{Lexicon, Sense};
+use crate::lexicon::{Lexicon, Occupant, Sense};
 use crate::world::{Actor, SUBJECT};
 use contact::Contacts;
 use recrash_model::account::{
-    ACCOUNT_FORMAT, Account, Act, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker,
+    ACCOUNT_FORMAT, Account, Act, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker, told,
 };
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
@@ -52,13 +54,23 @@ impl Reading<'_> {
         let frame = &self.story.frames[number];
         let Some(contact) = self.contacts.first else { return false };
         let at = &self.story.frames[contact];
+        // "Before it set off, a van struck it".
+        let until = frame.sentence == at.sentence
+            && frame.joint == Some(crate::chunk::Joint::Before)
+            && at.joint != frame.joint
+            && !frame.is_contact();
+        if until && frame.progress != crate::lexicon::Progress::Wished {
+            return true;
+        }
         if number <= contact || frame.looks_back || frame.aside && frame.sentence == at.sentence {
             return false;
         }
         // "made contact while passing": at the same time.
+        let between = at.end.min(frame.first)..frame.first;
         let simultaneous = frame.sentence == at.sentence
             && frame.joint == Some(crate::chunk::Joint::While)
-            && frame.clause > at.clause;
+            && frame.clause > at.clause
+            && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
         !(simultaneous || frame.described && frame.sentence == at.sentence)
     }
 
@@ -132,15 +144,30 @@ pub fn account(incident: &Incident) -> Option<Account> {
         author: Author::Rules,
     };
     party::columns(&reading, &mut account);
+    // A gate that swings open is no door.
+    let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
+    let is_thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Door);
+    account.door = account.door.filter(|_| !is_thing);
     account.came_from = origin::came_from(&reading, &account);
     movement::movements(&reading, &mut account);
+    if let Some(origin) = picture::settle(&account) {
+        if let Some(told) = account.came_from.take().filter(|told| told.source.is_told()) {
+            account.contradictions.push(Contradiction {
+                about: "came_from".to_owned(),
+                kept: format!("{}, by zones and movements", origin.value.words()),
+                against: format!("{} in words", told.value.words()),
+            });
+        }
+        account.came_from = Some(origin);
+        movement::movements(&reading, &mut account);
+    }
     account.striker = types::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
     account.role = types::role(&reading, &account);
     account.order = types::order(&account);
     account.first_contact = types::first_contact(&reading, &account);
-    account.scenario = types::scenario(&account);
-    account.matrix = types::matrix(&account);
+    account.scenario = scenario::scenario(&account);
+    account.matrix = scenario::matrix(&account);
     account.contradictions.extend(contradictions(&account, record));
     party::refine(&mut account.sv.zones, &record.sv_zones, "SV Contact Area");
     if let Some(partner) = &mut account.partner {
@@ -151,8 +178,8 @@ pub fn account(incident: &Incident) -> Option<Account> {
 
 /// Works out again what follows from the other facts of an account, where somebody else has read some of them.
 pub fn refold(account: &mut Account) {
-    account.scenario = types::scenario(account);
-    account.matrix = types::matrix(account);
+    account.scenario = scenario::scenario(account);
+    account.matrix = scenario::matrix(account);
 }
 
 /// Kind of the subject vehicle, by its make, where that makes trucks only.
@@ -198,7 +225,7 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         frame.sense == Sense::TakeOver
             && frame.happened()
             && frame.who.is_none_or(|who| who == SUBJECT)
-            && (!reading.is_after(*number) || told_again(*number))
+            && (!reading.is_after(*number) || told_again(*number) || had_done(reading, frame))
     });
     let mut system = None;
     let mut human = None;
@@ -238,6 +265,9 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
     if let Some((_, at, length)) = human.filter(|_| handed_over) {
         return Some(reading.told(Driver::HumanTookOver, at, at + length));
     }
+    if let (None, Some(frame)) = (&human, by_hand(reading)) {
+        return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
+    }
     if let Some((value, at, length)) = human.or(system) {
         return Some(reading.told(value, at, at + length));
     }
@@ -248,6 +278,34 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// "It struck the van, which at that time had disengaged": told behind the contact, and done before it.
+fn had_done(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence);
+    let before = frame.first.checked_sub(1).map(|at| reading.story.tokens[at].text.as_str());
+    let sentence = reading.story.sentences[frame.sentence];
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
+    // "It disengaged before the impact", told behind it.
+    let until = words.iter().position(|word| matches!(*word, "before" | "prior")).is_some_and(|at| {
+        words[at..]
+            .iter()
+            .take(5)
+            .any(|word| matches!(*word, "impact" | "contact" | "collision" | "crash" | "incident"))
+    });
+    until || contact == Some(frame.sentence) && before == Some("had")
+}
+
+/// The first thing that the human at the wheel did to the vehicle before the contact.
+fn by_hand<'a>(reading: &'a Reading<'_>) -> Option<&'a Frame> {
+    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence)?;
+    reading.before(SUBJECT).map(|(_, frame)| frame).find(|frame| {
+        frame.sentence + 1 >= contact
+            && frame.person == Some(Occupant::Driver)
+            && frame.happened()
+            && matches!(frame.act(), Some(Act::Slow | Act::Swerve | Act::Stop | Act::Turn | Act::LaneChange))
+    })
 }
 
 /// Whether a sentence says that the system drove, or handed over, in the half minute before: "autonomy was engaged within the

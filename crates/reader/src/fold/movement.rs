@@ -2,7 +2,7 @@
 
 use super::Reading;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, Fact, KindGroup, LeftRight, Party, Source, StandReason, told,
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Source, StandReason, told,
 };
 use recrash_model::template::Movement;
 
@@ -30,19 +30,24 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
             if movement.is_none() && drives && account.came_from.is_some() {
                 movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
             }
-            let crosses = column != Some(Movement::Passing)
-                && (group == Some(KindGroup::OnFoot) && partner.did(Act::Cross) && !partner.did(Act::Pass)
-                    || group == Some(KindGroup::Cyclist) && crosswalk(partner));
-            if let (true, None, Some(act)) =
-                (crosses, &movement, partner.acts.iter().find(|fact| fact.act == Act::Cross))
-            {
-                movement = Some(Fact { value: Movement::NmCrossing, source: act.source.clone() });
+            let passes = column == Some(Movement::Passing) || partner.did(Act::Pass);
+            let from_side = account.came_from.as_ref().is_some_and(|from| {
+                matches!(from.value, Origin::Cross { .. } | Origin::Sidewalk { .. } | Origin::Driveway { .. })
+            });
+            let way = (!passes).then(|| walked(reading, partner)).flatten();
+            let crosses = match group {
+                Some(KindGroup::OnFoot) => !passes && (partner.did(Act::Cross) || way.is_some() && from_side),
+                Some(KindGroup::Cyclist) => way == Some(Walk::Crosswalk),
+                _ => false,
+            };
+            if crosses && movement.is_none() {
+                movement = Some(Fact::by_rule(Movement::NmCrossing, "who crosses on foot"));
+            }
+            if told(&partner.kind).is_some_and(|kind| matches!(kind, Kind::Pedestrian | Kind::Wheelchair)) && !crosses {
+                movement = Some(on_foot(partner, column, way, from_side));
             }
             if let Some(fact) = &mut movement {
-                let oncoming = account
-                    .came_from
-                    .as_ref()
-                    .is_some_and(|from| from.value == recrash_model::account::Origin::Opposite);
+                let oncoming = account.came_from.as_ref().is_some_and(|from| from.value == Origin::Opposite);
                 if crosses {
                     fact.value = Movement::NmCrossing;
                 } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
@@ -59,9 +64,53 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     }
 }
 
-/// Whether somebody crosses on a crosswalk.
-fn crosswalk(party: &Party) -> bool {
-    party.acts.iter().any(|fact| fact.act == Act::Cross && !fact.after_contact && words_of(fact).contains("crosswalk"))
+/// Ways that are not for vehicles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Walk {
+    Crosswalk,
+    Sidewalk,
+}
+
+/// On which of them the partner is told to be, up to the contact.
+fn walked(reading: &Reading<'_>, partner: &Party) -> Option<Walk> {
+    let actor = reading.contacts.partner?;
+    let tokens = &reading.story.tokens;
+    let named = |words: &[&str]| {
+        reading.before(actor).filter(|(_, frame)| frame.happened()).any(|(number, _)| {
+            let (first, end) = reading.window(number);
+            (first..end).any(|at| {
+                // "a crosswalk signal" is none.
+                words.contains(&tokens[at].text.as_str()) && tokens.get(at + 1).is_none_or(|next| next.text != "signal")
+            })
+        })
+    };
+    let crossed = partner.acts.iter().any(|fact| fact.act == Act::Cross && words_of(fact).contains("crosswalk"));
+    if crossed || named(&["crosswalk", "crosswalks"]) {
+        Some(Walk::Crosswalk)
+    } else {
+        named(&["sidewalk"]).then_some(Walk::Sidewalk)
+    }
+}
+
+/// What somebody on foot does who is not told to cross.
+fn on_foot(partner: &Party, column: Option<Movement>, way: Option<Walk>, from_side: bool) -> Fact<Movement> {
+    let of_feet = column.filter(|column| {
+        matches!(
+            column,
+            Movement::NmCrossing
+                | Movement::NmWaiting
+                | Movement::NmAlongside
+                | Movement::NmOnSidewalk
+                | Movement::NmInRoadway
+        )
+    });
+    let rule = "what somebody on foot does there";
+    match (of_feet, way) {
+        (Some(column), _) => Fact::of_column(column, "CP Pre-Crash Movement"),
+        (None, _) if from_side || partner.did(Act::Enter) => Fact::by_rule(Movement::NmCrossing, rule),
+        (None, Some(Walk::Sidewalk)) => Fact::by_rule(Movement::NmOnSidewalk, rule),
+        (None, _) => Fact::by_rule(Movement::NmInRoadway, rule),
+    }
 }
 
 fn words_of(fact: &ActFact) -> String {
@@ -94,6 +143,12 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
     let before = || party.acts.iter().filter(|fact| !fact.after_contact);
     let mut best: Option<(u8, Movement, &Source)> = None;
     for fact in before() {
+        // Who goes on from a stop has done with going backwards.
+        if matches!(fact.act, Act::SetOff | Act::Follow)
+            && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)
+        {
+            best = None;
+        }
         // Who passes has done with going backwards, and who drives on with its turn.
         if matches!(fact.act, Act::Pass | Act::LaneChange)
             && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)

@@ -96,7 +96,9 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     }
     let kind = told(&account.partner.as_ref()?.kind);
     let fixed = matches!(kind, Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Gate | Kind::Barrier | Kind::Sign));
-    let plain_front = has_zone(&account.sv, |zone| zone == Z::Front);
+    // What runs along the road is met with its corner.
+    let along = matches!(kind, Some(Kind::Curb | Kind::Barrier));
+    let plain_front = has_zone(&account.sv, |zone| zone == Z::Front) && !along;
     if let (true, false, Some(side)) = (fixed, plain_front, zone_side(account)) {
         return Some(Fact::by_rule(
             Origin::Beside { side },
@@ -139,7 +141,21 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let parked = frames().any(|(_, frame)| frame.sense == Sense::Parked)
         || told(&account.partner.as_ref()?.state) == Some(ContactState::Parked);
     // Out of a stall, a driveway, a lot.
-    if let Some((number, frame)) = frames().find(|(_, frame)| frame.out_of.is_some()) {
+    let heading = account.partner.as_ref()?.heading.as_ref();
+    // After a turn that is done, its new direction counts.
+    let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
+    let turn =
+        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
+    // Out of a spot at the other side of the road, and then on: it comes the other way.
+    let drove_on = |number: usize| {
+        turn == Some(4)
+            && frames().any(|(later, frame)| {
+                later > number && matches!(frame.act(), Some(Act::Follow | Act::SetOff | Act::Drift))
+            })
+    };
+    if let Some((number, frame)) =
+        frames().find(|(_, frame)| frame.out_of.is_some()).filter(|(number, _)| !drove_on(*number))
+    {
         let (first, end) = reading.window(number);
         let source = reading.words(first, end);
         match frame.out_of {
@@ -196,17 +212,16 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             clues.source(|frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor)),
         );
     }
-    let leaves_curb =
-        did(Act::PullOut) && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
-    if leaves_curb && (parked || !behind_first(clues)) {
+    let pulled_on =
+        frames().find(|(_, frame)| frame.act() == Some(Act::PullOut)).is_some_and(|(number, _)| drove_on(number));
+    let leaves_curb = !pulled_on
+        && did(Act::PullOut)
+        && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
+    let crosses = matches!(turn, Some(2 | 6));
+    if leaves_curb && (parked || !(behind_first(clues) || crosses)) {
         let source = clues.source(|frame| frame.act() == Some(Act::PullOut));
         return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
     }
-    let heading = account.partner.as_ref()?.heading.as_ref();
-    // After a turn that is done, its new direction counts.
-    let turned = if super::types::turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
-    let turn =
-        turned.or(account.sv.heading.as_ref()).zip(heading).map(|(own, other)| own.value.eighths_to(other.value));
     let first = first_relation(clues);
     // Beside it, before it passes or changes lanes.
     let beside = |side: LeftRight| {
@@ -294,6 +309,13 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             clues.has(if side == LeftRight::Left { Relation::Left } else { Relation::Right }),
         );
     }
+    if ahead
+        && side.is_none()
+        && moved_over
+        && let Some(side) = lane_side(account)
+    {
+        return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
+    }
     if ahead && side.is_none() {
         return told_as(Origin::Ahead, clues.has(Relation::Ahead));
     }
@@ -311,7 +333,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return told_as(Origin::Opposite, clues.has(Relation::Opposite));
     }
     if did(Act::Pass) && passes_subject(reading, actor) {
-        return told_as(Origin::Behind, clues.source(|frame| frame.act() == Some(Act::Pass)));
+        return Some(Fact::by_rule(Origin::Behind, "who passes comes from behind"));
     }
     if let Some(side) = lane_side(account).or_else(|| changed_from(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
@@ -332,6 +354,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let turning =
         super::types::turning(&account.sv) && !super::types::turning(account.partner.as_ref()?) && !did(Act::Pass);
     if let (true, Some(side)) = (turning && !has_zone(&account.sv, |zone| zone.is_rear()), zone_side(account)) {
+        if parked {
+            return Some(Fact::by_rule(Origin::Beside { side }, "the side that a parked one is touched with"));
+        }
         return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));
     }
     let rear_ended = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);
@@ -352,7 +377,8 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
-    (animal && has_zone(&account.sv, |zone| zone.is_front()))
+    let driven_over = has_zone(&account.sv, |zone| zone == Z::Bottom) && forward(account);
+    (animal && (driven_over || has_zone(&account.sv, |zone| zone.is_front())))
         .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
 }
 

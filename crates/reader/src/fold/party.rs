@@ -2,7 +2,7 @@
 
 use super::Reading;
 use crate::frame::{Frame, sided, zone_of};
-use crate::lexicon::{Lexicon, Progress, Sense};
+use crate::lexicon::{Lexicon, Progress, Relation, Sense};
 use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
@@ -56,8 +56,9 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
 }
 
 fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<recrash_model::account::Compass>> {
-    let (_, frame) =
-        reading.before(actor).find(|(_, frame)| frame.onto && frame.heading.is_some() && frame.happened())?;
+    let (_, frame) = reading
+        .before(actor)
+        .find(|(_, frame)| frame.onto && frame.heading.is_some() && frame.happened() && frame.act().is_some())?;
     frame.heading.map(|(compass, first, end)| reading.told(compass, first, end))
 }
 
@@ -140,7 +141,17 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         {
             Some(Act::Follow)
         }
-        Act::Pass if frame.who == Some(SUBJECT) && frame.object.is_none() && frame.side.is_none() => Some(Act::Follow),
+        // So does "passed behind the van".
+        Act::Pass
+            if frame.who == Some(SUBJECT)
+                && frame.object.is_none()
+                && frame
+                    .relations
+                    .iter()
+                    .all(|(relation, _)| matches!(relation, Relation::Ahead | Relation::Behind)) =>
+        {
+            Some(Act::Follow)
+        }
         _ => Some(act),
     }
 }
@@ -603,6 +614,12 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         {
             Some(ContactState::Moving)
         }
+        // "As it set off, a van struck it" is plain.
+        (Some(ContactState::SettingOff), Some(Movement::Stopped | Movement::Parked))
+            if zero && !moves_at_contact(reading) && !sets_off_at_contact(reading) =>
+        {
+            Some(ContactState::Stopped)
+        }
         (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
             if zero && !moves_at_contact(reading) =>
         {
@@ -626,6 +643,17 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
         account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
     }
+}
+
+/// Whether the sentence of the contact says that the subject vehicle sets off.
+fn sets_off_at_contact(reading: &Reading<'_>) -> bool {
+    let Some(contact) = reading.contacts.first else { return false };
+    let sentence = reading.story.frames[contact].sentence;
+    reading.before(SUBJECT).any(|(_, frame)| {
+        frame.sentence == sentence
+            && frame.happened()
+            && matches!(frame.act(), Some(Act::SetOff | Act::Follow | Act::Enter | Act::Turn))
+    })
 }
 
 /// Whether the words of the contact's own clause say that the subject vehicle moved into something.

@@ -1,4 +1,4 @@
-//! What kind of crash it is: type, role, striker, order, first contact, scenario, matrix cell. Each by a rule over the facts
+//! What kind of crash it is: type, role, striker, order, first contact. Each by a rule over the facts
 //! (`docs/models/crash-types.md`).
 
 use super::Reading;
@@ -6,8 +6,8 @@ use super::party::has_zone;
 use crate::lexicon::Sense;
 use crate::world::SUBJECT;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, Fact, FirstContact, Kind, KindGroup, LeftRight, MatrixCell, MatrixEvent,
-    MatrixObject, Origin, Party, PrecrashScenario, Role, Source, Striker, told,
+    Account, Act, ContactState, CrashType, Fact, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, Role, Source,
+    Striker, told,
 };
 use recrash_model::narrative::FirstMover;
 use recrash_model::template::Movement;
@@ -59,8 +59,13 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     }
     let Some(number) = reading.contacts.first else { return by_fronts(account) };
     let frame = &reading.story.frames[number];
+    // "It entered, making contact with the front of the other": the front moved into the side.
+    let crossing = matches!(told(&account.came_from), Some(Origin::Cross { .. } | Origin::Opposite));
+    if let (true, Some(front)) = (crossing, front_on_flank(account)) {
+        return rule(front, FRONT_ON_SIDE);
+    }
     let value = match (frame.who, frame.object) {
-        (Some(SUBJECT), Some(_)) => {
+        (Some(SUBJECT), _) => {
             // "The rear of the subject vehicle made contact with the front of the car": who moved forward into whom.
             let rear = has_zone(&account.sv, |zone| zone.is_rear());
             if rear && sv != Some(ContactState::Reversing) { Striker::Cp } else { Striker::Sv }
@@ -73,12 +78,47 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     Some(Fact { value, source: reading.of(frame) })
 }
 
+/// Rule of a striker by whose front touches whose side.
+const FRONT_ON_SIDE: &str = "the front of one on the side of the other";
+
+/// Whose front alone touches a side that is no corner.
+fn front_on_flank(account: &Account) -> Option<Striker> {
+    use recrash_model::zones::ContactZone as Z;
+    let partner = account.partner.as_ref()?;
+    let front = |party: &Party| {
+        !party.zones.is_empty()
+            && party.zones.iter().all(|zone| zone.value.is_front())
+            && has_zone(party, |zone| zone == Z::Front)
+    };
+    let flank = |party: &Party| {
+        !party.zones.is_empty()
+            && party.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::Right | Z::RearLeft | Z::RearRight))
+    };
+    match (front(&account.sv) && flank(partner), front(partner) && flank(&account.sv)) {
+        (true, false) => Some(Striker::Sv),
+        (false, true) => Some(Striker::Cp),
+        _ => None,
+    }
+}
+
 /// Rule of a striker of whom the words say nothing.
 const BY_FRONTS: &str = "whose front took part";
 
 /// Whose front alone took part moved into the other.
 fn by_fronts(account: &Account) -> Option<Fact<Striker>> {
     let partner = account.partner.as_ref()?;
+    let over = |party: &Party| {
+        [Act::LaneChange, Act::Swerve, Act::Drift].into_iter().any(|act| party.did(act))
+            || matches!(
+                told(&party.movement),
+                Some(Movement::ChangingLanes | Movement::Merging | Movement::LaneDeparture)
+            )
+    };
+    match (over(&account.sv), over(partner)) {
+        (true, false) => return Some(Fact::by_rule(Striker::Sv, "who moved over")),
+        (false, true) => return Some(Fact::by_rule(Striker::Cp, "who moved over")),
+        _ => {}
+    }
     let front = |party: &Party| has_zone(party, |zone| zone.is_front());
     let value = match (front(&account.sv), front(partner)) {
         (true, false) => Striker::Sv,
@@ -121,9 +161,10 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             (CrashType::SingleVehicle, "a thing")
         });
     }
-    if (partner.did(Act::Pushed)
-        || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
-        || separate(reading))
+    if !reading.contacts.others_only
+        && (partner.did(Act::Pushed)
+            || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
+            || separate(reading))
         && !drove_on(reading)
     {
         return Some((CrashType::Secondary, "another contact threw the partner at it"));
@@ -225,7 +266,18 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
                 || (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
                 || (cp_turns && turn_side(partner) == Some(LeftRight::Left) && !sv_turns)
                 || told(&partner.movement) == Some(Movement::UTurn);
-            Some(if across {
+            // Left side on left side they passed each other, and only then it turned, or began to.
+            let left = |party: &Party, corner: bool| {
+                use recrash_model::zones::ContactZone as Z;
+                !party.zones.is_empty()
+                    && party
+                        .zones
+                        .iter()
+                        .all(|zone| matches!(zone.value, Z::Left | Z::RearLeft) || corner && zone.value == Z::FrontLeft)
+            };
+            let begun = partner.acts.iter().any(|fact| fact.act == Act::Turn && fact.begun);
+            let abreast = left(&account.sv, true) && left(partner, false) && (begun || partner.did(Act::Pass));
+            Some(if across && !abreast {
                 (CrashType::Intersection, "one turned across the other")
             } else {
                 (CrashType::HeadOn, "from opposite directions")
@@ -252,7 +304,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
     }
 }
 
-fn turn_side(party: &Party) -> Option<LeftRight> {
+pub(crate) fn turn_side(party: &Party) -> Option<LeftRight> {
     party.acts.iter().rev().filter(|fact| !fact.after_contact).find_map(|fact| match fact.act {
         Act::Turn => fact.side,
         Act::UTurn => Some(LeftRight::Left),
@@ -371,9 +423,18 @@ fn lay(reading: &Reading<'_>) -> bool {
     })
 }
 
-/// Whether a thing came into the way.
-fn comes(partner: &Party) -> bool {
-    partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop))
+/// Whether a thing came into the way: one that is fixed does not, whatever a sentence makes its subject.
+fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
+    let fixed = matches!(
+        told(&partner.kind),
+        Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier | Kind::Sign | Kind::Pothole | Kind::Chain)
+    );
+    let thrown = || {
+        let Some(actor) = reading.contacts.partner else { return false };
+        reading.before(actor).any(|(_, frame)| frame.sense == Sense::Push && frame.happened())
+    };
+    let moved = partner.acts.iter().any(|fact| !fact.after_contact && !matches!(fact.act, Act::Hold | Act::Stop));
+    !fixed && (moved || thrown())
 }
 
 /// Whose move brought it about.
@@ -397,7 +458,7 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     }
     if group(account) == Some(KindGroup::Object) {
         let flies = matches!(told(&partner.kind), Some(Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo));
-        let appears = flies || comes(partner);
+        let appears = flies || comes(reading, partner);
         return if appears {
             rule(Role::Responder, "something came into its way")
         } else {
@@ -440,7 +501,10 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return rule(Role::Responder, "the other turned or came out across its way");
     }
     // What zones alone say of it is not enough to blame it.
-    let by_zones = matches!(&account.striker, Some(Fact { source: Source::Rule { name }, .. }) if name == BY_FRONTS);
+    let by_zones = matches!(
+        &account.striker,
+        Some(Fact { source: Source::Rule { name }, .. }) if name == BY_FRONTS || name == FRONT_ON_SIDE
+    );
     if striker == Some(Striker::Sv) && !by_zones && told(&account.crash_type) != Some(CrashType::Other) {
         return if cp_moves {
             rule(Role::Both, "both moved")
@@ -461,6 +525,24 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
             rule(Role::Both, "it turned across another's way")
         };
     }
+    let walks = matches!(group(account), Some(KindGroup::OnFoot | KindGroup::Cyclist));
+    let goes_straight = matches!(told(&partner.movement), Some(Movement::NmCrossing | Movement::Straight));
+    if walks && sv_turns && goes_straight && !cp_moves && told(&account.came_from) != Some(Origin::Behind) {
+        return rule(Role::Initiator, "it turned across the way of one who went on");
+    }
+    if account.sv.did(Act::UTurn) && !cp_moves && told(&account.came_from) != Some(Origin::Ahead) {
+        return rule(Role::Initiator, "it turned round before one that drove on");
+    }
+    if crossed_from_stop(account) && !cp_moves && !ignored_a_stop(reading) {
+        return rule(Role::Initiator, "it crossed from a stop before one that drove on");
+    }
+    let over = account.sv.did(Act::LaneChange) && matches!(told(&account.came_from), Some(Origin::Beside { .. }));
+    let passes = told(&partner.movement) == Some(Movement::Passing) || partner.did(Act::Accelerate);
+    // Struck at its rear it was there already.
+    let beside = striker == Some(Striker::Sv) || has_zone(&account.sv, |zone| !zone.is_rear());
+    if over && beside && !cp_moves && !passes && told(&account.crash_type) == Some(CrashType::Lateral) {
+        return rule(Role::Initiator, "it changed lanes into one that drove on");
+    }
     if sv_changes && !matches!(told(&account.crash_type), Some(CrashType::Intersection)) {
         return rule(Role::Both, "it changed lanes");
     }
@@ -469,6 +551,32 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     }
     let _ = reading;
     rule(Role::Responder, "the other moved into it")
+}
+
+/// Whether the partner is told not to have stopped, wherever it should have.
+fn ignored_a_stop(reading: &Reading<'_>) -> bool {
+    let Some(actor) = reading.contacts.partner else { return false };
+    reading
+        .before(actor)
+        .any(|(_, frame)| frame.negated && (frame.act() == Some(Act::Stop) || frame.sense == Sense::Yield))
+}
+
+/// Whether it stood for a sign or for others, and then crossed the way of one who had nothing to stop for.
+fn crossed_from_stop(account: &Account) -> bool {
+    let Some(partner) = &account.partner else { return false };
+    use recrash_model::account::{RoadFeature, StandReason};
+    let before: Vec<Act> = account.sv.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+    let stood = before.iter().position(|act| matches!(act, Act::Stop | Act::Hold));
+    let went = before.iter().rposition(|act| matches!(act, Act::SetOff | Act::Cross | Act::Enter | Act::Turn));
+    let waits = account.place.features.iter().any(|feature| feature.value == RoadFeature::StopSign)
+        || account.sv.reasons.iter().any(|reason| matches!(reason.value, StandReason::StopSign | StandReason::Yield));
+    let signal = account.place.features.iter().any(|feature| feature.value == RoadFeature::Signal);
+    let stops = partner.did(Act::Stop) || partner.did(Act::Hold) || partner.did(Act::SetOff);
+    matches!(told(&account.came_from), Some(Origin::Cross { .. }))
+        && stood.zip(went).is_some_and(|(stood, went)| stood < went)
+        && waits
+        && !signal
+        && !stops
 }
 
 /// Who was at the place of the conflict first.
@@ -489,15 +597,36 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
         _ => {}
     }
     match told(&account.crash_type)? {
-        CrashType::FrontToRear | CrashType::Secondary => {
+        CrashType::FrontToRear => {
             let lead = has_zone(&account.sv, |zone| zone.is_rear()) && told(&account.came_from) != Some(Origin::Ahead);
             return rule(if lead { FirstMover::Sv } else { FirstMover::Cp }, "who is ahead is there first");
         }
         CrashType::HeadOn => return rule(FirstMover::Both, "they meet"),
+        CrashType::Secondary if has_zone(&account.sv, |zone| zone.is_rear()) => {
+            return rule(FirstMover::Sv, "who is ahead is there first");
+        }
+        CrashType::Secondary if told(&account.came_from) == Some(Origin::Ahead) => {
+            return rule(FirstMover::Cp, "who is ahead is there first");
+        }
         // Who goes backwards comes to the other.
         CrashType::Backing => {
+            let rear = |party: &Party| has_zone(party, |zone| zone.is_rear());
+            let fore = |party: &Party| has_zone(party, |zone| zone.is_front());
             let value = match (sv_state(account)?, cp_state(account)) {
+                // Both go backwards: whose rear comes to the other's front.
+                (ContactState::Reversing, Some(ContactState::Reversing)) if fore(&account.sv) && rear(partner) => {
+                    FirstMover::Sv
+                }
+                (ContactState::Reversing, Some(ContactState::Reversing)) if rear(&account.sv) && fore(partner) => {
+                    FirstMover::Cp
+                }
                 (ContactState::Reversing, Some(ContactState::Reversing)) => FirstMover::Both,
+                // Its front comes to the side of one that goes backwards.
+                (ContactState::Moving | ContactState::SettingOff, _)
+                    if fore(&account.sv) && !partner.zones.is_empty() && !rear(partner) && !fore(partner) =>
+                {
+                    FirstMover::Cp
+                }
                 (ContactState::Reversing, _) => FirstMover::Cp,
                 _ => FirstMover::Sv,
             };
@@ -507,12 +636,26 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
     }
     // Whose front touches comes later than whose flank is touched.
     let front = |party: &Party| has_zone(party, |zone| zone.is_front());
-    let flank = |party: &Party| !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front());
+    // A side that is named with its front corner is a side.
+    use recrash_model::zones::ContactZone as Z;
+    let side = |party: &Party| {
+        has_zone(party, |zone| matches!(zone, Z::Left | Z::Right))
+            && party.zones.iter().filter(|zone| zone.value.is_front()).all(|zone| zone.value != Z::Front)
+            && party.zones.iter().any(|zone| zone.source.is_told())
+    };
+    let flank = |party: &Party| !party.zones.is_empty() && (side(party) || !has_zone(party, |zone| zone.is_front()));
     if partner.zones.is_empty() && !account.sv.zones.is_empty() {
         let value = if flank(&account.sv) { FirstMover::Sv } else { FirstMover::Cp };
         return rule(value, "whose flank is touched is there first");
     }
     let striker = told(&account.striker);
+    let plain_side = |party: &Party| {
+        !party.zones.is_empty() && party.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::Right))
+    };
+    let thrown = told(&account.crash_type) == Some(CrashType::Secondary);
+    if plain_side(&account.sv) && plain_side(partner) && !thrown {
+        return rule(FirstMover::Both, "side on side they converge");
+    }
     match (front(&account.sv), flank(&account.sv), front(partner), flank(partner)) {
         (_, true, _, true) if striker == Some(Striker::Cp) => rule(FirstMover::Sv, "the other came to its flank"),
         (_, true, _, true) if striker == Some(Striker::Sv) => rule(FirstMover::Cp, "it came to the other's flank"),
@@ -544,145 +687,4 @@ pub(crate) fn first_contact(reading: &Reading<'_>, account: &Account) -> Option<
         return rule(FirstContact::Object, "a thing, or a vehicle with nobody in it");
     }
     rule(FirstContact::SvAndPartner, "contacts of the story")
-}
-
-/// Whether the subject vehicle made a manoeuvre before.
-fn manoeuvre(account: &Account) -> bool {
-    [Act::Turn, Act::UTurn, Act::LaneChange, Act::Pass, Act::Reverse, Act::PullOut, Act::Park, Act::PullOver]
-        .into_iter()
-        .any(|act| account.sv.did(act))
-}
-
-/// NHTSA's pre-crash scenario.
-pub(crate) fn scenario(account: &Account) -> Option<Fact<PrecrashScenario>> {
-    use PrecrashScenario as S;
-    let partner = account.partner.as_ref()?;
-    let moved = manoeuvre(account);
-    let either = |with: S, without: S| if moved { with } else { without };
-    let signal =
-        account.place.features.iter().any(|feature| feature.value == recrash_model::account::RoadFeature::Signal);
-    let ran = |act: Act| partner.did(act) || account.sv.did(act);
-    let lead = if matches!(told(&account.came_from), Some(Origin::Ahead)) { partner } else { &account.sv };
-    let value = match told(&account.crash_type)? {
-        _ if ran(Act::RunRed) => S::RunningRedLight,
-        _ if ran(Act::RunStop) => S::RunningStopSign,
-        CrashType::Pedestrian => either(S::PedestrianWithManeuver, S::Pedestrian),
-        CrashType::Cyclist => either(S::CyclistWithManeuver, S::Cyclist),
-        CrashType::SingleVehicle => either(S::ObjectWithManeuver, S::Object),
-        CrashType::Backing => S::Backing,
-        CrashType::FrontToRear | CrashType::Secondary | CrashType::Motorcycle => {
-            let following = if matches!(told(&account.came_from), Some(Origin::Ahead)) { &account.sv } else { partner };
-            if told(&account.crash_type) == Some(CrashType::Motorcycle)
-                && !matches!(told(&account.came_from), Some(Origin::Behind | Origin::Ahead))
-            {
-                S::Other
-            } else if following.did(Act::LaneChange) || following.did(Act::Pass) {
-                S::FollowingWithManeuver
-            } else {
-                match told(&lead.state) {
-                    Some(state) if state.stands() => S::LeadStopped,
-                    Some(ContactState::SettingOff) => S::LeadAccelerating,
-                    _ if lead.did(Act::Slow) || lead.did(Act::Stop) => S::LeadDecelerating,
-                    _ => S::LeadSlower,
-                }
-            }
-        }
-        CrashType::HeadOn => {
-            if moved || partner.did(Act::Pass) || partner.did(Act::LaneChange) {
-                S::OppositeWithManeuver
-            } else {
-                S::Opposite
-            }
-        }
-        CrashType::Intersection => {
-            let turn = turn_side(&account.sv).or_else(|| turn_side(partner));
-            match (told(&account.came_from), turn) {
-                (Some(Origin::Opposite), Some(LeftRight::Left)) => {
-                    if signal {
-                        S::LeftTurnOppositeSignal
-                    } else {
-                        S::LeftTurnOpposite
-                    }
-                }
-                (Some(Origin::Beside { .. } | Origin::Behind | Origin::Ahead), Some(_)) => S::TurningSameDirection,
-                (_, Some(LeftRight::Right)) if signal => S::RightTurnSignal,
-                (_, Some(_)) => S::TurningCrossing,
-                _ => S::StraightCrossing,
-            }
-        }
-        CrashType::Lateral => {
-            let both = |act: Act| partner.did(act) || account.sv.did(act);
-            if both(Act::Park) || both(Act::PullOut) {
-                S::ParkingSameDirection
-            } else if both(Act::LaneChange) || both(Act::Pass) {
-                S::ChangingLanesSameDirection
-            } else if turning(&account.sv) || turning(partner) {
-                S::TurningSameDirection
-            } else {
-                S::DriftingSameDirection
-            }
-        }
-        CrashType::Other => match group(account) {
-            Some(KindGroup::Animal) => either(S::AnimalWithManeuver, S::Animal),
-            _ => S::Other,
-        },
-    };
-    Some(Fact::by_rule(value, "crash type, acts and control"))
-}
-
-/// Cell of the matrix of EU 2022/1426; what comes from behind has none.
-pub(crate) fn matrix(account: &Account) -> Option<Fact<MatrixCell>> {
-    use {MatrixEvent as E, MatrixObject as O};
-    let partner = account.partner.as_ref()?;
-    let kind = told(&partner.kind)?;
-    let origin = told(&account.came_from);
-    let crosswalk =
-        account.place.features.iter().any(|feature| feature.value == recrash_model::account::RoadFeature::Crosswalk);
-    let crossing = if crosswalk { E::CrossingInCrosswalk } else { E::CrossingOutsideCrosswalk };
-    let cell = match kind.group() {
-        KindGroup::OnFoot => match origin {
-            Some(Origin::Cross { .. }) | None => (O::Pedestrian, crossing),
-            Some(Origin::Sidewalk { .. }) => (O::Pedestrian, E::AlongRoad),
-            _ => return None,
-        },
-        KindGroup::Cyclist => match origin {
-            Some(Origin::Cross { .. } | Origin::Sidewalk { .. }) => (O::Cyclist, crossing),
-            Some(Origin::Ahead) => (O::Cyclist, E::RidingInLane),
-            Some(Origin::Beside { .. }) => (O::Cyclist, E::RidingBeside),
-            _ => return None,
-        },
-        KindGroup::Animal => (O::Animal, E::MovingIntoLane),
-        KindGroup::Object => {
-            let moves = partner.did(Act::Fall) || partner.did(Act::Roll);
-            if kind == Kind::Debris || kind == Kind::Object {
-                (O::Debris, E::StaticInLane)
-            } else {
-                (O::OtherObject, if moves { E::MovingIntoLane } else { E::StaticInLane })
-            }
-        }
-        _ => {
-            let event = match origin? {
-                Origin::Behind | Origin::Above => return None,
-                Origin::Ahead => match told(&partner.state) {
-                    Some(state) if state.stands() => E::LeadStopped,
-                    Some(ContactState::SettingOff) => E::LeadAccelerating,
-                    _ if partner.did(Act::Turn) => E::Turning,
-                    _ => E::LeadDecelerating,
-                },
-                Origin::Opposite if partner.did(Act::Turn) => E::Turning,
-                Origin::Opposite => E::EncroachingOpposing,
-                Origin::Beside { .. } if partner.did(Act::LaneChange) => E::CuttingIn,
-                Origin::Beside { .. } if partner.did(Act::Turn) => E::Turning,
-                Origin::Beside { .. } => E::EncroachingAdjacent,
-                Origin::Cross { .. } if partner.did(Act::Turn) => E::Turning,
-                Origin::Cross { .. }
-                | Origin::Stall { .. }
-                | Origin::Driveway { .. }
-                | Origin::Parked { .. }
-                | Origin::Sidewalk { .. } => E::EnteringRoadway,
-            };
-            (O::Vehicle, event)
-        }
-    };
-    Some(Fact::by_rule(MatrixCell { object: cell.0, event: cell.1 }, "kind, origin and acts"))
 }

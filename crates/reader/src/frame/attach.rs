@@ -79,9 +79,12 @@ impl Parser<'_> {
                     taken.sense,
                     Sense::Contact | Sense::ContactMade | Sense::ReverseContact | Sense::OpenDoorInto | Sense::RearEnd
                 );
-                if matches!(taken.sense, Sense::ContactMade) && taken.who.is_none() && preposition == "between" {
+                if matches!(taken.sense, Sense::ContactMade) && preposition == "between" {
                     taken.who = Some(actor);
                     taken.with.clone_from(&mention.piece);
+                    carry.pair = true;
+                    // "a collision between two vans": of each of them with the other.
+                    taken.object = self.world.actors[actor].several.then_some(actor);
                 } else if (contact || taken.sense == Sense::Headline)
                     && taken.object.is_none()
                     && taken.who != Some(actor)
@@ -159,6 +162,13 @@ impl Parser<'_> {
             who = Some(subject.actor);
         }
         let Some(who) = who else { return };
+        // "turned in front of it", "passed in front of it": where the act ends, and not where it was.
+        let across = carry.frame.and_then(|frame| self.frames[frame].act());
+        let ends_there =
+            matches!(across, Some(Act::Turn | Act::UTurn | Act::Cross | Act::Pass | Act::PullOut | Act::Enter));
+        if relation == Relation::Ahead && ends_there {
+            return;
+        }
         match to {
             Some(SUBJECT) | None if who != SUBJECT => self.note(who, relation),
             Some(other) if who == SUBJECT && other != SUBJECT => {
@@ -197,7 +207,9 @@ impl Parser<'_> {
         let last = self.tokens[placed.end - 1].text.as_str();
         let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
             || (last == "behind" && placed.end == placed.first + 1);
-        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) {
+        let of_street = (placed.first..placed.end).any(|at| self.tokens[at].text == "side")
+            && self.tokens.get(placed.end).is_some_and(|next| next.capital);
+        if needs_noun && matches!(next, Some(Chunk::Word)) && !self.of_road(placed.end) && !of_street {
             return;
         }
         // "to the left" is a side of what is done there, or a place.

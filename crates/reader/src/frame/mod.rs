@@ -2,6 +2,7 @@
 
 mod attach;
 mod parser;
+mod subject;
 
 use crate::chunk::{Joint, Piece, Spot};
 use crate::lexicon::{Form, Lexicon, Occupant, Part, Progress, Relation, Sense};

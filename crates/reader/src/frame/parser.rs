@@ -2,11 +2,11 @@
 
 use super::Frame;
 use super::sided;
-use crate::chunk::{Chunk, Joint, Noun, Piece, Placed, Spot, chunks};
+use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, chunks, is_determiner};
 use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
+use recrash_model::account::{Act, Kind, KindGroup};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -61,6 +61,14 @@ pub(super) struct Carry {
     /// The clause begins here, and nothing but small words stood in it.
     pub(super) fresh: bool,
     pub(super) pushed: bool,
+    /// A noun that nobody knows stands behind the preposition or relation: "at this time", "on Elm Street".
+    pub(super) filled: bool,
+    /// A clause behind "where" waits for its subject.
+    pub(super) place: bool,
+    /// "Neither", "no" stands before the subject.
+    pub(super) nobody: bool,
+    /// "Between" waits for the second of a pair.
+    pub(super) pair: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -107,6 +115,10 @@ impl Parser<'_> {
                     self.compass(compass, placed, carry);
                     carry.preposition = Some("of");
                 }
+                // "At this time a van ...": the van is not behind "at".
+                if carry.filled && noun.article != Article::None {
+                    (carry.preposition, carry.relation) = (None, None);
+                }
                 let person = noun.occupant.map(|(who, _)| who);
                 self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
             }
@@ -118,6 +130,8 @@ impl Parser<'_> {
                         Some(actor)
                     }
                     None if piece.its => Some(self.its(carry)),
+                    // "It set off, and the rear tire touched": of whom the sentence is about.
+                    None if carry.fresh && matches!(next, Some(Chunk::Verb(..) | Chunk::Be)) => Some(self.its(carry)),
                     None => None,
                 };
                 match actor {
@@ -132,6 +146,13 @@ impl Parser<'_> {
                     None => self.loose_piece(piece, placed, carry),
                 }
             }
+            // "It is at this time that ...": nobody.
+            Chunk::Pronoun
+                if matches!(next, Some(Chunk::Be))
+                    && matches!(
+                        all.get(at + 2).map(|placed| &placed.chunk),
+                        Some(Chunk::Preposition("at" | "within") | Chunk::Relative)
+                    ) => {}
             Chunk::Pronoun => {
                 let actor = self.its(carry);
                 self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
@@ -152,7 +173,11 @@ impl Parser<'_> {
             }
             Chunk::Verb(sense, form) => self.verb(*sense, *form, all, at, carry),
             Chunk::Be => carry.be = true,
-            Chunk::Not => carry.negated = true,
+            Chunk::Not => {
+                carry.negated = true;
+                // "Neither car made contact": said before who it is.
+                carry.nobody |= carry.fresh && matches!(self.tokens[placed.first].text.as_str(), "neither" | "no");
+            }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
             Chunk::Side(side) => self.side(*side, carry),
@@ -169,6 +194,7 @@ impl Parser<'_> {
             }
             Chunk::Joint(joint) => self.joint(*joint, carry, &all[at + 1..]),
             Chunk::Comma => {
+                self.leave_place(carry);
                 carry.after_comma = true;
                 (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
                 carry.progress = None;
@@ -183,13 +209,41 @@ impl Parser<'_> {
             }
             Chunk::Word => {
                 let word = self.tokens[placed.first].text.as_str();
-                if let Some(progress) = self.lexicon.progress(word) {
+                // "time to turn" is no turn; "at which time it turned" is one.
+                let waits_for = word != "time" || matches!(next, Some(Chunk::Preposition("to")));
+                if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for) {
                     self.progress(progress, carry);
                 }
+                // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
+                if word == "where" {
+                    (carry.subject, carry.frame, carry.has_verb) = (None, None, false);
+                    (carry.place, carry.fresh) = (true, true);
+                }
+                // "The Fusion" of "a red Ford Fusion".
+                if self.tokens[placed.first].capital
+                    && placed.first > 0
+                    && self.tokens[placed.first - 1].text == "the"
+                    && let Some(actor) = self.world.by_name(word)
+                {
+                    let mention = Mention { actor, piece: None, person: None, end: placed.end };
+                    self.mention(mention, placed, carry, next);
+                    (carry.after_comma, carry.filled) = (false, false);
+                    return;
+                }
+                let waits = carry.preposition.is_some() || carry.relation.is_some();
+                carry.filled |= waits && (is_determiner(word) || self.tokens[placed.first].capital);
                 return;
             }
         }
-        carry.after_comma = false;
+        (carry.after_comma, carry.filled) = (false, false);
+    }
+
+    /// Behind a clause that tells of a place the sentence goes on with whom it is about.
+    fn leave_place(&self, carry: &mut Carry) {
+        if std::mem::take(&mut carry.place) && carry.subject.is_none() {
+            carry.subject = carry.main.clone();
+            carry.has_verb = carry.main.is_some();
+        }
     }
 
     fn progress(&mut self, progress: Progress, carry: &mut Carry) {
@@ -209,13 +263,18 @@ impl Parser<'_> {
     /// What the adjectives of a noun say of it.
     fn attribute(&mut self, noun: &Noun, actor: Actor, placed: &Placed, carry: &Carry) {
         for adjective in &noun.adjectives {
-            let sense = match adjective {
-                Adjective::Stopped => Sense::Act(Act::Hold),
-                Adjective::Parked => Sense::Parked,
+            let (sense, side) = match adjective {
+                Adjective::Stopped => (Sense::Act(Act::Hold), None),
+                Adjective::Parked => (Sense::Parked, None),
+                Adjective::Doing if actor != SUBJECT && !noun.several => match self.doing(placed) {
+                    Some((act, side)) => (Sense::Act(act), side),
+                    None => continue,
+                },
                 _ => continue,
             };
             let mut frame = self.frame(Some(actor), sense, Form::Past, placed, carry);
             (frame.aside, frame.state, frame.negated, frame.progress) = (true, true, false, Progress::Real);
+            frame.side = side;
             self.frames.push(frame);
         }
     }
@@ -276,6 +335,12 @@ impl Parser<'_> {
         match open {
             // The object of the verb before.
             Some(frame) if !carry.after_comma => {
+                // Nobody touches itself: "the van made contact with the van that was turning".
+                let itself = self.frames[frame].sense == Sense::Contact
+                    && self.frames[frame].who == Some(actor)
+                    && actor != SUBJECT;
+                let actor = if itself { self.world.like(actor).unwrap_or(actor) } else { actor };
+                let mention = Mention { actor, ..mention };
                 let taken = &mut self.frames[frame];
                 taken.object = Some(actor);
                 taken.on.clone_from(&mention.piece);
@@ -292,13 +357,23 @@ impl Parser<'_> {
                     Sense::Tow => {
                         if let Some(tower) = taken.who {
                             self.world.tow(tower, actor);
+                            // "a truck towing a trailer that was facing east": they are one.
+                            if let Some(last) =
+                                carry.last.as_mut().filter(|_| self.world.actors[actor].towed_by == Some(tower))
+                            {
+                                last.actor = tower;
+                            }
                         }
                     }
                     _ => {}
                 }
             }
             _ => {
-                // A new subject.
+                // A new subject; behind a comma that of the main clause: "As the van turned, it touched the wall".
+                if carry.after_comma && carry.has_verb && !carry.relative && carry.joint.is_some() {
+                    carry.joint = None;
+                    carry.clause += 1;
+                }
                 let list = carry.has_verb && !carry.after_comma && !carry.fresh && !governed;
                 if list && !matches!(next, Some(Chunk::Verb(..) | Chunk::Be | Chunk::Relation(_) | Chunk::Relative)) {
                     carry.last = Some(mention);
@@ -308,9 +383,25 @@ impl Parser<'_> {
                 // "While stopped at a light, a man began to cross": of somebody new it is not told.
                 let new = self.world.actors[actor].mentions == 1 && actor != SUBJECT && carry.main.is_none();
                 for pending in std::mem::take(&mut carry.pending) {
-                    let dangles = new
-                        && self.frames[pending].state
-                        && matches!(self.frames[pending].sense, Sense::Act(Act::Hold) | Sense::Parked);
+                    let waiting = &self.frames[pending];
+                    let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
+                    // "It began to cross. While crossing, a van ...": who did so before.
+                    let goes_on = waiting.form == Form::Ing
+                        && waiting.act().is_some()
+                        && self.frames.iter().any(|before| {
+                            before.sentence < waiting.sentence
+                                && before.who == Some(self.world.topic)
+                                && before.happened()
+                                && before.act() == waiting.act()
+                                && !matches!(before.act(), Some(Act::Follow))
+                        });
+                    // "While passing the driveway, a van ...": who passes it is told before.
+                    let passes = waiting.form == Form::Ing
+                        && self.world.topic == SUBJECT
+                        && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
+                        && waiting.object != Some(SUBJECT)
+                        && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
+                    let dangles = new && (stands || goes_on || passes);
                     self.frames[pending].who = Some(if dangles { self.world.topic } else { actor });
                 }
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
@@ -325,7 +416,8 @@ impl Parser<'_> {
                 carry.has_verb = false;
                 carry.relative = false;
                 carry.governed = false;
-                (carry.be, carry.to, carry.progress, carry.negated) = (false, false, None, false);
+                let nobody = std::mem::take(&mut carry.nobody);
+                (carry.be, carry.to, carry.progress, carry.negated) = (false, false, None, nobody);
                 carry.frame = None;
             }
         }
@@ -346,7 +438,7 @@ impl Parser<'_> {
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
         });
-        if joint == Joint::And && noun && ends && carry.has_verb {
+        if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair)) {
             carry.preposition = Some("and");
             return;
         }
@@ -361,6 +453,7 @@ impl Parser<'_> {
             return;
         }
         carry.also = None;
+        self.leave_place(carry);
         carry.clause += 1;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
         if joint != Joint::And {
@@ -391,8 +484,16 @@ impl Parser<'_> {
     }
 
     fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
+        if carry.place && carry.subject.is_none() {
+            return;
+        }
         let placed = &all[at];
         let word = self.tokens[placed.first].text.clone();
+        // "traffic was backed up" stands.
+        let before = at.checked_sub(1).map(|at| &all[at]);
+        let remains = before.is_some_and(|before| matches!(before.chunk, Chunk::Verb(Sense::Act(Act::Hold), _)));
+        let backed = sense == Sense::Act(Act::Reverse) && form == Form::Past && (carry.be || remains);
+        let sense = if backed && word == "backed" { Sense::Other } else { sense };
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         // A finite verb behind a finished relative clause is of the clause around it.
         let finite = (matches!(form, Form::Past | Form::Present)) || (form == Form::Ing && carry.be);
@@ -549,125 +650,16 @@ impl Parser<'_> {
         }
         carry.began = leads;
         carry.lead_who = None;
+        if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "between" {
+            carry.preposition = Some("between");
+        }
         carry.row = false;
         carry.negated = false;
-    }
-
-    /// The side that the words of a verb name: "moved into the left lane".
-    fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
-        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
-            "left" | "leftmost" => Some(LeftRight::Left),
-            "right" | "rightmost" => Some(LeftRight::Right),
-            _ => None,
-        })
-    }
-
-    /// The place that the words of a verb name: "exited its parking stall".
-    fn spot_in(&self, placed: &Placed) -> Option<Spot> {
-        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
-            "stall" | "space" | "spot" | "carport" => Some(Spot::Stall),
-            "driveway" | "lot" | "garage" | "alley" => Some(Spot::Driveway),
-            "curb" => Some(Spot::Curb),
-            _ => None,
-        })
-    }
-
-    /// Of whom a verb is told.
-    fn who_of(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry, purpose: bool) -> Option<Mention> {
-        if carry.pushed && purpose {
-            return carry.last.clone();
-        }
-        if carry.began && carry.lead_who.is_some() {
-            return carry.lead_who.clone();
-        }
-        // "a van braking too late and striking": the second participle is of who does the first.
-        if let (true, Form::Ing, Some(before)) =
-            (carry.row && !carry.be, form, carry.frame.map(|frame| &self.frames[frame]))
-            && before.form == Form::Ing
-            && let Some(actor) = before.who
-        {
-            return Some(Mention { actor, piece: None, person: None, end: before.end });
-        }
-        if carry.subject.is_none()
-            && form == Form::Ing
-            && !carry.be
-            && carry.governed
-            && !carry.fresh
-            && !carry.after_comma
-        {
-            let near = carry
-                .last
-                .as_ref()
-                .filter(|last| placed.first <= last.end + 1 && acts(self.world.actors[last.actor].kind));
-            if near.is_some() {
-                return near.cloned();
-            }
-        }
-        if carry.after_comma
-            && form == Form::Ing
-            && let Some(described) = &carry.described
-        {
-            // "yielded to a truck, which had no lights on, traveling south": the truck.
-            let of_other = carry.main.as_ref().is_none_or(|main| main.actor != described.actor);
-            if sense == Sense::Face || (of_other && sense == Sense::Act(Act::Follow)) {
-                return carry.described.clone();
-            }
-        }
-        // "was struck by a van, traveling east": the van.
-        if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
-            && self.frames[frame].passive
-            && self.frames[frame].who == Some(last.actor)
-        {
-            return carry.last.clone();
-        }
-        let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
-        // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
-        // "by crossing the line": who does the rest.
-        let by = carry.preposition == Some("by");
-        let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
-        if adjacent && participle && carry.has_verb && self.touches_last(sense, form, placed, carry) {
-            return carry.last.clone();
-        }
-        carry.subject.clone()
-    }
-
-    /// Whether the noun named last stands right before.
-    fn touches_last(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> bool {
-        let Some(last) = &carry.last else { return false };
-        // The subject of the clause takes its own verbs; only objects are described by participles.
-        if carry.subject.as_ref() == Some(last) {
-            return false;
-        }
-        // Things are described by few verbs, and nobody by one that stands apart.
-        let between = self.tokens.get(last.end..placed.first).unwrap_or_default();
-        let place = carry.governed
-            || carry
-                .frame
-                .is_some_and(|frame| matches!(self.frames[frame].sense, Sense::Yield | Sense::See | Sense::Approach));
-        let describes =
-            !matches!(sense, Sense::Push | Sense::Damage | Sense::Contact | Sense::RearEnd | Sense::TakeOver);
-        let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
-            && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
-        let known = &self.world.actors[last.actor];
-        let lively = (acts(known.kind) && (!known.several || between.is_empty()))
-            || matches!(
-                sense,
-                Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked
-            );
-        if !near || !lively {
-            return false;
-        }
-        carry.frame.is_some_and(|frame| {
-            let frame = &self.frames[frame];
-            frame.object == Some(last.actor)
-                || frame.relations.iter().any(|(_, actor)| *actor == Some(last.actor))
-                || carry.governed
-        })
     }
 }
 
 impl Carry {
-    fn last_is(&self, who: Option<&Mention>) -> bool {
+    pub(super) fn last_is(&self, who: Option<&Mention>) -> bool {
         self.last.as_ref() == who
     }
 
@@ -687,7 +679,7 @@ impl Carry {
     }
 }
 
-fn acts(kind: Option<Kind>) -> bool {
+pub(super) fn acts(kind: Option<Kind>) -> bool {
     kind.is_none_or(|kind| kind.group() != KindGroup::Object)
 }
 

@@ -29,6 +29,8 @@ pub fn record(id: &str, version: u32, narrative: &str) -> CrashRecord {
         sv_zones: Vec::new(),
         cp_zones: Vec::new(),
         severity: Coded::Blank,
+        towed: Default::default(),
+        airbags: Default::default(),
         engagement: Coded::Blank,
         narrative: narrative.to_owned(),
         redaction: if narrative.is_empty() { Redaction::Empty } else { Redaction::Open },

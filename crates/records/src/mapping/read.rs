@@ -11,7 +11,8 @@ use crate::text::{decode, excerpt, header_key};
 use crate::{MAX_FILE_BYTES, SourceBytes};
 use csv::ByteRecord;
 use recrash_model::record::{
-    Coded, CrashRecord, Edition, MPS_PER_MPH, Provenance, RecordRef, Reject, RejectReason, SourceFile, YearMonth,
+    Coded, CrashRecord, Edition, MPS_PER_MPH, OfVehicles, Provenance, RecordRef, Reject, RejectReason, SourceFile,
+    YearMonth,
 };
 use recrash_model::{Diagnostic, Location, Severity};
 use serde::de::DeserializeOwned;
@@ -268,6 +269,8 @@ impl MappedRow<'_> {
             sv_zones: self.code(Target::SvZones).known().into_iter().collect(),
             cp_zones: self.code(Target::CpZones).known().into_iter().collect(),
             severity: self.code(Target::Severity),
+            towed: OfVehicles::default(),
+            airbags: OfVehicles::default(),
             engagement: self.code(Target::Engagement),
             narrative,
             redaction,

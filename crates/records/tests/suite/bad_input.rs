@@ -6,7 +6,7 @@ use crate::common;
 use crate::common::builder::{header, row, second};
 use crate::common::{codes, diagnostic, ingest_bytes, paper};
 use proptest::prelude::*;
-use recrash_model::record::{Coded, Edition, MPS_PER_MPH, RecordSet, RejectReason};
+use recrash_model::record::{Coded, Edition, MPS_PER_MPH, OfVehicles, RecordSet, RejectReason};
 use recrash_model::surroundings::{Surface, Weather};
 use recrash_model::template::Movement;
 use recrash_model::{Outcome, Severity};
@@ -219,6 +219,39 @@ fn every_edition_is_recognised_by_its_header() {
         assert_eq!(record.sv_speed_mps, Some(10.0 * MPS_PER_MPH));
         assert_eq!(outcome.value.usable, [0]);
     }
+}
+
+#[test]
+fn whose_vehicle_was_towed_is_read_of_every_edition() {
+    let read = |edition: Edition, changes: &[(&str, &str)]| {
+        let text = header(edition) + "\n" + &row(edition, "1-1", changes) + "\n";
+        let outcome = ingest_bytes(text.as_bytes());
+        let record = &outcome.value.records[0];
+        ([record.towed, record.airbags], outcome.diagnostics.len())
+    };
+    let of = |sv, cp| OfVehicles { sv, cp };
+    let unknown = of(None, None);
+    for edition in [Edition::First, Edition::Second] {
+        let changes = [
+            ("SV Was Vehicle Towed?", "Yes"),
+            ("CP Was Vehicle Towed?", "Not Applicable"),
+            ("SV Any Air Bags Deployed?", "No"),
+            ("CP Any Air Bags Deployed?", "Unknown"),
+        ];
+        assert_eq!(read(edition, &changes), ([of(Some(true), Some(false)), of(Some(false), None)], 0), "{edition:?}");
+        assert_eq!(read(edition, &[]), ([unknown; 2], 0), "{edition:?}");
+    }
+    let changes = [
+        ("Was Any Vehicle Towed?", "Yes Subject Vehicle, Unknown Crash Partner"),
+        ("Any Air Bags Deployed?", "No Subject Vehicle, No Crash Partner"),
+    ];
+    assert_eq!(read(Edition::Third, &changes), ([of(Some(true), None), of(Some(false), Some(false))], 0));
+    assert_eq!(read(Edition::Third, &[("Was Any Vehicle Towed?", "Perhaps")]).1, 1);
+    // A vehicle that was towed is one, whatever is not known of the other.
+    assert_eq!(
+        [of(Some(true), None).any(), of(Some(false), None).any(), of(Some(false), Some(false)).any()],
+        [Some(true), None, Some(false)]
+    );
 }
 
 #[test]

@@ -9,6 +9,7 @@ use recrash_model::rollout::*;
 use recrash_model::run::JudgedRun;
 use recrash_model::scenario::*;
 use recrash_model::selection::Cluster;
+use recrash_model::severity::{InjuryOutcome, InjuryRisk, RiskCurve, Severity, Suffered};
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
@@ -248,6 +249,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
         kind: if touch.is_some() { TerminationKind::Contact } else { TerminationKind::Arrived },
         time_s: end,
     };
+    let severity = contact.as_ref().map(severity);
     let metrics = Metrics {
         partners: vec![PartnerMetrics {
             actor: 1,
@@ -317,9 +319,31 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
     };
     RunView {
         scenario: scenario(cluster, plan, arrival_gap_s),
-        run: JudgedRun::new(rollout, metrics, findings, verdict(cluster, touch.is_some())),
+        run: JudgedRun::new(rollout, metrics, findings, severity, verdict(cluster, touch.is_some())),
         series,
         rerun_command,
+    }
+}
+
+/// Two of one mass that stick together, head-on.
+fn severity(contact: &Contact) -> Severity {
+    let side = |impact_speed_mps: f64| Suffered {
+        impact_speed_mps,
+        mass_kg: Some(1500.0),
+        delta_v_mps: contact.relative_speed_mps / 2.0,
+        force_clock: Some(12),
+        risks: vec![InjuryRisk {
+            outcome: InjuryOutcome::Mais3,
+            probability: (0.001 * contact.relative_speed_mps).min(1.0),
+            curve: RiskCurve::Wang2022,
+        }],
+    };
+    Severity {
+        closing_speed_mps: contact.relative_speed_mps,
+        normal_speed_mps: contact.relative_speed_mps,
+        overlap: 1.0,
+        first: side(contact.ego_speed_mps),
+        second: side(contact.other_speed_mps),
     }
 }
 

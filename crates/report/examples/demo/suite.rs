@@ -96,6 +96,8 @@ fn record(index: usize, template: Template, seed: Seed) -> CrashRecord {
             if cp_mph > 20.0 { ContactZone::FrontLeft } else { ContactZone::FrontRight },
         ],
         severity: Coded::Known(pick(&mut rng, &[Severity::None, Severity::None, Severity::Minor])),
+        towed: Default::default(),
+        airbags: Default::default(),
         engagement: Coded::Known(Engagement::Ads),
         narrative,
         redaction: Redaction::Open,
@@ -498,6 +500,7 @@ pub fn demo_of(count: usize) -> Demo {
     let usable = records.len();
     let suite = SuiteView {
         accounts: None,
+        corpus: None,
         title: "demo suite".into(),
         generated_by: "recrash 0.1.0".into(),
         generated_at: None,

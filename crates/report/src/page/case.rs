@@ -1,7 +1,7 @@
 //! One scenario: what it stands for, the replay with its plots, and tabs with everything behind it. It stands in a file of its
 //! own.
 
-use super::{compare, icon, parts, scenario, story, triage};
+use super::{compare, icon, parts, scenario, severity, story, triage};
 use crate::summary::Result;
 use crate::view::{CaseContext, CaseRow, CaseView, RunView};
 use crate::{anchor, data, words};
@@ -52,6 +52,7 @@ fn inside(case: Case) -> Markup {
             @let names = view.names();
             (stage([&words::capital(names.before), &words::capital(names.after)], [view.before.is_some(), view.after.is_some()], view.reference.is_some()))
             (numbers(view))
+            (severity::of_case(case))
         }
         .tabs {
             div role="tablist" aria-label="About this scenario" {

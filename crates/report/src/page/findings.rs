@@ -5,7 +5,8 @@ use crate::anchor;
 use crate::view::RunRow;
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
-use recrash_model::metrics::FindingKind;
+use recrash_model::metrics::{Finding, FindingKind};
+use recrash_model::severity::Severity;
 
 /// Findings listed; the rest stand with their scenarios. [count]
 const LONGEST_LIST: usize = 200;
@@ -95,22 +96,29 @@ fn meaning(kind: FindingKind, context: &Context) -> String {
 fn every(context: &Context) -> Markup {
     let runs =
         context.suite.cases.iter().flat_map(|case| case.runs().into_iter().map(move |(name, run)| (case, name, run)));
-    let rows: Vec<_> =
-        runs.flat_map(|(case, name, run)| run.judgement.findings.iter().map(move |f| (case, name, f))).collect();
+    // Of a contact, what it does to the velocity of the two.
+    let harm = |run: &RunRow, finding: &Finding| {
+        run.severity.as_ref().filter(|_| finding.kind == FindingKind::Contact).map(Severity::harm_mps)
+    };
+    let mut rows: Vec<_> = runs
+        .flat_map(|(case, name, run)| run.judgement.findings.iter().map(move |f| (case, name, f, harm(run, f))))
+        .collect();
+    rows.sort_by(|a, b| b.3.unwrap_or(-1.0).total_cmp(&a.3.unwrap_or(-1.0)));
     html! {
         @if rows.is_empty() { p.empty { "There are none." } } @else {
             @if rows.len() > LONGEST_LIST {
-                p.muted { "The first " (LONGEST_LIST) " of " (thousands(rows.len())) ". Each scenario lists its own, and results.csv names the kinds of all." }
+                p.muted { "The worst " (LONGEST_LIST) " of " (thousands(rows.len())) ". Each scenario lists its own, and results.csv names the kinds of all." }
             }
             .table-wrap {
                 table.plain {
                     caption.hidden-text { "Findings of every run" }
-                    thead { tr { th scope="col" { "Scenario" } th scope="col" { "Run" } th.right scope="col" { "Time" } th scope="col" { "Finding" } th scope="col" { "In words" } } }
-                    tbody { @for (case, name, finding) in rows.into_iter().take(LONGEST_LIST) {
+                    thead { tr { th scope="col" { "Scenario" } th scope="col" { "Run" } th.right scope="col" { "Time" } th.right scope="col" title="the greater change of velocity of the two" { "Delta-v" } th scope="col" { "Finding" } th scope="col" { "In words" } } }
+                    tbody { @for (case, name, finding, harm) in rows.into_iter().take(LONGEST_LIST) {
                         tr {
                             th scope="row" { a href={ "#" (anchor::anchor(&case.scenario_id)) } { (words::clean(&case.scenario_id, 80)) } }
                             td { (name) }
                             td.right { (parts::quantity(Some(finding.time_s), 1, "s", "")) }
+                            td.right { (parts::quantity(harm, 1, "m/s", "no contact of two road users")) }
                             td { (parts::finding_chip(finding.kind)) }
                             td { (words::clean(&finding.sentence, 300)) }
                         }

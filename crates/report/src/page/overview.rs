@@ -1,7 +1,7 @@
 //! The first view: what this is, the headline numbers, and the table of scenarios.
 
 use super::parts::{self, missing};
-use super::{Context, icon, types};
+use super::{Context, corpus, icon, types};
 use crate::summary::Result;
 use crate::view::{CaseRow, RunRow};
 use crate::words::{self, fixed, thousands};
@@ -28,6 +28,7 @@ pub fn section(context: &Context) -> Markup {
             }
             @match &suite.accounts { Some(accounts) => (account_tiles(context, accounts)), None => (tiles(context)) }
             @if let Some(accounts) = &suite.accounts { (types::types(context, accounts)) }
+            @if let Some(corpus) = &suite.corpus { (corpus::corpus(corpus)) }
             h2 { "Scenarios" }
             noscript { p.banner { "A scenario opens with scripts only. This table, results.csv and the scenario files of the suite need none." } }
             @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls(suite.accounts.is_some())) (table(context)) }
@@ -202,7 +203,7 @@ fn tiles(context: &Context) -> Markup {
 }
 
 /// Keys to sort by, as the scripts know them.
-const SORTS: [(&str, &str); 10] = [
+const SORTS: [(&str, &str); 11] = [
     ("order", "Order of the suite"),
     ("operator", "Operator"),
     ("city", "City"),
@@ -210,6 +211,7 @@ const SORTS: [(&str, &str); 10] = [
     ("before", "Least gap as designed"),
     ("after", "Least gap after tuning"),
     ("impact", "Impact speed"),
+    ("severity", "Delta-v"),
     ("harm", "Injury in the record"),
     ("findings", "Findings"),
     ("faithful", "True to its record"),
@@ -266,7 +268,7 @@ fn table(context: &Context) -> Markup {
             "impact",
             "Impact",
             Some("impact"),
-            "relative speed at the ego's contact in the last run, and the speed of each",
+            "relative speed at the ego's contact in the last run, the speed of each, and what it does to the velocity of each",
         ),
         ("injury", "Injury", Some("harm"), "highest injury that the record alleges"),
         ("ego", "Ego", Some("findings"), "what it did in the last run"),
@@ -316,6 +318,7 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
                     Some(contact) => {
                         b { (fixed(contact.relative_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
                         .muted { "ego " (fixed(contact.ego_speed_mps, 1).unwrap_or_default()) ", other " (fixed(contact.other_speed_mps, 1).unwrap_or_default()) }
+                        @if let Some(severity) = last.and_then(|run| run.severity.as_ref()) { .muted { "delta-v " (fixed(severity.first.delta_v_mps, 1).unwrap_or_default()) ", " (fixed(severity.second.delta_v_mps, 1).unwrap_or_default()) } }
                     },
                     None => (missing(if last.is_some() { "no contact" } else { not_run })),
                 }

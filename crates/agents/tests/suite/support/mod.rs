@@ -38,6 +38,8 @@ pub fn record(template: Template, narrative: &str) -> CrashRecord {
         sv_zones: Vec::new(),
         cp_zones: Vec::new(),
         severity: Coded::Known(Severity::None),
+        towed: Default::default(),
+        airbags: Default::default(),
         engagement: Coded::Known(Engagement::Ads),
         narrative: narrative.into(),
         redaction: Redaction::Open,

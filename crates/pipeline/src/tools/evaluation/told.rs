@@ -17,7 +17,7 @@ pub fn in_labels(account: &Account) -> LabelledAccount {
         role: told(&account.role),
         striker: told(&account.striker),
         sv_state: state.map(Into::into),
-        sv_since: since(sv),
+        sv_since: since(account),
         driver: told(&account.driver),
         sv_movement: told(&sv.movement),
         cp_movement: partner.and_then(|partner| told(&partner.movement)),
@@ -41,26 +41,55 @@ fn group(account: &Account) -> Option<KindGroup> {
 }
 
 /// Since when it stood or moved: an account tells whether it came to a stop in the story, the labels how long ago that was.
-fn since(sv: &Party) -> Option<Since> {
+fn since(account: &Account) -> Option<Since> {
+    let sv = &account.sv;
     let state = told(&sv.state)?;
     let before: Vec<&ActFact> = sv.acts.iter().filter(|fact| !fact.after_contact).collect();
-    let last_stop = before.iter().rposition(|fact| matches!(fact.act, Act::Stop | Act::Hold));
-    let remains = last_stop.is_some_and(
-        |at| matches!(&before[at].source, Source::Words { text, .. } if text.to_lowercase().starts_with("remain")),
-    );
-    let waits = waits_for_riders(sv) || remains;
+    let stands = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Hold);
+    let last_stop = before.iter().rposition(stands);
     Some(match state {
         ContactState::Parked if !waits_for_riders(sv) => Since::Parked,
         ContactState::Parked => Since::Long,
-        ContactState::Stopped if waits || told(&sv.standing)? == Standing::FromTheStart => Since::Long,
+        ContactState::Stopped if waits_for_riders(sv) || stood_long(sv, &before) => Since::Long,
+        ContactState::Stopped if told(&sv.standing)? == Standing::FromTheStart => Since::Long,
         ContactState::Stopped => Since::Just,
         ContactState::SettingOff => Since::SettingOff,
-        // The stop is the last but one thing that it did.
-        ContactState::Moving | ContactState::Reversing if last_stop.is_some_and(|at| at + 2 >= before.len()) => {
+        ContactState::Moving | ContactState::Reversing
+            if last_stop.is_some_and(|at| sets_off(account, &before[at..])) =>
+        {
             Since::SettingOff
         }
         ContactState::Moving | ContactState::Reversing => Since::UnderWay,
     })
+}
+
+/// Whether who moves has only just begun to, by what it did from its last stop on.
+fn sets_off(account: &Account, since: &[&ActFact]) -> bool {
+    match since {
+        // Still slowing to the stop when it is struck from behind.
+        [stop] => stop.act == Act::Hold || told(&account.came_from) != Some(Origin::Behind),
+        [_, _] => true,
+        [_, first, later @ ..] => {
+            first.act == Act::SetOff && later.iter().all(|fact| matches!(fact.act, Act::Drift | Act::Swerve))
+        }
+        [] => false,
+    }
+}
+
+/// Whether it stood for a while: it "remains" so, or is first told as standing and not as coming to a stop.
+fn stood_long(sv: &Party, before: &[&ActFact]) -> bool {
+    let moved = before.iter().rposition(|fact| !matches!(fact.act, Act::Stop | Act::Hold | Act::OpenDoor));
+    let stood = &before[moved.map_or(0, |at| at + 1)..];
+    let begins = |fact: &ActFact, words: &[&str]| match &fact.source {
+        Source::Words { text, .. } => words.iter().any(|word| text.to_lowercase().starts_with(word)),
+        _ => false,
+    };
+    let remains = stood.iter().any(|fact| begins(fact, &["remain"]));
+    // "the stopped vehicle" tells no time.
+    let in_passing = stood.iter().all(|fact| begins(fact, &["the ", "a "]));
+    let slowed = moved.is_some_and(|at| before[at].act == Act::Slow);
+    let came = told(&sv.standing) == Some(Standing::Stopping);
+    remains || !in_passing && !slowed && !came && stood.iter().all(|fact| fact.act == Act::Hold)
 }
 
 fn waits_for_riders(sv: &Party) -> bool {

@@ -14,7 +14,6 @@ use rayon::prelude::*;
 use recrash_drivers::preventability;
 use recrash_lab::causes::cause;
 use recrash_lab::{run_scenario, situation};
-use recrash_metrics::severity_of;
 use recrash_model::Seed;
 use recrash_model::frozen::FrozenTest;
 use recrash_model::metrics::{CheckResult, FindingKind};
@@ -215,7 +214,7 @@ pub(crate) fn outcome(
         findings: run.findings.clone(),
         contact: run.metrics.contact.clone(),
         least_gap: run.metrics.min_gap.filter(|gap| gap.value.is_finite()),
-        severity: severity_of(&run.rollout),
+        severity: run.severity.clone(),
         preventability: preventability(&run.rollout),
         cause: cause(&run.rollout, &run.metrics, &run.findings),
         faithful: test.expectation.is_some().then(|| run.faithful()),

@@ -43,6 +43,8 @@ pub fn record_set(records: &[(Template, &str)]) -> RecordSet {
             sv_zones: Vec::new(),
             cp_zones: Vec::new(),
             severity: Coded::Known(Severity::None),
+            towed: Default::default(),
+            airbags: Default::default(),
             engagement: Coded::Known(Engagement::Ads),
             narrative: (*narrative).to_owned(),
             redaction: Redaction::Open,

@@ -1,0 +1,147 @@
+//! Of whom a verb is told, and what its own words name besides.
+
+use super::parser::{Carry, Mention, Parser, acts};
+use crate::chunk::{Placed, Spot};
+use crate::lexicon::{Form, Sense};
+use recrash_model::account::{Act, LeftRight};
+
+impl Parser<'_> {
+    /// What an adjective says that somebody does: "a passing van", "a left-turning bus".
+    pub(super) fn doing(&self, placed: &Placed) -> Option<(Act, Option<LeftRight>)> {
+        (placed.first..placed.end).find_map(|at| {
+            let act = match self.tokens[at].text.as_str() {
+                "passing" | "overtaking" => Act::Pass,
+                "merging" => Act::LaneChange,
+                "turning" => Act::Turn,
+                "reversing" | "backing" => Act::Reverse,
+                "crossing" => Act::Cross,
+                _ => return None,
+            };
+            let side = match self.tokens[at.saturating_sub(1)].text.as_str() {
+                "left" if act == Act::Turn => Some(LeftRight::Left),
+                "right" if act == Act::Turn => Some(LeftRight::Right),
+                _ => None,
+            };
+            Some((act, side))
+        })
+    }
+
+    /// The side that the words of a verb name: "moved into the left lane".
+    pub(super) fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
+        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
+            "left" | "leftmost" => Some(LeftRight::Left),
+            "right" | "rightmost" => Some(LeftRight::Right),
+            _ => None,
+        })
+    }
+
+    /// The place that the words of a verb name: "exited its parking stall".
+    pub(super) fn spot_in(&self, placed: &Placed) -> Option<Spot> {
+        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
+            "stall" | "space" | "spot" | "carport" => Some(Spot::Stall),
+            "driveway" | "lot" | "garage" | "alley" => Some(Spot::Driveway),
+            "curb" => Some(Spot::Curb),
+            _ => None,
+        })
+    }
+
+    /// Of whom a verb is told.
+    pub(super) fn who_of(
+        &self,
+        sense: Sense,
+        form: Form,
+        placed: &Placed,
+        carry: &Carry,
+        purpose: bool,
+    ) -> Option<Mention> {
+        if carry.pushed && purpose {
+            return carry.last.clone();
+        }
+        if carry.began && carry.lead_who.is_some() {
+            return carry.lead_who.clone();
+        }
+        // "a van braking too late and striking": the second participle is of who does the first.
+        if let (true, Form::Ing, Some(before)) =
+            (carry.row && !carry.be, form, carry.frame.map(|frame| &self.frames[frame]))
+            && before.form == Form::Ing
+            && let Some(actor) = before.who
+        {
+            return Some(Mention { actor, piece: None, person: None, end: before.end });
+        }
+        if carry.subject.is_none()
+            && form == Form::Ing
+            && !carry.be
+            && carry.governed
+            && !carry.fresh
+            && !carry.after_comma
+        {
+            let near = carry
+                .last
+                .as_ref()
+                .filter(|last| placed.first <= last.end + 1 && acts(self.world.actors[last.actor].kind));
+            if near.is_some() {
+                return near.cloned();
+            }
+        }
+        if carry.after_comma
+            && form == Form::Ing
+            && let Some(described) = &carry.described
+        {
+            // "yielded to a truck, which had no lights on, traveling south": the truck.
+            let of_other = carry.main.as_ref().is_none_or(|main| main.actor != described.actor);
+            if sense == Sense::Face || (of_other && sense == Sense::Act(Act::Follow)) {
+                return carry.described.clone();
+            }
+        }
+        // "was struck by a van, traveling east": the van.
+        if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
+            && self.frames[frame].passive
+            && self.frames[frame].who == Some(last.actor)
+        {
+            return carry.last.clone();
+        }
+        let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
+        // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
+        // "by crossing the line": who does the rest.
+        let by = carry.preposition == Some("by");
+        let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
+        if adjacent && participle && carry.has_verb && self.touches_last(sense, form, placed, carry) {
+            return carry.last.clone();
+        }
+        carry.subject.clone()
+    }
+
+    /// Whether the noun named last stands right before.
+    fn touches_last(&self, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> bool {
+        let Some(last) = &carry.last else { return false };
+        // The subject of the clause takes its own verbs; only objects are described by participles.
+        if carry.subject.as_ref() == Some(last) {
+            return false;
+        }
+        // Things are described by few verbs, and nobody by one that stands apart.
+        let between = self.tokens.get(last.end..placed.first).unwrap_or_default();
+        let place = carry.governed
+            || carry
+                .frame
+                .is_some_and(|frame| matches!(self.frames[frame].sense, Sense::Yield | Sense::See | Sense::Approach));
+        let describes =
+            !matches!(sense, Sense::Push | Sense::Damage | Sense::Contact | Sense::RearEnd | Sense::TakeOver);
+        let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
+            && between.iter().all(|token| !matches!(token.text.as_str(), "was" | "and" | "then" | ","));
+        let known = &self.world.actors[last.actor];
+        let lively = (acts(known.kind) && (!known.several || between.is_empty()))
+            || matches!(
+                sense,
+                Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked
+            );
+        if !near || !lively {
+            return false;
+        }
+        carry.frame.is_some_and(|frame| {
+            let frame = &self.frames[frame];
+            frame.object == Some(last.actor)
+                || frame.relations.iter().any(|(_, actor)| *actor == Some(last.actor))
+                || carry.governed
+        })
+    }
+}

@@ -1,0 +1,211 @@
+//! Crashes with a door: it opens into who is beside it, or stands open when somebody comes.
+
+use crate::came::sv_at_contact;
+use crate::ground::Ground;
+use crate::told::{Side, Told};
+use crate::touch::{Staging, headings, points, side_of, size_of, velocity, zones_off};
+use recrash_metrics::contact::contact_geometry;
+use recrash_model::account::{LeftRight, Origin, Striker};
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::scenario::{Part, PartKind};
+use recrash_model::zones::ContactZone;
+use recrash_plan::acts::{Attached, PartState};
+
+/// From the hinge of a door to its end, and its thickness. [m]
+pub(crate) const DOOR_M: f64 = 1.0;
+const THICK_M: f64 = 0.08;
+
+/// Doors open so far, in this time. [deg, s]
+const OPEN_DEG: f64 = 70.0;
+const OPENS_S: f64 = 1.0;
+
+/// A door that stands open when somebody comes has begun to open so long before. [s]
+const OPENED_BEFORE_S: f64 = 2.0;
+
+/// Who comes to an open door meets it so far from its end, and who has one swung into him so far. [m]
+const MET_AT_M: f64 = 0.3;
+const SWUNG_INTO_M: f64 = 0.02;
+
+/// The hinge of a front door lies so far behind the front of a car, that of a rear door so far behind its middle. [m]
+const FRONT_HINGE_M: f64 = 1.7;
+const REAR_HINGE_M: f64 = 0.2;
+
+/// Who passes a door comes along beside it for so long. [s]
+const PASSES_S: f64 = 1.2;
+
+/// A door that takes part in a crash.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Opening {
+    /// Whose it is: the subject vehicle's, or else the partner's.
+    pub(crate) of_sv: bool,
+    pub(crate) part: Part,
+    /// It begins to open so long before the contact. [s]
+    pub(crate) before_s: f64,
+}
+
+impl Opening {
+    /// Angle it opens to, and for how long. [deg, s]
+    pub(crate) const SWING: (f64, f64) = (OPEN_DEG, OPENS_S);
+
+    /// Its box, so long before the contact.
+    fn outline(&self, owner: Pose, before_s: f64) -> OrientedBox {
+        let share = ((self.before_s - before_s) / OPENS_S).clamp(0.0, 1.0);
+        let angle = (share * OPEN_DEG).to_radians();
+        let attached = Attached { owner: 0, part: self.part.clone() };
+        attached.outline(&PartState { angle, ..PartState::default() }, owner)
+    }
+}
+
+/// The zone of its owner that a door belongs to.
+pub(crate) fn zone_of(owner: &OrientedBox, door: &OrientedBox) -> ContactZone {
+    let hinge = owner.to_local(door.centre - door.axis * door.half_length);
+    let side = hinge.y.signum() * owner.half_width;
+    ContactZone::at(owner, owner.to_world(Vec2::new(hinge.x - 0.5 * DOOR_M, side)))
+}
+
+/// Whether a door stands open: it points away from its owner's side by more than 10 degrees.
+pub(crate) fn is_open(owner: &OrientedBox, door: &OrientedBox) -> bool {
+    // Shut, it points back along the body.
+    owner.axis.dot(door.axis) > -OPEN_COSINE
+}
+
+/// Cosine of 10 degrees.
+const OPEN_COSINE: f64 = 0.9848;
+
+/// Who has doors on its sides.
+fn has_doors(kind: PartnerKind) -> bool {
+    !matches!(
+        kind,
+        PartnerKind::Cyclist
+            | PartnerKind::Motorcycle
+            | PartnerKind::Pedestrian
+            | PartnerKind::OtherNonMotorist
+            | PartnerKind::Animal
+            | PartnerKind::FixedObject
+    )
+}
+
+/// The doors to try: those of the told zones' side first, then those of the side where the other comes by.
+fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
+    let (length_m, width_m) = size_of(owner);
+    let other_is = match told.origin {
+        Origin::Beside { side: LeftRight::Left } => 1.0,
+        Origin::Beside { side: LeftRight::Right } => -1.0,
+        Origin::Parked { side: Some(LeftRight::Right) } => -1.0,
+        _ => 1.0,
+    };
+    // Seen from the partner the ego is on the other side.
+    let usual = if of_sv { other_is } else { -other_is };
+    let first = side_of(&owner.zones).unwrap_or(usual);
+    let (front_m, rear_m) = (0.5 * length_m - FRONT_HINGE_M, -REAR_HINGE_M);
+    let is_rear = owner.zones.iter().any(|zone| zone.is_rear());
+    let hinges = if is_rear || of_sv { [rear_m, front_m] } else { [front_m, rear_m] };
+    let mut list = Vec::new();
+    for side in [first, -first] {
+        for x_m in hinges {
+            for before_s in [0.5, 0.7, 0.4, 0.9, OPENED_BEFORE_S] {
+                let part = Part {
+                    id: "door".to_owned(),
+                    kind: PartKind::Door,
+                    x_m,
+                    y_m: side * 0.5 * width_m,
+                    length_m: DOOR_M,
+                    width_m: THICK_M,
+                    axle_m: None,
+                };
+                list.push(Opening { of_sv, part, before_s });
+            }
+        }
+    }
+    list
+}
+
+/// Ways of touching in which a door meets the other vehicle, and bodies do not.
+pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
+    let of_sv = told.door == Some(Striker::Sv);
+    let (owner, other) = if of_sv { (&told.sv, &told.cp) } else { (&told.cp, &told.sv) };
+    if !has_doors(owner.kind) || told.thing.is_some() {
+        return Vec::new();
+    }
+    let openings = openings(told, owner, of_sv);
+    let mut found = Vec::new();
+    let mut trial = 0;
+    for sv_s_m in ground.places() {
+        let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
+        for (came, heading) in headings(told, sv.heading) {
+            for opening in &openings {
+                for &point in met_points(other).iter() {
+                    trial += 1;
+                    let Some((cp, owner_zone, other_zone)) = touch(told, opening, sv, heading, point) else { continue };
+                    let off = zones_off(&owner.zones, owner_zone) + zones_off(&other.zones, other_zone);
+                    let (ground, door) = (ground.clone(), Some(opening.clone()));
+                    found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, door, cost: (off, trial) });
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Points of the other's outline that the door may meet: shares of half of its length and width.
+fn met_points(other: &Side) -> Vec<(f64, f64)> {
+    use ContactZone as Z;
+    let usual = [Z::Left, Z::Right, Z::FrontLeft, Z::FrontRight];
+    let zones = if other.zones.is_empty() { &usual[..] } else { &other.zones[..] };
+    zones.iter().flat_map(|zone| points(*zone).iter().copied()).collect()
+}
+
+/// Places the partner so that the end of the door meets that point of the other. `None` where bodies would touch, or the door
+/// would be met earlier.
+fn touch(
+    told: &Told,
+    opening: &Opening,
+    sv: Pose,
+    heading: f64,
+    point: (f64, f64),
+) -> Option<(Pose, ContactZone, ContactZone)> {
+    let outline = |side: &Side, pose: Pose| {
+        let (length_m, width_m) = size_of(side);
+        OrientedBox::new(pose, length_m, width_m)
+    };
+    let met = |outline: &OrientedBox| {
+        outline.to_world(Vec2::new(point.0 * outline.half_length, point.1 * outline.half_width))
+    };
+    let origin = Pose { position: Vec2::new(0.0, 0.0), heading };
+    let end = |owner: Pose| {
+        let door = opening.outline(owner, 0.0);
+        let inside_m = if opening.before_s > OPENS_S { MET_AT_M } else { SWUNG_INTO_M };
+        door.centre + door.axis * (door.half_length - inside_m)
+    };
+    let position = if opening.of_sv {
+        end(sv) - met(&outline(&told.cp, origin))
+    } else {
+        met(&outline(&told.sv, sv)) - end(origin)
+    };
+    let cp = Pose { position, heading };
+    let (owner, other) =
+        if opening.of_sv { ((&told.sv, sv), (&told.cp, cp)) } else { ((&told.cp, cp), (&told.sv, sv)) };
+    let back = |(side, pose): (&Side, Pose), before_s: f64| Pose {
+        position: pose.position - velocity(side, pose.heading) * before_s,
+        ..pose
+    };
+    for tick in 0..=(PASSES_S / 0.04) as usize {
+        let before_s = 0.04 * tick as f64;
+        let (mine, theirs) = (back(owner, before_s), back(other, before_s));
+        let theirs = outline(other.0, theirs);
+        if outline(owner.0, mine).overlaps(&theirs) {
+            return None;
+        }
+        let touched = opening.outline(mine, before_s).overlaps(&theirs);
+        // It meets the door now and not before.
+        if touched != (tick == 0) && tick != 1 {
+            return None;
+        }
+    }
+    let door = opening.outline(owner.1, 0.0);
+    let own = outline(owner.0, owner.1);
+    let still = Vec2::new(0.0, 0.0);
+    let geometry = contact_geometry(&outline(other.0, other.1), velocity(other.0, other.1.heading), &door, still);
+    Some((cp, zone_of(&own, &door), geometry.ego_zone))
+}

@@ -1,0 +1,175 @@
+//! Told movements, held against the way that was driven.
+
+use crate::told::{Side, Turning};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::metrics::CheckResult;
+use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::template::Movement;
+use recrash_roads::{RoadPart, Scenario};
+
+/// Slower than this is standing. [m/s]
+const STANDS_MPS: f64 = 0.1;
+
+/// Who changes lanes has left the middle of its own by at least this: the box reaches the next one. [m]
+const CHANGED_M: f64 = 0.8;
+
+/// Who leaves its lane, or pulls out or in, has left its line by at least this. [m]
+const LEFT_LINE_M: f64 = 0.5;
+
+/// Nobody parks faster. [m/s]
+const PARKS_MPS: f64 = 5.0;
+
+/// Who passes is faster by this. [m/s]
+const FASTER_MPS: f64 = 0.3;
+
+/// Turns begin with more than this, straight on is less than that, and who turns round has turned by more. [deg]
+const TURNS_DEG: f64 = 9.5;
+const STRAIGHT_DEG: f64 = 50.0;
+const ROUND_DEG: f64 = 60.0;
+
+/// One who moves, and what it meets.
+pub(crate) struct Way<'a> {
+    pub(crate) scenario: &'a Scenario,
+    pub(crate) track: &'a ActorTrack,
+    /// The other; nothing where it is a thing.
+    pub(crate) other: Option<&'a ActorTrack>,
+    /// Where the other is at the contact.
+    pub(crate) met: ActorState,
+    /// Of the contact. [s]
+    pub(crate) time_s: f64,
+}
+
+impl Way<'_> {
+    fn until(&self) -> &[ActorState] {
+        let step = ((self.time_s * 10.0).floor() as usize).min(self.track.states.len() - 1);
+        &self.track.states[..=step]
+    }
+
+    /// How far it has turned until the contact, to the left. [deg]
+    fn turned_deg(&self) -> f64 {
+        let turned: f64 = self.until().windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading)).sum();
+        turned.to_degrees()
+    }
+
+    /// How far it is beside the line that it began on, to the left. [m]
+    fn beside_m(&self) -> f64 {
+        let (first, last) = (&self.until()[0], &self.until()[self.until().len() - 1]);
+        Vec2::from_heading(first.heading).cross(last.position() - first.position())
+    }
+
+    fn stood(&self) -> bool {
+        self.until().iter().any(|state| state.velocity().length() < STANDS_MPS)
+    }
+
+    fn reversed(&self) -> bool {
+        self.until().iter().any(|state| state.speed() < -STANDS_MPS)
+    }
+
+    /// Whether it came from behind the other and is faster.
+    fn passed(&self) -> bool {
+        let sets_out = self.until().iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let (first, last) = (&self.until()[sets_out], &self.until()[self.until().len() - 1]);
+        let ahead = Vec2::from_heading(last.heading);
+        let other = self.other.map_or(self.met, |other| other.states[sets_out]);
+        let faster = (last.velocity() - self.met.velocity()).dot(ahead) > FASTER_MPS;
+        faster && (other.position() - first.position()).dot(ahead) > 0.0
+    }
+
+    /// Whether it goes against the direction of the lane it is on.
+    fn against(&self) -> Option<bool> {
+        let last = &self.until()[self.until().len() - 1];
+        let network = self.scenario.network();
+        // The lane it is on, whichever way it faces.
+        let lanes = [0.0, math::PI].map(|turn| network.lane_at(last.position(), last.heading + turn));
+        let [along, against] = lanes;
+        let (along, against) = (along?, against?);
+        let faces =
+            |id| math::wrap_angle(network.lane(id).heading(network.lane(id).local(last.position()).0) - last.heading);
+        let (first, second) = (faces(along).abs(), faces(against).abs());
+        Some(first > math::FRAC_PI_2 && second > math::FRAC_PI_2)
+    }
+
+    fn starts_off_lanes(&self) -> bool {
+        let (first, network) = (&self.track.states[0], self.scenario.network());
+        let lane = network.lane_at(first.position(), first.heading);
+        lane.is_none_or(|lane| matches!(network.road(network.lane(lane).road).part, RoadPart::Beside(_)))
+    }
+}
+
+/// What is expected, whether it is shown, and what is seen.
+pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, String)> {
+    let movement = side.movement?;
+    let (turned, beside_m) = (way.turned_deg(), way.beside_m());
+    let sideways = |least_m: f64| (beside_m.abs() >= least_m, format!("{:.1} m aside", beside_m.abs()));
+    let bent = || (turned_words(turned), turned.abs());
+    let (shown, observed) = match movement {
+        Movement::Stopped | Movement::Parked => {
+            let stood = way.stood();
+            (stood, if stood { "it stood" } else { "it never stood" }.to_owned())
+        }
+        Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane => sideways(CHANGED_M),
+        Movement::LaneDeparture => sideways(LEFT_LINE_M),
+        Movement::Passing => {
+            let passed = way.passed();
+            if !passed && way.met.speed().abs() > STANDS_MPS {
+                // It passes somebody else.
+                return Some((word(side), CheckResult::CannotBeShown, "whom it passes is not drawn".to_owned()));
+            }
+            (passed, if passed { "it came by" } else { "it did not come by" }.to_owned())
+        }
+        Movement::Backing => {
+            let reversed = way.reversed();
+            (reversed, if reversed { "it went backwards" } else { "it did not go backwards" }.to_owned())
+        }
+        Movement::EnteringTraffic => {
+            let (words, degrees) = bent();
+            let out = way.starts_off_lanes() || way.stood();
+            (
+                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= TURNS_DEG),
+                format!("{words}, {:.1} m aside", beside_m.abs()),
+            )
+        }
+        Movement::ParkingManeuver => {
+            let (words, degrees) = bent();
+            let slow = way.until()[way.until().len() - 1].velocity().length() < PARKS_MPS;
+            let turns = way.reversed() || beside_m.abs() >= LEFT_LINE_M || degrees >= TURNS_DEG;
+            (slow && turns, format!("{words}, {:.1} m aside", beside_m.abs()))
+        }
+        Movement::WrongWay => match way.against() {
+            None => return Some((word(side), CheckResult::CannotBeShown, "on no lane".to_owned())),
+            Some(against) => (against, if against { "against its lane" } else { "along its lane" }.to_owned()),
+        },
+        Movement::NmWaiting | Movement::NmOnSidewalk => {
+            return Some((word(side), CheckResult::CannotBeShown, "no such place is drawn".to_owned()));
+        }
+        Movement::Straight
+        | Movement::LeftTurn
+        | Movement::RightTurn
+        | Movement::UTurn
+        | Movement::NmCrossing
+        | Movement::NmAlongside
+        | Movement::NmInRoadway => {
+            let fits = match side.turning {
+                Turning::Left => turned > TURNS_DEG,
+                Turning::Right => turned < -TURNS_DEG,
+                Turning::No => turned.abs() < STRAIGHT_DEG,
+                Turning::Round => turned.abs() > ROUND_DEG,
+            };
+            (fits, turned_words(turned))
+        }
+    };
+    Some((word(side), if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
+}
+
+fn word(side: &Side) -> String {
+    side.movement.map_or(String::new(), |movement| movement.label().to_lowercase())
+}
+
+fn turned_words(degrees: f64) -> String {
+    match degrees.round() {
+        d if d >= 1.0 => format!("{d:.0} degrees to the left"),
+        d if d <= -1.0 => format!("{:.0} degrees to the right", -d),
+        _ => "straight on".to_owned(),
+    }
+}
