@@ -12,6 +12,7 @@
 //! text: they are matched against patterns, never followed.
 
 mod account;
+mod agreement;
 mod contradiction;
 mod expectation;
 mod expressible;
@@ -20,6 +21,7 @@ mod parameters;
 mod rules;
 
 pub use account::account_of;
+pub use agreement::disagreement;
 pub use contradiction::narrative_contradictions;
 pub use expectation::expectation;
 pub use expressible::inexpressible;
@@ -27,6 +29,7 @@ pub use parameters::parameters;
 pub use rules::Rules;
 pub use rules::telling::tell;
 
+use recrash_model::account::Account;
 use recrash_model::metrics::{Check, Metrics};
 use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
@@ -42,15 +45,30 @@ pub struct Brief<'a> {
     pub scenario_id: &'a str,
     /// The template it must keep.
     pub template: Template,
-    /// The pick first, then a few members of its cluster.
+    /// The pick first, then the other reports of its incident.
     pub records: &'a [&'a CrashRecord],
+    /// Why the pick's own crash is not told, where that is known: then one is invented.
+    pub untold: Option<&'a str>,
     /// What the system under test and its simulator can express.
     pub profile: &'a SystemProfile,
+    /// What the built-in reader made of the incident, for agents that read.
+    pub account: Option<&'a Account>,
     /// Seed of the agent's choices.
     pub seed: Seed,
 }
 
 impl<'a> Brief<'a> {
+    /// The report whose narrative speaks for the incident.
+    pub(crate) fn speaker(&self) -> Option<&'a CrashRecord> {
+        let speaker = self.account.map(|account| &account.report);
+        self.records.iter().find(|record| Some(&record.id) == speaker).or(self.records.first()).copied()
+    }
+
+    /// There is nothing to read.
+    pub(crate) fn no_record(&self) -> AgentError {
+        AgentError::NoRecord { scenario_id: self.scenario_id.to_owned() }
+    }
+
     /// The record whose crash a narrative tells; of an invented one the pick, which its surroundings are taken from.
     pub fn told(&self, narrative: &Narrative) -> Option<&'a CrashRecord> {
         let told = narrative.told_record();

@@ -31,6 +31,8 @@ impl Progress for Bars {
     fn event(&self, event: ProgressEvent<'_>) {
         let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
         match event {
+            // A closed standard error is no reason to stop.
+            ProgressEvent::Said { what } => drop(writeln!(anstream::stderr(), "  {}", one_line(what))),
             ProgressEvent::Started { stage, units } => {
                 let target = if self.terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
                 let bar = ProgressBar::with_draw_target(Some(units as u64), target);

@@ -8,26 +8,27 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Agents and language models")]
 pub struct ModelArgs {
-    /// Who paraphrases, designs and tunes: rules, or a language model by name. [default: rules]
+    /// Who paraphrases and designs: rules, or a language model by name. [default: rules]
     ///
     /// gpt-*, o3 and the like are asked at OpenAI, claude-* at Anthropic, gemini-* at Google, every other name at Ollama on
     /// this machine. A prefix names another provider, such as groq::NAME; --base-url any OpenAI-compatible server. Keys
     /// come from the environment: OPENAI_API_KEY, ANTHROPIC_API_KEY, GEMINI_API_KEY, ...
     #[arg(long, value_name = "rules|MODEL")]
     pub agent: Option<String>,
-    /// Who paraphrases. [default: as --agent]
+    /// Who paraphrases: reads the reports. [default: as --agent]
     #[arg(long, value_name = "rules|MODEL")]
     pub paraphrase: Option<String>,
     /// Who designs. [default: as --agent]
     #[arg(long, value_name = "rules|MODEL")]
     pub design: Option<String>,
-    /// Who tunes; rules is the search. [default: as --agent]
+    /// Who tunes; rules is the search, which costs nothing and finds more. [default: rules]
     #[arg(long, value_name = "rules|MODEL")]
     pub tune: Option<String>,
     /// Rounds of a model that tunes. [default: 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=50))]
     pub rounds: Option<u16>,
-    /// How often an answer that cannot be used goes back to its model before the rules take over. [default: 3]
+    /// How often an answer goes back to its model before the rules take over: so often for its form, and so often for what it
+    /// says. [default: 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=20))]
     pub repairs: Option<u16>,
     /// How models are asked.
@@ -89,7 +90,7 @@ impl ModelArgs {
         Cast {
             paraphrase: role(&self.paraphrase, base.paraphrase),
             design: role(&self.design, base.design),
-            tune: role(&self.tune, base.tune),
+            tune: self.tune.clone().unwrap_or(base.tune),
             rounds: self.rounds.map_or(base.rounds, usize::from),
             repairs: self.repairs.map_or(base.repairs, usize::from),
         }

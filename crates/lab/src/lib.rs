@@ -21,5 +21,5 @@ mod triage;
 
 pub use harm::{HarmCase, severity_agreement};
 pub use judging::{judge, judge_by, run_scenario, situation};
-pub use scoring::{Scoring, is_sound_contact};
+pub use scoring::{Scoring, is_sound, is_sound_contact};
 pub use triage::triage;

@@ -100,6 +100,9 @@ impl<'a> Scoring<'a> {
         let refused = |why: String| Score {
             objective: f64::MAX,
             min_gap: None,
+            depth_m: None,
+            contact_mps: None,
+            braking: None,
             findings: Vec::new(),
             failed: false,
             refused: vec![why],
@@ -123,7 +126,8 @@ impl<'a> Scoring<'a> {
         kinds.sort_unstable();
         kinds.dedup();
         let odd = kinds.iter().filter(|kind| !kind.is_failure()).count();
-        let gap = match contact_depth(&run.rollout) {
+        let depth_m = contact_depth(&run.rollout);
+        let gap = match depth_m {
             Some(depth_m) => -depth_m.min(MARGIN_M),
             None => run.metrics.min_gap.map_or(1e3, |gap| gap.value.max(MARGIN_M)),
         };
@@ -136,6 +140,9 @@ impl<'a> Scoring<'a> {
                 - ODD_BEHAVIOUR_WORTH_M * odd as f64
                 - HARM_WORTH * harm,
             min_gap: run.metrics.min_gap,
+            depth_m,
+            contact_mps: run.metrics.contact.as_ref().map(|contact| (contact.ego_speed_mps, contact.other_speed_mps)),
+            braking: Some(run.metrics.ego.max_deceleration).filter(|braking| braking.value > 0.0),
             failed: refused.is_empty() && run.failed(),
             findings: kinds,
             refused,
@@ -175,6 +182,11 @@ impl<'a> Scoring<'a> {
             .sum();
         (squares / self.parameters.len().max(1) as f64).sqrt()
     }
+}
+
+/// Whether a point is what a search looks for: accepted, and a contact that no small difference would undo.
+pub fn is_sound(score: &Score) -> bool {
+    score.refused.is_empty() && score.depth_m.is_some_and(|depth_m| depth_m >= MARGIN_M)
 }
 
 /// Whether a run ends in a contact of the ego that no small difference would undo.

@@ -217,6 +217,24 @@ pub enum FactValue {
     },
 }
 
+impl FactValue {
+    /// The ego's speed, of a fact that is one. [m/s]
+    pub fn sv_speed(&self) -> Option<f64> {
+        match self {
+            Self::SvSpeed { speed_mps } => Some(*speed_mps),
+            _ => None,
+        }
+    }
+
+    /// The partner's speed, of a fact that is one. [m/s]
+    pub fn cp_speed(&self) -> Option<f64> {
+        match self {
+            Self::CpSpeed { speed_mps } => Some(*speed_mps),
+            _ => None,
+        }
+    }
+}
+
 /// A lane, counted on its own approach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

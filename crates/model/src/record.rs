@@ -7,6 +7,7 @@ use crate::template::{Movement, RoadType, Template};
 use crate::zones::ContactZone;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Metres per second in one mile per hour (exact: 1609.344 m / 3600 s).
 pub const MPS_PER_MPH: f64 = 0.447_04;
@@ -348,6 +349,10 @@ pub struct RecordSet {
     pub rejects: Vec<Reject>,
     /// From rows to usable records.
     pub funnel: Vec<FunnelStep>,
+    /// Usable records whose own crash is not told, and why: another record of the incident tells it, or none can. By position
+    /// in `records`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub untold: BTreeMap<usize, String>,
 }
 
 /// A file that was read. A file that holds several editions, one after the other, is listed once for each.

@@ -93,7 +93,7 @@ pub struct Cluster {
     pub scenario_id: String,
     /// The template of the pick.
     pub template: Template,
-    /// The pick: the record nearest to the cluster's centre.
+    /// The pick: the record nearest to the cluster's centre whose crash is told.
     pub pick: RecordRef,
     /// Position of the pick in [`crate::record::RecordSet::records`].
     pub pick_index: usize,
@@ -182,9 +182,9 @@ pub struct Coverage {
     pub templates_possible: usize,
     /// Templates with at least one usable record.
     pub templates_observed: usize,
-    /// Observed templates with at least one pick.
+    /// Observed templates with at least one pick whose crash is told.
     pub templates_covered: usize,
-    /// Usable records whose template has a pick.
+    /// Usable records whose template is covered.
     pub records_covered: usize,
     /// Usable records.
     pub records: usize,
@@ -201,7 +201,7 @@ pub struct Coverage {
     /// Pairs of meta-variable values.
     #[serde(default)]
     pub pairs: PairCoverage,
-    /// Templates with records and no pick.
+    /// Templates with records and no pick whose crash is told.
     pub holes_observed: Vec<Template>,
     /// Templates the profile can express that no record has.
     pub holes_possible: Vec<Template>,

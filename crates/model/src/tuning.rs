@@ -58,6 +58,15 @@ pub struct Score {
     pub objective: f64,
     /// Least box gap to a scripted partner. [m]
     pub min_gap: Option<Timed>,
+    /// How deep the ego and what it touched would go into one another, where they touch. [m]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_m: Option<f64>,
+    /// Speeds of the ego and of the other at the contact. [m/s]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_mps: Option<(f64, f64)>,
+    /// The ego's hardest braking. [m/s^2]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub braking: Option<Timed>,
     /// Kinds of findings.
     pub findings: Vec<FindingKind>,
     /// Whether the point counts as a failure of the ego.

@@ -9,6 +9,11 @@ pub trait Progress: Sync {
 /// What happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProgressEvent<'a> {
+    /// There is something to know before it goes on.
+    Said {
+        /// What, in a sentence.
+        what: &'a str,
+    },
     /// A stage begins.
     Started {
         /// Its name.

@@ -35,7 +35,7 @@ impl Progress for Reporter {
         let said = match event {
             ProgressEvent::Started { stage, units } => (stage.to_owned(), units, true),
             ProgressEvent::Advanced { stage, .. } => (stage.to_owned(), 1, false),
-            ProgressEvent::Finished { .. } => return,
+            ProgressEvent::Said { .. } | ProgressEvent::Finished { .. } => return,
         };
         if let Ok(sender) = self.sender.lock() {
             // Nobody listens any more once the run is given up.

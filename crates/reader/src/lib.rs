@@ -17,5 +17,5 @@ pub mod world;
 mod fold;
 mod incident;
 
-pub use fold::account;
+pub use fold::{account, refold};
 pub use incident::{incidents, only_refers};

@@ -40,6 +40,7 @@ use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{FunnelStep, RecordSet, Reject, RejectReason};
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
 use row::Draft;
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
 /// Name of the built-in sample.
@@ -165,7 +166,10 @@ pub fn ingest_sources(
     let usable: Vec<usize> = (0..drafts.len()).filter(|&i| fates[i].is_none()).collect();
     assert_eq!(rows, usable.len() + rejects.len(), "every row in is usable or rejected");
     let records = drafts.into_iter().map(|draft| draft.record).collect();
-    Ok(Outcome { value: RecordSet { files: sources, records, usable, rejects, funnel }, diagnostics })
+    Ok(Outcome {
+        value: RecordSet { files: sources, records, usable, rejects, funnel, untold: BTreeMap::new() },
+        diagnostics,
+    })
 }
 
 /// Every file, read; the same content twice counts once.

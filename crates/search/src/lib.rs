@@ -195,6 +195,9 @@ mod tests {
 
     fn scored(objective: f64, refused: bool) -> Score {
         Score {
+            depth_m: None,
+            contact_mps: None,
+            braking: None,
             objective,
             min_gap: None,
             findings: vec![],

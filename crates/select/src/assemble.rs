@@ -40,7 +40,7 @@ pub(crate) fn selection(
     let owned: Vec<Group> = groups.into_iter().cloned().collect();
     let coverage = coverage(profile, space, &owned);
     let mut diagnostics = space.diagnostics.clone();
-    diagnostics.extend(remarks(options, clusters.len(), &coverage));
+    diagnostics.extend(remarks(options, &clusters, &coverage));
     let value = Selection {
         strategy: options.strategy,
         budget: options.budget,
@@ -135,7 +135,8 @@ fn map(space: &ClusteringSpace, groups: &[Group]) -> Vec<MapPoint> {
         .collect()
 }
 
-fn remarks(options: &SelectOptions, picks: usize, coverage: &Coverage) -> Vec<Diagnostic> {
+fn remarks(options: &SelectOptions, clusters: &[Cluster], coverage: &Coverage) -> Vec<Diagnostic> {
+    let picks = clusters.len();
     let mut remarks = Vec::new();
     if picks < options.budget {
         let message = format!(
@@ -145,19 +146,26 @@ fn remarks(options: &SelectOptions, picks: usize, coverage: &Coverage) -> Vec<Di
         let remark = Diagnostic::new(Severity::Warning, "select.fewer-picks", Location::default(), message);
         remarks.push(remark.with_hint("give more records, or a profile that expresses more, or a smaller budget"));
     }
-    if !coverage.holes_observed.is_empty() {
-        let message = format!(
-            "{} of {} observed templates have no pick",
-            coverage.holes_observed.len(),
-            coverage.templates_observed
-        );
-        let hint = if options.budget < coverage.templates_observed {
-            format!("a budget of {} covers them all with the stratified strategy", coverage.templates_observed)
+    let picked = |template: &Template| clusters.iter().any(|cluster| cluster.template == *template);
+    let (invented, without): (Vec<&Template>, Vec<&Template>) =
+        coverage.holes_observed.iter().partition(|template| picked(template));
+    let mut tell = |code: &'static str, message: String, hint: String| {
+        remarks.push(Diagnostic::new(Severity::Warning, code, Location::default(), message).with_hint(hint));
+    };
+    let observed = coverage.templates_observed;
+    if !without.is_empty() {
+        let hint = if options.budget < observed {
+            format!("a budget of {observed} covers them all with the stratified strategy")
         } else {
             "the stratified strategy covers them all".to_owned()
         };
-        let remark = Diagnostic::new(Severity::Warning, "select.templates-without-pick", Location::default(), message);
-        remarks.push(remark.with_hint(hint));
+        let message = format!("{} of {observed} observed templates have no pick", without.len());
+        tell("select.templates-without-pick", message, hint);
+    }
+    if !invented.is_empty() {
+        let message = format!("{} of {observed} observed templates have no record whose crash is told", invented.len());
+        let hint = "their scenarios are invented, and say why".to_owned();
+        tell("select.templates-invented", message, hint);
     }
     remarks
 }

@@ -11,7 +11,9 @@ use std::collections::BTreeSet;
 /// Coverage of all rows of the space by the groups' picks. Definitions: `docs/models/selection.md`.
 pub(crate) fn coverage(profile: &SystemProfile, space: &ClusteringSpace, groups: &[Group]) -> Coverage {
     let possible = profile.templates();
-    let covered: BTreeSet<usize> = groups.iter().map(|group| space.template_of[group.pick()]).collect();
+    // A pick whose crash is not told stands for nobody's.
+    let told = groups.iter().map(Group::pick).filter(|&pick| space.told[pick]);
+    let covered: BTreeSet<usize> = told.map(|pick| space.template_of[pick]).collect();
     let observed: BTreeSet<Template> = space.observed.iter().map(|o| o.template).collect();
     let picked: Vec<Template> = covered.iter().map(|&t| space.observed[t].template).collect();
 

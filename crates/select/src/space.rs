@@ -31,6 +31,8 @@ pub(crate) struct ClusteringSpace {
     pub observed: Vec<ObservedTemplate>,
     /// How much each row counts. Positive.
     pub weights: Vec<f64>,
+    /// Whether the row's own crash is told.
+    pub told: Vec<bool>,
     /// Principal components of the embedding, one row per record.
     pub narrative: Matrix,
     /// `[template_weight * one-hot(template), narrative]`, one row per record.
@@ -101,7 +103,8 @@ impl ClusteringSpace {
             dimensions: pca.scores.columns,
             explained_variance: pca.explained_variance,
         };
-        Ok(Self { positions, template_of, observed, weights, narrative: pca.scores, points, info, diagnostics })
+        let told = positions.iter().map(|position| !records.untold.contains_key(position)).collect();
+        Ok(Self { positions, template_of, observed, weights, told, narrative: pca.scores, points, info, diagnostics })
     }
 }
 

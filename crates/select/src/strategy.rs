@@ -8,7 +8,8 @@ use crate::space::ClusteringSpace;
 use crate::stratified::stratified;
 use recrash_model::selection::Strategy;
 
-/// A cluster: rows of the space, the pick first, then the nearest to the centre first. Never empty.
+/// A cluster: rows of the space, the pick first, then the nearest to the centre first. Never empty. The pick is the nearest whose
+/// crash is told.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Group {
     pub members: Vec<usize>,
@@ -22,7 +23,7 @@ impl Group {
 
 /// Groups of all rows by the strategy asked for, at most `budget` of them, in no particular order.
 pub(crate) fn choose(space: &ClusteringSpace, options: &SelectOptions) -> Vec<Group> {
-    match options.strategy {
+    let mut groups = match options.strategy {
         Strategy::Stratified => stratified(space, options),
         Strategy::Kmeans => {
             let rows: Vec<usize> = (0..space.points.rows).collect();
@@ -32,6 +33,40 @@ pub(crate) fn choose(space: &ClusteringSpace, options: &SelectOptions) -> Vec<Gr
         Strategy::KCenter => groups_around(space, k_center(&space.points, options.budget)),
         Strategy::FacilityLocation => {
             groups_around(space, facility_location(&space.points, &space.weights, options.budget))
+        }
+    };
+    settle(space, &mut groups);
+    groups
+}
+
+/// Makes the nearest member whose crash is told the pick of its group. A group without one takes, of the others' members with the
+/// template of its pick, the nearest that is told and no pick; where there is none it keeps its pick.
+fn settle(space: &ClusteringSpace, groups: &mut [Group]) {
+    for group in groups.iter_mut() {
+        if let Some(at) = group.members.iter().position(|&row| space.told[row]) {
+            group.members[..=at].rotate_right(1);
+        }
+    }
+    for taker in 0..groups.len() {
+        let pick = groups[taker].pick();
+        if space.told[pick] {
+            continue;
+        }
+        let fits = |row: usize| space.told[row] && space.template_of[row] == space.template_of[pick];
+        let spare = groups.iter().enumerate().flat_map(|(from, group)| {
+            group
+                .members
+                .iter()
+                .enumerate()
+                .skip(1)
+                .filter(|(_, row)| fits(**row))
+                .map(move |(at, &row)| (from, at, row))
+        });
+        let to_pick = |row: usize| squared_distance(space.points.row(row), space.points.row(pick));
+        let nearest = spare.reduce(|best, other| if to_pick(other.2) < to_pick(best.2) { other } else { best });
+        if let Some((from, at, row)) = nearest {
+            groups[from].members.remove(at);
+            groups[taker].members.insert(0, row);
         }
     }
 }

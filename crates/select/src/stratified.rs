@@ -15,13 +15,13 @@ use std::collections::BTreeSet;
 ///    and so on to the template that holds the record farthest from its pick.
 ///
 /// Inside a template the groups are those of k-means on the narratives. A template gets no more picks than it has
-/// different narratives: another would be the same scenario again. Rows of templates without a pick join the nearest.
+/// different narratives, and records whose crash is told, but one: another would be the same scenario again, or nobody's. Rows of templates without a pick join the nearest.
 pub(crate) fn stratified(space: &ClusteringSpace, options: &SelectOptions) -> Vec<Group> {
     let mut strata: Vec<Stratum> = space.observed.iter().map(|template| Stratum::new(space, template)).collect();
     // Stable: equals stay in the order of tables.
     strata.sort_by(|a, b| b.template.weight.total_cmp(&a.template.weight));
     let weights: Vec<f64> = strata.iter().map(|stratum| stratum.template.weight).collect();
-    let limits: Vec<usize> = strata.iter().map(|stratum| stratum.points.distinct_rows()).collect();
+    let limits: Vec<usize> = strata.iter().map(Stratum::most_picks).collect();
     let few = options.budget.min(MOST_BY_KMEANS);
     for pick in 0..few {
         let picks: Vec<usize> = strata.iter().map(|stratum| stratum.groups.len()).collect();
@@ -77,6 +77,12 @@ impl<'s> Stratum<'s> {
     fn new(space: &'s ClusteringSpace, template: &'s ObservedTemplate) -> Self {
         let points = space.narrative.select(&template.rows);
         Self { space, template, points, groups: Vec::new(), radius: f64::INFINITY }
+    }
+
+    /// Another pick would be the same scenario again, or nobody's crash.
+    fn most_picks(&self) -> usize {
+        let told = self.template.rows.iter().filter(|&&row| self.space.told[row]).count();
+        self.points.distinct_rows().min(told.max(1))
     }
 
     /// Divides the records into `k` groups around records that lie far from each other.

@@ -1,5 +1,5 @@
-//! The roles played by a language model. Whatever it says is checked; what cannot be used goes back to it a bounded number
-//! of times, and then the caller lets the rules take over.
+//! The roles played by a language model: it reads reports into accounts, designs scenarios and tunes them. Whatever it says is
+//! checked; what cannot be used goes back to it a bounded number of times, and then the caller lets the rules take over.
 //!
 //! A role makes a [`Question`]; [`Answers`] answers it: live, from a batch, or from the ledger. So prompts, repairs and
 //! fallback are one path for every provider, and a provider is known to
@@ -8,9 +8,11 @@
 mod access;
 mod answers;
 mod batch;
+mod cues;
 mod extract;
 #[cfg(feature = "live")]
 mod fault;
+mod form;
 #[cfg(feature = "live")]
 mod live;
 mod prices;
@@ -18,6 +20,8 @@ mod prompts;
 #[cfg(feature = "live")]
 mod providers;
 mod question;
+mod reading;
+mod repairs;
 mod schema;
 mod secrets;
 mod spending;
@@ -31,11 +35,14 @@ pub use live::Live;
 pub use prices::{ModelPrice, PriceTable, plain_name};
 pub use prompts::{TuneBrief, version as prompts_version};
 pub use question::{Asked, EXCHANGE_FORMAT, Exchange, Purpose, Question, Role, Speaker, Turn};
+pub use repairs::Repairs;
 pub use secrets::{Scrubber, Secret};
 pub use spending::{Caps, Spending, Spent};
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase, Problem};
-use recrash_model::narrative::{Fact, FactSource, NARRATIVE_FORMAT, Narrative, Origin};
+use reading::AccountAnswer;
+use recrash_model::account::Account;
+use recrash_model::narrative::Narrative;
 use recrash_model::scenario::{
     Author, CrossMap, CurveMap, Environment, Obstacle, Partner, RoundaboutMap, SCENARIO_FORMAT, ScenarioDraft, Source,
     StraightMap, TeeMap,
@@ -45,12 +52,6 @@ use recrash_model::{Diagnostic, Outcome};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use std::cell::Cell;
-
-/// Longest narrative text that is accepted. [characters]
-const MAX_TEXT: usize = 2_000;
-/// Most facts that are accepted.
-const MAX_FACTS: usize = 40;
 
 /// A language model in all three roles.
 #[derive(Clone, Copy)]
@@ -59,22 +60,10 @@ pub struct LanguageModel<'a> {
     pub model: &'a str,
     /// Where answers come from.
     pub answers: &'a dyn Answers,
-    /// How often an answer that cannot be used goes back, in one role for one scenario.
+    /// How often an answer that says what cannot be goes back, and how often one of a wrong form, in one role for one scenario.
     pub max_repairs: usize,
     /// Counts the answers that went back.
-    pub repairs: &'a Cell<usize>,
-}
-
-/// The form of a paraphrase.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct NarrativeAnswer {
-    /// The narrative: 2 to 6 plain sentences.
-    text: String,
-    /// What the text states.
-    facts: Vec<Fact>,
-    /// Why the narrative takes the record's place, where it does; null where it retells the record.
-    replaces_record: Option<String>,
+    pub repairs: &'a Repairs,
 }
 
 /// The form of a design: what a model decides of a scenario. `recrash_roads::read_draft` reads it, so it is no type of
@@ -141,7 +130,7 @@ struct ValuesAnswer {
     values: Vec<f64>,
 }
 
-/// The first question of the role that retells.
+/// The first question of the role that reads.
 ///
 /// # Errors
 /// [`AgentError::Prompt`].
@@ -167,7 +156,7 @@ pub fn tune_question(model: &str, brief: &Brief, tune: &TuneBrief) -> Result<Que
 
 fn question(model: &str, role: Role, brief: &Brief, text: String) -> Result<Question, AgentError> {
     let (name, schema) = match role {
-        Role::Paraphrase => ("narrative", schemars::schema_for!(NarrativeAnswer).to_value()),
+        Role::Paraphrase => ("account", schemars::schema_for!(AccountAnswer).to_value()),
         Role::Design => ("scenario", schemars::schema_for!(ScenarioAnswer).to_value()),
         Role::Tune => ("values", schemars::schema_for!(ValuesAnswer).to_value()),
     };
@@ -175,7 +164,7 @@ fn question(model: &str, role: Role, brief: &Brief, text: String) -> Result<Ques
     Ok(Question {
         model: model.to_owned(),
         purpose: Purpose { role, scenario_id: brief.scenario_id.to_owned(), attempt: 0 },
-        system: prompts::system(role, brief.profile, &schema)?,
+        system: prompts::system(role, brief.profile)?,
         turns: vec![Turn { speaker: Speaker::User, text }],
         schema_name: name.to_owned(),
         schema,
@@ -183,35 +172,58 @@ fn question(model: &str, role: Role, brief: &Brief, text: String) -> Result<Ques
 }
 
 impl LanguageModel<'_> {
-    /// Asks, and asks again with what is wrong, until `accept` takes the answer or the repairs are used up.
+    /// Asks, and asks again with what is wrong, until `accept` takes the answer or the repairs are used up. `ours` are fields
+    /// that are not the model's to say: they are left out of its answer.
     fn converse<T>(
         &self,
         mut question: Question,
-        accept: impl Fn(&str) -> Result<T, Vec<String>>,
+        ours: &[&str],
+        accept: impl Fn(Value) -> Result<T, Vec<String>>,
     ) -> Result<T, AgentError> {
         loop {
             let exchange = self.answers.answer(&question)?;
-            let found = extract::json_object(&exchange.answer).map_err(|why| vec![why]).and_then(|json| accept(&json));
-            let problems = match found {
-                Ok(value) => return Ok(value),
-                Err(problems) => problems,
+            let (problems, of_form) = match read(&exchange.answer, ours, &question.schema) {
+                Err(problems) => (problems, true),
+                Ok(value) => match accept(value) {
+                    Ok(taken) => return Ok(taken),
+                    Err(problems) => (problems, false),
+                },
             };
-            self.count_repair(&problems)?;
+            let granted =
+                if of_form { self.repairs.form(self.max_repairs) } else { self.repairs.meaning(self.max_repairs) };
+            if !granted {
+                return Err(self.no_usable_answer(&problems));
+            }
             push_repair(&mut question, exchange.answer, &problems)?;
         }
     }
 
-    /// Counts an answer that goes back.
+    fn no_usable_answer(&self, problems: &[String]) -> AgentError {
+        let (model, problem) = (self.model.to_owned(), problems.join("; "));
+        AgentError::NoUsableAnswer { model, repairs: self.repairs.all(), problem }
+    }
+
+    /// Reads the reports of an incident. `base` is what the built-in reader made of it: what the model does not tell stays as it is
+    /// there.
     ///
     /// # Errors
-    /// The repairs are used up.
-    fn count_repair(&self, problems: &[String]) -> Result<(), AgentError> {
-        if self.repairs.get() >= self.max_repairs {
-            let (model, problem) = (self.model.to_owned(), problems.join("; "));
-            return Err(AgentError::NoUsableAnswer { model, repairs: self.max_repairs, problem });
-        }
-        self.repairs.set(self.repairs.get() + 1);
-        Ok(())
+    /// [`AgentError`], where the model gives no usable answer.
+    pub fn read(&self, brief: &Brief, base: &Account) -> Result<Account, AgentError> {
+        self.read_until(brief, base, Ok)
+    }
+
+    /// The same, until `accept` takes the account.
+    fn read_until<T>(
+        &self,
+        brief: &Brief,
+        base: &Account,
+        accept: impl Fn(Account) -> Result<T, String>,
+    ) -> Result<T, AgentError> {
+        let record = brief.speaker().ok_or_else(|| brief.no_record())?;
+        self.converse(paraphrase_question(self.model, brief)?, &[], |value| {
+            let answer: AccountAnswer = fitting(value)?;
+            accept(reading::account(&answer, base, record, self.model)?).map_err(|why| vec![why])
+        })
     }
 
     /// Proposes the next values of the parameters, given what was tried.
@@ -222,8 +234,8 @@ impl LanguageModel<'_> {
         let mut question = tune_question(self.model, brief, tune)?;
         // The design is the first try, and nobody's answer.
         question.purpose.attempt = tune.history.len().saturating_sub(1);
-        self.converse(question, |json| {
-            let answer: ValuesAnswer = read(json)?;
+        self.converse(question, &[], |value| {
+            let answer: ValuesAnswer = fitting(value)?;
             check_values(&answer.values, tune.parameters)?;
             Ok(answer.values)
         })
@@ -231,26 +243,13 @@ impl LanguageModel<'_> {
 }
 
 impl Paraphrase for LanguageModel<'_> {
+    /// The model reads, the rules write: an account that cannot be staged as the template goes back.
     fn paraphrase(&self, brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
-        if brief.records.is_empty() {
-            return Err(AgentError::NoRecord { scenario_id: brief.scenario_id.to_owned() });
-        }
-        let answer = self.converse(paraphrase_question(self.model, brief)?, |json| {
-            let answer: NarrativeAnswer = read(json)?;
-            let problems = narrative_problems(&answer, brief);
-            if problems.is_empty() { Ok(answer) } else { Err(problems) }
-        })?;
-        let narrative = Narrative {
-            format: NARRATIVE_FORMAT.to_owned(),
-            scenario_id: brief.scenario_id.to_owned(),
-            template: brief.template,
-            records: brief.records.iter().map(|record| record.id.clone()).collect(),
-            text: answer.text,
-            origin: origin(answer.replaces_record, &answer.facts, brief),
-            facts: answer.facts,
-            author: Author::Model(self.model.to_owned()),
-        };
-        Ok(Outcome { value: narrative, diagnostics: Vec::new() })
+        let base = brief.account.ok_or_else(|| brief.no_record())?;
+        let author = Author::Model(self.model.to_owned());
+        let value =
+            self.read_until(brief, base, |account| crate::rules::narrative_of(&account, brief, author.clone()))?;
+        Ok(Outcome { value, diagnostics: Vec::new() })
     }
 }
 
@@ -263,12 +262,12 @@ impl Design for LanguageModel<'_> {
             let draft = prompts::answer_form(&earlier.draft).to_string();
             push_repair(&mut question, draft, &problem_sentences(&earlier.problem))?;
         }
-        if let Some(last) = feedback.last() {
-            self.count_repair(&problem_sentences(&last.problem))?;
+        if let Some(last) = feedback.last()
+            && !self.repairs.meaning(self.max_repairs)
+        {
+            return Err(self.no_usable_answer(&problem_sentences(&last.problem)));
         }
-        let draft = self.converse(question, |json| {
-            let mut draft: Value = read(json)?;
-            // Fields that are ours to say; a model may leave them out.
+        let draft = self.converse(question, &["format", "id", "source", "traffic"], |mut draft| {
             draft["format"] = json!(SCENARIO_FORMAT);
             draft["id"] = json!(brief.scenario_id);
             draft["source"] = json!({});
@@ -294,19 +293,6 @@ impl Design for LanguageModel<'_> {
     }
 }
 
-/// Whose crash an answer tells: where it takes the pick's place, that of the report whose words it quotes first.
-fn origin(replaces_record: Option<String>, facts: &[Fact], brief: &Brief) -> Origin {
-    let Some(reason) = replaces_record else { return Origin::Own };
-    let quoted = facts.iter().find_map(|fact| match &fact.source {
-        FactSource::Words { record, .. } => Some(record),
-        FactSource::Column { .. } | FactSource::Assumed { .. } => None,
-    });
-    match quoted.filter(|record| brief.records.first().is_some_and(|pick| pick.id != **record)) {
-        Some(record) => Origin::Other { record: record.clone(), reason },
-        None => Origin::Invented { reason },
-    }
-}
-
 fn push_repair(question: &mut Question, answer: String, problems: &[String]) -> Result<(), AgentError> {
     // Some providers take no empty turn.
     let answer = if answer.trim().is_empty() { "(no answer)".to_owned() } else { question::bounded_turn(&answer) };
@@ -316,31 +302,19 @@ fn push_repair(question: &mut Question, answer: String, problems: &[String]) -> 
     Ok(())
 }
 
-fn read<T: for<'de> Deserialize<'de>>(json: &str) -> Result<T, Vec<String>> {
-    serde_json::from_str(json).map_err(|e| vec![format!("the answer does not fit the schema: {e}")])
+/// The answer's object, where it has the form that was asked for; else everything that is wrong with its form.
+fn read(answer: &str, ours: &[&str], schema: &Value) -> Result<Value, Vec<String>> {
+    let json = extract::json_object(answer).map_err(|why| vec![why])?;
+    let mut value: Value = serde_json::from_str(&json).map_err(|e| vec![format!("the answer is no JSON: {e}")])?;
+    if let Some(fields) = value.as_object_mut() {
+        fields.retain(|name, _| !ours.contains(&name.as_str()));
+    }
+    let problems = form::problems(&value, schema);
+    if problems.is_empty() { Ok(value) } else { Err(problems) }
 }
 
-fn narrative_problems(answer: &NarrativeAnswer, brief: &Brief) -> Vec<String> {
-    let mut problems = Vec::new();
-    let length = answer.text.chars().count();
-    if !(20..=MAX_TEXT).contains(&length) {
-        problems.push(format!("text has {length} characters; 20 to {MAX_TEXT} are allowed"));
-    }
-    if answer.facts.len() > MAX_FACTS {
-        problems.push(format!("there are {} facts; {MAX_FACTS} are allowed", answer.facts.len()));
-    }
-    for (index, fact) in answer.facts.iter().enumerate() {
-        let FactSource::Words { record, words } = &fact.source else { continue };
-        match brief.records.iter().find(|known| known.id == *record) {
-            None => problems.push(format!("facts[{index}].source.record is {record}, which is not among the reports")),
-            Some(known) if words.trim().is_empty() || !known.narrative.contains(words.as_str()) => {
-                problems.push(format!("facts[{index}].source.words do not stand in the narrative of {record}"));
-            }
-            Some(_) => {}
-        }
-    }
-    problems.extend(crate::narrative_contradictions(&answer.facts, brief.template, brief.profile));
-    problems
+fn fitting<T: for<'de> Deserialize<'de>>(value: Value) -> Result<T, Vec<String>> {
+    serde_json::from_value(value).map_err(|e| vec![format!("the answer does not fit the schema: {e}")])
 }
 
 fn check_values(values: &[f64], parameters: &[Parameter]) -> Result<(), Vec<String>> {

@@ -11,11 +11,14 @@ use recrash_model::profile::SystemProfile;
 use recrash_model::record::{Coded, CrashRecord};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::template::Template;
-use recrash_model::tuning::{Parameter, TunePoint};
+use recrash_model::tuning::{Parameter, Score, TunePoint};
 use recrash_model::zones::ContactZone;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
+/// Most reports of one incident that are sent.
+const MOST_REPORTS: usize = 6;
 /// Longest narrative that is sent. [characters]
 const MAX_NARRATIVE: usize = 4_000;
 
@@ -28,8 +31,8 @@ const FILES: [(&str, &str); 14] = files![
     "system.md",
     "paraphrase.md",
     "paraphrase_question.md",
-    "paraphrase_retold.json",
-    "paraphrase_alternative.json",
+    "paraphrase_crossing.json",
+    "paraphrase_rear_end.json",
     "design.md",
     "design_question.md",
     "design_crossing.json",
@@ -47,13 +50,13 @@ pub fn version() -> String {
     sha256(all.as_bytes())
 }
 
-/// The standing instructions of a role: task, system under test, worked examples, schema of the answer.
+/// The standing instructions of a role: task, system under test, worked examples. The schema of the answer goes beside them.
 ///
 /// # Errors
 /// The prompt file and what fills it do not fit.
-pub fn system(role: Role, profile: &SystemProfile, schema: &Value) -> Result<String, AgentError> {
+pub fn system(role: Role, profile: &SystemProfile) -> Result<String, AgentError> {
     let examples: Vec<Example> = match role {
-        Role::Paraphrase => ["paraphrase_retold.json", "paraphrase_alternative.json"]
+        Role::Paraphrase => ["paraphrase_crossing.json", "paraphrase_rear_end.json"]
             .map(|name| Example::of(name, paraphrase_example))
             .into_iter()
             .collect::<Result<_, _>>()?,
@@ -70,7 +73,7 @@ pub fn system(role: Role, profile: &SystemProfile, schema: &Value) -> Result<Str
         Role::Tune => "tune.md",
     });
     let profile = minijinja::Value::from(Serde(profile));
-    render("system.md", context! { task, profile, examples, schema => schema.to_string() })
+    render("system.md", context! { task, profile, examples, stages => role != Role::Paraphrase })
 }
 
 /// Asks for a narrative.
@@ -78,8 +81,13 @@ pub fn system(role: Role, profile: &SystemProfile, schema: &Value) -> Result<Str
 /// # Errors
 /// As [`system`].
 pub fn paraphrase(brief: &Brief) -> Result<String, AgentError> {
-    let records: Vec<QuotedRecord> = brief.records.iter().map(|record| QuotedRecord::new(record)).collect();
-    paraphrase_question(brief.scenario_id, brief.template, &records)
+    let speaker = brief.speaker();
+    let others = brief.records.iter().copied().filter(|record| speaker.is_none_or(|speaker| speaker.id != record.id));
+    // Copies of a report say nothing new.
+    let mut seen = BTreeSet::new();
+    let new = speaker.into_iter().chain(others).filter(|record| seen.insert(record.narrative.as_str()));
+    let records: Vec<QuotedRecord> = new.take(MOST_REPORTS).map(QuotedRecord::new).collect();
+    paraphrase_question(brief.scenario_id, &records)
 }
 
 /// Asks for a scenario.
@@ -132,9 +140,9 @@ pub fn answer_form(draft: &ScenarioDraft) -> Value {
     })
 }
 
-fn paraphrase_question(id: &str, template: Template, records: &[QuotedRecord]) -> Result<String, AgentError> {
-    let (template, records) = (minijinja::Value::from(Serde(template)), minijinja::Value::from(Serde(records)));
-    render("paraphrase_question.md", context! { scenario_id => id, template, records })
+fn paraphrase_question(id: &str, records: &[QuotedRecord]) -> Result<String, AgentError> {
+    let records = minijinja::Value::from(Serde(records));
+    render("paraphrase_question.md", context! { scenario_id => id, records })
 }
 
 fn design_question(id: &str, template: Template, narrative: &str) -> Result<String, AgentError> {
@@ -176,12 +184,11 @@ impl Example {
 
 #[derive(Deserialize)]
 struct ParaphraseExample {
-    template: Template,
     records: Vec<QuotedRecord>,
 }
 
 fn paraphrase_example(example: &ParaphraseExample) -> Result<String, AgentError> {
-    paraphrase_question("example", example.template, &example.records)
+    paraphrase_question("example", &example.records)
 }
 
 #[derive(Deserialize)]
@@ -271,6 +278,8 @@ fn quotable(text: &str) -> String {
 struct Tried {
     values: Vec<f64>,
     gap: String,
+    #[serde(default)]
+    run: String,
     findings: String,
     refused: String,
 }
@@ -284,10 +293,20 @@ impl Tried {
                 .score
                 .min_gap
                 .map_or_else(|| "none".into(), |gap| format!("{:.2} m at {:.1} s", gap.value, gap.time_s)),
+            run: told_of(&point.score),
             findings: findings.join(", "),
             refused: point.score.refused.join("; "),
         }
     }
+}
+
+/// What a try came to beside its gap: how deep, how fast, how hard the ego braked and whether before.
+fn told_of(score: &Score) -> String {
+    let depth = score.depth_m.map(|depth| format!("{depth:.2} m deep"));
+    let speeds = score.contact_mps.map(|(ego, other)| format!("ego at {ego:.1} m/s, partner at {other:.1}"));
+    let braking =
+        score.braking.map(|braking| format!("ego braked with {:.1} m/s^2 at {:.1} s", braking.value, braking.time_s));
+    [depth, speeds, braking].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// A rollout in one line.
@@ -329,11 +348,11 @@ mod tests {
     }
 
     #[test]
-    fn every_role_has_task_examples_and_schema() {
+    fn every_role_has_its_task_and_examples() {
         let profile: SystemProfile = toml::from_str(include_str!("../../../../profiles/paper.toml")).unwrap();
-        for (role, word) in [(Role::Paraphrase, "Retell"), (Role::Design, "Design"), (Role::Tune, "Propose")] {
-            let text = system(role, &profile, &json!({"type": "the schema"})).unwrap();
-            assert!(text.contains(word) && text.contains("Answer:\n{\"") && text.contains("the schema"), "{text}");
+        for (role, word) in [(Role::Paraphrase, "Read"), (Role::Design, "Design"), (Role::Tune, "Propose")] {
+            let text = system(role, &profile).unwrap();
+            assert!(text.contains(word) && text.contains("Answer:\n{\""), "{text}");
             assert!(!text.contains("{{") && !text.contains("{%") && !text.contains("undefined"), "{text}");
         }
     }

@@ -95,8 +95,7 @@ impl Question {
     }
 
     /// Bytes of what is sent, about.
-    #[cfg(feature = "live")]
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         let turns: usize = self.turns.iter().map(|turn| turn.text.len()).sum();
         self.system.len() + turns + self.schema.to_string().len()
     }

@@ -66,7 +66,7 @@ impl Wire {
             Self::Anthropic => json!({
                 "model": plain_name(&question.model),
                 "max_tokens": MOST_TOKENS,
-                "system": question.system,
+                "system": instructions(question, true),
                 "messages": turns(question, "assistant", |text| json!(text)),
             }),
             Self::Gemini => {
@@ -75,8 +75,7 @@ impl Wire {
                     .iter()
                     .map(|turn| json!({"role": role(turn.speaker, "model"), "parts": [{"text": turn.text}]}))
                     .collect();
-                let mut body =
-                    json!({"systemInstruction": {"parts": [{"text": question.system}]}, "contents": contents});
+                let mut body = json!({"systemInstruction": {"parts": [{"text": instructions(question, !with_schema)}]}, "contents": contents});
                 if with_schema {
                     body["generationConfig"] =
                         json!({"responseMimeType": "application/json", "responseJsonSchema": question.schema});
@@ -121,7 +120,7 @@ impl Wire {
 
 /// The body of a question in OpenAI's protocol.
 pub fn openai_body(question: &Question, with_schema: bool) -> Value {
-    let mut messages = vec![json!({"role": "system", "content": question.system})];
+    let mut messages = vec![json!({"role": "system", "content": instructions(question, !with_schema)})];
     messages.extend(turns(question, "assistant", |text| json!(text)));
     let mut body = json!({"model": plain_name(&question.model), "messages": messages});
     if with_schema {
@@ -131,6 +130,14 @@ pub fn openai_body(question: &Question, with_schema: bool) -> Value {
         });
     }
     body
+}
+
+/// The standing instructions, with the schema where nothing else carries it.
+fn instructions(question: &Question, with_schema: bool) -> String {
+    if !with_schema {
+        return question.system.clone();
+    }
+    format!("{}\n# JSON Schema of the answer\n{}\n", question.system, question.schema)
 }
 
 fn turns(question: &Question, model: &str, content: fn(&str) -> Value) -> Vec<Value> {

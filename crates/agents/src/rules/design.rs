@@ -98,16 +98,10 @@ impl<'a> Stage<'a> {
         let kind = facts.partner().unwrap_or_default();
         let ground = ground(&narrative.template, &staging);
         let record = brief.told(narrative);
-        let told = |pick: fn(&FactValue) -> Option<f64>| facts.find(pick).filter(|v| *v >= LEAST_TOLD_SPEED_MPS);
         let posted = record.and_then(|r| r.posted_speed_mps).map(|v| v * SHARE_OF_POSTED_SPEED);
-        let ego = told(|value| match value {
-            FactValue::SvSpeed { speed_mps } => Some(*speed_mps),
-            _ => None,
-        });
-        let partner = told(|value| match value {
-            FactValue::CpSpeed { speed_mps } => Some(*speed_mps),
-            _ => None,
-        });
+        let drives = |speed: &f64| *speed >= LEAST_TOLD_SPEED_MPS;
+        let (ego, partner) =
+            (facts.find(FactValue::sv_speed).filter(drives), facts.find(FactValue::cp_speed).filter(drives));
         let limit = |speed: f64, movement| {
             let most = most_speed(ground, turn(ground, movement)).min(brief.profile.expresses.max_speed_mps);
             let least = brief.profile.expresses.min_speed_mps.max(LEAST_TOLD_SPEED_MPS).min(most);

@@ -4,19 +4,17 @@ use super::staging::Ground;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{MapSpec, Turn};
 
-/// A recorded speed below this is that of a vehicle that had braked or stopped, not its speed on the approach; assumed.
-/// [m/s]
-pub const LEAST_TOLD_SPEED_MPS: f64 = 3.0;
+/// A recorded speed below this is that of a vehicle that stood, or nearly did, which the rules do not stage; assumed. [m/s]
+pub const LEAST_TOLD_SPEED_MPS: f64 = 1.0;
 
 /// Greatest speed that lets a vehicle hold its lane, below the limits measured in MetaDrive (right turns 10, left turns
 /// 12, roundabouts 8.3, straight 22.2 m/s) with a margin for the lanes' centre lines. [m/s]
 pub fn most_speed(ground: Ground, turn: Turn) -> f64 {
     match (ground, turn) {
         (Ground::Circle, _) => 6.5,
-        (Ground::Road, _) => 20.0,
+        (Ground::Road, _) | (Ground::Junction, Turn::Straight) => 20.0,
         (Ground::Junction, Turn::Right) => 6.0,
         (Ground::Junction, Turn::Left) => 8.0,
-        (Ground::Junction, Turn::Straight) => 15.0,
     }
 }
 

@@ -4,7 +4,7 @@ mod actors;
 mod design;
 pub(crate) mod limits;
 mod paraphrase;
-mod pattern;
+pub(crate) mod pattern;
 mod reading;
 mod rehearsal;
 mod retry;
@@ -16,10 +16,11 @@ mod writing;
 
 /// What of the rules tells how a narrative is staged.
 pub(crate) mod staged {
-    pub(crate) use super::design::{staging_of, turn};
-    pub(crate) use super::staging::{Ground, ground};
     pub(crate) use super::writing::Facts;
 }
+
+pub(crate) use paraphrase::narrative_of;
+pub(crate) use reading::collision_of;
 
 use crate::{AgentError, Brief, Design, Feedback, Paraphrase};
 use recrash_model::Outcome;

@@ -1,19 +1,17 @@
-//! From records to a narrative: the pick where it can be retold, else another record of its cluster, else an alternative
-//! of the same template.
+//! From a record to a narrative: its own crash where it can be retold, else an invented one of the same template.
 
-use super::reading::{Reading, Relation, read, side_from_zones};
+use super::limits::LEAST_TOLD_SPEED_MPS;
+use super::reading::{Reading, Relation, read, reading_of_account, side_from_zones};
 use super::staging::{ConflictKind, Ground, KNOWN, Staging, fits_three_way, ground, stagings};
 use super::writing::{self, Facts};
 use crate::{AgentError, Brief, narrative_contradictions};
+use recrash_model::account::Account;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue, LateralKind, NARRATIVE_FORMAT, Narrative, Origin, Side};
 use recrash_model::scenario::{Approach, Author};
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::{Diagnostic, Location, Outcome, Severity};
-
-/// Members of the cluster that are looked at when the pick cannot be retold.
-const MOST_DONORS: usize = 16;
 
 /// What a record gives once it is decided how to stage it.
 struct Told {
@@ -34,21 +32,32 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
     };
     let pick = read(pick);
     let mut diagnostics = Vec::new();
-    let (told, origin) = match retell(&pick, brief, ways) {
+    let retold = brief.untold.map_or_else(|| retell(&pick, brief, ways), |why| Err(why.to_owned()));
+    let (told, origin) = match retold {
         Ok(told) => (told, Origin::Own),
-        Err(reason) => {
-            let (told, origin) = alternative(&pick, reason, brief, ways);
-            let reason = origin.reason().unwrap_or_default();
-            diagnostics.push(Diagnostic::new(
-                Severity::Note,
-                "narrative.alternative",
-                Location::default(),
-                format!("{}: {reason}", brief.scenario_id),
-            ));
-            (told, origin)
+        Err(why) => {
+            let reason = format!("{why}; a plausible course of the same template takes its place");
+            let message = format!("{}: {reason}", brief.scenario_id);
+            diagnostics.push(Diagnostic::new(Severity::Note, "narrative.invented", Location::default(), message));
+            (invent(&pick, brief, ways), Origin::Invented { reason })
         }
     };
-    let facts = complete(told, brief, &mut diagnostics);
+    let value = written(told, origin, brief, Author::Rules, &mut diagnostics);
+    Ok(Outcome { value, diagnostics })
+}
+
+/// The narrative of an account that somebody else has read.
+///
+/// # Errors
+/// Why it cannot be retold as the template, in a sentence.
+pub fn narrative_of(account: &Account, brief: &Brief, author: Author) -> Result<Narrative, String> {
+    let record = brief.records.first().ok_or("there is no record")?;
+    let told = retell(&reading_of_account(record, account), brief, stagings(&brief.template))?;
+    Ok(written(told, Origin::Own, brief, author, &mut Vec::new()))
+}
+
+fn written(told: Told, origin: Origin, brief: &Brief, author: Author, diagnostics: &mut Vec<Diagnostic>) -> Narrative {
+    let facts = complete(told, brief, diagnostics);
     let mut narrative = Narrative {
         format: NARRATIVE_FORMAT.to_owned(),
         scenario_id: brief.scenario_id.to_owned(),
@@ -57,10 +66,10 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
         text: String::new(),
         facts,
         origin,
-        author: Author::Rules,
+        author,
     };
     narrative.text = writing::text(&narrative);
-    Ok(Outcome { value: narrative, diagnostics })
+    narrative
 }
 
 /// What a record tells, or why it cannot be retold.
@@ -102,6 +111,12 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
         },
     };
     let facts = reading.facts.clone();
+    if let Some(speed) = Facts(&facts).find(FactValue::sv_speed).filter(|speed| *speed < LEAST_TOLD_SPEED_MPS) {
+        return Err(format!(
+            "{id} tells that the ego stood or crept, at {speed:.1} m/s; the rules stage egos that drive, from \
+             {LEAST_TOLD_SPEED_MPS} m/s on"
+        ));
+    }
     let approach = Fact { value: FactValue::Approach { approach: staging.approach }, source };
     // Lanes beside the ego are sorted out by the staging later.
     let kept = facts.iter().filter(|fact| !matches!(fact.value, FactValue::CpLaneOffset { .. }));
@@ -112,26 +127,9 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
     Ok(Told { staging, approach, facts })
 }
 
-/// Another record of the cluster that can be retold, else a staging of the template chosen by the seed, with what of the
-/// pick does not depend on the conflict.
-fn alternative(pick: &Reading, why_not: String, brief: &Brief, ways: &[Staging]) -> (Told, Origin) {
+/// A staging of the template chosen by the seed, with what of the pick does not depend on the conflict.
+fn invent(pick: &Reading, brief: &Brief, ways: &[Staging]) -> Told {
     let mut rng = brief.seed.child(brief.scenario_id).child("alternative").rng();
-    let mut donors: Vec<_> = brief.records.iter().skip(1).take(MOST_DONORS).collect();
-    // Scenarios of one template look at the same few records; each begins elsewhere.
-    rng.shuffle(&mut donors);
-    for donor in donors {
-        if donor.template() != Some(brief.template) {
-            continue;
-        }
-        let reading = read(donor);
-        if reading.relation.is_none() {
-            continue;
-        }
-        if let Ok(told) = retell(&reading, brief, ways) {
-            let reason = format!("{why_not}; {}, of the same cluster, is retold in its place", donor.id);
-            return (told, Origin::Other { record: donor.id.clone(), reason });
-        }
-    }
     let by_zones = if pick.collision.is_none() { from_zones(pick, ways) } else { None };
     let (staging, why) = match by_zones {
         Some(staging) => (staging, "the contact areas suggest this side"),
@@ -140,8 +138,7 @@ fn alternative(pick: &Reading, why_not: String, brief: &Brief, ways: &[Staging])
     let facts = pick.facts.iter().filter(|fact| survives(&fact.value)).cloned().collect();
     let source = FactSource::Assumed { why: why.to_owned() };
     let approach = Fact { value: FactValue::Approach { approach: staging.approach }, source };
-    let reason = format!("{why_not}; a plausible course of the same template takes its place");
-    (Told { staging, approach, facts }, Origin::Invented { reason })
+    Told { staging, approach, facts }
 }
 
 /// What stays true of a record when another conflict takes its place.
@@ -151,7 +148,6 @@ fn survives(value: &FactValue) -> bool {
         FactValue::SvMovement { .. }
             | FactValue::CpMovement { .. }
             | FactValue::Partner { .. }
-            | FactValue::SvSpeed { .. }
             | FactValue::Obstacles { .. }
     )
 }

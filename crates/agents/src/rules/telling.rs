@@ -128,7 +128,7 @@ fn compass(to: Compass) -> &'static str {
     }
 }
 
-fn facts(account: &Account) -> Vec<Fact> {
+pub(crate) fn facts(account: &Account) -> Vec<Fact> {
     let report = &account.report;
     let mut all = Vec::new();
     let mut add = |value: FactValue, source: &Source, shown: &str| {
@@ -161,7 +161,7 @@ fn facts(account: &Account) -> Vec<Fact> {
     all
 }
 
-fn where_from(record: &RecordRef, source: &Source, shown: &str) -> FactSource {
+pub(super) fn where_from(record: &RecordRef, source: &Source, shown: &str) -> FactSource {
     match source {
         Source::Words { text, .. } => FactSource::Words { record: record.clone(), words: text.clone() },
         Source::Column { name } => {

@@ -129,7 +129,7 @@ fn lane(lane: LanePosition) -> &'static str {
 fn speed(speed: Option<(f64, &FactSource)>) -> String {
     match speed {
         None => String::new(),
-        // A vehicle this slow had braked or stopped before the impact.
+        // A vehicle this slow stood, or nearly did.
         Some((mps, _)) if mps < LEAST_TOLD_SPEED_MPS => String::new(),
         Some((mps, FactSource::Assumed { .. })) => format!(" at about {mps:.1} m/s"),
         Some((mps, _)) => format!(" at {mps:.1} m/s ({:.0} mph)", mps / MPS_PER_MPH),

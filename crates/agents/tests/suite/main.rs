@@ -3,6 +3,7 @@
 mod accounts;
 mod designs;
 mod narratives;
+mod readings;
 mod real_records;
 mod support;
 mod worked_examples;

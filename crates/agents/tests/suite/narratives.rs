@@ -2,6 +2,7 @@
 
 use crate::support;
 
+use recrash_agents::{Brief, Paraphrase, Rules};
 use recrash_model::narrative::{FactSource, Narrative, Origin};
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone;
@@ -119,25 +120,25 @@ fn mph_stand_in_brackets_where_the_record_tells_them() {
 }
 
 #[test]
-fn another_record_of_the_cluster_is_retold_before_anything_is_invented() {
+fn what_is_known_to_be_untold_is_invented_and_says_why() {
     let template = support::template(RoadType::Intersection, Movement::Straight, Movement::Straight);
-    let pick = support::record(template, "The AV was rear ended by a car.");
-    let mut donor = support::record(template, "A car came from the left and hit the AV.");
-    donor.id.report_id = "2-2".into();
-    let profile = support::paper();
-    let records = [&pick, &donor];
-    let outcome = recrash_agents::Paraphrase::paraphrase(
-        &recrash_agents::Rules,
-        &support::brief("01-test", &records, &profile, 7),
-    )
-    .expect("a narrative");
-    let Some(reason) = outcome.value.origin.reason() else { panic!("{:?}", outcome.value.origin) };
-    assert!(reason.contains("1-1/1 describes a rear-end") && reason.contains("2-2/1"), "{reason}");
-    assert!(outcome.value.facts.iter().any(|fact| matches!(
-        &fact.source,
-        FactSource::Words { record, .. } if record.report_id == "2-2"
-    )));
-    assert_eq!(outcome.diagnostics[0].code, "narrative.alternative");
+    let record = support::record(template, "A car came from the left and hit the AV.");
+    let (profile, records) = (support::paper(), [&record]);
+    let brief = support::brief("01-test", &records, &profile, 7);
+    let narrate = |brief: &Brief| Rules.paraphrase(brief).expect("a narrative");
+    assert_eq!(narrate(&brief).value.origin, Origin::Own);
+    let outcome = narrate(&Brief { untold: Some("the account says otherwise"), ..brief });
+    assert!(outcome.value.origin.reason().is_some_and(|why| why.starts_with("the account says otherwise; ")));
+    assert_eq!((outcome.value.told_record(), outcome.diagnostics[0].code.as_ref()), (None, "narrative.invented"));
+}
+
+#[test]
+fn an_ego_that_stood_is_not_retold_as_one_that_drove() {
+    let template = support::template(RoadType::Intersection, Movement::Straight, Movement::Straight);
+    let mut record = support::record(template, "A car came from the left and hit the AV.");
+    record.sv_speed_mps = Some(0.4);
+    let reason = support::narrate(&record, &support::paper()).value.origin.reason().map(str::to_owned);
+    assert!(reason.as_ref().is_some_and(|why| why.contains("stood or crept, at 0.4 m/s")), "{reason:?}");
 }
 
 #[test]

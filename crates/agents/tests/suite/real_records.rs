@@ -67,11 +67,12 @@ fn quoted_words_of_real_narratives_stand_in_them() {
     }
 }
 
+/// Told speeds bind as they are told, also where a turn cannot be driven as fast: suites leave such records to others.
 #[test]
-fn nineteen_of_twenty_real_records_become_faithful_scenarios() {
+fn fourteen_of_fifteen_real_records_become_faithful_scenarios() {
     let Some(records) = records() else { return };
     let profile = support::paper();
     let some: Vec<&CrashRecord> = records.iter().step_by(2).collect();
     let faithful = some.iter().filter(|record| becomes_faithful(record, &profile)).count();
-    assert!(faithful * 20 >= some.len() * 19, "{faithful} of {}", some.len());
+    assert!(faithful * 15 >= some.len() * 14, "{faithful} of {}", some.len());
 }

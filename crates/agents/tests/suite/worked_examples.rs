@@ -3,8 +3,8 @@
 
 use crate::support;
 
-use recrash_agents::llm::{Answers, AskError, Asked, Exchange, LanguageModel, Question, TuneBrief};
-use recrash_agents::{Design, Paraphrase, expectation};
+use recrash_agents::llm::{Answers, AskError, Asked, Exchange, LanguageModel, Question, Repairs, TuneBrief};
+use recrash_agents::{Design, expectation};
 use recrash_metrics::{faithfulness, measure};
 use recrash_model::metrics::{Check, Expectation, Metrics};
 use recrash_model::narrative::{Fact, FactSource, FactValue, NARRATIVE_FORMAT, Narrative, Origin};
@@ -14,7 +14,6 @@ use recrash_model::template::Template;
 use recrash_model::tuning::{Parameter, apply};
 use recrash_sim::{Ego, simulate};
 use serde_json::{Value, json};
-use std::cell::Cell;
 use std::path::Path;
 
 /// Answers every question with one text.
@@ -92,22 +91,9 @@ fn run(draft: ScenarioDraft, expected: &Expectation) -> (Metrics, Vec<Check>) {
 }
 
 #[test]
-fn every_paraphrase_is_taken_at_once() {
-    for (name, example) in examples("paraphrase") {
-        let (record, profile, repairs) = (record(&example), support::paper(), Cell::new(0));
-        let answers = Says(example["answer"].to_string());
-        let model = LanguageModel { model: "m", answers: &answers, max_repairs: 0, repairs: &repairs };
-        let told = model.paraphrase(&support::brief("01", &[&record], &profile, 1));
-        let told = told.unwrap_or_else(|e| panic!("{name}: {e}")).value;
-        let alternative = !example["answer"]["replaces_record"].is_null();
-        assert_eq!(told.origin.reason().is_some(), alternative, "{name}");
-    }
-}
-
-#[test]
 fn every_design_is_taken_at_once_runs_is_faithful_and_comes_close() {
     for (name, example) in examples("design") {
-        let (record, profile, repairs) = (record(&example), support::paper(), Cell::new(0));
+        let (record, profile, repairs) = (record(&example), support::paper(), Repairs::default());
         let approach: Approach = serde_json::from_value(example["approach"].clone()).unwrap();
         let text = example["narrative"].as_str().unwrap();
         let narrative = narrative(text, record.template().unwrap(), approach);
@@ -132,7 +118,7 @@ fn the_tuned_values_come_closer_than_every_try_and_the_tries_are_what_they_were(
         let draft = recrash_roads::read_draft(&scenario.to_string()).unwrap().value;
         let parameters: Vec<Parameter> = serde_json::from_value(example["parameters"].clone()).unwrap();
         let template: Template = serde_json::from_value(examples("design")[0].1["template"].clone()).unwrap();
-        let (record, profile, repairs) = (support::record(template, ""), support::paper(), Cell::new(0));
+        let (record, profile, repairs) = (support::record(template, ""), support::paper(), Repairs::default());
         let narrative = narrative(example["narrative"].as_str().unwrap(), template, Approach::Left);
         let expected = expectation(&narrative, &record, &profile);
         let gap = |values: &[f64]| {

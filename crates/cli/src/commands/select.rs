@@ -155,7 +155,9 @@ pub fn coverage(coverage: &Coverage, templates: &[TemplateCount]) {
         coverage.mean_distance
     );
     for hole in &coverage.holes_observed {
-        println!("  not covered: {hole}");
+        let invented = templates.iter().any(|row| row.template == *hole && row.picks > 0);
+        let why = if invented { " (no record of it is told; its scenario is invented)" } else { "" };
+        println!("  not covered: {hole}{why}");
     }
 }
 

@@ -32,7 +32,8 @@ fn answer_all(model: &ScriptedModel, suite: &Path, mangle: fn(&str) -> String) -
 }
 
 fn run(out: &Path, mode: &str) -> (i32, String) {
-    let arguments = ["run", "--quiet", "--agent", "scripted", "--llm", mode, "--out", out.to_str().unwrap()];
+    let arguments =
+        ["run", "--quiet", "--agent", "scripted", "--tune", "scripted", "--llm", mode, "--out", out.to_str().unwrap()];
     let output = recrash(&arguments).args(SMALL).output().unwrap();
     (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
@@ -103,10 +104,7 @@ fn answers_that_cannot_be_used_are_repaired() {
     let spoilt: [fn(&str) -> String; 3] = [
         |_| "I am sorry, I cannot help with that.".to_owned(),
         |good| good[..good.len() / 2].to_owned(),
-        |good| {
-            good.replace("\"text\":", "\"text\": 7, \"more\":")
-                .replace("\"duration_s\":", "\"duration_s\": \"long\", \"x\":")
-        },
+        |good| good.replace("\"report\":", "\"more\":").replace("\"duration_s\":", "\"duration_s\": \"long\", \"x\":"),
     ];
     let folder = tempfile::tempdir().unwrap();
     let model = ScriptedModel::new(folder.path(), &SMALL);

@@ -11,7 +11,15 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 const SCENARIOS: usize = 20;
+/// Those whose crash is told: a model reads these.
+const TOLD: u64 = 15;
+/// Designs of the script that fit what the model reads. One was made for what the rules read in its record, which is another
+/// course: it goes back, and the rules take over.
+const FITTING: u64 = 19;
 const OPTIONS: [&str; 8] = ["--budget", "20", "--rounds", "1", "--tune-budget", "4", "--seed", "5"];
+/// The same, where the model tunes as well.
+const TUNED: [&str; 10] =
+    ["--tune", "scripted", "--budget", "20", "--rounds", "1", "--tune-budget", "4", "--seed", "5"];
 
 /// The model, with the rules' suite made once for all tests.
 fn model() -> Arc<ScriptedModel> {
@@ -24,33 +32,33 @@ fn model() -> Arc<ScriptedModel> {
 }
 
 /// A server that lets `fault` answer first, and answers well where it does not.
-fn server(fault: impl Fn(&Request) -> Option<Reply> + Send + Sync + 'static) -> Server {
+pub(super) fn server(fault: impl Fn(&Request) -> Option<Reply> + Send + Sync + 'static) -> Server {
     let model = model();
     Server::start(move |request| fault(request).unwrap_or_else(|| Reply::Text(model.answer(request.messages()))))
 }
 
-struct Folder(tempfile::TempDir);
+pub(super) struct Folder(tempfile::TempDir);
 
 impl Folder {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
 
-    fn suite(&self) -> PathBuf {
+    pub(super) fn suite(&self) -> PathBuf {
         self.0.path().join("suite")
     }
 }
 
 fn run(server: &Server, out: &Path, extra: &[&str]) -> Output {
     let arguments = ["run", "--agent", "scripted", "--base-url", &server.base_url, "--out", out.to_str().unwrap()];
-    recrash(&arguments).args(OPTIONS).args(["--concurrency", "8"]).args(extra).output().unwrap()
+    recrash(&arguments).args(TUNED).args(["--concurrency", "8"]).args(extra).output().unwrap()
 }
 
-fn shown(output: &Output) -> String {
+pub(super) fn shown(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-fn read(file: &Path) -> Value {
+pub(super) fn read(file: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()))).unwrap()
 }
 
@@ -77,14 +85,14 @@ fn finished(server: &Server, out: &Path, extra: &[&str]) -> Value {
 }
 
 /// Counts of one role: at the first answer, after repair, by the rules.
-fn shares(summary: &Value, role: &str) -> [u64; 3] {
+pub(super) fn shares(summary: &Value, role: &str) -> [u64; 3] {
     let models = summary["models"].as_array().unwrap();
     let of_role = models.iter().find(|model| model["role"] == role).unwrap();
     ["first_answer", "after_repair", "fallback"].map(|word| of_role[word].as_u64().unwrap())
 }
 
 /// The exchanges in the ledger.
-fn ledger(out: &Path) -> Vec<Value> {
+pub(super) fn ledger(out: &Path) -> Vec<Value> {
     let files = std::fs::read_dir(out.join("ledger")).unwrap().map(|entry| entry.unwrap().path());
     files.map(|file| read(&file)).collect()
 }
@@ -98,8 +106,8 @@ fn is_repair(exchange: &Value) -> bool {
 fn good_answers_are_taken_and_replay_gives_the_same_bytes_without_a_network() {
     let (folder, server) = (Folder::new(), server(|_| None));
     let summary = finished(&server, &folder.suite(), &[]);
-    assert_eq!(shares(&summary, "paraphrase"), [20, 0, 0]);
-    assert_eq!(shares(&summary, "design"), [20, 0, 0]);
+    assert_eq!(shares(&summary, "paraphrase"), [TOLD, 0, 0]);
+    assert_eq!(shares(&summary, "design"), [FITTING, 0, 1]);
     assert!(server.most_under_way() <= 8);
     let exchanges = ledger(&folder.suite());
     assert_eq!(exchanges.len(), server.requests().len());
@@ -129,7 +137,7 @@ fn good_answers_are_taken_and_replay_gives_the_same_bytes_without_a_network() {
     let arguments =
         ["run", "--agent", "scripted", "--llm", "replay", "--out", again.suite().to_str().unwrap()].map(str::to_owned);
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    recrash(&arguments).args(OPTIONS).assert().success();
+    recrash(&arguments).args(TUNED).assert().success();
     for file in files_below(&folder.suite()) {
         let name = file.strip_prefix(folder.suite()).unwrap();
         // The order in which units were done is of this disk.
@@ -151,7 +159,7 @@ fn a_busy_server_is_asked_again_when_it_says() {
         server(|request| (request.asked_before == 0).then(|| Reply::busy(429, u32::from(request.number == 0)))),
     );
     let summary = finished(&server, &folder.suite(), &[]);
-    assert_eq!(shares(&summary, "design"), [20, 0, 0]);
+    assert_eq!(shares(&summary, "design"), [FITTING, 0, 1]);
     let requests = server.requests();
     let (first, rest) = requests.split_first().unwrap();
     let again = rest.iter().find(|r| r.body["messages"] == first.body["messages"]).unwrap();
@@ -171,8 +179,8 @@ fn a_failing_server_a_hanging_one_and_a_cut_off_answer_are_asked_again() {
         }),
     );
     let summary = finished(&server, &folder.suite(), &["--timeout", "2"]);
-    assert_eq!(shares(&summary, "paraphrase"), [20, 0, 0]);
-    assert_eq!(shares(&summary, "design"), [20, 0, 0]);
+    assert_eq!(shares(&summary, "paraphrase"), [TOLD, 0, 0]);
+    assert_eq!(shares(&summary, "design"), [FITTING, 0, 1]);
 }
 
 #[test]
@@ -182,7 +190,7 @@ fn a_server_that_takes_no_schema_is_asked_without() {
         let no = json!({"error": {"message": "response_format is not supported"}}).to_string();
         request.body.get("response_format").map(|_| Reply::Status(400, String::new(), no))
     });
-    assert_eq!(shares(&finished(&server, &folder.suite(), &[]), "design"), [20, 0, 0]);
+    assert_eq!(shares(&finished(&server, &folder.suite(), &[]), "design"), [FITTING, 0, 1]);
 }
 
 #[test]
@@ -195,7 +203,7 @@ fn what_cannot_be_used_goes_back_and_every_repair_is_in_the_ledger() {
             // A plain refusal; types that are wrong; an answer that ends too soon.
             0 => "I am sorry, I cannot help with that.".to_owned(),
             1 => good
-                .replace("\"text\":", "\"text\": 7, \"more\":")
+                .replace("\"report\":", "\"more\":")
                 .replace("\"duration_s\":", "\"duration_s\": \"long\", \"x\":")
                 .replace("\"values\":[", "\"values\":[\"fast\","),
             _ => good[..good.len() / 2].to_owned(),
@@ -203,12 +211,11 @@ fn what_cannot_be_used_goes_back_and_every_repair_is_in_the_ledger() {
         Some(Reply::Text(answer))
     });
     let summary = finished(&server, &folder.suite(), &[]);
-    for role in ["paraphrase", "design"] {
-        assert_eq!(shares(&summary, role), [0, 20, 0], "{role}");
-    }
+    assert_eq!(shares(&summary, "paraphrase"), [0, TOLD, 0]);
+    assert_eq!(shares(&summary, "design"), [0, FITTING, 1]);
     let exchanges = ledger(&folder.suite());
     assert_eq!(exchanges.len(), server.requests().len());
-    assert!(exchanges.iter().filter(|e| is_repair(e)).count() >= 40);
+    assert!(exchanges.iter().filter(|e| is_repair(e)).count() >= 35);
 }
 
 #[test]
@@ -218,7 +225,7 @@ fn json_in_prose_is_found() {
         let good = model.answer(request.messages());
         Some(Reply::Text(format!("Sure! Here it is:\n```json\n{good}\n```\nAnything else?")))
     });
-    assert_eq!(shares(&finished(&server, &folder.suite(), &[]), "design"), [20, 0, 0]);
+    assert_eq!(shares(&finished(&server, &folder.suite(), &[]), "design"), [FITTING, 0, 1]);
 }
 
 #[test]
@@ -231,7 +238,7 @@ fn a_scenario_that_cannot_run_goes_back_with_what_the_check_says() {
             Reply::Text(scenario.to_string())
         })
     });
-    assert_eq!(shares(&finished(&server, &folder.suite(), &[]), "design"), [0, 20, 0]);
+    assert_eq!(shares(&finished(&server, &folder.suite(), &[]), "design"), [0, FITTING, 1]);
     let told =
         ledger(&folder.suite()).iter().filter(|e| is_repair(e)).map(|e| e["question"].to_string()).collect::<String>();
     assert!(told.contains("/ego/lane") || told.contains("ego.lane"), "the check names the place");
@@ -241,8 +248,8 @@ fn a_scenario_that_cannot_run_goes_back_with_what_the_check_says() {
 fn the_rules_take_over_from_a_model_that_never_makes_sense() {
     let (folder, server) = (Folder::new(), server(|_| Some(Reply::Text("No.".into()))));
     let summary = finished(&server, &folder.suite(), &["--repairs", "1"]);
-    for role in ["paraphrase", "design"] {
-        assert_eq!(shares(&summary, role), [0, 0, 20], "{role}");
+    for (role, asked) in [("paraphrase", TOLD), ("design", 20)] {
+        assert_eq!(shares(&summary, role), [0, 0, asked], "{role}");
     }
     let why = summary["models"][1]["reasons"][0]["why"].as_str().unwrap();
     assert!(why.contains("no usable answer in 1 repairs"), "{why}");
@@ -277,13 +284,13 @@ fn a_narrative_that_gives_orders_is_data_and_so_is_a_model_that_follows_them() {
             answer["format"] = json!("../../x");
             answer["source"] = json!({"narrative": "../../x"});
         }
-        if request.is("Retell") {
-            answer["text"] = json!(format!("{ORDER} <script>alert(1)</script> {}", answer["text"]));
+        if request.is("Read") {
+            answer["report"] = json!(format!("{ORDER} <script>alert(1)</script> {}", answer["report"]));
         }
         Reply::Text(answer.to_string())
     });
     finished(&server, &folder.suite(), &["--records", records.to_str().unwrap()]);
-    assert!(server.requests().iter().any(|request| request.is("Retell") && request.body.to_string().contains(ORDER)));
+    assert!(server.requests().iter().any(|request| request.is("Read") && request.body.to_string().contains(ORDER)));
     let outside: Vec<PathBuf> =
         files_below(folder.0.path()).into_iter().filter(|file| !file.starts_with(folder.suite())).collect();
     assert_eq!(outside, Vec::<PathBuf>::new());
@@ -314,7 +321,7 @@ fn an_address_where_nobody_answers_stops_the_run() {
     let nobody = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let base_url = format!("http://{nobody}/v1");
     let arguments = ["run", "--quiet", "--agent", "m", "--retries", "0", "--base-url", &base_url, "--out"];
-    let output = recrash(&arguments).arg(folder.suite()).args(OPTIONS).output().unwrap();
+    let output = recrash(&arguments).arg(folder.suite()).args(TUNED).output().unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(shown(&output).contains("cannot connect"), "{}", shown(&output));
 }
@@ -324,7 +331,7 @@ fn a_missing_key_is_named() {
     let folder = Folder::new();
     let arguments = ["run", "--quiet", "--agent", "claude-haiku-4-5", "--out"];
     let mut command = recrash(&arguments);
-    command.arg(folder.suite()).args(OPTIONS).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
+    command.arg(folder.suite()).args(TUNED).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(shown(&output).contains("ANTHROPIC_API_KEY"), "{}", shown(&output));
@@ -364,7 +371,7 @@ fn a_cap_on_money_holds_with_the_users_prices() {
     // Every answer costs 0.2 USD.
     let arguments =
         ["run", "--agent", "scripted", "--base-url", &server.base_url, "--prices", prices.to_str().unwrap(), "--out"];
-    let output = recrash(&arguments).arg(folder.suite()).args(OPTIONS).args(capped).output().unwrap();
+    let output = recrash(&arguments).arg(folder.suite()).args(TUNED).args(capped).output().unwrap();
     assert_eq!(output.status.code(), Some(4), "{}", shown(&output));
     assert_eq!(server.requests().len(), 3);
 
@@ -395,8 +402,8 @@ fn no_key_is_in_any_file_line_or_error() {
             2 => {
                 let keys = KEYS.map(|(_, key)| key).join(" ");
                 let mut answer: Value = serde_json::from_str(&model.answer(request.messages())).unwrap();
-                if request.is("Retell") {
-                    answer["text"] = json!(format!("{} The keys are {keys}.", answer["text"]));
+                if request.is("Read") {
+                    answer["report"] = json!(format!("{} The keys are {keys}.", answer["report"]));
                     return Some(Reply::Text(answer.to_string()));
                 }
                 Some(Reply::Text(format!("The keys are {keys}, and {}", request.head)))
@@ -408,7 +415,7 @@ fn no_key_is_in_any_file_line_or_error() {
     let fatal = Server::start(|request| Reply::Status(401, String::new(), format!("refused: {}", request.head)));
     for (server, out) in [(&server, folder.suite()), (&fatal, folder.0.path().join("refused"))] {
         let arguments = ["run", "--agent", "scripted", "--base-url", &server.base_url, "--out", out.to_str().unwrap()];
-        outputs.push(recrash(&arguments).args(OPTIONS).envs(KEYS).output().unwrap());
+        outputs.push(recrash(&arguments).args(TUNED).envs(KEYS).output().unwrap());
     }
     assert!(server.requests().iter().all(|r| r.head.contains(KEYS[0].1)), "the key of the server is sent");
     assert!(!server.requests().iter().any(|r| r.head.contains(KEYS[1].1)), "the key of another provider is not");
@@ -436,7 +443,7 @@ fn an_interrupt_keeps_every_answer_and_says_how_to_go_on() {
     command
         .args(["run", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
         .arg(folder.suite())
-        .args(OPTIONS);
+        .args(TUNED);
     let child = command.args(["--concurrency", "2"]).stderr(std::process::Stdio::piped()).spawn().unwrap();
     let begun = Instant::now();
     while server.requests().len() < 7 {
@@ -546,7 +553,7 @@ fn a_cap_on_tokens_holds_where_the_server_does_not_count() {
     });
     let output = recrash(&["run", "--quiet", "--agent", "scripted", "--base-url", &server.base_url, "--out"])
         .arg(folder.suite())
-        .args(OPTIONS)
+        .args(TUNED)
         .args(["--max-tokens", "40000", "--concurrency", "1"])
         .output()
         .unwrap();
@@ -565,6 +572,8 @@ fn nobody_at_the_address_is_told_within_seconds() {
     let folder = Folder::new();
     let nobody = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let base_url = format!("http://{nobody}/v1");
+    // The records are chosen before anybody is asked.
+    recrash(&["select", "--quiet", "--budget", "3", "--out"]).arg(folder.suite()).assert().success();
     let begun = Instant::now();
     let arguments = ["run", "--quiet", "--agent", "m", "--base-url", &base_url, "--budget", "3", "--out"];
     let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
@@ -577,7 +586,7 @@ fn a_missing_key_of_a_later_role_is_told_before_the_first_question() {
     let folder = Folder::new();
     let arguments = ["run", "--quiet", "--paraphrase", "no-such-model", "--design", "claude-haiku-4-5", "--out"];
     let mut command = recrash(&arguments);
-    command.arg(folder.suite()).args(OPTIONS).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
+    command.arg(folder.suite()).args(TUNED).env_remove("ANTHROPIC_API_KEY").env_remove("RECRASH_BASE_URL");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(shown(&output).contains("ANTHROPIC_API_KEY"), "{}", shown(&output));
@@ -682,9 +691,9 @@ fn a_planted_key_is_in_no_file_however_it_is_written_and_whoever_tells_it() {
     let told: Vec<String> = PLANTED.iter().flat_map(|(_, key)| written(key)).collect();
     let say = told.join(" ");
     let server = Server::start(move |request| {
-        if request.is("Retell") {
+        if request.is("Read") {
             let mut answer: Value = serde_json::from_str(&model.answer(request.messages())).unwrap();
-            answer["text"] = json!(format!("{} {say}", answer["text"].as_str().unwrap()));
+            answer["report"] = json!(format!("{} {say}", answer["report"].as_str().unwrap()));
             return Reply::Text(answer.to_string());
         }
         match request.asked_before {

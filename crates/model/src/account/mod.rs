@@ -22,6 +22,7 @@ pub use untold::Untold;
 
 use crate::narrative::FirstMover;
 use crate::record::RecordRef;
+use crate::scenario::Author;
 use crate::template::{Movement, RoadType, Template};
 use crate::zones::ContactZone;
 use schemars::JsonSchema;
@@ -139,6 +140,9 @@ pub struct Account {
     pub partner_left: Option<Fact<bool>>,
     /// Where words and columns, or two facts, cannot both be true.
     pub contradictions: Vec<Contradiction>,
+    /// Who read it: the built-in reader, or a language model whose facts are laid over the reader's.
+    #[serde(default, skip_serializing_if = "Author::is_rules")]
+    pub author: Author,
 }
 
 impl Account {

@@ -120,6 +120,13 @@ pub enum Author {
     Person,
 }
 
+impl Author {
+    /// Whether the built-in rules wrote it.
+    pub fn is_rules(&self) -> bool {
+        *self == Self::Rules
+    }
+}
+
 /// Random background traffic, as MetaDrive's.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

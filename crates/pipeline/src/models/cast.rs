@@ -2,12 +2,15 @@
 
 use crate::error::PipelineError;
 use crate::models::Models;
-use recrash_agents::llm::AskError;
+use recrash_agents::llm::{AskError, Repairs};
 use recrash_agents::{AgentError, Brief, Paraphrase, Rules};
+use recrash_model::Seed;
+use recrash_model::account::Account;
 use recrash_model::narrative::Narrative;
+use recrash_model::profile::SystemProfile;
+use recrash_model::record::CrashRecord;
 use recrash_model::scenario::Author;
 use serde::{Deserialize, Serialize};
-use std::cell::Cell;
 
 /// How often an answer that cannot be used goes back to its model, where nothing else is said.
 const REPAIRS: usize = 3;
@@ -18,7 +21,8 @@ pub const RULES: &str = "rules";
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cast {
-    /// Retells records.
+    /// Reads reports, where a model plays it: of a suite that goes by templates each pick's, of one that goes by accounts
+    /// those that the built-in reader did not read whole.
     pub paraphrase: String,
     /// Designs scenarios.
     pub design: String,
@@ -104,7 +108,7 @@ impl AgentLog {
     }
 }
 
-/// Retells a record, by the model where one is cast, and by the rules where it cannot.
+/// Retells a record: read by the model where one is cast, and by the rules where it cannot.
 ///
 /// # Errors
 /// The run has to stop, or the rules cannot either.
@@ -116,14 +120,29 @@ pub fn paraphrase(models: Option<&Models>, cast: &Cast, brief: &Brief) -> Result
     let Some(models) = models.filter(|_| name != RULES) else {
         return Ok((by_rules()?, AgentLog::rules()));
     };
-    let repairs = Cell::new(0);
+    // What cannot be told needs no reader: it is invented.
+    if brief.untold.is_some() || brief.account.is_none() {
+        return Ok((by_rules()?, AgentLog { needless: true, ..AgentLog::model(name, 0) }));
+    }
+    let repairs = Repairs::default();
     match models.model(name, cast, &repairs).paraphrase(brief) {
-        Ok(outcome) => Ok((outcome.value, AgentLog::model(name, repairs.get()))),
+        Ok(outcome) => Ok((outcome.value, AgentLog::model(name, repairs.all()))),
         Err(error) => {
             let why = unusable(error)?;
-            Ok((by_rules()?, AgentLog::fallback(name, repairs.get(), why)))
+            Ok((by_rules()?, AgentLog::fallback(name, repairs.all(), why)))
         }
     }
+}
+
+/// What a model is told that reads the reports of an incident. `base` is what the built-in reader made of them.
+pub fn reading_brief<'a>(
+    id: &'a str,
+    records: &'a [&'a CrashRecord],
+    profile: &'a SystemProfile,
+    base: &'a Account,
+) -> Brief<'a> {
+    let template = base.template();
+    Brief { scenario_id: id, template, records, untold: None, profile, account: Some(base), seed: Seed(0) }
 }
 
 /// Why a model's part goes to the rules.

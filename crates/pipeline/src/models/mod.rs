@@ -11,12 +11,11 @@ use crate::secrets;
 #[cfg(feature = "live")]
 use recrash_agents::llm::Live;
 use recrash_agents::llm::{
-    Answers, AskError, Batch, Caps, Exchange, LanguageModel, Ledger, LiveOptions, PriceTable, Question, Replay,
-    Spending, Spent, request_line,
+    Answers, AskError, Batch, Caps, Exchange, LanguageModel, Ledger, LiveOptions, PriceTable, Question, Repairs,
+    Replay, Spending, Spent, request_line,
 };
 use recrash_model::Diagnostic;
 use responses::{PENDING, REQUESTS, TakenIn, exchange_file};
-use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -26,6 +25,11 @@ const MAX_PRICES: u64 = 1 << 20;
 const KEY_VARIABLE: &str = "RECRASH_API_KEY";
 /// Largest exchange: its question holds the answers before it, each bounded. [bytes]
 const MAX_EXCHANGE: u64 = 64 << 20;
+
+/// Bytes of English that models count as a token, about.
+const BYTES_PER_TOKEN: usize = 4;
+/// Tokens of an account, about.
+const TOKENS_PER_ACCOUNT: u64 = 700;
 
 /// Where a model's answers come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -79,6 +83,7 @@ pub struct Models {
     answers: Arc<dyn Answers>,
     batch: Option<Arc<Batch>>,
     spending: Arc<Spending>,
+    prices: PriceTable,
 }
 
 impl Models {
@@ -109,12 +114,26 @@ impl Models {
                 (Arc::clone(&batch) as Arc<dyn Answers>, Some(batch))
             }
         };
-        Ok((Self { store: store.clone(), answers, batch, spending }, diagnostics))
+        let prices = price_table(access)?;
+        Ok((Self { store: store.clone(), answers, batch, spending, prices }, diagnostics))
     }
 
     /// A model in its roles. `repairs` counts the answers that went back.
-    pub fn model<'a>(&'a self, name: &'a str, cast: &Cast, repairs: &'a Cell<usize>) -> LanguageModel<'a> {
+    pub fn model<'a>(&'a self, name: &'a str, cast: &Cast, repairs: &'a Repairs) -> LanguageModel<'a> {
         LanguageModel { model: name, answers: &*self.answers, max_repairs: cast.repairs, repairs }
+    }
+
+    /// About what so many questions of so many bytes together cost, in words.
+    pub fn estimate(&self, name: &str, bytes: usize, questions: usize) -> String {
+        let (read, written) = ((bytes / BYTES_PER_TOKEN) as u64, questions as u64 * TOKENS_PER_ACCOUNT);
+        let tokens = format!("about {} thousand tokens", (read + written).div_ceil(1_000));
+        match self.prices.price(name) {
+            Some(price) => {
+                let share = if self.batch.is_some() { price.batch_share } else { 1.0 };
+                format!("{tokens}, about {:.2} USD", share * price.cost_usd(read, written))
+            }
+            None => format!("{tokens}, at a price that is not known"),
+        }
     }
 
     /// What this run has spent.

@@ -1,5 +1,6 @@
 //! Accounts retold: a reconstruction each, and what becomes of every incident of crash files.
 
+use crate::error::PipelineError;
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::accounts::told_facts;
 use rayon::prelude::*;
@@ -108,9 +109,39 @@ fn place(record: &CrashRecord) -> Place<'_> {
     (&record.provenance.file, record.provenance.row)
 }
 
+/// An incident that the built-in reader did not read whole, and what it made of it.
+pub(crate) struct Unread<'a> {
+    /// Its reports.
+    pub incident: &'a Incident,
+    /// The account so far.
+    pub account: &'a Account,
+}
+
+/// Whether an account lacks what a crash is told by, or says what cannot have been.
+fn is_incomplete(account: &Account, retold: &Retold) -> bool {
+    let lacks = account.crash_type.is_none() || account.striker.is_none() || account.came_from.is_none();
+    lacks
+        || matches!(
+            retold.untold(),
+            Some(Untold::NoAccount | Untold::OthersOnly | Untold::NoContact | Untold::NotShown)
+        )
+}
+
+/// Accounts that somebody else made of these incidents, of so many; none where nobody is asked.
+pub(crate) type ReadAgain<'a> = dyn FnMut(&[Unread], usize) -> Result<Vec<Option<Account>>, PipelineError> + 'a;
+
 /// Groups reports into incidents, reads and reconstructs each, and leaves those usable whose every told fact is shown: the
-/// report that speaks stands for its incident.
-pub(crate) fn tell(mut set: RecordSet, filter: Option<&Filter>, progress: &dyn Progress) -> (RecordSet, AccountSet) {
+/// report that speaks stands for its incident. What is not read whole goes to `read_again`; its account is taken where the crash is
+/// told by it.
+///
+/// # Errors
+/// Those of `read_again`.
+pub(crate) fn tell(
+    mut set: RecordSet,
+    filter: Option<&Filter>,
+    progress: &dyn Progress,
+    read_again: &mut ReadAgain,
+) -> Result<(RecordSet, AccountSet), PipelineError> {
     let incidents = recrash_reader::incidents(&set.records);
     let leading: BTreeMap<Place, &Incident> =
         incidents.iter().filter_map(|incident| Some((place(&incident.leading()?.record), incident))).collect();
@@ -118,8 +149,21 @@ pub(crate) fn tell(mut set: RecordSet, filter: Option<&Filter>, progress: &dyn P
         incident.leading().is_some_and(|report| filter.is_none_or(|filter| filter.keeps(&report.record)))
     };
     let read: Vec<&Incident> = incidents.iter().filter(kept).collect();
-    let accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
-    let retold = reconstruct_accounts(&accounts, progress);
+    let mut accounts: Vec<Account> = read.par_iter().filter_map(|incident| recrash_reader::account(incident)).collect();
+    let mut retold = reconstruct_accounts(&accounts, progress);
+    let unread: Vec<usize> = (0..accounts.len()).filter(|&at| is_incomplete(&accounts[at], &retold[at])).collect();
+    let of_id: BTreeMap<&str, &Incident> = read.iter().map(|&incident| (incident.id.as_str(), incident)).collect();
+    let incident = |account: &Account| of_id[account.incident.as_str()];
+    let asked: Vec<Unread> =
+        unread.iter().map(|&at| Unread { incident: incident(&accounts[at]), account: &accounts[at] }).collect();
+    let again = read_again(&asked, accounts.len())?;
+    for (at, account) in unread.into_iter().zip(again).filter_map(|(at, account)| Some((at, account?))) {
+        let result = reconstruct(&account);
+        let other = Retold { account: at, result };
+        if other.untold().is_none() {
+            (accounts[at], retold[at]) = (account, other);
+        }
+    }
     let of_incident: BTreeMap<&str, (&Account, &Retold)> =
         accounts.iter().zip(&retold).map(|(account, retold)| (account.incident.as_str(), (account, retold))).collect();
 
@@ -208,5 +252,5 @@ pub(crate) fn tell(mut set: RecordSet, filter: Option<&Filter>, progress: &dyn P
         told: told_accounts,
         untold,
     };
-    (set, accounts)
+    Ok((set, accounts))
 }

@@ -2,6 +2,7 @@
 
 use super::failures;
 use crate::error::PipelineError;
+use crate::models::cast::AgentLog;
 use crate::reading::scenarios::read_scenario;
 use crate::suite::names;
 use crate::suite::{Stage, Suite};
@@ -16,9 +17,7 @@ use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
 use recrash_roads::Scenario;
 use serde::Serialize;
-
-/// Members of a cluster that the agents see beside the pick.
-const MEMBERS_SHOWN: usize = 4;
+use std::collections::BTreeMap;
 
 /// Records and picks.
 pub(crate) struct Cases {
@@ -28,6 +27,8 @@ pub(crate) struct Cases {
     pub selection: Selection,
     /// Accounts, in a suite that goes by them.
     pub accounts: Option<AccountSet>,
+    /// Who was asked to read which incident again.
+    pub readers: BTreeMap<String, AgentLog>,
 }
 
 impl Cases {
@@ -41,11 +42,13 @@ impl Cases {
         if selection.clusters.iter().any(|c| !named(c) || c.members.iter().any(|&m| m >= bound)) {
             return Err(suite.stale(Stage::Select));
         }
-        let accounts = match suite.profile().records.tells {
-            Tells::Templates => None,
-            Tells::Accounts => Some(suite.store().read_json(names::ACCOUNTS)?),
+        let (accounts, readers) = match suite.profile().records.tells {
+            Tells::Templates => (None, BTreeMap::new()),
+            Tells::Accounts => {
+                (Some(suite.store().read_json(names::ACCOUNTS)?), suite.store().read_json(names::ACCOUNT_READERS)?)
+            }
         };
-        Ok(Self { records, selection, accounts })
+        Ok(Self { records, selection, accounts, readers })
     }
 
     /// The account of a cluster's pick, in a suite that goes by accounts.
@@ -53,15 +56,28 @@ impl Cases {
         self.accounts.as_ref()?.of(&cluster.pick)
     }
 
-    /// Where the records stand that a case shows: the pick first, then a few members of its cluster.
+    /// Where the records of a case stand: the pick first, then the other reports of its incident.
     pub fn shown(&self, cluster: &Cluster) -> Vec<usize> {
-        let others = cluster.members.iter().filter(|&&m| m != cluster.pick_index).take(MEMBERS_SHOWN);
-        std::iter::once(&cluster.pick_index).chain(others).copied().collect()
+        let records = &self.records.records;
+        let pick = &records[cluster.pick_index];
+        let same = |record: &CrashRecord| {
+            record.id.report_id == pick.id.report_id
+                || record.incident_id.is_some() && record.incident_id == pick.incident_id
+        };
+        let others = (0..records.len()).filter(|&at| at != cluster.pick_index && same(&records[at]));
+        std::iter::once(cluster.pick_index).chain(others).collect()
     }
 
     /// Those records.
     pub fn records_of(&self, cluster: &Cluster) -> Vec<&CrashRecord> {
         self.shown(cluster).into_iter().map(|index| &self.records.records[index]).collect()
+    }
+
+    /// What the built-in reader makes of these records of one incident.
+    pub fn read_by_rules(records: &[&CrashRecord]) -> Option<Account> {
+        let records: Vec<CrashRecord> = records.iter().copied().cloned().collect();
+        let incidents = recrash_reader::incidents(&records);
+        incidents.iter().find_map(recrash_reader::account)
     }
 
     /// The clusters that no stage before this one failed on.
@@ -84,17 +100,32 @@ impl Cases {
             inputs.push(text_of(&CrashRecord { provenance: nowhere, ..record.clone() }));
         }
         inputs.extend(self.account(cluster).map(text_of));
+        inputs.extend(self.untold(cluster).map(str::to_owned));
         inputs
     }
 
-    /// The records that count once a narrative is written: the pick, and the one that is told in its place; all of them where
-    /// the narrative cannot be read.
-    pub fn records_told(&self, suite: &Suite, cluster: &Cluster) -> Vec<&CrashRecord> {
-        let file = names::narrative(&cluster.scenario_id);
-        let Ok(narrative) = suite.store().read_json::<Narrative>(&file) else { return self.records_of(cluster) };
-        let pick = &self.records.records[cluster.pick_index];
-        let told = self.told(cluster, &narrative);
-        if told.id == pick.id { vec![pick] } else { vec![pick, told] }
+    /// What an agent is told about a case. A model is shown all of its records, the rules read the pick.
+    pub fn brief<'a>(
+        &'a self,
+        suite: &'a Suite,
+        cluster: &'a Cluster,
+        records: &'a [&'a CrashRecord],
+        account: Option<&'a Account>,
+    ) -> Brief<'a> {
+        Brief {
+            scenario_id: &cluster.scenario_id,
+            template: cluster.template,
+            records,
+            untold: self.untold(cluster),
+            profile: suite.profile(),
+            account,
+            seed: case_seed(suite, cluster),
+        }
+    }
+
+    /// Why the pick's own crash is not told, where it is not.
+    fn untold(&self, cluster: &Cluster) -> Option<&str> {
+        self.records.untold.get(&cluster.pick_index).map(String::as_str)
     }
 
     /// The record whose crash a narrative tells; of an invented one the pick.
@@ -115,17 +146,6 @@ impl Cases {
 /// JSON of what decides about a unit.
 pub(crate) fn text_of<T: Serialize>(value: &T) -> String {
     serde_json::to_string(value).expect("nouns serialise")
-}
-
-/// What an agent is told about a case.
-pub(crate) fn brief<'a>(suite: &'a Suite, cluster: &'a Cluster, records: &'a [&'a CrashRecord]) -> Brief<'a> {
-    Brief {
-        scenario_id: &cluster.scenario_id,
-        template: cluster.template,
-        records,
-        profile: suite.profile(),
-        seed: case_seed(suite, cluster),
-    }
 }
 
 /// Seed of a case's random choices.

@@ -1,6 +1,6 @@
 //! Narratives to scenarios: the loop of design, check, rollout and verdict.
 
-use super::cases::{brief, text_of};
+use super::cases::text_of;
 use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
 use crate::files::store::to_json;
@@ -8,6 +8,7 @@ use crate::models::cast::{RULES, unusable};
 use crate::simulators::Simulator;
 use crate::suite::names;
 use crate::suite::{Files, Stage};
+use recrash_agents::llm::Repairs;
 use recrash_agents::{Brief, Design, Feedback, Problem, Rules, inexpressible, narrative_contradictions};
 use recrash_lab::run_scenario;
 use recrash_model::metrics::{Check, Expectation};
@@ -16,7 +17,6 @@ use recrash_model::scenario::{Author, ScenarioDraft};
 use recrash_model::selection::Cluster;
 use recrash_model::{Diagnostic, Outcome};
 use serde::{Deserialize, Serialize};
-use std::cell::Cell;
 
 /// Designs of the rules that are tried before the best so far is taken.
 const MAX_DESIGNS: usize = 6;
@@ -37,17 +37,17 @@ pub(super) const DECLARED: CaseStage = CaseStage {
 fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let suite = bench.suite;
     let records = bench.cases.records_of(cluster);
-    let brief = brief(suite, cluster, &records);
+    let brief = bench.cases.brief(suite, cluster, &records, None);
     let (narrative, expectation) = bench.cases.expectation(suite, cluster)?;
     refuse_contradictions(&narrative, &brief)?;
     let cast = &suite.options().cast;
-    let (name, repairs) = (&cast.design, Cell::new(0));
+    let (name, repairs) = (&cast.design, Repairs::default());
     let model = suite.models().filter(|_| name != RULES).map(|models| models.model(name, cast, &repairs));
     let by_model = model.as_ref().map(|agent| Designer { name, agent, tries: cast.repairs + 1 });
     let by_rules = Designer { name: RULES, agent: &Rules, tries: MAX_DESIGNS };
     let designers: Vec<Designer> = by_model.into_iter().chain([by_rules]).collect();
     let (draft, log) = design_case(&designers, &brief, &narrative, &expectation, bench.simulator())?;
-    let log = DesignLog { repairs: repairs.get(), ..log };
+    let log = DesignLog { repairs: repairs.all(), ..log };
     let id = &cluster.scenario_id;
     Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
 }
@@ -63,6 +63,22 @@ fn refuse_contradictions(narrative: &Narrative, brief: &Brief) -> Result<(), Pip
         brief.scenario_id,
         format!("the narrative contradicts its template ({why}); mend it, or remove its file"),
     ))
+}
+
+/// What the best design of the rules does not show; nothing where it shows everything.
+///
+/// # Errors
+/// None of the designs can be run.
+pub(super) fn staged_by_rules(
+    brief: &Brief,
+    narrative: &Narrative,
+    expectation: &Expectation,
+    simulator: &dyn Simulator,
+) -> Result<Option<Check>, PipelineError> {
+    let by_rules = Designer { name: RULES, agent: &Rules, tries: MAX_DESIGNS };
+    let (_, log) = design_case(&[by_rules], brief, narrative, expectation, simulator)?;
+    let missed = log.attempts.get(log.taken).and_then(|attempt| attempt.unfaithful.as_ref()?.first().cloned());
+    Ok(missed)
 }
 
 /// What became of the designs of one scenario.

@@ -8,9 +8,11 @@ mod cases;
 mod design;
 mod failures;
 mod narrate;
+mod own;
 mod records;
 mod report;
 mod retold;
+mod second_reading;
 mod select;
 mod simulate;
 mod summary;
@@ -18,7 +20,7 @@ mod triage;
 mod tune;
 mod view;
 
-pub(crate) use cases::{Cases, brief};
+pub(crate) use cases::Cases;
 pub use design::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
 pub use select::{SelectionStudy, StrategyStudy};
@@ -216,9 +218,10 @@ pub(crate) fn case_inputs(
     cluster: &Cluster,
 ) -> Result<Vec<String>, PipelineError> {
     let id = &cluster.scenario_id;
-    // A model is shown all of a case's records in every role; the rules look at the others to find one to tell.
-    let looks_at_all = declared.stage == Stage::Narrate || !suite.options().cast.models().is_empty();
-    let records = if looks_at_all { cases.records_of(cluster) } else { cases.records_told(suite, cluster) };
+    let mut records = cases.records_of(cluster);
+    if suite.options().cast.models().is_empty() {
+        records.truncate(1);
+    }
     let mut inputs = cases.inputs(cluster, &records);
     for (stage, file) in (declared.reads)(id) {
         inputs.push(suite.output_hash(stage, &unit_name(stage, id), &file)?);

@@ -1,7 +1,7 @@
 //! Picks to narratives.
 
-use super::cases::{brief, text_of};
-use super::{Bench, CaseStage, player};
+use super::cases::text_of;
+use super::{Bench, CaseStage, Cases, player};
 use crate::error::PipelineError;
 use crate::files::store::to_json;
 use crate::models::cast;
@@ -25,7 +25,9 @@ pub(super) const DECLARED: CaseStage = CaseStage {
 fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let suite = bench.suite;
     let records = bench.cases.records_of(cluster);
-    let brief = brief(suite, cluster, &records);
+    let by_model = suite.options().cast.paraphrase != cast::RULES;
+    let account = if by_model { Cases::read_by_rules(&records) } else { None };
+    let brief = bench.cases.brief(suite, cluster, &records, account.as_ref());
     let (narrative, log) = cast::paraphrase(suite.models(), &suite.options().cast, &brief)?;
     let id = &cluster.scenario_id;
     Ok(vec![(names::narrative(id), to_json(&narrative)), (names::narrative_log(id), to_json(&log))])

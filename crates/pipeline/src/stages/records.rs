@@ -1,15 +1,17 @@
 //! The first stage: crash files to records.
 
-use super::{StageReport, StageWork, cases};
+use super::second_reading::{SecondReading, read_again};
+use super::{StageReport, StageWork, cases, own, player};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
 use crate::reading::records::RecordInput;
-use crate::reading::retelling::tell;
+use crate::reading::retelling::{Unread, tell};
 use crate::suite::Suite;
 use crate::suite::names;
 use recrash_model::account::{Account, AccountSet, CrashType};
 use recrash_model::diagnostic::{Location, Severity};
 use recrash_model::profile::Tells;
+use recrash_model::record::RecordSet;
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::{Diagnostic, Outcome};
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,15 +24,24 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let mut report = work.whole(&inputs(suite, &input), || {
         let profile = suite.profile();
         if profile.records.tells == Tells::Templates {
-            let Outcome { value, diagnostics } = input.ingest(profile)?;
+            let Outcome { mut value, mut diagnostics } = input.ingest(profile)?;
+            own::find_untold(&mut value, profile);
+            diagnostics.push(what_is_told(&value));
             return Ok(vec![
                 (names::RECORDS.into(), to_compact_json(&value)),
                 (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
             ]);
         }
         let (Outcome { value, diagnostics }, filter) = input.ingest_all(profile)?;
-        let (told, accounts) = tell(value, filter.as_ref(), work.progress);
+        let mut logs = BTreeMap::new();
+        let mut again = |unread: &[Unread], all: usize| {
+            let SecondReading { accounts, logs: told } = read_again(suite, unread, all, work.progress)?;
+            logs = told;
+            Ok(accounts)
+        };
+        let (told, accounts) = tell(value, filter.as_ref(), work.progress, &mut again)?;
         Ok(vec![
+            (names::ACCOUNT_READERS.into(), to_json(&logs)),
             (names::RECORDS.into(), to_compact_json(&told)),
             (names::RECORD_REMARKS.into(), to_json(&diagnostics)),
             (names::ACCOUNTS.into(), to_compact_json(&accounts)),
@@ -76,10 +87,24 @@ fn what_is_new(before: &AccountSet, now: &AccountSet) -> Option<Diagnostic> {
     Some(Diagnostic::new(Severity::Note, "records.new", Location::default(), message))
 }
 
+/// How many of the usable records of a suite of templates are told as their own crash.
+fn what_is_told(set: &RecordSet) -> Diagnostic {
+    let copies = set.untold.values().filter(|why| why.ends_with(own::TOLD_BY_ANOTHER)).count();
+    let message = format!(
+        "{} of {} usable records are told as their own crash, {copies} more by another record of their incident, and {} cannot be",
+        set.usable.len() - set.untold.len(),
+        set.usable.len(),
+        set.untold.len() - copies
+    );
+    Diagnostic::new(Severity::Note, "records.told", Location::default(), message)
+}
+
 /// Roads and movements that are named.
 const TRIPLES_SHOWN: usize = 20;
 
 /// What decides which records come out.
 pub(super) fn inputs(suite: &Suite, input: &RecordInput) -> Vec<String> {
-    std::iter::once(cases::text_of(suite.profile())).chain(input.parts()).collect()
+    let by_accounts = suite.profile().records.tells == Tells::Accounts;
+    let reader = by_accounts.then(|| player(suite, &suite.options().cast.paraphrase));
+    std::iter::once(cases::text_of(suite.profile())).chain(reader).chain(input.parts()).collect()
 }

@@ -84,7 +84,8 @@ pub(super) fn account(suite: &Suite, id: &str) -> Result<Account, PipelineError>
 fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let id = &cluster.scenario_id;
     let account = bench.cases.account(cluster).ok_or_else(|| bench.suite.stale(Stage::Records))?;
-    Ok(vec![(names::account(id), to_json(account)), (names::narrative_log(id), to_json(&AgentLog::rules()))])
+    let log = bench.cases.readers.get(&account.incident).cloned().unwrap_or_else(AgentLog::rules);
+    Ok(vec![(names::account(id), to_json(account)), (names::narrative_log(id), to_json(&log))])
 }
 
 fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {

@@ -308,7 +308,6 @@ impl CaseSummary {
     /// Of a case.
     pub(super) fn of(case: &Case) -> Self {
         let id = &case.cluster.scenario_id;
-        let agent = |log: &AgentLog| RoleSummary { outcome: log.outcome().to_owned(), why: log.fallback.clone() };
         let design = |log: &DesignLog| {
             let outcome = log.outcome();
             let why = (outcome == FALLBACK).then(|| log.gave_up.join("; "));
@@ -358,7 +357,7 @@ pub(super) fn summarise(suite: &Suite, cases: &Cases, summaries: Vec<CaseSummary
         tables: selection.tables.clone(),
         templates: selection.templates.clone(),
         coverage: selection.coverage.clone(),
-        models: models(&suite.options().cast, &summaries),
+        models: models(&suite.options().cast, &summaries, &cases.readers),
         accounts: cases.accounts.as_ref().map(AccountSummary::of),
         corpus: cases.accounts.as_ref().map(|accounts| corpus(accounts, &summaries)),
         cases: summaries,
@@ -385,32 +384,42 @@ fn corpus(accounts: &AccountSet, cases: &[CaseSummary]) -> CorpusCoverage {
     coverage(&told.chain(untold).collect::<Vec<_>>())
 }
 
-/// How the models of a cast did.
-fn models(cast: &Cast, cases: &[CaseSummary]) -> Vec<ModelSummary> {
-    type Role<'a> = (&'static str, &'a String, fn(&CaseSummary) -> Option<&RoleSummary>);
-    let roles: [Role; 3] = [
-        ("paraphrase", &cast.paraphrase, |case| case.narrated.as_ref()),
-        ("design", &cast.design, |case| case.designed.as_ref()),
-        ("tune", &cast.tune, |case| case.tuned_by.as_ref()),
+fn agent(log: &AgentLog) -> RoleSummary {
+    RoleSummary { outcome: log.outcome().to_owned(), why: log.fallback.clone() }
+}
+
+/// How the models of a cast did. In a suite that goes by accounts the reading is done before there are cases: `readers` has what
+/// came of it.
+fn models(cast: &Cast, cases: &[CaseSummary], readers: &BTreeMap<String, AgentLog>) -> Vec<ModelSummary> {
+    type Played = Vec<(String, RoleSummary)>;
+    let of_cases = |told: fn(&CaseSummary) -> Option<&RoleSummary>| -> Played {
+        cases.iter().filter_map(|case| Some((case.id.clone(), told(case)?.clone()))).collect()
+    };
+    let read = match readers.is_empty() {
+        true => of_cases(|case| case.narrated.as_ref()),
+        false => readers.iter().map(|(incident, log)| (incident.clone(), agent(log))).collect(),
+    };
+    let roles = [
+        ("paraphrase", &cast.paraphrase, read),
+        ("design", &cast.design, of_cases(|case| case.designed.as_ref())),
+        ("tune", &cast.tune, of_cases(|case| case.tuned_by.as_ref())),
     ];
-    let by_model = roles.into_iter().filter(|(_, model, _)| *model != RULES);
-    by_model
-        .map(|(role, model, told)| {
-            let count =
-                |word: &str| cases.iter().filter(|case| told(case).is_some_and(|is| is.outcome == word)).count();
-            let reason = |case: &CaseSummary| {
-                let why = told(case).filter(|is| is.outcome == FALLBACK)?.why.clone().unwrap_or_default();
-                Some(FallbackReason { id: case.id.clone(), why })
-            };
-            ModelSummary {
-                role: role.to_owned(),
-                model: model.clone(),
-                first_answer: count("first answer"),
-                after_repair: count("after repair"),
-                fallback: count(FALLBACK),
-                not_asked: count("not asked"),
-                reasons: cases.iter().filter_map(reason).collect(),
-            }
-        })
-        .collect()
+    let of_model = |(role, model, played): (&str, &String, Played)| {
+        let count = |word: &str| played.iter().filter(|(_, is)| is.outcome == word).count();
+        let taken_over = played.iter().filter(|(_, is)| is.outcome == FALLBACK);
+        let reason = |(id, is): &(String, RoleSummary)| FallbackReason {
+            id: id.clone(),
+            why: is.why.clone().unwrap_or_default(),
+        };
+        ModelSummary {
+            role: role.to_owned(),
+            model: model.clone(),
+            first_answer: count("first answer"),
+            after_repair: count("after repair"),
+            fallback: count(FALLBACK),
+            not_asked: count("not asked"),
+            reasons: taken_over.map(reason).collect(),
+        }
+    };
+    roles.into_iter().filter(|(_, model, _)| *model != RULES).map(of_model).collect()
 }

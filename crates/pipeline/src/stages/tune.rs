@@ -1,20 +1,19 @@
 //! Scenarios to tuned scenarios: the nearest failure that stays true to the record.
 
-use super::cases::{brief, case_seed, scenario, text_of};
+use super::cases::{case_seed, scenario, text_of};
 use super::{Bench, CaseStage, player};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
 use crate::models::cast::{self, AgentLog, RULES};
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
-use recrash_agents::llm::TuneBrief;
+use recrash_agents::llm::{Repairs, TuneBrief};
 use recrash_agents::parameters;
-use recrash_lab::{Scoring, is_sound_contact};
+use recrash_lab::{Scoring, is_sound, is_sound_contact};
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::Cluster;
 use recrash_model::tuning::{Aim, TuneLog, TunePoint};
 use recrash_search::{Task, TuneOptions};
-use std::cell::Cell;
 
 /// The stage.
 pub(super) const DECLARED: CaseStage = CaseStage {
@@ -60,24 +59,26 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let (log, agent): (TuneLog, AgentLog) = match suite.models().filter(|_| cast.tune != RULES) {
         None => (search(), AgentLog::rules()),
         Some(models) => {
-            let (name, repairs) = (&cast.tune, Cell::new(0));
+            let (name, repairs) = (&cast.tune, Repairs::default());
             let model = models.model(name, cast, &repairs);
             let records = bench.cases.records_of(cluster);
-            let brief = brief(suite, cluster, &records);
+            let brief = bench.cases.brief(suite, cluster, &records, None);
             let (narrative, draft, metrics) = (&narrative, &draft, &first.metrics);
             let propose = |history: &[TunePoint]| {
                 let told = TuneBrief { narrative, draft, metrics, parameters: &parameters, history };
                 model.propose(&brief, &told).map(|values| (values, "model"))
             };
             let task = Task { scenario_id: id, parameters: &parameters, seed, searcher: name };
-            match recrash_search::tune_with(&task, cast.rounds + 1, propose, |v| scoring.score(v), enough) {
+            // A model is asked no more once it has what was looked for.
+            let found = |point: &TunePoint| is_sound(&point.score);
+            match recrash_search::tune_with(&task, cast.rounds + 1, propose, |v| scoring.score(v), found) {
                 Ok(log) => {
-                    let agent = AgentLog { needless: log.points.len() == 1, ..AgentLog::model(name, repairs.get()) };
+                    let agent = AgentLog { needless: log.points.len() == 1, ..AgentLog::model(name, repairs.all()) };
                     (log, agent)
                 }
                 Err(error) => {
                     let why = cast::unusable(error)?;
-                    (search(), AgentLog::fallback(name, repairs.get(), why))
+                    (search(), AgentLog::fallback(name, repairs.all(), why))
                 }
             }
         }

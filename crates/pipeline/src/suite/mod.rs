@@ -578,10 +578,12 @@ fn hash_all(inputs: &[String]) -> String {
 /// One of them is not there.
 pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
     suite.options().searcher.parse::<Searcher>().map_err(PipelineError::bad_input)?;
-    if let (Tells::Accounts, Some(model)) = (suite.profile().records.tells, suite.options().cast.models().first()) {
+    let cast = &suite.options().cast;
+    let staged_by = [&cast.design, &cast.tune].into_iter().find(|name| *name != RULES);
+    if let (Tells::Accounts, Some(model)) = (suite.profile().records.tells, staged_by) {
         return Err(PipelineError::bad_input(format!(
-            "the profile {} goes by accounts, which the built-in reader reads; {model} plays its role in suites that go by templates: \
-             choose the profile paper",
+            "the profile {} goes by accounts: a model may read reports there (paraphrase), and reconstructions and their variations are \
+             computed; {model} designs and tunes in suites that go by templates: choose the profile paper",
             suite.profile().name
         )));
     }

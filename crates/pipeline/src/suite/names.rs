@@ -6,6 +6,8 @@ use super::Stage;
 pub const RECORDS: &str = "1-records.json";
 /// Accounts of the incidents, in a suite that goes by accounts.
 pub const ACCOUNTS: &str = "1-accounts.json";
+/// Which of them a language model was asked about, and what came of it.
+pub const ACCOUNT_READERS: &str = "1-accounts.agents.json";
 /// Remarks on the records.
 pub const RECORD_REMARKS: &str = "1-records.diagnostics.json";
 /// Selection.

@@ -9,19 +9,19 @@ pub use recrash_lab::evaluation::{Field, FieldScore, TwoReaders};
 
 use crate::error::PipelineError;
 use crate::files::store::{Store, read_bytes, read_text, write_file_whole};
-use crate::models::cast::{Cast, RULES, unusable};
+use crate::models::cast::{Cast, RULES, reading_brief, unusable};
 use crate::models::{ModelAccess, Models};
 use crate::profiles::load_profile;
 use crate::reading::fetching::cached;
 use labels::{ACCOUNTS, RECORDS, Sheet, agreement, read_labels};
-use recrash_agents::{Brief, Paraphrase, Rules, account_of};
+use recrash_agents::llm::Repairs;
+use recrash_agents::{Rules, account_of};
 use recrash_model::labelled::LabelledAccount;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::{CrashRecord, RecordRef};
-use recrash_model::{Diagnostic, Location, Seed, Severity};
+use recrash_model::{Diagnostic, Location, Severity};
 use recrash_records::{SourceText, ingest};
 use serde::{Deserialize, Serialize};
-use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -217,15 +217,17 @@ fn model_accounts(
             unread.push((label.record.clone(), why));
             LabelledAccount::default()
         };
-        let Some(template) = record.template() else {
-            accounts.push(fail("its columns make no template, which the role needs".into()));
+        let incidents = recrash_reader::incidents(&[(*record).clone()]);
+        let Some(base) = incidents.first().and_then(recrash_reader::account) else {
+            accounts.push(fail("it has no narrative that can be read".into()));
             continue;
         };
         let scenario_id = format!("eval-{}-{}", label.record.report_id, label.record.version);
-        let brief = Brief { scenario_id: &scenario_id, template, records: &[record], profile, seed: Seed(1) };
-        let repairs = Cell::new(0);
-        let account = match models.model(&request.agent, &cast, &repairs).paraphrase(&brief) {
-            Ok(told) => account_of(&told.value, profile),
+        let records = [*record];
+        let brief = reading_brief(&scenario_id, &records, profile, &base);
+        let repairs = Repairs::default();
+        let account = match models.model(&request.agent, &cast, &repairs).read(&brief, &base) {
+            Ok(account) => account_of(&account, profile),
             Err(error) => match unusable(error) {
                 Ok(why) => fail(why),
                 Err(PipelineError::AnswerPending) => {

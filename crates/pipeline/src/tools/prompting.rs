@@ -5,7 +5,7 @@ use crate::models::cast::RULES;
 use crate::options::Options;
 use crate::progress::NoProgress;
 use crate::reading::scenarios::read_scenario;
-use crate::stages::{self, Cases, run_stage};
+use crate::stages::{Cases, run_stage};
 use crate::suite::names;
 use crate::suite::{Resources, Stage, Suite};
 use recrash_agents::llm::{
@@ -73,7 +73,8 @@ pub fn prompt(request: &PromptRequest) -> Result<Prompt, PipelineError> {
     let cases = Cases::read(&suite)?;
     let cluster = find(request, &cases)?;
     let records = cases.records_of(&cluster);
-    let brief = stages::brief(&suite, &cluster, &records);
+    let account = Cases::read_by_rules(&records);
+    let brief = cases.brief(&suite, &cluster, &records, account.as_ref());
     let cast = &suite.options().cast;
     let played = match request.role {
         Role::Paraphrase => &cast.paraphrase,

@@ -20,6 +20,7 @@ use recrash_model::account::{
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::{Coded, CrashRecord, Engagement, Severity};
+use recrash_model::scenario::Author;
 use recrash_model::zones::ContactZone;
 
 /// Everything the fold looks at.
@@ -140,6 +141,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         damage: None,
         partner_left: left(&reading),
         contradictions: Vec::new(),
+        author: Author::Rules,
     };
     party::columns(&reading, &mut account);
     // A gate that swings open is no door.
@@ -172,6 +174,12 @@ pub fn account(incident: &Incident) -> Option<Account> {
         party::refine(&mut partner.zones, &record.cp_zones, "CP Contact Area");
     }
     Some(account)
+}
+
+/// Works out again what follows from the other facts of an account, where somebody else has read some of them.
+pub fn refold(account: &mut Account) {
+    account.scenario = scenario::scenario(account);
+    account.matrix = scenario::matrix(account);
 }
 
 /// Kind of the subject vehicle, by its make, where that makes trucks only.

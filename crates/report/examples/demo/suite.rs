@@ -323,7 +323,16 @@ fn tune_log(cluster: &Cluster, plan: &Plan, designed: f64) -> (TuneLog, f64) {
                 }
                 .into(),
                 values: vec![value, plan.ego_speed],
-                score: Score { objective, min_gap: Some(gap), findings, failed, refused },
+                score: Score {
+                    objective,
+                    min_gap: Some(gap),
+                    depth_m: None,
+                    contact_mps: None,
+                    braking: None,
+                    findings,
+                    failed,
+                    refused,
+                },
             }
         })
         .collect();
@@ -511,6 +520,7 @@ pub fn demo_of(count: usize) -> Demo {
                 sha256: "5f2b51ca2fdc5baa31ec02e002f69aec0e48a8ad7cbf1c0a2f1fb1b8a1a3cf11".into(),
             }],
             usable: (0..usable).collect(),
+            untold: Default::default(),
             rejects: rejects.collect(),
             funnel: vec![
                 FunnelStep { name: "rows read".into(), remaining: usable + 5, lost: vec![] },

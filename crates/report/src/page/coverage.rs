@@ -17,9 +17,9 @@ pub fn coverage(context: &Context) -> Markup {
             table.plain {
                 caption.hidden-text { "Coverage in numbers" }
                 tbody {
-                    tr { th scope="row" { "Observed templates with a pick" } td.number { (c.templates_covered) " of " (c.templates_observed) (share(c.templates_covered, c.templates_observed)) } }
-                    tr { th scope="row" { "Templates the profile can express with a pick" } td.number { (c.templates_covered) " of " (c.templates_possible) (share(c.templates_covered, c.templates_possible)) } }
-                    tr { th scope="row" { "Records whose template has a pick" } td.number { (thousands(c.records_covered)) " of " (thousands(c.records)) (share(c.records_covered, c.records)) } }
+                    tr { th scope="row" { "Observed templates with a pick whose crash is told" } td.number { (c.templates_covered) " of " (c.templates_observed) (share(c.templates_covered, c.templates_observed)) } }
+                    tr { th scope="row" { "Templates the profile can express with such a pick" } td.number { (c.templates_covered) " of " (c.templates_possible) (share(c.templates_covered, c.templates_possible)) } }
+                    tr { th scope="row" { "Records whose template has such a pick" } td.number { (thousands(c.records_covered)) " of " (thousands(c.records)) (share(c.records_covered, c.records)) } }
                     tr { th scope="row" { "Pairs of values with a pick" } td.number { (c.pairs.covered) " of " (c.pairs.observed) " observed, " (c.pairs.possible) " possible" } }
                 }
             }
@@ -36,7 +36,7 @@ pub fn coverage(context: &Context) -> Markup {
         p.muted { "Distances have no unit: they are lengths in the space the clusters were made in. Smaller is better." }
         @if context.suite.accounts.is_none() { (grids(context)) }
         .two {
-            (holes("Holes that records show: templates with records and no pick", &c.holes_observed, true))
+            (holes("Holes that records show: templates with records and no pick whose crash is told", &c.holes_observed, true))
             (holes("Holes no record shows: templates the profile can express and no record has", &c.holes_possible, false))
         }
         @if !c.pairs.holes_observed.is_empty() || !c.pairs.holes_possible.is_empty() {

@@ -260,3 +260,32 @@ fn studies_agree_with_the_selection_they_repeat() {
     assert_eq!(stability.templates_covered, [(selection.coverage.templates_covered, 3)]);
     assert_eq!(stability.mean_radius, selection.coverage.radius);
 }
+
+#[test]
+fn picks_are_records_whose_crash_is_told() {
+    let (a, b) = (crossing(STRAIGHT, STRAIGHT), crossing(STRAIGHT, LEFT));
+    let (mut set, rows) = on_a_line(&[(a, 0.0), (a, 0.1), (a, 0.25), (a, 0.9), (a, 1.0), (a, 1.1), (b, 0.0), (b, 0.1)]);
+    let embedding = Embedding::new("line", &rows).unwrap();
+    let mut choose = |untold: &[usize], strategy| {
+        set.untold = untold.iter().map(|&at| (at, "it cannot be told".to_owned())).collect();
+        let outcome = select_with(&set, &paper(), &options(strategy, 3), &embedding).unwrap();
+        check_invariants(&set, &outcome.value);
+        let picks: Vec<usize> = outcome.value.clusters.iter().map(|cluster| cluster.pick_index).collect();
+        let covered = outcome.value.coverage.templates_covered;
+        let codes: Vec<String> = outcome.diagnostics.iter().map(|remark| remark.code.to_string()).collect();
+        (picks, covered, codes)
+    };
+    assert_eq!(choose(&[], Strategy::Stratified).0, [1, 4, 6]);
+    // The nearest to the centre that is told.
+    assert_eq!(choose(&[1, 6], Strategy::Stratified).0, [0, 4, 7]);
+    // A group without one takes of the others of its template.
+    assert_eq!(choose(&[3, 4, 5], Strategy::Stratified).0, [1, 2, 6]);
+    // A template gets no more picks than it has records that are told, but one; that one covers nothing.
+    let (picks, covered, codes) = choose(&[0, 1, 2, 3, 4, 5], Strategy::Stratified);
+    assert_eq!((picks.len(), covered), (3, 1));
+    assert!(codes.contains(&"select.templates-invented".to_owned()), "{codes:?}");
+    for strategy in Strategy::ALL {
+        let (picks, ..) = choose(&[0, 2, 3, 5, 6], strategy);
+        assert!(picks.iter().all(|pick| [1, 4, 7].contains(pick)), "{strategy:?}: {picks:?}");
+    }
+}

@@ -4,11 +4,13 @@ mod account;
 mod approach;
 mod details;
 mod movement;
+mod of_account;
 mod order;
 mod road;
 mod zones;
 
 pub use account::account;
+pub use of_account::{collision_of, reading_of_account};
 
 pub use approach::{Relation, side_from_zones};
 

@@ -56,7 +56,7 @@ pub fn template(road: RoadType, sv: Movement, cp: Movement) -> Template {
 /// A brief for records of one template.
 pub fn brief<'a>(id: &'a str, records: &'a [&'a CrashRecord], profile: &'a SystemProfile, seed: u64) -> Brief<'a> {
     let template = records[0].template().expect("a record of a template");
-    Brief { scenario_id: id, template, records, profile, seed: Seed(seed) }
+    Brief { scenario_id: id, template, records, untold: None, profile, account: None, seed: Seed(seed) }
 }
 
 /// The narrative of one record.

@@ -1,4 +1,4 @@
-//! A model that plays from a script: it answers with what the rules wrote for the same scenario.
+//! A model that plays from a script: it answers with what the reader and the rules made of the same crash.
 
 use super::recrash;
 use serde_json::{Value, json};
@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 /// The model, with a suite that the rules made.
 pub struct ScriptedModel {
     rules: PathBuf,
+    /// The accounts that the built-in reader makes of the sample.
+    accounts: Vec<Value>,
 }
 
 impl ScriptedModel {
@@ -14,7 +16,9 @@ impl ScriptedModel {
     pub fn new(folder: &Path, options: &[&str]) -> Self {
         let rules = folder.join("rules");
         recrash(&["run", "--quiet", "--out", rules.to_str().unwrap()]).args(options).assert().success();
-        Self { rules }
+        let read = recrash(&["read", "--json"]).output().unwrap();
+        let read: Value = serde_json::from_slice(&read.stdout).unwrap();
+        Self { rules, accounts: read["accounts"].as_array().unwrap().clone() }
     }
 
     fn read(&self, file: String) -> Value {
@@ -25,10 +29,8 @@ impl ScriptedModel {
     pub fn answer(&self, messages: &[Value]) -> String {
         let asked = messages[1]["content"].as_str().unwrap();
         let id = scenario_id(asked);
-        let good = if asked.starts_with("Retell") {
-            let narrative = self.read(format!("3-narratives/{id}.json"));
-            let reason = narrative["origin"].get("reason").cloned().unwrap_or(Value::Null);
-            json!({"text": narrative["text"], "facts": narrative["facts"], "replaces_record": reason})
+        let good = if asked.starts_with("Read") {
+            self.account(asked)
         } else if asked.starts_with("Design") {
             self.read(format!("4-scenarios/{id}.json"))
         } else {
@@ -38,6 +40,32 @@ impl ScriptedModel {
             json!({ "values": starts })
         };
         good.to_string()
+    }
+}
+
+impl ScriptedModel {
+    /// What the columns of the first report say, and the type that the reader finds.
+    fn account(&self, asked: &str) -> Value {
+        let line = asked.lines().find(|line| line.starts_with("Report ")).unwrap();
+        let report = line.trim_start_matches("Report ").split(". ").next().unwrap();
+        let column = |name: &str| {
+            let value = line.split(&format!("{name}: ")).nth(1)?.split([';', '.', ',']).next()?;
+            (!["unknown", "other", "none given", "not known"].contains(&value)).then(|| value.to_owned())
+        };
+        let fact = |name: &str, value: Value| json!({"value": value, "words": null, "column": name});
+        let said = |name: &str| column(name).map(|value| fact(name, json!(value)));
+        let zone = |name: &str| -> Vec<Value> {
+            let code = column(name).map(|label| label.to_lowercase().replace(' ', "_"));
+            code.into_iter().map(|code| fact(name, json!(code))).collect()
+        };
+        let of_report = |account: &&Value| account["report"] == report;
+        let account = self.accounts.iter().find(of_report).unwrap_or_else(|| panic!("{report}"));
+        json!({
+            "report": report,
+            "crash_type": account["crash_type"]["value"],
+            "sv": {"movement": said("SV Pre-Crash Movement"), "zones": zone("SV Contact Area")},
+            "partner": {"movement": said("CP Pre-Crash Movement"), "zones": zone("CP Contact Area")},
+        })
     }
 }
 

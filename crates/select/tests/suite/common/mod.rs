@@ -53,7 +53,14 @@ pub fn record_set(records: &[(Template, &str)]) -> RecordSet {
         })
         .collect();
     let usable = (0..records.len()).collect();
-    RecordSet { files: Vec::new(), records, usable, rejects: Vec::new(), funnel: Vec::new() }
+    RecordSet {
+        files: Vec::new(),
+        records,
+        usable,
+        rejects: Vec::new(),
+        funnel: Vec::new(),
+        untold: Default::default(),
+    }
 }
 
 /// Records of these templates, one narrative coordinate each, as a record set and the rows of an embedding.

@@ -1,0 +1,84 @@
+//! A language model reads what the built-in reader did not read whole, in a suite that goes by accounts.
+
+use crate::error::PipelineError;
+use crate::models::cast::{AgentLog, RULES, reading_brief, unusable};
+use crate::progress::{Progress, ProgressEvent};
+use crate::reading::retelling::Unread;
+use crate::suite::{Stage, Suite};
+use rayon::prelude::*;
+use recrash_agents::llm::{Repairs, paraphrase_question};
+use recrash_model::account::Account;
+use recrash_model::record::CrashRecord;
+use std::collections::BTreeMap;
+
+/// What a model made of incidents.
+#[derive(Default)]
+pub(super) struct SecondReading {
+    /// An account for each that was asked about, where the model gave one.
+    pub accounts: Vec<Option<Account>>,
+    /// Who was asked and who answered, by incident.
+    pub logs: BTreeMap<String, AgentLog>,
+}
+
+/// Has the model read these incidents, of `all`; nothing where none is cast. How many they are and what they cost is said before
+/// the first question.
+///
+/// # Errors
+/// The run has to stop: a batch waits, a cap is reached, nobody answers.
+pub(super) fn read_again(
+    suite: &Suite,
+    unread: &[Unread],
+    all: usize,
+    progress: &dyn Progress,
+) -> Result<SecondReading, PipelineError> {
+    let name = &suite.options().cast.paraphrase;
+    let Some(models) = suite.models().filter(|_| name != RULES) else { return Ok(SecondReading::default()) };
+    let cast = &suite.options().cast;
+    let with_brief = |each: &Unread, ask: &mut dyn FnMut(&recrash_agents::Brief)| {
+        let records: Vec<&CrashRecord> = each.incident.reports.iter().map(|report| &report.record).collect();
+        ask(&reading_brief(&each.account.incident, &records, suite.profile(), each.account));
+    };
+    let mut bytes = 0;
+    for each in unread {
+        with_brief(each, &mut |brief| {
+            bytes += paraphrase_question(name, brief).map_or(0, |question| question.bytes());
+        });
+    }
+    let cost = models.estimate(name, bytes, unread.len());
+    let share = 100.0 * unread.len() as f64 / all.max(1) as f64;
+    let what = format!(
+        "{name} reads {} of {all} readable incidents ({share:.1} %), those that the built-in reader did not read whole: {cost}",
+        unread.len()
+    );
+    progress.event(ProgressEvent::Said { what: &what });
+
+    let stage = "read";
+    progress.event(ProgressEvent::Started { stage, units: unread.len() });
+    let one = |each: &Unread| -> Result<(Option<Account>, AgentLog), PipelineError> {
+        let repairs = Repairs::default();
+        let mut answer = None;
+        with_brief(each, &mut |brief| answer = Some(models.model(name, cast, &repairs).read(brief, each.account)));
+        progress.event(ProgressEvent::Advanced { stage, unit: &each.account.incident, skipped: false });
+        match answer.unwrap_or_else(|| unreachable!("it is asked once")) {
+            Ok(mut account) => {
+                recrash_reader::refold(&mut account);
+                Ok((Some(account), AgentLog::model(name, repairs.all())))
+            }
+            Err(error) => Ok((None, AgentLog::fallback(name, repairs.all(), unusable(error)?))),
+        }
+    };
+    let answers: Vec<_> = suite.on_threads(Stage::Narrate, || unread.par_iter().map(one).collect());
+    progress.event(ProgressEvent::Finished { stage });
+    let waits = |answer: &Result<_, PipelineError>| matches!(answer, Err(PipelineError::AnswerPending));
+    if answers.iter().any(waits) && answers.iter().all(|answer| answer.is_ok() || waits(answer)) {
+        let (requests, count) = models.write_requests()?;
+        return Err(PipelineError::WaitingForBatch { requests, count });
+    }
+    let mut read = SecondReading::default();
+    for (each, answer) in unread.iter().zip(answers) {
+        let (account, log) = answer?;
+        read.accounts.push(account);
+        read.logs.insert(each.account.incident.clone(), log);
+    }
+    Ok(read)
+}
