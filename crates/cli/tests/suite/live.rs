@@ -572,8 +572,8 @@ fn nobody_at_the_address_is_told_within_seconds() {
     let folder = Folder::new();
     let nobody = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let base_url = format!("http://{nobody}/v1");
-    // The records are chosen before anybody is asked.
-    recrash(&["select", "--quiet", "--budget", "3", "--out"]).arg(folder.suite()).assert().success();
+    // The records are read before anybody is asked.
+    recrash(&["records", "--quiet", "--out"]).arg(folder.suite()).assert().success();
     let begun = Instant::now();
     let arguments = ["run", "--quiet", "--agent", "m", "--base-url", &base_url, "--budget", "3", "--out"];
     let output = recrash(&arguments).arg(folder.suite()).output().unwrap();
