@@ -41,11 +41,14 @@ pub(crate) fn devices(told: &Told, ground: &Ground) -> Vec<Control> {
         Origin::Cross { side: LeftRight::Left } => "left-",
         Origin::Cross { side: LeftRight::Right } => "right-",
         Origin::Opposite => "ahead-",
-        _ => "own-",
+        Origin::Behind | Origin::Ahead | Origin::Beside { .. } => "own-",
+        // What stood before a driveway, a stall or the kerb is at no arm; at the ego's it would be a sign that nobody told.
+        _ => "",
     };
     let crosses = matches!(cp_arm, "left-" | "right-");
     let at = |arm: &str, device: Device| Control { at: arm.to_owned(), set_back_m: 0.0, lanes: Vec::new(), device };
-    let said = [("own-", &told.sv), (cp_arm, &told.cp)].map(|(arm, side)| side.control.map(|said| (arm, side, said)));
+    let said = [("own-", &told.sv), (cp_arm, &told.cp)]
+        .map(|(arm, side)| side.control.filter(|_| !arm.is_empty()).map(|said| (arm, side, said)));
     let mut list: Vec<Control> = Vec::new();
     for (arm, _, said) in said.iter().flatten() {
         let device = match said.device {

@@ -1,7 +1,7 @@
 //! Mini narratives of our own are shown as they are told.
 
 use crate::common::account_of;
-use recrash_model::account::Account;
+use recrash_model::account::{Account, Control, ControlDevice, Fact};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_reconstruct::{Reconstruction, reconstruct};
 
@@ -74,4 +74,15 @@ fn a_crash_with_a_door_is_shown_with_the_door() {
         assert!(by_door, "{name}");
     }
     assert!(tried >= 2, "{tried}");
+}
+
+#[test]
+fn a_sign_at_a_driveway_does_not_stand_before_the_ego() {
+    let text = "The AV was traveling straight when a car pulled out of a driveway on its right, and the front of the AV made \
+                contact with the left side of the car.";
+    let mut account = account_of(text).expect("a story");
+    let sign = Control { device: ControlDevice::StopSign, state: None, obeyed: None };
+    account.partner.as_mut().expect("a partner").controls.push(Fact::by_rule(sign, "made for this test"));
+    let made = reconstruct(&account).expect("it can be staged");
+    assert!(made.draft.control.iter().all(|control| control.at != "own-"), "{:?}", made.draft.control);
 }
