@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use recrash_agents::llm::{Answers, AskError, Asked, Exchange, LanguageModel, Question, Repairs};
+use recrash_agents::llm::{Answers, AskError, Exchange, LanguageModel, Question, Repairs};
 use recrash_agents::{AgentError, Brief, Paraphrase};
 use recrash_model::account::{ACCOUNT_FORMAT, Account, ContactState, CrashType, Origin, Party, Place, told};
 use recrash_model::narrative::{FactValue, Origin as Whose};
@@ -37,21 +37,7 @@ impl Answers for Script {
         self.asked.lock().unwrap().push(question.clone());
         let mut lines = self.lines.lock().unwrap();
         let answer = if lines.len() > 1 { lines.pop().unwrap() } else { lines[0].clone() };
-        Ok(Exchange {
-            format: String::new(),
-            hash: question.hash(),
-            question: question.clone(),
-            prompts: String::new(),
-            answer,
-            answer_sha256: None,
-            asked: Asked::Batch,
-            input_tokens: 0,
-            output_tokens: 0,
-            tokens_estimated: false,
-            latency_s: None,
-            retries: 0,
-            cost_usd: None,
-        })
+        Ok(support::exchange(question, answer))
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::support;
 
-use recrash_agents::llm::{Answers, AskError, Asked, Exchange, LanguageModel, Question, Repairs, TuneBrief};
+use recrash_agents::llm::{Answers, AskError, Exchange, LanguageModel, Question, Repairs, TuneBrief};
 use recrash_agents::{Design, expectation};
 use recrash_metrics::{faithfulness, measure};
 use recrash_model::metrics::{Check, Expectation, Metrics};
@@ -21,21 +21,7 @@ struct Says(String);
 
 impl Answers for Says {
     fn answer(&self, question: &Question) -> Result<Exchange, AskError> {
-        Ok(Exchange {
-            format: String::new(),
-            hash: question.hash(),
-            question: question.clone(),
-            prompts: String::new(),
-            answer: self.0.clone(),
-            answer_sha256: None,
-            asked: Asked::Batch,
-            input_tokens: 0,
-            output_tokens: 0,
-            tokens_estimated: false,
-            latency_s: None,
-            retries: 0,
-            cost_usd: None,
-        })
+        Ok(support::exchange(question, self.0.clone()))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Records for tests.
 
+use recrash_agents::llm::{Asked, Exchange, Question};
 use recrash_agents::{Brief, Paraphrase, Rules};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::narrative::Narrative;
@@ -9,6 +10,25 @@ use recrash_model::template::{Movement, RoadType, Template};
 use recrash_model::zones::ContactZone;
 use recrash_model::{Outcome, Seed};
 use serde::Deserialize;
+
+/// A model's answer to a question, without what only a live one has.
+pub fn exchange(question: &Question, answer: String) -> Exchange {
+    Exchange {
+        format: String::new(),
+        hash: question.hash(),
+        question: question.clone(),
+        prompts: String::new(),
+        answer,
+        answer_sha256: None,
+        asked: Asked::Batch,
+        input_tokens: 0,
+        output_tokens: 0,
+        tokens_estimated: false,
+        latency_s: None,
+        retries: 0,
+        cost_usd: None,
+    }
+}
 
 /// The profile of the paper.
 pub fn paper() -> SystemProfile {
