@@ -190,6 +190,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let result = if drawn >= told.others { CheckResult::Shown } else { CheckResult::CannotBeShown };
         held(CheckKind::Others, format!("{} more", told.others), (result, format!("{drawn} more")));
     }
+    for (kind, side) in [(CheckKind::SvZones, &told.sv), (CheckKind::CpZones, &told.cp)] {
+        if side.only_above_or_below {
+            let seen = (CheckResult::CannotBeShown, "the simulator has no height".to_owned());
+            held(kind, "top or bottom".to_owned(), seen);
+        }
+    }
     if let Some(owner) = told.door {
         let by_door = if owner == Striker::Sv { ego_part.is_some() } else { other_part.is_some() };
         let observed = match (ego_part.is_some(), other_part.is_some()) {
@@ -419,6 +425,9 @@ fn state(told: ContactState, track: &ActorTrack, now: &ActorState, time_s: f64) 
     }
 }
 
+/// Who is less aside than this is beside nobody. [m]
+const ASIDE_M: f64 = 1.0;
+
 /// Who is farther aside than this does not come along the ego's lane. [m]
 const BESIDE_M: f64 = 5.0;
 
@@ -439,7 +448,7 @@ fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactStat
         facing
     };
     let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
-    let beside = |side: LeftRight| if side == LeftRight::Left { left > 0.0 } else { left < 0.0 };
+    let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
     let same_way = facing.abs() < 60.0 || state == ContactState::Reversing;
     let shown = match told {
         Origin::Behind => ahead < 2.0 && same_way && left.abs() < BESIDE_M,

@@ -64,6 +64,8 @@ pub(crate) struct Side {
     /// To which side it moves out of its line, where told.
     pub(crate) aside: Option<LeftRight>,
     pub(crate) zones: Vec<ContactZone>,
+    /// It was touched on its roof or from below, and nowhere else.
+    pub(crate) only_above_or_below: bool,
     /// Speed at the contact, where told. [m/s]
     pub(crate) impact_mps: Option<f64>,
     /// Speed at the contact that is staged. [m/s]
@@ -179,8 +181,8 @@ impl Told {
         let of = [
             (CheckKind::Contact, true),
             (CheckKind::Partner, true),
-            (CheckKind::SvZones, !sv.zones.is_empty()),
-            (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none()),
+            (CheckKind::SvZones, !sv.zones.is_empty() || sv.only_above_or_below),
+            (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none() || cp.only_above_or_below),
             (CheckKind::SvState, sv.state_told),
             (CheckKind::CpState, cp.state_told && moves),
             (CheckKind::SvSpeed, sv.impact_mps.is_some()),
@@ -464,6 +466,8 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
         state_told,
         movement,
         turning,
+        only_above_or_below: !party.zones.is_empty()
+            && party.zone_values().iter().all(|zone| matches!(zone, ContactZone::Top | ContactZone::Bottom)),
         zones: party
             .zone_values()
             .into_iter()
