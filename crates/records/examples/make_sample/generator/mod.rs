@@ -177,7 +177,7 @@ impl Maker {
     fn next_entity(&mut self, road: RoadType) -> usize {
         if road == RoadType::Highway {
             self.on_highway += 1;
-            if self.on_highway % 2 == 0 {
+            if self.on_highway.is_multiple_of(2) {
                 return HAULWRIGHT;
             }
         }
