@@ -1,5 +1,6 @@
 //! The account, folded from the event frames and held against the columns.
 
+mod blame;
 mod contact;
 mod movement;
 mod origin;
@@ -161,10 +162,10 @@ pub fn account(incident: &Incident) -> Option<Account> {
         account.came_from = Some(origin);
         movement::movements(&reading, &mut account);
     }
-    account.striker = types::striker(&reading, &account);
+    account.striker = blame::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
-    account.role = types::role(&reading, &account);
-    account.order = types::order(&account);
+    account.role = blame::role(&reading, &account);
+    account.order = blame::order(&account);
     account.first_contact = types::first_contact(&reading, &account);
     account.scenario = scenario::scenario(&account);
     account.matrix = scenario::matrix(&account);

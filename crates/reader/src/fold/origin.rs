@@ -77,7 +77,16 @@ pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact
     if kind.is_some_and(|kind| kind.group() == KindGroup::Object) {
         return of_thing(&clues, account);
     }
-    of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account))
+    let origin =
+        of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account));
+    // Thrown "to the right" at its left side, it was on the left before.
+    let thrown = reading.did(actor, Act::Pushed) || !reading.contacts.earlier.is_empty();
+    match (origin.as_ref().map(|fact| fact.value), zone_side(account)) {
+        (Some(Origin::Beside { side: told }), Some(side)) if thrown && told != side => {
+            Some(Fact::by_rule(Origin::Beside { side }, "thrown at that side"))
+        }
+        _ => origin,
+    }
 }
 
 fn forward(account: &Account) -> bool {
@@ -165,6 +174,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let source = reading.words(first, end);
         match frame.out_of {
             Some(Spot::Stall) => return told_as(Origin::Stall { side: side.or_else(|| zone_side(account)) }, source),
+            Some(Spot::SideStreet) if side.is_some() => {
+                return told_as(side.map_or(Origin::Opposite, |side| Origin::Cross { side }), source);
+            }
             Some(Spot::Driveway | Spot::SideStreet) => {
                 return told_as(Origin::Driveway { side: side.or_else(|| zone_side(account)) }, source);
             }
@@ -261,7 +273,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
                 && matches!(frame.sense, Sense::Approach)
                 && !did(Act::Pass)
-        });
+        })
+        || on_side_street(reading, actor);
     if let Some(eighths) = turn {
         let source = Source::Rule { name: "directions of both".to_owned() };
         let opposite_side = clues.any(Relation::Opposite) || account.partner.as_ref()?.did(Act::WrongWay);
@@ -383,6 +396,18 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     None
 }
 
+/// Whether the words put somebody on a road that crosses.
+fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).any(|(number, _)| {
+        let (first, end) = reading.window(number);
+        (first..end).any(|at| {
+            matches!(tokens[at].text.as_str(), "side" | "cross" | "crossing" | "intersecting" | "perpendicular")
+                && tokens.get(at + 1).is_some_and(|next| matches!(next.text.as_str(), "street" | "road" | "streets"))
+        })
+    })
+}
+
 /// Whether the direction of somebody is the one that it faces, and not the one that it drives.
 fn faces_only(reading: &Reading<'_>, actor: Actor) -> bool {
     reading.story.world.actors[actor].heading.is_some_and(|(_, first, _)| {
@@ -415,6 +440,11 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let parked = told(&partner.state) == Some(ContactState::Parked);
     if let (true, Some(side)) = (moved_over || parked || clues.any(Relation::Beside), zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
+    }
+    let walks = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal));
+    let flank = !has_zone(&account.sv, |zone| zone.is_front() || zone.is_rear());
+    if let (true, true, Some(side)) = (walks, flank, zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Cross { side }, "the side that somebody on foot touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
     let driven_over = has_zone(&account.sv, |zone| zone == Z::Bottom) && forward(account);

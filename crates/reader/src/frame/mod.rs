@@ -2,6 +2,7 @@
 
 mod attach;
 mod parser;
+mod row;
 mod subject;
 
 use crate::chunk::{Joint, Piece, Spot};
