@@ -95,7 +95,7 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                     (fact.value, same_way, passed_last(partner))
                 {
                     *fact = Fact { value: Movement::Passing, source: passed.source.clone() };
-                } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
+                } else if fact.value == Movement::Passing && oncoming {
                     fact.value = Movement::Straight;
                 }
                 if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
@@ -287,7 +287,9 @@ fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
         (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
         (Act::Reverse, _) => (4, Movement::Backing),
         (Act::LaneChange, _) if column == Some(Movement::EnteringTraffic) => (3, Movement::EnteringTraffic),
-        (Act::LaneChange, _) if words_of(fact).starts_with("merg") => (3, Movement::Merging),
+        (Act::LaneChange, _) if words_of(fact).starts_with("merg") && column != Some(Movement::ChangingLanes) => {
+            (3, Movement::Merging)
+        }
         (Act::LaneChange, _) => (3, Movement::ChangingLanes),
         (Act::Pass, _) if column == Some(Movement::Passing) => (3, Movement::Passing),
         (Act::Pass, _) => (2, Movement::Passing),

@@ -139,7 +139,9 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
 
 fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
-    let side = clues.side();
+    let walks = told(&account.partner.as_ref()?.kind)
+        .is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist));
+    let side = clues.side().or_else(|| side_by_compass(reading, actor, account).filter(|_| walks));
     let frames = || reading.before(actor).filter(|(_, frame)| frame.happened());
     let did = |act: Act| frames().any(|(_, frame)| frame.act() == Some(act));
     let told_as = |value: Origin, source: Source| Some(Fact { value, source });
@@ -206,6 +208,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let ahead = clues.any(Relation::Ahead);
     let behind = clues.any(Relation::Behind);
     if did(Act::Reverse) && !behind {
+        // Backwards out of a way across.
+        if let (Some(2 | 6), Some(heading), false) = (turn, heading, square_front(account)) {
+            let side = if turn == Some(2) { LeftRight::Left } else { LeftRight::Right };
+            return told_as(Origin::Cross { side }, heading.source.clone());
+        }
         if ahead || lead_of_subject(reading, actor) {
             return told_as(Origin::Ahead, clues.source(|frame| frame.act() == Some(Act::Reverse)));
         }
@@ -228,6 +235,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             Origin::Parked { side: side.or_else(|| zone_side(account)) },
             clues.source(|frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor)),
         );
+    }
+    if let Some(side) = side.filter(|_| on_side_street(reading, actor) && !did(Act::Pass)) {
+        let relation = if side == LeftRight::Left { Relation::Left } else { Relation::Right };
+        return told_as(Origin::Cross { side }, clues.has(relation));
     }
     let pulled_on =
         frames().find(|(_, frame)| frame.act() == Some(Act::PullOut)).is_some_and(|(number, _)| drove_on(number));
@@ -396,14 +407,50 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     None
 }
 
+/// The side of the road from which somebody comes, where a direction names it: "from the north side of the street".
+fn side_by_compass(reading: &Reading<'_>, actor: Actor, account: &Account) -> Option<LeftRight> {
+    let own = after_its_turn(account)?;
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let named = |at: usize| match word(at) {
+        "north" | "northern" => Some(Compass::North),
+        "east" | "eastern" => Some(Compass::East),
+        "south" | "southern" => Some(Compass::South),
+        "west" | "western" => Some(Compass::West),
+        _ => None,
+    };
+    let comes =
+        |act: Option<Act>| matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve));
+    reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(_, frame)| {
+        let (first, end) = (frame.first, reading.story.sentences[frame.sentence].end);
+        let there = (first..end).filter(|&at| matches!(word(at + 1), "side" | "sidewalk" | "curb")).find_map(named)?;
+        match own.eighths_to(there) {
+            1..=3 => Some(LeftRight::Right),
+            5..=7 => Some(LeftRight::Left),
+            _ => None,
+        }
+    })
+}
+
+/// Whether the plain front of the subject vehicle is touched.
+fn square_front(account: &Account) -> bool {
+    has_zone(&account.sv, |zone| zone == Z::Front)
+}
+
 /// Whether the words put somebody on a road that crosses.
 fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
     let tokens = &reading.story.tokens;
     reading.before(actor).any(|(number, _)| {
         let (first, end) = reading.window(number);
+        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
         (first..end).any(|at| {
-            matches!(tokens[at].text.as_str(), "side" | "cross" | "crossing" | "intersecting" | "perpendicular")
-                && tokens.get(at + 1).is_some_and(|next| matches!(next.text.as_str(), "street" | "road" | "streets"))
+            let road = matches!(word(at + 1), "street" | "road" | "streets");
+            let crosses = matches!(word(at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
+            // "the street on its left".
+            let there = matches!(word(at), "street" | "road")
+                && matches!(word(at + 1), "on" | "to")
+                && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
+            crosses && road || there
         })
     })
 }

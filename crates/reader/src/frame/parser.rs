@@ -135,6 +135,9 @@ impl Parser<'_> {
                 self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
             }
             Chunk::Piece(piece) => {
+                if carry.filled {
+                    (carry.preposition, carry.relation) = (None, None);
+                }
                 let actor = match &piece.owner {
                     Some(owner) => {
                         let actor = self.world.resolve(owner, (placed.first, placed.end), None);
@@ -259,6 +262,9 @@ impl Parser<'_> {
                     return;
                 }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
+                // "at about 6 mph its bumper touched".
+                carry.filled |=
+                    waits && matches!(word, "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm");
                 let begins = carry.fresh && !waits && matches!(word, "a" | "an" | "the" | "several" | "some" | "two");
                 if begins && matches!(next, Some(Chunk::Word)) {
                     carry.stranger = true;
