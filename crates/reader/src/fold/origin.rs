@@ -175,6 +175,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let (first, end) = reading.window(number);
         let source = reading.words(first, end);
         match frame.out_of {
+            Some(Spot::Stall) if at_curb(reading, actor) => {
+                return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
+            }
             Some(Spot::Stall) => return told_as(Origin::Stall { side: side.or_else(|| zone_side(account)) }, source),
             Some(Spot::SideStreet) if side.is_some() => {
                 return told_as(side.map_or(Origin::Opposite, |side| Origin::Cross { side }), source);
@@ -333,7 +336,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             _ => {}
         }
     }
-    if did(Act::WrongWay) && heading.is_none() {
+    if did(Act::WrongWay) && !crosses {
         return told_as(Origin::Opposite, clues.source(|frame| frame.act() == Some(Act::WrongWay)));
     }
     if clues.any(Relation::Opposite) && !did(Act::Pass) {
@@ -429,6 +432,15 @@ fn side_by_compass(reading: &Reading<'_>, actor: Actor, account: &Account) -> Op
             5..=7 => Some(LeftRight::Left),
             _ => None,
         }
+    })
+}
+
+/// Whether the words put somebody at the kerb.
+fn at_curb(reading: &Reading<'_>, actor: Actor) -> bool {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).any(|(number, _)| {
+        let (first, end) = reading.window(number);
+        tokens[first..end].iter().any(|token| matches!(token.text.as_str(), "curb" | "curbside" | "kerb" | "parallel"))
     })
 }
 

@@ -320,11 +320,20 @@ impl Parser<'_> {
     }
 
     pub(super) fn compass(&mut self, compass: Compass, placed: &Placed, carry: &mut Carry) {
+        // "off the south sidewalk" is a place.
+        let place = self.tokens.get(placed.end).is_some_and(|next| {
+            matches!(
+                next.text.as_str(),
+                "sidewalk" | "side" | "curb" | "corner" | "crosswalk" | "leg" | "end" | "shoulder"
+            )
+        });
+        if place {
+            return;
+        }
         let from = carry.preposition == Some("from");
         // "arrived from the west" goes east.
         let bare = matches!(self.tokens[placed.first].text.as_str(), "north" | "south" | "east" | "west");
-        let side = self.tokens.get(placed.end).is_some_and(|next| matches!(next.text.as_str(), "side" | "curb"));
-        let compass = if from && bare && !side { compass.turned(4) } else { compass };
+        let compass = if from && bare { compass.turned(4) } else { compass };
         let stands = (compass, placed.first, placed.end);
         let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
         carry.preposition = None;

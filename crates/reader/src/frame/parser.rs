@@ -7,7 +7,7 @@ use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, chunks, is_determ
 use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::Act;
+use recrash_model::account::{Act, Kind};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -374,6 +374,17 @@ impl Parser<'_> {
             self.relate(relation, Some(actor), carry);
             carry.last = Some(mention);
             carry.governed = true;
+            carry.preposition = None;
+            return;
+        }
+        // "a heavy truck with a trailer": they are one.
+        if let (Some("with"), Some(last), Some(Kind::Trailer)) =
+            (carry.preposition, &carry.last, self.world.actors[actor].kind)
+            && last.piece.is_none()
+            && !carry.governed
+            && self.world.actors[last.actor].kind.is_some_and(Kind::is_vehicle)
+        {
+            self.world.tow(last.actor, actor);
             carry.preposition = None;
             return;
         }
