@@ -113,8 +113,9 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let report = incident.spoken()?;
     let record = &report.record;
     let text = record.narrative.as_str();
-    let make = own_make(record);
-    let story = story(text, Own { kind: own_kind(record), make: make.as_deref(), vehicle: &record.vehicle });
+    let (make, company) = (own_make(record), company(record));
+    let own = Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle };
+    let story = story(text, own);
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };
     let mut account = Account {
@@ -194,10 +195,15 @@ fn own_kind(record: &CrashRecord) -> Option<Kind> {
     shuttle.iter().any(|make| vehicle.contains(make)).then_some(Kind::Bus)
 }
 
+/// The first word of the name of the company that reports, written small.
+fn company(record: &CrashRecord) -> String {
+    let name: String = record.entity.chars().take_while(|c| c.is_alphanumeric()).collect();
+    name.to_lowercase()
+}
+
 /// The first word of the company's name, where the vehicle is called by it: "the Volvo".
 fn own_make(record: &CrashRecord) -> Option<String> {
-    let name: String = record.entity.chars().take_while(|c| c.is_alphanumeric()).collect();
-    let name = name.to_lowercase();
+    let name = company(record);
     record.vehicle.to_lowercase().contains(&name).then_some(name).filter(|name| !name.is_empty())
 }
 
