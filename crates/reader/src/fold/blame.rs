@@ -285,6 +285,13 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
             partner.acts.iter().filter(|fact| !fact.after_contact).all(|fact| {
                 matches!(fact.act, Act::Follow | Act::Pass | Act::Turn | Act::Enter | Act::Slow | Act::Leave)
             });
+        let crosses = matches!(told(&account.came_from), Some(Origin::Cross { .. } | Origin::Sidewalk { .. }));
+        let own_way = !manoeuvres
+            && !sv_turns
+            && !matches!(told(&account.sv.movement), Some(Movement::LeftTurn | Movement::RightTurn));
+        if crosses && own_way && group(account) != Some(KindGroup::Car) {
+            return rule(Role::Responder, "the other came across its way");
+        }
         return match (cp_moves, manoeuvres) {
             (true, false) => rule(Role::Responder, "the other moved before it"),
             (true, true) if !cp_only_on_its_way => rule(Role::Both, "both moved"),
