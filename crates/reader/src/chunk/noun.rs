@@ -55,6 +55,17 @@ impl Chunker<'_> {
             {
                 owner = Some(noun);
                 at = behind + length;
+                // "the center of the van's front bumper".
+                if self.text(at) == "'s" {
+                    let mut further = at + 1;
+                    while let Some((part, length)) = self.part(further) {
+                        if !parts.contains(&part) {
+                            parts.push(part);
+                        }
+                        further += length;
+                        at = further;
+                    }
+                }
             } else if self.text(behind) == "it" {
                 (its, at) = (true, behind + 1);
             } else if self.text(at) == "of" {

@@ -95,7 +95,7 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                     (fact.value, same_way, passed_last(partner))
                 {
                     *fact = Fact { value: Movement::Passing, source: passed.source.clone() };
-                } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
+                } else if fact.value == Movement::Passing && oncoming {
                     fact.value = Movement::Straight;
                 }
                 if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
@@ -103,10 +103,37 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                 {
                     fact.value = column.unwrap_or(fact.value);
                 }
+                let goes_on =
+                    matches!(fact.value, Movement::Straight | Movement::LaneDeparture | Movement::ChangingLanes);
+                if let (true, true, Some(source)) = (oncoming, goes_on, over_the_line(reading)) {
+                    *fact = Fact { value: Movement::CrossingIntoOpposingLane, source };
+                }
             }
             movement
         };
     }
+}
+
+/// The words that bring the partner over the line between both directions, up to the contact.
+fn over_the_line(reading: &Reading<'_>) -> Option<Source> {
+    let actor = reading.contacts.partner?;
+    let tokens = &reading.story.tokens;
+    reading.before(actor).filter(|(_, frame)| frame.happened()).find_map(|(number, frame)| {
+        let crosses = matches!(
+            frame.act(),
+            Some(Act::Drift | Act::Swerve | Act::Cross | Act::LaneChange | Act::LoseControl | Act::Follow | Act::Enter)
+        );
+        let (first, end) = reading.window(number);
+        let line = (first..end).any(|at| {
+            let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+            matches!(word(at), "centerline" | "centreline")
+                || matches!(word(at), "center" | "yellow" | "dividing") && word(at + 1).starts_with("line")
+                || matches!(word(at), "opposite" | "opposing" | "oncoming") && word(at + 1).starts_with("lane")
+        });
+        let over =
+            (first..end).any(|at| matches!(tokens[at].text.as_str(), "over" | "across" | "crossed" | "crossing"));
+        (crosses && line && over).then(|| reading.of(frame))
+    })
 }
 
 /// The pass that came behind every turn.
@@ -260,7 +287,9 @@ fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
         (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
         (Act::Reverse, _) => (4, Movement::Backing),
         (Act::LaneChange, _) if column == Some(Movement::EnteringTraffic) => (3, Movement::EnteringTraffic),
-        (Act::LaneChange, _) if words_of(fact).starts_with("merg") => (3, Movement::Merging),
+        (Act::LaneChange, _) if words_of(fact).starts_with("merg") && column != Some(Movement::ChangingLanes) => {
+            (3, Movement::Merging)
+        }
         (Act::LaneChange, _) => (3, Movement::ChangingLanes),
         (Act::Pass, _) if column == Some(Movement::Passing) => (3, Movement::Passing),
         (Act::Pass, _) => (2, Movement::Passing),
