@@ -40,9 +40,9 @@ fn the_counts_are_shown_to_add_up() {
     std::fs::write(place.path("long.csv"), format!("{SAMPLE_CSV}90-1,1{}\n", ",".repeat(141))).unwrap();
     std::fs::write(place.path("twice.csv"), format!("{SAMPLE_CSV}{header}\n90-1,1,short\n")).unwrap();
     for (file, told) in [
-        ("cut.csv", "row 371, line 494: the file ends inside a quoted field"),
-        ("long.csv", "row 371, line 494: too many fields: 143 instead of 137"),
-        ("twice.csv", "row 371, line 495: too few fields: 3 instead of 137"),
+        ("cut.csv", "row 452, line 751: the file ends inside a quoted field"),
+        ("long.csv", "row 452, line 751: too many fields: 143 instead of 137"),
+        ("twice.csv", "row 452, line 752: too few fields: 3 instead of 137"),
     ] {
         let (code, shown, remarks) = place.run(&["records", file]);
         assert_eq!(code, 0, "{remarks}");

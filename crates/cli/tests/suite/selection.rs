@@ -81,7 +81,7 @@ fn a_study_compares_strategies_and_budgets_and_is_kept() {
     let place = place_with_records();
     let (code, shown, error) = place.run(&["select", "--study", "--study-seeds", "3"]);
     assert_eq!(code, 0, "{error}");
-    for words in ["Every strategy over 3 seeds", "facility-location", "10 (3)", "elbow", "best silhouette"] {
+    for words in ["Every strategy over 3 seeds", "facility-location", "11 (3)", "elbow", "best silhouette"] {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }
     let both = json(&place, &["select", "--study", "--study-seeds", "3"]);
