@@ -4,6 +4,7 @@ use crate::control;
 use crate::door::Opening;
 use crate::ground::Ground;
 use crate::others::{self, Extra};
+use crate::phases::{self, Lead};
 use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
@@ -69,13 +70,16 @@ fn beyond_m(speed_mps: f64) -> f64 {
 }
 
 /// The speeds of one side until the contact: speed at the start, acts, and what is driven until then. [m/s, m]
-struct Pace {
-    speed_mps: f64,
-    acts: Vec<Act>,
-    driven_m: f64,
+pub(crate) struct Pace {
+    pub(crate) speed_mps: f64,
+    pub(crate) acts: Vec<Act>,
+    pub(crate) driven_m: f64,
 }
 
-fn when(time_s: f64, deed: Deed) -> Act {
+/// Stands from the start.
+const STANDING: Pace = Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 };
+
+pub(crate) fn when(time_s: f64, deed: Deed) -> Act {
     Act { id: None, when: Some(Trigger::TimeS(time_s)), delay_s: 0.0, deed }
 }
 
@@ -131,9 +135,7 @@ fn partner_pace(told: &Told) -> Pace {
             let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
             Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
         }
-        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
-            Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 }
-        }
+        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => STANDING,
         _ => usual,
     }
 }
@@ -148,7 +150,7 @@ fn from_stand(origin: Origin) -> bool {
     !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)
 }
 
-fn first_time(acts: &[Act]) -> f64 {
+pub(crate) fn first_time(acts: &[Act]) -> f64 {
     acts.iter()
         .find_map(|act| match act.when {
             Some(Trigger::TimeS(time_s)) => Some(time_s),
@@ -169,7 +171,7 @@ fn sets_off(speed_mps: f64, within_m: f64) -> Pace {
 /// How somebody's speed comes to what it is at the contact.
 fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
     match side.state {
-        ContactState::Parked => Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 },
+        ContactState::Parked => STANDING,
         ContactState::Stopped => {
             let braking_s = rolling_mps / STOPPING_MPS2;
             let from_s = ((CONTACT_S - stood_s - braking_s) * 10.0).floor() / 10.0;
@@ -272,7 +274,8 @@ const AT_LINE_M: f64 = 0.5;
 /// The scenario of a staging.
 pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> ScenarioDraft {
     let ground = &staging.ground;
-    let mut recorded = ego_plan(told, &staging.ground, staging.sv_s_m, staging.sv);
+    let mut recorded = ego_plan(told, ground, staging.sv_s_m, staging.sv);
+    let lead = ego_paces(told, ground, staging.sv_s_m).0;
     let (mut actors, objects) = partner(told, staging);
     let mut parts = Vec::new();
     if let Some(door) = &staging.door {
@@ -286,6 +289,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     let control = control::devices(told, ground);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
+        _ if let Some(lead) = &lead => Some(lead.handover_s(CONTACT_S - HANDOVER_BEFORE_S)),
         // While it still rolls.
         ContactState::Stopped => Some((first_time(&recorded.acts) - ROLLS_S).clamp(0.0, CONTACT_S - HANDOVER_BEFORE_S)),
         _ => Some((CONTACT_S - HANDOVER_BEFORE_S).max(0.0)),
@@ -396,10 +400,27 @@ fn shift(aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
     when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
 }
 
+/// What the ego did before its last phase where that is told, and its last pace.
+fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Lead>, Pace) {
+    let usual = from_line(told, ground, sv_s_m).unwrap_or_else(|| ego_pace(told));
+    match phases::lead(told, &usual) {
+        Some(lead) if told.sv.state.stands() => (Some(lead), STANDING),
+        lead => (lead, usual),
+    }
+}
+
 fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
-    let mut pace = from_line(told, ground, sv_s_m).unwrap_or_else(|| ego_pace(told));
+    let (lead, mut pace) = ego_paces(told, ground, sv_s_m);
     let aside = told.sv_aside();
     pace.acts.extend(aside.map(|aside| shift(aside, &pace, told.sv.speed_mps)));
+    let reverses = told.sv.state == ContactState::Reversing;
+    let pace = match lead {
+        Some(lead) if reverses || lead.reverses() => {
+            return phases::to_and_fro(lead, pace, sv, (reverses, beyond_m(told.sv.speed_mps)));
+        }
+        Some(lead) => lead.then(pace),
+        None => pace,
+    };
     let lane = |s_m: f64| Place::Lane {
         road: ground.route[0].clone(),
         lane: ground.lane,
@@ -407,7 +428,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         t_m: aside.map_or(0.0, |aside| aside.from_t_m),
         heading_deg: 0.0,
     };
-    if told.sv.state == ContactState::Reversing {
+    if reverses {
         let back = Vec2::from_heading(sv.heading);
         let start = sv.position + back * pace.driven_m;
         let to = sv.position - back * beyond_m(told.sv.speed_mps);

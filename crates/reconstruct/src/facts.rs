@@ -4,6 +4,7 @@ use crate::control;
 use crate::door;
 use crate::movement::{self, Way};
 use crate::others;
+use crate::phases;
 use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
@@ -104,17 +105,26 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let pushed = kind == CheckKind::CpState && told.pushed;
         let stood = stood(track, touch.time_s);
         let slowed = slowed(track, touch.time_s);
+        let (as_told, phases) = phases::check(&side.phases, track, touch.time_s);
         let shown = pushed
             || state(side.state, track, seen, touch.time_s)
                 && (stood || !side.stood_first)
-                && (slowed || side.slowed_from.is_none());
+                && (slowed || side.slowed_from.is_none())
+                && as_told;
         let before = |stood: bool, slowed: bool| match (stood, slowed) {
             (true, _) => ", had stood",
             (false, true) => ", had slowed",
             (false, false) => "",
         };
-        let expected = format!("{}{}", side.state.label(), before(side.stood_first, side.slowed_from.is_some()));
-        fact(kind, shown, expected, format!("{:.2} m/s{}", seen.speed(), before(stood, slowed)));
+        let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
+        if side.phases.is_empty() {
+            expected += before(side.stood_first, side.slowed_from.is_some());
+            observed += before(stood, slowed);
+        } else {
+            expected += &format!(": {}", phases::words(&side.phases));
+            observed += &format!(": {phases}");
+        }
+        fact(kind, shown, expected, observed);
     }
     for (kind, impact_mps, seen) in
         [(CheckKind::SvSpeed, told.sv.impact_mps, &touch.ego), (CheckKind::CpSpeed, told.cp.impact_mps, &touch.other)]

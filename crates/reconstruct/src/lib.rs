@@ -14,6 +14,7 @@ mod facts;
 mod ground;
 mod movement;
 mod others;
+mod phases;
 mod told;
 mod touch;
 

@@ -3,6 +3,7 @@
 use crate::choices::Choices;
 use crate::ground::LANE_M;
 use crate::others::{self, Extra};
+use crate::phases::{self, Phase};
 use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
@@ -57,6 +58,8 @@ pub(crate) struct Side {
     pub(crate) stood_first: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
+    /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
+    pub(crate) phases: Vec<Phase>,
     /// Whether the state is told.
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
@@ -460,6 +463,11 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
         aside,
         slowed_from,
         stood_first,
+        phases: if who == "ego" && state_told && state != ContactState::Parked {
+            phases::told(party, state)
+        } else {
+            Vec::new()
+        },
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),
         state,

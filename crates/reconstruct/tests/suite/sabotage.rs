@@ -2,6 +2,7 @@
 
 use crate::common::record;
 use crate::stories::shown;
+use crate::ways;
 use recrash_model::account::{
     Account, ContactState, ControlDevice, Fact, Kind, KindGroup, Obeyed, Origin, SignalState, SpeedMeaning, Striker,
     told,
@@ -12,6 +13,7 @@ use recrash_model::metrics::Answer;
 use recrash_model::narrative::FirstMover;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::CrashRecord;
+use recrash_model::rollout::EventKind;
 use recrash_model::scenario::{Act, ActorPlan, Aspect, Deed, Device, Leg, Place, ScenarioDraft};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -24,7 +26,7 @@ use sha2::{Digest, Sha256};
 type Sabotage = fn(&Account, &mut ScenarioDraft) -> bool;
 
 /// Each with how many of our own stories it must at least be tried on.
-const SABOTAGES: [(&str, usize, Sabotage); 16] = [
+const SABOTAGES: [(&str, usize, Sabotage); 17] = [
     ("a turning partner that goes straight", 2, turn_undone),
     ("a partner from the other direction", 20, other_direction),
     ("a partner mirrored to the other side", 3, other_side),
@@ -41,6 +43,7 @@ const SABOTAGES: [(&str, usize, Sabotage); 16] = [
     ("a standing ego that rolls", 8, standing_ego_rolls),
     ("a partner that never stood", 1, never_stood),
     ("a partner that comes by itself", 1, nobody_throws),
+    ("an ego that moved up or back and stands from the start", 2, moved_nowhere),
 ];
 
 /// Whether the sabotaged draft is refused, or at least one told fact is not shown.
@@ -72,6 +75,7 @@ fn tried(made: &[(String, Account, Reconstruction)]) -> Vec<(&'static str, usize
 #[test]
 fn every_sabotage_of_our_own_stories_is_caught() {
     let mut made = shown();
+    made.extend(ways::shown());
     // One whose column tells the speed at the impact.
     let text = "The AV was traveling straight when a car pulled out of a driveway on its right, and the front of the AV made \
                 contact with the left side of the car.";
@@ -349,4 +353,21 @@ fn nobody_throws(_: &Account, draft: &mut ScenarioDraft) -> bool {
     let all = draft.actors.len();
     draft.actors.retain(|actor| actor.id != "pusher");
     draft.actors.len() < all
+}
+
+fn moved_nowhere(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    let stands = told(&account.sv.state) == Some(ContactState::Stopped);
+    let sets_off = |act: &&Act| matches!(act.deed, Deed::Speed { .. });
+    let moves = draft.ego.recorded.as_ref().is_some_and(|plan| plan.acts.iter().any(|act| sets_off(&act)));
+    if !stands || !moves {
+        return false;
+    }
+    let scenario = recrash_roads::check(draft.clone()).expect("it ran").value;
+    let rollout = simulate(&scenario, Ego::Recorded);
+    let touched = rollout.events.iter().find(|event| matches!(event.kind, EventKind::Contact { a: 0, .. }));
+    let Some(touched) = touched else { return false };
+    let at = rollout.actors[0].states[(touched.time_s * 10.0) as usize].pose();
+    let place = Place::at(at.position.x, at.position.y, at.heading.to_degrees());
+    draft.ego.recorded = Some(ActorPlan::standing(place));
+    true
 }
