@@ -3,11 +3,12 @@
 use crate::control;
 use crate::door::Opening;
 use crate::ground::Ground;
+use crate::lateral::{self, PULL_OUT_M};
 use crate::others::{self, Extra};
 use crate::phases::{self, Lead};
 use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
+use recrash_model::account::{Account, ContactState, ControlDevice, Obeyed, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -102,6 +103,7 @@ fn partner_pace(told: &Told) -> Pace {
     let usual = pace(cp, rolling_mps, STOOD_S);
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
+    let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
         // It came to a stop behind the ego before it set off.
         ContactState::SettingOff | ContactState::Moving
@@ -130,21 +132,25 @@ fn partner_pace(told: &Told) -> Pace {
         }
         ContactState::Reversing => start_over(cp.speed_mps, REVERSES_M).unwrap_or(usual),
         // Who comes from the kerb or out of a stall stood there.
-        ContactState::Moving if cp.movement == Some(Movement::EnteringTraffic) && from_stand(told.origin) => {
+        ContactState::Moving if told.stood_beside() || enters && from_stand(told.origin) => {
             let moving_s = (2.0 * PULL_OUT_M / cp.speed_mps * 10.0).round() / 10.0;
             let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
             Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
+        }
+        // Who stood and turned has room for its turn.
+        ContactState::Moving if cp.stood_first && matches!(cp.turning, Turning::Left | Turning::Right) => {
+            start_over(cp.speed_mps, TURNS_M).unwrap_or(usual)
         }
         ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => STANDING,
         _ => usual,
     }
 }
 
+/// How far somebody who stood before it turned has driven at the contact. [m]
+const TURNS_M: f64 = 8.0;
+
 /// How far somebody has reversed at the contact. [m]
 const REVERSES_M: f64 = 2.5;
-
-/// From how far away somebody pulls out. [m]
-const PULL_OUT_M: f64 = 8.0;
 
 fn from_stand(origin: Origin) -> bool {
     !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)
@@ -249,7 +255,7 @@ fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
 }
 
 /// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.
-fn start_over(speed_mps: f64, driven_m: f64) -> Option<Pace> {
+pub(crate) fn start_over(speed_mps: f64, driven_m: f64) -> Option<Pace> {
     if driven_m < 0.3 {
         return None;
     }
@@ -469,7 +475,8 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if told.is_thrown() {
         return (thrown(told, staging), Vec::new());
     }
-    let pace = beside_from_line(told, staging).unwrap_or_else(|| partner_pace(told));
+    let from_stand = beside_from_line(told, staging).or_else(|| lateral::from_kerb(told, staging));
+    let pace = from_stand.unwrap_or_else(|| partner_pace(told));
     let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
@@ -521,7 +528,10 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
         let begin = start(told, staging, back_m, aside, motion);
         length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
     };
-    if let Some((begin, mut course)) = with_its_turn(told, staging, &pace, arm_m) {
+    let on_lanes = with_its_turn(told, staging, &pace, arm_m)
+        .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
+        .or_else(|| lateral::turns_in(told, staging, &pace, arm_m));
+    if let Some((begin, mut course)) = on_lanes {
         course.push(beyond);
         let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
         return ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
@@ -565,17 +575,13 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     let turn = math::wrap_angle(staging.cp.heading - came);
     let mut position = staging.cp.position - way * back_m;
     let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
-    let from_left_m = told.cp_from_left_m().filter(|_| aside && !turns);
-    let beside = beside(told).filter(|_| aside && !turns);
+    let line_y_m = lateral::line_y_m(told, staging).filter(|_| aside && !turns);
     let pulls_out = aside && !turns && told.origin == Origin::Behind && told.cp.movement == Some(Movement::Passing);
     if pulls_out {
         // Out of the ego's lane.
         position.y = staging.sv.position.y;
-    } else if let Some(from_left_m) = from_left_m {
-        position.y = staging.cp.position.y + from_left_m;
-    } else if let Some(side) = beside {
-        let right = if side == LeftRight::Left { -1.0 } else { 1.0 };
-        position.y = staging.sv.position.y - right * crate::ground::LANE_M;
+    } else if let Some(line_y_m) = line_y_m {
+        position.y = line_y_m;
     } else if turn.abs() > 0.01 {
         // An arc of a usual radius before the contact: beside the line of the contact, by what the arc gains.
         let radius = if turns { 8.0_f64 } else { 15.0 }.min(back_m / turn.abs());
@@ -585,16 +591,6 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
             - way.left() * (gain * turn.signum());
     }
     Pose { position, heading: came }
-}
-
-/// On which side of the ego's lane the partner comes along.
-fn beside(told: &Told) -> Option<LeftRight> {
-    match told.origin {
-        // It keeps its lane where the ego changes lanes.
-        Origin::Beside { side } => told.sv_aside().is_none().then_some(side),
-        Origin::Behind if told.cp.lane == Some(LaneWord::Opposing) => Some(LeftRight::Left),
-        _ => None,
-    }
 }
 
 /// The partner stands behind the ego, or comes along behind it, and another runs into it: a car at [`PUSH_MPS`] over its speed.

@@ -2,10 +2,11 @@
 
 use crate::control;
 use crate::door;
+use crate::lateral::is_on_foot;
 use crate::movement::{self, Way};
 use crate::others;
 use crate::phases;
-use crate::told::Told;
+use crate::told::{Slant, Told};
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
@@ -148,7 +149,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     let mut ways = vec![(CheckKind::SvMovement, &told.sv, ego_track, touch.track, touch.other)];
     ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
     for (kind, side, track, other, met) in ways {
-        let way = Way { scenario, track, other, met, time_s: touch.time_s };
+        let road_rad = ego_track.states[0].heading;
+        let way = Way { scenario, track, other, met, time_s: touch.time_s, road_rad };
         if let Some((expected, result, observed)) = movement::check(side, &way) {
             list.push(Check { kind, expected, observed, result });
         }
@@ -158,8 +160,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         list.push(Check { kind, expected, observed, result });
     };
     if let Some(track) = touch.track.filter(|_| told.origin_told) {
-        let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
-        fact(CheckKind::Approach, shown, told.origin.words(), observed);
+        let (shown, observed) = origin(told, ego_track, track);
+        fact(CheckKind::Approach, shown, origin_words(told), observed);
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
         // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens.
@@ -441,11 +443,30 @@ const ASIDE_M: f64 = 1.0;
 /// Who is farther aside than this does not come along the ego's lane. [m]
 const BESIDE_M: f64 = 5.0;
 
+/// Who comes over from its own side, or from the kerb, is farther aside than this when it sets out. [m]
+const OVER_M: f64 = 2.0;
+
+/// Who turned off before it reversed is so much farther aside. [m]
+const TURNED_OFF_M: f64 = 3.0;
+
+fn origin_words(told: &Told) -> String {
+    let more = match (told.comes_over, told.comes_round) {
+        (true, _) => ", on its own side",
+        (_, true) => ", behind",
+        _ => "",
+    };
+    told.origin.words() + more
+}
+
 /// Whether the partner comes from where it is told, seen from the ego when it sets out.
-fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactState) -> (bool, String) {
-    let on_foot = matches!(other.kind, PartnerKind::Pedestrian | PartnerKind::Animal);
+fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
+    let state = told.cp.state;
+    let on_foot = is_on_foot(other.kind);
     // Seen when it sets out.
     let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+    let stands_then = sets_out > 0;
+    let turned_off = matches!(told.cp.slants, Some(Slant::Stood(_)));
+    let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
     let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
     let forward = Vec2::from_heading(ego.heading);
     let way = other.position() - ego.position();
@@ -460,14 +481,16 @@ fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactStat
     let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
     let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
     let same_way = facing.abs() < 60.0 || state == ContactState::Reversing;
-    let shown = match told {
+    let shown = match told.origin {
         Origin::Behind => ahead < 2.0 && same_way && left.abs() < BESIDE_M,
-        Origin::Ahead => ahead > -2.0 && (same_way || on_foot || state.stands()) && left.abs() < BESIDE_M,
-        Origin::Opposite => facing.abs() > 120.0,
+        Origin::Ahead => ahead > -2.0 && (same_way || on_foot || state.stands()) && left.abs() < beside_m,
+        Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
         Origin::Beside { side } => facing.abs() < 60.0 && beside(side),
         Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
-            side.is_none_or(beside) || state.stands()
+            let from_there =
+                !told.stood_beside() || stands_then && left.abs() > OVER_M && (!told.comes_round || ahead < 0.0);
+            side.is_none_or(beside) && from_there || state.stands()
         }
         Origin::Above => false,
     };

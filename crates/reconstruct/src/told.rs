@@ -2,11 +2,12 @@
 
 use crate::choices::Choices;
 use crate::ground::LANE_M;
+use crate::lateral;
 use crate::others::{self, Extra};
 use crate::phases::{self, Phase};
 use crate::touch::side_of;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
+    Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     SpeedMeaning, Striker, Untold, told,
 };
 use recrash_model::account::{Control, ControlDevice, LaneWord, Obeyed, SignalState, StandReason};
@@ -48,6 +49,15 @@ pub(crate) enum Turning {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slowed(pub(crate) Option<f64>);
 
+/// How somebody who reverses came to be at an angle to the road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Slant {
+    /// It had turned, to this side where told, before it stood and reversed.
+    Stood(Option<LeftRight>),
+    /// It swung aside while it reversed.
+    Swung,
+}
+
 /// One side of the crash.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Side {
@@ -64,8 +74,14 @@ pub(crate) struct Side {
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
     pub(crate) turning: Turning,
+    /// It turns all the way into the road that the other is on, to meet it head-on.
+    pub(crate) turns_wide: bool,
     /// To which side it moves out of its line, where told.
     pub(crate) aside: Option<LeftRight>,
+    /// It is told to have dodged or drifted that way while it drove on.
+    pub(crate) dodges: bool,
+    /// It reverses, and is told to have been at an angle to the road.
+    pub(crate) slants: Option<Slant>,
     pub(crate) zones: Vec<ContactZone>,
     /// It was touched on its roof or from below, and nowhere else.
     pub(crate) only_above_or_below: bool,
@@ -96,6 +112,10 @@ pub(crate) struct Told {
     pub(crate) thing: Option<Kind>,
     pub(crate) origin: Origin,
     pub(crate) origin_told: bool,
+    /// The partner came from the kerb behind the ego, round it.
+    pub(crate) comes_round: bool,
+    /// An oncoming partner left its own side.
+    pub(crate) comes_over: bool,
     pub(crate) order: Option<FirstMover>,
     /// Somebody threw the partner at the subject vehicle.
     pub(crate) pushed: bool,
@@ -146,6 +166,8 @@ impl Told {
         let origin = told(&account.came_from);
         let origin_told = origin.is_some();
         let origin = origin.or_else(|| assumed_origin(crash_type, &sv, &cp)).unwrap_or(Origin::Behind);
+        let comes_round = origin_told && lateral::comes_round(origin, partner, cp.state, cp.movement);
+        let origin = if comes_round { Origin::Parked { side: Some(LeftRight::Right) } } else { origin };
         let striker = told(&account.striker);
         let mut this = Self {
             crash_type,
@@ -155,6 +177,8 @@ impl Told {
             thing,
             origin,
             origin_told,
+            comes_round,
+            comes_over: lateral::comes_over(origin, partner, told(&partner.movement)),
             order: told(&account.order),
             pushed: partner.did(Act::Pushed)
                 || crash_type == CrashType::Secondary
@@ -170,11 +194,55 @@ impl Told {
             choices: Choices::default(),
             assumed,
         };
+        this.courses(partner);
         this.wanted = others::wanted(&this, &account.others);
         if this.origin_told {
             this.speeds();
         }
         Some(this)
+    }
+
+    /// What the acts tell of the ways beside the movements.
+    fn courses(&mut self, partner: &Party) {
+        let drives_on =
+            |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
+        self.sv.dodges = drives_on(&self.sv) && self.sv_aside().is_some();
+        self.cp.dodges = drives_on(&self.cp) && self.cp_from_left_m().is_some();
+        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
+        if self.cp.state == ContactState::Reversing && along {
+            let before = |fact: &&ActFact| !fact.after_contact && !fact.begun;
+            let reversed =
+                partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).map(|fact| fact.step);
+            let swing = |fact: &&ActFact| matches!(fact.act, Act::Turn | Act::Drift | Act::Swerve);
+            let last = partner.acts.iter().filter(before).rfind(swing);
+            self.cp.slants = last.and_then(|fact| match Some(fact.step) >= reversed {
+                true => Some(Slant::Swung),
+                false => (fact.act == Act::Turn).then_some(Slant::Stood(fact.side)),
+            });
+        }
+        if let Origin::Cross { side } = self.origin {
+            self.cp.turns_wide = self.crash_type == CrashType::HeadOn;
+            // To meet it head-on, who comes from the left turns to the right.
+            let turn =
+                partner.acts.iter().rev().find(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
+            let by_type = self.cp.turns_wide.then(|| side.other());
+            let drives = self.cp.movement.is_none_or(|movement| {
+                matches!(
+                    movement,
+                    Movement::Straight
+                        | Movement::Passing
+                        | Movement::LaneDeparture
+                        | Movement::CrossingIntoOpposingLane
+                )
+            });
+            if self.cp.turning == Turning::No && drives && self.cp.state == ContactState::Moving {
+                self.cp.turning = match turn.and_then(|fact| fact.side).or(by_type) {
+                    Some(LeftRight::Left) => Turning::Left,
+                    Some(LeftRight::Right) => Turning::Right,
+                    None => Turning::No,
+                };
+            }
+        }
     }
 
     /// The kinds of facts that are told and can be held against a rollout.
@@ -390,6 +458,7 @@ impl Told {
             Movement::CrossingIntoOpposingLane => CHANGES_M,
             Movement::LaneDeparture => DEPARTS_M,
             Movement::EnteringTraffic | Movement::ParkingManeuver => PULLS_OUT_M,
+            Movement::Straight if self.cp.aside.is_some() => DEPARTS_M,
             _ => return None,
         };
         // Who moves to its left came along on its right.
@@ -442,7 +511,13 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     };
     let goes_aside =
         |act: Act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver);
-    let aside = party.acts.iter().filter(|fact| goes_aside(fact.act) && !fact.after_contact).find_map(|fact| fact.side);
+    // The last before the contact is the one that led to it.
+    let aside = party
+        .acts
+        .iter()
+        .filter(|fact| goes_aside(fact.act) && !fact.after_contact)
+        .filter_map(|fact| fact.side)
+        .next_back();
     // It stood where it did something after it, or held its place.
     let last = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.step).max();
     let stood_first = state == ContactState::Moving
@@ -461,6 +536,9 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     });
     Side {
         aside,
+        turns_wide: false,
+        dodges: false,
+        slants: None,
         slowed_from,
         stood_first,
         phases: if who == "ego" && state_told && state != ContactState::Parked {

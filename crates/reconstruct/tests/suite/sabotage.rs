@@ -26,7 +26,7 @@ use sha2::{Digest, Sha256};
 type Sabotage = fn(&Account, &mut ScenarioDraft) -> bool;
 
 /// Each with how many of our own stories it must at least be tried on.
-const SABOTAGES: [(&str, usize, Sabotage); 17] = [
+const SABOTAGES: [(&str, usize, Sabotage); 19] = [
     ("a turning partner that goes straight", 2, turn_undone),
     ("a partner from the other direction", 20, other_direction),
     ("a partner mirrored to the other side", 3, other_side),
@@ -43,6 +43,8 @@ const SABOTAGES: [(&str, usize, Sabotage); 17] = [
     ("a standing ego that rolls", 8, standing_ego_rolls),
     ("a partner that never stood", 1, never_stood),
     ("a partner that comes by itself", 1, nobody_throws),
+    ("an oncoming partner that is on the ego's side from the start", 1, never_on_its_side),
+    ("a partner that did not stand at the kerb, in a stall or in a driveway", 2, never_at_the_kerb),
     ("an ego that moved up or back and stands from the start", 2, moved_nowhere),
 ];
 
@@ -369,5 +371,34 @@ fn moved_nowhere(account: &Account, draft: &mut ScenarioDraft) -> bool {
     let at = rollout.actors[0].states[(touched.time_s * 10.0) as usize].pose();
     let place = Place::at(at.position.x, at.position.y, at.heading.to_degrees());
     draft.ego.recorded = Some(ActorPlan::standing(place));
+    true
+}
+
+fn never_on_its_side(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    let movement = account.partner.as_ref().and_then(|partner| told(&partner.movement));
+    let crosses = matches!(movement, Some(Movement::CrossingIntoOpposingLane | Movement::LaneDeparture));
+    let straight = draft.ego.route.iter().all(|road| road.starts_with("main"));
+    if told(&account.came_from) != Some(Origin::Opposite) || !crosses || !straight {
+        return false;
+    }
+    let Some((plan, _, [_, contact_m, _])) = approach(draft) else { return false };
+    for place in places(plan) {
+        if let Place::Plane { y_m, .. } = place {
+            *y_m = contact_m;
+        }
+    }
+    true
+}
+
+fn never_at_the_kerb(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    let origin = told(&account.came_from);
+    let stood = matches!(origin, Some(Origin::Parked { .. } | Origin::Stall { .. } | Origin::Driveway { .. }));
+    let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
+    let drives = stood && kind.is_some_and(Kind::is_vehicle) && partner_state(account) == Some(ContactState::Moving);
+    let Some((plan, start, contact)) = approach(draft).filter(|_| drives) else { return false };
+    // It comes along without a stop, and is there at the same time.
+    let length_m = math::hypot(contact[0] - start[0], contact[1] - start[1]);
+    plan.speed_mps = (length_m / 9.0).max(0.3);
+    plan.acts.clear();
     true
 }

@@ -1,9 +1,11 @@
 //! What is told of the way to the contact is drawn; and a rollout without it does not pass for it.
 
 use crate::common::account_of;
-use recrash_model::account::{Account, Act};
+use recrash_model::account::{Account, Act, Fact, Origin};
+use recrash_model::math;
 use recrash_model::metrics::{CheckKind, CheckResult};
-use recrash_model::rollout::ActorTrack;
+use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::template::Movement;
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 
 const MOVED_UP: &str = "The AV was stopped in a queue of traffic for a red light. The AV proceeded forward a short distance and came to \
@@ -14,9 +16,42 @@ const REVERSED_FIRST: &str = "The AV was traveling north behind a truck when the
                               AV reversed and came to a stop. The truck reversed and the rear of the truck made contact with \
                               the front of the stationary AV.";
 
+const FROM_THE_KERB: &str = "The AV was stopped in the right lane of Elm Street. A van that was parked at the curb behind the AV pulled out \
+                             and passed the AV on the left, and the right side of the van made contact with the rear left corner \
+                             of the stationary AV.";
+
+const CROSSED_OVER: &str = "The AV was traveling east on Oak Street. An oncoming sedan drifted to its left, and the front of the sedan made \
+                            contact with the front right of the AV.";
+
+const TURNED_IN: &str = "The AV was stopped facing north at a red light at the intersection of Elm Street and Oak Street. A pickup truck \
+                         traveling eastbound on Oak Street made a right turn onto southbound Elm Street, and the left side of the \
+                         pickup truck made contact with the rear left of the stationary AV.";
+
+const TURNED_OFF: &str = "The AV was traveling north behind a sedan when the sedan turned left and came to a stop. The sedan then reversed \
+                          and the rear of the sedan made contact with the left side of the AV.";
+
+const SWUNG_BACK: &str = "The AV was stopped behind a sedan. The sedan reversed, swerved to its left, and the rear right corner of the sedan \
+                          made contact with the front left corner of the stationary AV.";
+
+const CAT: &str = "The AV was traveling east when a cat emerged from between parked cars on the right side of the road and ran in front of \
+                   the AV, and the front of the AV made contact with the cat.";
+
+const DRIFTED: &str = "The AV was traveling in the right lane. A sedan behind it drifted to the right, and the front right of the sedan made \
+                       contact with the rear left of the AV.";
+
 /// The stories of this file, as they are shown.
 pub fn shown() -> Vec<(String, Account, Reconstruction)> {
-    let texts = [("moved up", MOVED_UP), ("reversed first", REVERSED_FIRST)];
+    let texts = [
+        ("moved up", MOVED_UP),
+        ("reversed first", REVERSED_FIRST),
+        ("from the kerb", FROM_THE_KERB),
+        ("crossed over", CROSSED_OVER),
+        ("turned in", TURNED_IN),
+        ("turned off", TURNED_OFF),
+        ("swung back", SWUNG_BACK),
+        ("cat", CAT),
+        ("drifted", DRIFTED),
+    ];
     let told = texts.map(|(name, text)| (name.to_owned(), story(text)));
     told.into_iter().map(|(name, account)| (name, account.clone(), made(&account))).collect()
 }
@@ -71,4 +106,108 @@ fn an_ego_that_reversed_before_it_stood_reverses() {
     let shown = made(&account);
     assert!(speeds(shown.rollout.ego_track()).iter().any(|speed| *speed < -1.0));
     assert_eq!(missed(&account, |less| without_acts(less, &[Act::Reverse])), [CheckKind::SvState]);
+}
+
+fn partner_without_acts(account: &mut Account, acts: &[Act]) {
+    account.partner.as_mut().expect("a partner").acts.retain(|fact| !acts.contains(&fact.act));
+}
+
+fn partner_moves(account: &mut Account, movement: Movement) {
+    account.partner.as_mut().expect("a partner").movement = Some(Fact::by_rule(movement, "made for this test"));
+}
+
+/// The partner's states, and the one at the contact.
+fn partner(made: &Reconstruction) -> (&[ActorState], ActorState) {
+    let track = made.rollout.actors.iter().find(|track| track.id == "cp").expect("a partner");
+    (&track.states, track.states[89])
+}
+
+fn degrees_between(one: f64, other: f64) -> f64 {
+    math::wrap_angle(one - other).to_degrees().abs()
+}
+
+#[test]
+fn who_pulls_out_and_passes_comes_from_the_kerb_behind() {
+    let account = story(FROM_THE_KERB);
+    let shown = made(&account);
+    let ((states, _), ego) = (partner(&shown), shown.rollout.ego_track().states[89]);
+    assert_eq!(states[0].speed(), 0.0);
+    assert!(states[0].x < ego.x - 8.0 && states[0].y < -2.0, "{:?}", states[0]);
+    let beside = missed(&account, |less| partner_without_acts(less, &[Act::PullOut]));
+    assert!(beside.contains(&CheckKind::Approach), "{beside:?}");
+}
+
+#[test]
+fn who_crosses_over_comes_from_its_own_side_wherever_it_hits_the_ego() {
+    let account = story(CROSSED_OVER);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(states[..50].iter().all(|state| state.y > 3.0), "it keeps its lane until then");
+    assert!(met.y < 0.0, "{met:?}");
+    let straight = missed(&account, |less| {
+        partner_without_acts(less, &[Act::Drift]);
+        partner_moves(less, Movement::Straight);
+    });
+    assert!(straight.contains(&CheckKind::Approach) && straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn who_turns_into_the_egos_road_does_so_in_the_junction() {
+    let account = story(TURNED_IN);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(degrees_between(met.heading, math::PI) < 20.0, "{met:?}");
+    let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
+    assert!(states[..89].iter().all(|state| scenario.network().on_road(state.position())));
+    let straight = missed(&account, |less| {
+        partner_without_acts(less, &[Act::Turn]);
+        partner_moves(less, Movement::Straight);
+    });
+    assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn a_told_turn_of_who_is_said_to_go_straight_on_from_a_crossing_road_is_drawn() {
+    let mut account = story(TURNED_IN);
+    partner_moves(&mut account, Movement::Straight);
+    assert!(degrees_between(partner(&made(&account)).1.heading, math::PI) < 20.0);
+    let straight = missed(&account, |less| partner_without_acts(less, &[Act::Turn]));
+    assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn who_turned_off_before_it_reversed_stands_across_the_road() {
+    let account = story(TURNED_OFF);
+    let shown = made(&account);
+    assert!((30.0..150.0).contains(&degrees_between(partner(&shown).0[0].heading, 0.0)));
+    let parallel = missed(&account, |less| partner_without_acts(less, &[Act::Turn]));
+    assert!(parallel.contains(&CheckKind::CpMovement), "{parallel:?}");
+}
+
+#[test]
+fn who_swings_aside_while_it_reverses_comes_to_stand_at_an_angle() {
+    let account = story(SWUNG_BACK);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(degrees_between(states[0].heading, 0.0) < 1.0 && degrees_between(met.heading, 0.0) > 15.0);
+    let parallel = missed(&account, |less| partner_without_acts(less, &[Act::Swerve]));
+    assert!(parallel.contains(&CheckKind::CpMovement), "{parallel:?}");
+}
+
+#[test]
+fn an_animal_from_between_parked_cars_runs_across() {
+    let shown = made(&story(CAT));
+    assert!(degrees_between(partner(&shown).0[0].heading, math::FRAC_PI_2) < 1.0);
+}
+
+#[test]
+fn who_is_told_to_have_drifted_while_it_drove_on_does() {
+    let mut account = story(DRIFTED);
+    account.came_from = Some(Fact::by_rule(Origin::Behind, "made for this test"));
+    partner_moves(&mut account, Movement::Straight);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(states[0].y - met.y > 1.0);
+    let straight = missed(&account, |less| partner_without_acts(less, &[Act::Drift]));
+    assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
 }
