@@ -6,6 +6,7 @@ use crate::ground::Ground;
 use crate::lateral::{self, PULL_OUT_M};
 use crate::others::{self, Extra};
 use crate::phases::{self, Lead};
+use crate::things;
 use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Account, ContactState, ControlDevice, Obeyed, Origin};
@@ -336,7 +337,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
 
 /// Somebody opens a door.
 fn opens(door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<Part>) {
-    let (to_deg, over_s) = Opening::SWING;
+    let (to_deg, over_s) = (door.to_deg, Opening::OPENS_S);
     parts.push(door.part.clone());
     plan.acts.push(when(CONTACT_S - door.before_s, Deed::Part { part: door.part.id.clone(), to_deg, over_s }));
 }
@@ -468,6 +469,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     let (length_m, width_m) = size_of(cp);
     if let Some(thing) = told.thing
         && cp.state.stands()
+        && staging.door.is_none()
     {
         let size = Some(Size { length_m, width_m });
         return (Vec::new(), vec![ObjectSpec { kind: obstacle_kind(thing), at: at(staging.cp), size }]);
@@ -475,14 +477,15 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if told.is_thrown() {
         return (thrown(told, staging), Vec::new());
     }
-    let from_stand = beside_from_line(told, staging).or_else(|| lateral::from_kerb(told, staging));
+    let from_stand =
+        things::pace(told).or_else(|| beside_from_line(told, staging)).or_else(|| lateral::from_kerb(told, staging));
     let pace = from_stand.unwrap_or_else(|| partner_pace(told));
     let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
     }
     let mut actors = vec![actor(course_to(told, staging, pace, at))];
-    actors.extend(told.pushed.then(|| nudger(told, staging)));
+    actors.extend((told.pushed && told.thing.is_none()).then(|| nudger(told, staging)));
     (actors, Vec::new())
 }
 

@@ -99,11 +99,21 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
         fact(CheckKind::CpZones, near, zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
     }
+    let swung =
+        other_part.as_ref().zip(touch.track).is_some_and(|(part, track)| swung(rollout, track, part, touch.time_s));
+    // Of a thing that stands nothing else is told.
+    let touch = Touch { track: touch.track.filter(|_| !told.gate_swings), ..touch };
+    if told.gate_swings {
+        let observed = if swung { "its arm swung" } else { "nothing swung" };
+        fact(CheckKind::CpState, swung, "swinging".to_owned(), observed.to_owned());
+    } else if told.is_sliding() && touch.track.is_none() {
+        fact(CheckKind::CpState, false, "moving".to_owned(), "it lies there".to_owned());
+    }
     let mut states = vec![(CheckKind::SvState, &told.sv, ego_track, &touch.ego)];
     states.extend(touch.track.map(|track| (CheckKind::CpState, &told.cp, track, &touch.other)));
     for (kind, side, track, seen) in states.into_iter().filter(|(_, side, ..)| side.state_told) {
         // Who is pushed moves when it touches.
-        let pushed = kind == CheckKind::CpState && told.pushed;
+        let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stood = stood(track, touch.time_s);
         let slowed = slowed(track, touch.time_s);
         let (as_told, phases) = phases::check(&side.phases, track, touch.time_s);
@@ -144,7 +154,14 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
                 _ => false,
             });
         let observed = if before { "touched by another before" } else { "touched by nobody before" };
-        fact(CheckKind::PassedOn, before, "another touched the partner first".to_owned(), observed.to_owned());
+        let result = match before {
+            true => CheckResult::Shown,
+            // Who pushed a thing is not drawn.
+            false if told.is_sliding() => CheckResult::CannotBeShown,
+            false => CheckResult::NotShown,
+        };
+        let (kind, expected) = (CheckKind::PassedOn, "another touched the partner first".to_owned());
+        list.push(Check { kind, expected, observed: observed.to_owned(), result });
     }
     let mut ways = vec![(CheckKind::SvMovement, &told.sv, ego_track, touch.track, touch.other)];
     ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
@@ -343,6 +360,17 @@ fn parts_that_touch(
     }
 }
 
+/// A part that has turned by less than this in the last 0.3 s does not swing. [rad]
+const SWINGS_RAD: f64 = 0.05;
+
+/// Whether the part of somebody that touches was swinging then.
+fn swung(rollout: &Rollout, owner: &ActorTrack, part: &OrientedBox, time_s: f64) -> bool {
+    let number = rollout.actors.iter().position(|other| other.id == owner.id);
+    let parts = rollout.actors.iter().filter(|track| track.part_of == number);
+    let before = parts.map(|track| outline_at(track, (time_s - 0.3).max(0.0)));
+    before.map(|before| math::acos(before.axis.dot(part.axis).clamp(-1.0, 1.0))).any(|turned| turned > SWINGS_RAD)
+}
+
 /// A box between two steps.
 fn outline_at(track: &ActorTrack, time_s: f64) -> OrientedBox {
     let at = (time_s / STEP_S).min((track.states.len() - 1) as f64);
@@ -480,12 +508,13 @@ fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
     };
     let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
     let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
-    let same_way = facing.abs() < 60.0 || state == ContactState::Reversing;
+    // A thing has no front.
+    let same_way = facing.abs() < 60.0 || state == ContactState::Reversing || told.is_sliding();
     let shown = match told.origin {
         Origin::Behind => ahead < 2.0 && same_way && left.abs() < BESIDE_M,
         Origin::Ahead => ahead > -2.0 && (same_way || on_foot || state.stands()) && left.abs() < beside_m,
         Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
-        Origin::Beside { side } => facing.abs() < 60.0 && beside(side),
+        Origin::Beside { side } => (facing.abs() < 60.0 || told.is_sliding()) && beside(side),
         Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
             let from_there =

@@ -80,6 +80,9 @@ pub(crate) fn from_kerb(told: &Told, staging: &Staging) -> Option<Pace> {
 /// The line that a partner came along before it left it for the contact, to the left of the ego's line; nothing where it is
 /// not told to have left one. [m]
 pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
+    if told.is_sliding() {
+        return None;
+    }
     if told.comes_over {
         return Some(staging.ground.opposing_m.max(staging.cp.position.y));
     }

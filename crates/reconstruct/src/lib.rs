@@ -16,6 +16,7 @@ mod lateral;
 mod movement;
 mod others;
 mod phases;
+mod things;
 mod told;
 mod touch;
 

@@ -5,6 +5,7 @@ use crate::ground::LANE_M;
 use crate::lateral;
 use crate::others::{self, Extra};
 use crate::phases::{self, Phase};
+use crate::things::{self, SLIDES_MPS};
 use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
@@ -110,6 +111,10 @@ pub(crate) struct Told {
     pub(crate) cp: Side,
     /// The partner is a thing that stands or lies.
     pub(crate) thing: Option<Kind>,
+    /// The partner is a gate that swung as they met.
+    pub(crate) gate_swings: bool,
+    /// The partner is told to have rolled, slid or been pushed.
+    pub(crate) slides: bool,
     pub(crate) origin: Origin,
     pub(crate) origin_told: bool,
     /// The partner came from the kerb behind the ego, round it.
@@ -162,7 +167,12 @@ impl Told {
         let kind = told(&partner.kind);
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
         let sv = side(&account.sv, None, &mut assumed, "ego");
-        let cp = side(partner, kind, &mut assumed, "partner");
+        let mut cp = side(partner, kind, &mut assumed, "partner");
+        let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
+        if gate_swings {
+            // Its post stands.
+            (cp.state, cp.state_told, cp.size) = (ContactState::Parked, false, Some(things::POST));
+        }
         let origin = told(&account.came_from);
         let origin_told = origin.is_some();
         let origin = origin.or_else(|| assumed_origin(crash_type, &sv, &cp)).unwrap_or(Origin::Behind);
@@ -175,6 +185,8 @@ impl Told {
             sv,
             cp,
             thing,
+            slides: things::slides(partner),
+            gate_swings,
             origin,
             origin_told,
             comes_round,
@@ -255,7 +267,7 @@ impl Told {
             (CheckKind::SvZones, !sv.zones.is_empty() || sv.only_above_or_below),
             (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none() || cp.only_above_or_below),
             (CheckKind::SvState, sv.state_told),
-            (CheckKind::CpState, cp.state_told && moves),
+            (CheckKind::CpState, cp.state_told && moves || self.gate_swings),
             (CheckKind::SvSpeed, sv.impact_mps.is_some()),
             (CheckKind::CpSpeed, cp.impact_mps.is_some()),
             (CheckKind::SvMovement, sv.movement.is_some()),
@@ -357,7 +369,7 @@ impl Told {
 
     /// Speeds at the contact: as told, or such that who closes on whom does.
     fn speeds(&mut self) {
-        let driven_mps = self.driven_mps();
+        let (driven_mps, slides) = (self.driven_mps(), self.is_sliding());
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             ContactState::SettingOff => 1.5,
@@ -367,6 +379,7 @@ impl Told {
             ContactState::Moving => match side.kind {
                 PartnerKind::Pedestrian => 1.4,
                 PartnerKind::Animal => 4.0,
+                PartnerKind::FixedObject if slides => SLIDES_MPS,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
                 _ if side.turning != Turning::No => TURNS_MPS,
                 _ => driven_mps,
@@ -386,7 +399,7 @@ impl Told {
             (Some(told), false) => told.max(0.4),
             (None, false) => fit(usual(&self.cp)),
         };
-        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving {
+        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.is_sliding() {
             let sv = self.sv.speed_mps;
             match self.origin {
                 Origin::Behind | Origin::Beside { .. }
@@ -483,6 +496,8 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     let impact_mps =
         party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact).map(|speed| speed.value.mps);
     let state = told(&party.state);
+    let slides = state.is_none() && kind.is_some_and(|kind| kind.group() == KindGroup::Object) && things::slides(party);
+    let state = if slides { Some(ContactState::Moving) } else { state };
     let state_told = state.is_some();
     let state = state.unwrap_or_else(|| match movement {
         Some(Movement::Stopped) => ContactState::Stopped,

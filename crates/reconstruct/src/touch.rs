@@ -6,6 +6,7 @@ use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::lateral::is_on_foot;
+use crate::things;
 use crate::told::{Side, Slant, Told, Turning};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{ContactState, LeftRight, Origin};
@@ -58,7 +59,8 @@ pub(crate) fn size_of(side: &Side) -> (f64, f64) {
 /// Ways of touching, the best first.
 pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
     let ground = ground_for(told);
-    let mut found = if told.door.is_some() { door::stagings(told, &ground) } else { bodies(told, &ground) };
+    let by_part = told.door.is_some() || told.gate_swings;
+    let mut found = if by_part { door::stagings(told, &ground) } else { bodies(told, &ground) };
     found.sort_by_key(|staging| staging.cost);
     // Of those that are almost the same, one.
     let mut kept: Vec<Staging> = Vec::new();
@@ -180,6 +182,9 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
             }
         }
     };
+    if told.is_sliding() {
+        return things::headings(told).into_iter().map(math::wrap_angle).map(|heading| (heading, heading)).collect();
+    }
     let along_kerb = matches!(told.origin, Origin::Parked { .. }) && !is_on_foot(told.cp.kind);
     match told.origin {
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } => {

@@ -14,7 +14,9 @@ use recrash_model::narrative::FirstMover;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::CrashRecord;
 use recrash_model::rollout::EventKind;
-use recrash_model::scenario::{Act, ActorPlan, Aspect, Deed, Device, Leg, Place, ScenarioDraft};
+use recrash_model::scenario::{
+    Act, ActorPlan, Aspect, Deed, Device, Leg, ObjectSpec, ObstacleKind, PartKind, Place, ScenarioDraft,
+};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
@@ -26,7 +28,7 @@ use sha2::{Digest, Sha256};
 type Sabotage = fn(&Account, &mut ScenarioDraft) -> bool;
 
 /// Each with how many of our own stories it must at least be tried on.
-const SABOTAGES: [(&str, usize, Sabotage); 19] = [
+const SABOTAGES: [(&str, usize, Sabotage); 21] = [
     ("a turning partner that goes straight", 2, turn_undone),
     ("a partner from the other direction", 20, other_direction),
     ("a partner mirrored to the other side", 3, other_side),
@@ -45,6 +47,8 @@ const SABOTAGES: [(&str, usize, Sabotage); 19] = [
     ("a partner that comes by itself", 1, nobody_throws),
     ("an oncoming partner that is on the ego's side from the start", 1, never_on_its_side),
     ("a partner that did not stand at the kerb, in a stall or in a driveway", 2, never_at_the_kerb),
+    ("a thing that rolled in and lies there", 1, thing_lies),
+    ("a gate that does not swing", 1, gate_stays),
     ("an ego that moved up or back and stands from the start", 2, moved_nowhere),
 ];
 
@@ -400,5 +404,25 @@ fn never_at_the_kerb(account: &Account, draft: &mut ScenarioDraft) -> bool {
     let length_m = math::hypot(contact[0] - start[0], contact[1] - start[1]);
     plan.speed_mps = (length_m / 9.0).max(0.3);
     plan.acts.clear();
+    true
+}
+
+fn thing_lies(_: &Account, draft: &mut ScenarioDraft) -> bool {
+    let rolls = |draft: &ScenarioDraft| {
+        draft.actors.iter().any(|actor| actor.kind == PartnerKind::FixedObject && !actor.plan.course.is_empty())
+    };
+    let Some((_, _, [x_m, y_m, heading_deg])) = approach(draft) else { return false };
+    if !rolls(draft) {
+        return false;
+    }
+    draft.actors.retain(|actor| actor.id != "cp");
+    draft.objects.push(ObjectSpec { kind: ObstacleKind::Debris, at: Place::at(x_m, y_m, heading_deg), size: None });
+    true
+}
+
+fn gate_stays(_: &Account, draft: &mut ScenarioDraft) -> bool {
+    let gate = draft.actors.iter_mut().find(|actor| actor.parts.iter().any(|part| part.kind == PartKind::Arm));
+    let Some(gate) = gate else { return false };
+    gate.plan.acts.clear();
     true
 }

@@ -39,6 +39,12 @@ const CAT: &str = "The AV was traveling east when a cat emerged from between par
 const DRIFTED: &str = "The AV was traveling in the right lane. A sedan behind it drifted to the right, and the front right of the sedan made \
                        contact with the rear left of the AV.";
 
+const BALL: &str = "The AV was traveling east when a ball rolled into the roadway from the right and made contact with the front right of \
+                    the AV.";
+
+const GATE: &str = "The AV was traveling north when it stopped for a closed gate and began proceeding slowly forward. The gate began \
+                    swinging open into the roadway and made contact with the front of the AV.";
+
 /// The stories of this file, as they are shown.
 pub fn shown() -> Vec<(String, Account, Reconstruction)> {
     let texts = [
@@ -51,6 +57,8 @@ pub fn shown() -> Vec<(String, Account, Reconstruction)> {
         ("swung back", SWUNG_BACK),
         ("cat", CAT),
         ("drifted", DRIFTED),
+        ("ball", BALL),
+        ("gate", GATE),
     ];
     let told = texts.map(|(name, text)| (name.to_owned(), story(text)));
     told.into_iter().map(|(name, account)| (name, account.clone(), made(&account))).collect()
@@ -210,4 +218,27 @@ fn who_is_told_to_have_drifted_while_it_drove_on_does() {
     assert!(states[0].y - met.y > 1.0);
     let straight = missed(&account, |less| partner_without_acts(less, &[Act::Drift]));
     assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn a_thing_that_rolled_into_the_way_rolls() {
+    let account = story(BALL);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(met.y - states[0].y > 3.0, "{:?} to {met:?}", states[0]);
+    let lies = missed(&account, |less| {
+        partner_without_acts(less, &[Act::Roll]);
+        less.partner.as_mut().expect("a partner").state = None;
+    });
+    assert!(lies.contains(&CheckKind::CpState), "{lies:?}");
+}
+
+#[test]
+fn a_gate_that_swung_swings_into_the_ego() {
+    let account = story(GATE);
+    let shown = made(&account);
+    let arm = shown.rollout.actors.iter().find(|track| track.part_of.is_some()).expect("an arm");
+    assert!(degrees_between(arm.states[80].heading, arm.states[89].heading) > 20.0);
+    let shut = missed(&account, |less| partner_without_acts(less, &[Act::OpenDoor]));
+    assert!(shut.contains(&CheckKind::CpState), "{shut:?}");
 }
