@@ -5,7 +5,7 @@ use crate::door::Opening;
 use crate::ground::Ground;
 use crate::lateral::{self, PULL_OUT_M};
 use crate::others::{self, Extra};
-use crate::phases::{self, Lead};
+use crate::phases::{self, Lead, MOVES_UP_M, Phase};
 use crate::things;
 use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
@@ -102,13 +102,21 @@ fn partner_pace(told: &Told) -> Pace {
     let ego = ego_pace(told);
     let rolling_mps = if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 };
     let usual = pace(cp, rolling_mps, STOOD_S);
+    // Who stood behind an ego that moved up stood behind where that was.
+    let moved_up = told.sv.state.stands() && told.sv.phases.last.contains(&Phase::Drives);
+    let behind_it = told.origin == Origin::Behind && (cp.state == ContactState::SettingOff || cp.stood_first);
+    let usual = match start_over(cp.speed_mps, MOVES_UP_M + BEHIND_M) {
+        Some(both_move_up) if moved_up && behind_it => both_move_up,
+        _ => usual,
+    };
+    let ego_came = told.sv.phases.last.is_empty() || told.sv.phases.came;
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
     let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
         // It came to a stop behind the ego before it set off.
         ContactState::SettingOff | ContactState::Moving
-            if told.origin == Origin::Behind && ego.driven_m > usual.driven_m && !usual.acts.is_empty() =>
+            if told.origin == Origin::Behind && ego_came && ego.driven_m > usual.driven_m && !usual.acts.is_empty() =>
         {
             let moving_s = CONTACT_S - first_time(&usual.acts);
             let braking_s = ROLLING_MPS / STOPPING_MPS2;
@@ -149,6 +157,9 @@ fn partner_pace(told: &Told) -> Pace {
 
 /// How far somebody who stood before it turned has driven at the contact. [m]
 const TURNS_M: f64 = 8.0;
+
+/// Who stands behind the ego stands so far behind it. [m]
+const BEHIND_M: f64 = 2.0;
 
 /// How far somebody has reversed at the contact. [m]
 const REVERSES_M: f64 = 2.5;

@@ -116,7 +116,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stood = stood(track, touch.time_s);
         let slowed = slowed(track, touch.time_s);
-        let (as_told, phases) = phases::check(&side.phases, track, touch.time_s);
+        let (as_told, phases) = phases::check(&side.phases.last, track, touch.time_s);
         let shown = pushed
             || state(side.state, track, seen, touch.time_s)
                 && (stood || !side.stood_first)
@@ -128,11 +128,11 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             (false, false) => "",
         };
         let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
-        if side.phases.is_empty() {
+        if side.phases.last.is_empty() {
             expected += before(side.stood_first, side.slowed_from.is_some());
             observed += before(stood, slowed);
         } else {
-            expected += &format!(": {}", phases::words(&side.phases));
+            expected += &format!(": {}", phases::words(&side.phases.last));
             observed += &format!(": {phases}");
         }
         fact(kind, shown, expected, observed);

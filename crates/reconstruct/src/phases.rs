@@ -37,9 +37,18 @@ impl Phase {
 /// So many phases are drawn and checked, the last one counted.
 const MOST_PHASES: usize = 3;
 
-/// The told phases that end in the one at the contact, where they say more than the state there and that somebody came there or
-/// stood before: empty else.
-pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
+/// The last things that somebody is told to have done before the contact.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Phases {
+    /// They end in what it does at the contact; empty where they say no more than the state there and that it came there or stood
+    /// before.
+    pub(crate) last: Vec<Phase>,
+    /// It came driving before the first of them.
+    pub(crate) came: bool,
+}
+
+/// What is told of them.
+pub(crate) fn told(party: &Party, state: ContactState) -> Phases {
     let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun).collect();
     acts.sort_by_key(|fact| fact.step);
     let mut list: Vec<Phase> = Vec::new();
@@ -78,13 +87,14 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     if list.last() != Some(&last) {
         list.push(last);
     }
-    let mut list = list.split_off(list.len().saturating_sub(MOST_PHASES));
+    let mut last = list.split_off(list.len().saturating_sub(MOST_PHASES));
+    let mut came = !list.is_empty();
     // Everybody came from somewhere.
-    if list.first() == Some(&Phase::Drives) {
-        list.remove(0);
+    if last.first() == Some(&Phase::Drives) {
+        (last, came) = (last.split_off(1), true);
     }
-    let says_more = list.len() == MOST_PHASES || list[..list.len().saturating_sub(1)].contains(&Phase::Reverses);
-    if says_more { list } else { Vec::new() }
+    let says_more = last.len() == MOST_PHASES || last[..last.len().saturating_sub(1)].contains(&Phase::Reverses);
+    if says_more { Phases { last, came } } else { Phases::default() }
 }
 
 /// A phase that is shorter than this on the way from one gear to the other is none. [steps]
@@ -137,6 +147,9 @@ const BRAKES_S: f64 = 1.2;
 /// It brakes for its first stop with so much: less than makes plans brake by themselves before they change gear. [m/s^2]
 const BRAKES_MPS2: f64 = 1.8;
 
+/// How far somebody moves up. [m]
+pub(crate) const MOVES_UP_M: f64 = 0.5 * MOVES_UP.0 * (MOVES_UP.1 + BRAKES_S);
+
 /// It stands for so long between, and it rolls for so long before it brakes for its first stop. [s]
 const STANDS_S: f64 = 1.0;
 const ROLLS_S: f64 = 0.3;
@@ -176,7 +189,7 @@ impl Lead {
 
 /// What comes before the last phase of an ego whose phases are told: before it sets off, or before it stands.
 pub(crate) fn lead(told: &Told, last: &Pace) -> Option<Lead> {
-    let phases = &told.sv.phases;
+    let phases = &told.sv.phases.last;
     let before = phases.split_last().map(|(_, before)| before).filter(|before| !before.is_empty())?;
     let mut time_s = match told.sv.state.stands() {
         true => CONTACT_S - told.choices.stood_s,
@@ -208,7 +221,7 @@ pub(crate) fn lead(told: &Told, last: &Pace) -> Option<Lead> {
         (None, None) => time_s,
     };
     let mut lead = Lead { speed_mps: 0.0, acts: Vec::new(), stretches: Vec::new(), stands_s };
-    if time_s >= LEAST_APPROACH_S {
+    if told.sv.phases.came && time_s >= LEAST_APPROACH_S {
         // It comes along, brakes, and stands.
         let stands_s = if before[0] == Phase::Stands { time_s } else { time_s - STANDS_S };
         let speed_mps = told.choices.rolling_mps.min(BRAKES_MPS2 * (stands_s - ROLLS_S)).max(0.5);

@@ -4,7 +4,7 @@ use crate::choices::Choices;
 use crate::ground::LANE_M;
 use crate::lateral;
 use crate::others::{self, Extra};
-use crate::phases::{self, Phase};
+use crate::phases::{self, Phases};
 use crate::things::{self, SLIDES_MPS};
 use crate::touch::side_of;
 use recrash_model::account::{
@@ -70,7 +70,7 @@ pub(crate) struct Side {
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
     /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
-    pub(crate) phases: Vec<Phase>,
+    pub(crate) phases: Phases,
     /// Whether the state is told.
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
@@ -559,7 +559,7 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
         phases: if who == "ego" && state_told && state != ContactState::Parked {
             phases::told(party, state)
         } else {
-            Vec::new()
+            Phases::default()
         },
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),

@@ -109,6 +109,18 @@ fn an_ego_that_moved_up_stands_moves_and_stands_again() {
 }
 
 #[test]
+fn who_stood_behind_an_ego_that_moved_up_moves_up_too() {
+    let account = story(
+        "The AV was stopped at a red light. The AV proceeded forward a short distance and came to a stop. A truck that was \
+         stopped behind the AV proceeded forward, and the front of the truck made contact with the rear of the stationary AV.",
+    );
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert_eq!((states[0].speed(), shown.rollout.ego_track().states[0].speed()), (0.0, 0.0));
+    assert!(met.x - states[0].x > 4.0 && met.speed() > 0.5, "{met:?}");
+}
+
+#[test]
 fn an_ego_that_reversed_before_it_stood_reverses() {
     let account = story(REVERSED_FIRST);
     let shown = made(&account);
@@ -141,7 +153,10 @@ fn who_pulls_out_and_passes_comes_from_the_kerb_behind() {
     let ((states, _), ego) = (partner(&shown), shown.rollout.ego_track().states[89]);
     assert_eq!(states[0].speed(), 0.0);
     assert!(states[0].x < ego.x - 8.0 && states[0].y < -2.0, "{:?}", states[0]);
-    let beside = missed(&account, |less| partner_without_acts(less, &[Act::PullOut]));
+    let beside = missed(&account, |less| {
+        partner_without_acts(less, &[Act::PullOut]);
+        partner_moves(less, Movement::Straight);
+    });
     assert!(beside.contains(&CheckKind::Approach), "{beside:?}");
 }
 
