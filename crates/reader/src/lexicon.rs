@@ -426,6 +426,9 @@ fn forms(base: &str, irregular: &BTreeMap<String, Vec<String>>) -> Vec<(String, 
     all
 }
 
+/// Stands for the name of the company that reports, where the lexicon does not know it.
+pub const COMPANY: &str = "thecompany";
+
 impl Lexicon {
     /// The lexicon, read once.
     pub fn get() -> &'static Self {
@@ -454,6 +457,7 @@ impl Lexicon {
         for phrase in &file.subject.companies {
             lexicon.add(phrase, Meaning::Company);
         }
+        lexicon.add(COMPANY, Meaning::Company);
         for (kind, words) in &file.kinds {
             words.iter().for_each(|phrase| lexicon.add(phrase, Meaning::Kind(*kind)));
         }

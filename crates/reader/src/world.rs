@@ -107,6 +107,20 @@ impl World {
         actor
     }
 
+    /// What a noun besides its own says of somebody: "Vehicle 2, a black van".
+    pub fn describe(&mut self, actor: Actor, noun: &Noun, tokens: (usize, usize)) {
+        if actor != SUBJECT {
+            refine(&mut self.actors[actor], noun, tokens);
+        } else if self.actors[SUBJECT].kind.is_none() {
+            self.actors[SUBJECT].kind = noun.kind;
+        }
+        for name in &noun.names {
+            if !self.actors[actor].names.contains(name) {
+                self.actors[actor].names.push(name.clone());
+            }
+        }
+    }
+
     /// Somebody who is not named, such as who touched the subject vehicle in "contact was made".
     pub fn unnamed(&mut self) -> Actor {
         match self.latest(|known| known.kind.is_some_and(acts)) {
@@ -174,6 +188,12 @@ impl World {
             return Some(SUBJECT);
         }
         let kind = noun.kind?;
+        // "The shuttle was in its lane": the first whom a story names as known is whom it is told of.
+        let known = noun.article == Article::Definite && noun.adjectives.is_empty() && !noun.several;
+        if unnamed && known && hint.is_none() && matches!(kind.group(), KindGroup::Truck) {
+            self.actors[SUBJECT].kind.get_or_insert(kind);
+            return Some(SUBJECT);
+        }
         if noun.article == Article::None
             && !noun.several
             && matches!(kind, Kind::Bus)

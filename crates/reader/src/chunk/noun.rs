@@ -55,6 +55,17 @@ impl Chunker<'_> {
             {
                 owner = Some(noun);
                 at = behind + length;
+                // "the center of the van's front bumper".
+                if self.text(at) == "'s" {
+                    let mut further = at + 1;
+                    while let Some((part, length)) = self.part(further) {
+                        if !parts.contains(&part) {
+                            parts.push(part);
+                        }
+                        further += length;
+                        at = further;
+                    }
+                }
             } else if self.text(behind) == "it" {
                 (its, at) = (true, behind + 1);
             } else if self.text(at) == "of" {
@@ -151,6 +162,14 @@ impl Chunker<'_> {
             }
             if let Some(found) = self.head(at) {
                 break found;
+            }
+            // "an unoccupied and parked van".
+            let adjective = |at: usize| {
+                self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Adjective(_))).is_some()
+            };
+            if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) {
+                at += 1;
+                continue;
             }
             let known = self.lexicon.longest(self.tokens, at, |meaning| {
                 matches!(meaning, Meaning::Adjective(_) | Meaning::Make | Meaning::Company)

@@ -4,6 +4,7 @@ use crate::frame::{Frame, Story};
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Kind, KindGroup};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::record::CrashRecord;
 use recrash_model::template::Movement;
 
@@ -46,6 +47,7 @@ impl Contacts {
             let full = told.on.is_some() || told.with.is_some() || !told.relations.is_empty();
             let again = again.filter(|(number, _)| !(full && goes_on(story, *number)));
             let (first, partner) = again.copied().unwrap_or((first, partner));
+            let (first, partner) = as_column(story, record, &touching, first, partner);
             contacts.first = Some(first);
             contacts.partner = Some(partner);
             contacts.earlier = (0..frames.len())
@@ -67,7 +69,8 @@ impl Contacts {
             let headline = frames
                 .iter()
                 .any(|frame| frame.sense == Sense::Headline && frame.who == Some(SUBJECT) && frame.object.is_some());
-            if !headline {
+            // Where a column says that the subject vehicle was touched, the words for it are not understood.
+            if !headline && record.sv_zones.is_empty() {
                 contacts.others_only = true;
                 contacts.partner = Some(who);
                 contacts.first = Some(number);
@@ -95,6 +98,55 @@ impl Contacts {
             let pair = [frame.who, frame.object];
             pair.contains(&Some(actor)) && pair.contains(&self.partner)
         })
+    }
+}
+
+/// Kinds that a column can hold against each other: whoever is on foot, on two wheels, an animal, or in a vehicle.
+fn sort(kind: Kind) -> Option<KindGroup> {
+    match kind.group() {
+        KindGroup::Car | KindGroup::Truck => Some(KindGroup::Car),
+        KindGroup::Object | KindGroup::Other => None,
+        group => Some(group),
+    }
+}
+
+/// The partner, unless it is of another sort than the column names and somebody of that sort is in the story.
+fn as_column(
+    story: &Story,
+    record: &CrashRecord,
+    touching: &[(usize, Actor)],
+    first: usize,
+    partner: Actor,
+) -> (usize, Actor) {
+    let unchanged = (first, partner);
+    let Some(column) = record.partner.known().and_then(column_sort) else { return unchanged };
+    let is = |actor: Actor| story.world.actors[actor].kind.and_then(sort) == Some(column);
+    let said = story.world.actors[partner].kind.and_then(sort);
+    if said.is_none_or(|said| said == column) {
+        return unchanged;
+    }
+    if let Some(&touch) = touching.iter().find(|(_, actor)| is(*actor)) {
+        return touch;
+    }
+    let acting = |actor: &Actor| is(*actor) && !story.world.actors[*actor].several;
+    let named = story.frames[..=first].iter().rev().filter_map(|frame| frame.who).find(acting);
+    let any = || (1..story.world.actors.len()).find(|&actor| is(actor));
+    named.or_else(any).map_or(unchanged, |actor| (first, actor))
+}
+
+fn column_sort(kind: PartnerKind) -> Option<KindGroup> {
+    match kind {
+        PartnerKind::PassengerCar
+        | PartnerKind::Suv
+        | PartnerKind::Van
+        | PartnerKind::PickupTruck
+        | PartnerKind::HeavyTruck
+        | PartnerKind::Bus => Some(KindGroup::Car),
+        PartnerKind::Motorcycle => Some(KindGroup::Motorcycle),
+        PartnerKind::Cyclist => Some(KindGroup::Cyclist),
+        PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist => Some(KindGroup::OnFoot),
+        PartnerKind::Animal => Some(KindGroup::Animal),
+        _ => None,
     }
 }
 

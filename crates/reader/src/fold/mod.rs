@@ -1,5 +1,6 @@
 //! The account, folded from the event frames and held against the columns.
 
+mod blame;
 mod contact;
 mod movement;
 mod origin;
@@ -112,8 +113,9 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let report = incident.spoken()?;
     let record = &report.record;
     let text = record.narrative.as_str();
-    let make = own_make(record);
-    let story = story(text, Own { kind: own_kind(record), make: make.as_deref(), vehicle: &record.vehicle });
+    let (make, company) = (own_make(record), company(record));
+    let own = Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle };
+    let story = story(text, own);
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };
     let mut account = Account {
@@ -161,10 +163,10 @@ pub fn account(incident: &Incident) -> Option<Account> {
         account.came_from = Some(origin);
         movement::movements(&reading, &mut account);
     }
-    account.striker = types::striker(&reading, &account);
+    account.striker = blame::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
-    account.role = types::role(&reading, &account);
-    account.order = types::order(&account);
+    account.role = blame::role(&reading, &account);
+    account.order = blame::order(&account);
     account.first_contact = types::first_contact(&reading, &account);
     account.scenario = scenario::scenario(&account);
     account.matrix = scenario::matrix(&account);
@@ -193,10 +195,15 @@ fn own_kind(record: &CrashRecord) -> Option<Kind> {
     shuttle.iter().any(|make| vehicle.contains(make)).then_some(Kind::Bus)
 }
 
+/// The first word of the name of the company that reports, written small.
+fn company(record: &CrashRecord) -> String {
+    let name: String = record.entity.chars().take_while(|c| c.is_alphanumeric()).collect();
+    name.to_lowercase()
+}
+
 /// The first word of the company's name, where the vehicle is called by it: "the Volvo".
 fn own_make(record: &CrashRecord) -> Option<String> {
-    let name: String = record.entity.chars().take_while(|c| c.is_alphanumeric()).collect();
-    let name = name.to_lowercase();
+    let name = company(record);
     record.vehicle.to_lowercase().contains(&name).then_some(name).filter(|name| !name.is_empty())
 }
 

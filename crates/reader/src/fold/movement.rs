@@ -1,6 +1,7 @@
 //! Movement of both sides just before the conflict, from their acts, states and columns.
 
 use super::Reading;
+use crate::lexicon::Sense;
 use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Source, StandReason, told,
@@ -40,7 +41,8 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     }
     // Who stops in the lane for passengers is parked by the column, and stopped by the words.
     let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
-    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
+    let said = reading.before(SUBJECT).any(|(_, frame)| frame.sense == Sense::Parked);
+    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told()) && !said;
     if let (Some(Movement::Parked), true, false, Some(reason)) =
         (told(&account.sv.movement), by_column, account.sv.did(Act::Park), riders)
     {
@@ -95,7 +97,7 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                     (fact.value, same_way, passed_last(partner))
                 {
                     *fact = Fact { value: Movement::Passing, source: passed.source.clone() };
-                } else if fact.value == Movement::Passing && oncoming && column != Some(Movement::Passing) {
+                } else if fact.value == Movement::Passing && oncoming {
                     fact.value = Movement::Straight;
                 }
                 if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
@@ -103,10 +105,37 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                 {
                     fact.value = column.unwrap_or(fact.value);
                 }
+                let goes_on =
+                    matches!(fact.value, Movement::Straight | Movement::LaneDeparture | Movement::ChangingLanes);
+                if let (true, true, Some(source)) = (oncoming, goes_on, over_the_line(reading)) {
+                    *fact = Fact { value: Movement::CrossingIntoOpposingLane, source };
+                }
             }
             movement
         };
     }
+}
+
+/// The words that bring the partner over the line between both directions, up to the contact.
+fn over_the_line(reading: &Reading<'_>) -> Option<Source> {
+    let actor = reading.contacts.partner?;
+    let tokens = &reading.story.tokens;
+    reading.before(actor).filter(|(_, frame)| frame.happened()).find_map(|(number, frame)| {
+        let crosses = matches!(
+            frame.act(),
+            Some(Act::Drift | Act::Swerve | Act::Cross | Act::LaneChange | Act::LoseControl | Act::Follow | Act::Enter)
+        );
+        let (first, end) = reading.window(number);
+        let line = (first..end).any(|at| {
+            let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+            matches!(word(at), "centerline" | "centreline")
+                || matches!(word(at), "center" | "yellow" | "dividing") && word(at + 1).starts_with("line")
+                || matches!(word(at), "opposite" | "opposing" | "oncoming") && word(at + 1).starts_with("lane")
+        });
+        let over =
+            (first..end).any(|at| matches!(tokens[at].text.as_str(), "over" | "across" | "crossed" | "crossing"));
+        (crosses && line && over).then(|| reading.of(frame))
+    })
 }
 
 /// The pass that came behind every turn.
@@ -260,7 +289,9 @@ fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
         (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
         (Act::Reverse, _) => (4, Movement::Backing),
         (Act::LaneChange, _) if column == Some(Movement::EnteringTraffic) => (3, Movement::EnteringTraffic),
-        (Act::LaneChange, _) if words_of(fact).starts_with("merg") => (3, Movement::Merging),
+        (Act::LaneChange, _) if words_of(fact).starts_with("merg") && column != Some(Movement::ChangingLanes) => {
+            (3, Movement::Merging)
+        }
         (Act::LaneChange, _) => (3, Movement::ChangingLanes),
         (Act::Pass, _) if column == Some(Movement::Passing) => (3, Movement::Passing),
         (Act::Pass, _) => (2, Movement::Passing),

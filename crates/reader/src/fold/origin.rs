@@ -77,7 +77,16 @@ pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact
     if kind.is_some_and(|kind| kind.group() == KindGroup::Object) {
         return of_thing(&clues, account);
     }
-    of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account))
+    let origin =
+        of_road_user(&clues, account).or_else(|| by_columns(reading, account)).or_else(|| by_side(&clues, account));
+    // Thrown "to the right" at its left side, it was on the left before.
+    let thrown = reading.did(actor, Act::Pushed) || !reading.contacts.earlier.is_empty();
+    match (origin.as_ref().map(|fact| fact.value), zone_side(account)) {
+        (Some(Origin::Beside { side: told }), Some(side)) if thrown && told != side => {
+            Some(Fact::by_rule(Origin::Beside { side }, "thrown at that side"))
+        }
+        _ => origin,
+    }
 }
 
 fn forward(account: &Account) -> bool {
@@ -130,7 +139,9 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
 
 fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
-    let side = clues.side();
+    let walks = told(&account.partner.as_ref()?.kind)
+        .is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist));
+    let side = clues.side().or_else(|| side_by_compass(reading, actor, account).filter(|_| walks));
     let frames = || reading.before(actor).filter(|(_, frame)| frame.happened());
     let did = |act: Act| frames().any(|(_, frame)| frame.act() == Some(act));
     let told_as = |value: Origin, source: Source| Some(Fact { value, source });
@@ -164,7 +175,13 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let (first, end) = reading.window(number);
         let source = reading.words(first, end);
         match frame.out_of {
+            Some(Spot::Stall) if at_curb(reading, actor) => {
+                return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
+            }
             Some(Spot::Stall) => return told_as(Origin::Stall { side: side.or_else(|| zone_side(account)) }, source),
+            Some(Spot::SideStreet) if side.is_some() => {
+                return told_as(side.map_or(Origin::Opposite, |side| Origin::Cross { side }), source);
+            }
             Some(Spot::Driveway | Spot::SideStreet) => {
                 return told_as(Origin::Driveway { side: side.or_else(|| zone_side(account)) }, source);
             }
@@ -194,6 +211,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let ahead = clues.any(Relation::Ahead);
     let behind = clues.any(Relation::Behind);
     if did(Act::Reverse) && !behind {
+        // Backwards out of a way across.
+        if let (Some(2 | 6), Some(heading), false) = (turn, heading, square_front(account)) {
+            let side = if turn == Some(2) { LeftRight::Left } else { LeftRight::Right };
+            return told_as(Origin::Cross { side }, heading.source.clone());
+        }
         if ahead || lead_of_subject(reading, actor) {
             return told_as(Origin::Ahead, clues.source(|frame| frame.act() == Some(Act::Reverse)));
         }
@@ -205,7 +227,14 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             );
         }
         if let Some(side) = side {
-            return told_as(Origin::Beside { side }, clues.source(|frame| frame.act() == Some(Act::Reverse)));
+            // Its rear on a flank: it stood across.
+            let only = |party: &recrash_model::account::Party, wanted: fn(Z) -> bool| {
+                !party.zones.is_empty() && party.zones.iter().all(|zone| wanted(zone.value))
+            };
+            let across = only(&account.sv, |zone| matches!(zone, Z::Left | Z::Right))
+                && only(account.partner.as_ref()?, |zone| zone == Z::Rear);
+            let value = if across { Origin::Cross { side } } else { Origin::Beside { side } };
+            return told_as(value, clues.source(|frame| frame.act() == Some(Act::Reverse)));
         }
         if has_zone(&account.sv, |zone| zone.is_front()) && !matches!(turn, Some(2..=6)) {
             return Some(Fact::by_rule(Origin::Ahead, "who goes backwards into the front was ahead"));
@@ -216,6 +245,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             Origin::Parked { side: side.or_else(|| zone_side(account)) },
             clues.source(|frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor)),
         );
+    }
+    if let Some(side) = side.filter(|_| on_side_street(reading, actor) && !did(Act::Pass)) {
+        let relation = if side == LeftRight::Left { Relation::Left } else { Relation::Right };
+        return told_as(Origin::Cross { side }, clues.has(relation));
     }
     let pulled_on =
         frames().find(|(_, frame)| frame.act() == Some(Act::PullOut)).is_some_and(|(number, _)| drove_on(number));
@@ -261,7 +294,8 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
                 && matches!(frame.sense, Sense::Approach)
                 && !did(Act::Pass)
-        });
+        })
+        || on_side_street(reading, actor);
     if let Some(eighths) = turn {
         let source = Source::Rule { name: "directions of both".to_owned() };
         let opposite_side = clues.any(Relation::Opposite) || account.partner.as_ref()?.did(Act::WrongWay);
@@ -309,7 +343,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             _ => {}
         }
     }
-    if did(Act::WrongWay) && heading.is_none() {
+    if did(Act::WrongWay) && !crosses {
         return told_as(Origin::Opposite, clues.source(|frame| frame.act() == Some(Act::WrongWay)));
     }
     if clues.any(Relation::Opposite) && !did(Act::Pass) {
@@ -383,6 +417,63 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     None
 }
 
+/// The side of the road from which somebody comes, where a direction names it: "from the north side of the street".
+fn side_by_compass(reading: &Reading<'_>, actor: Actor, account: &Account) -> Option<LeftRight> {
+    let own = after_its_turn(account)?;
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let named = |at: usize| match word(at) {
+        "north" | "northern" => Some(Compass::North),
+        "east" | "eastern" => Some(Compass::East),
+        "south" | "southern" => Some(Compass::South),
+        "west" | "western" => Some(Compass::West),
+        _ => None,
+    };
+    let comes =
+        |act: Option<Act>| matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve));
+    reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(_, frame)| {
+        let (first, end) = (frame.first, reading.story.sentences[frame.sentence].end);
+        let there = (first..end).filter(|&at| matches!(word(at + 1), "side" | "sidewalk" | "curb")).find_map(named)?;
+        match own.eighths_to(there) {
+            1..=3 => Some(LeftRight::Right),
+            5..=7 => Some(LeftRight::Left),
+            _ => None,
+        }
+    })
+}
+
+/// Whether the words put somebody at the kerb.
+fn at_curb(reading: &Reading<'_>, actor: Actor) -> bool {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).any(|(number, _)| {
+        let (first, end) = reading.window(number);
+        tokens[first..end].iter().any(|token| matches!(token.text.as_str(), "curb" | "curbside" | "kerb" | "parallel"))
+    })
+}
+
+/// Whether the plain front of the subject vehicle is touched.
+fn square_front(account: &Account) -> bool {
+    has_zone(&account.sv, |zone| zone == Z::Front)
+}
+
+/// Whether the words put somebody on a road that crosses.
+fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).any(|(number, _)| {
+        let (first, end) = reading.window(number);
+        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+        (first..end).any(|at| {
+            let road = matches!(word(at + 1), "street" | "road" | "streets");
+            let crosses = matches!(word(at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
+            // "the street on its left".
+            let there = matches!(word(at), "street" | "road")
+                && matches!(word(at + 1), "on" | "to")
+                && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
+            crosses && road || there
+        })
+    })
+}
+
 /// Whether the direction of somebody is the one that it faces, and not the one that it drives.
 fn faces_only(reading: &Reading<'_>, actor: Actor) -> bool {
     reading.story.world.actors[actor].heading.is_some_and(|(_, first, _)| {
@@ -415,6 +506,11 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let parked = told(&partner.state) == Some(ContactState::Parked);
     if let (true, Some(side)) = (moved_over || parked || clues.any(Relation::Beside), zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
+    }
+    let walks = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal));
+    let flank = !has_zone(&account.sv, |zone| zone.is_front() || zone.is_rear());
+    if let (true, true, Some(side)) = (walks, flank, zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Cross { side }, "the side that somebody on foot touched"));
     }
     let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
     let driven_over = has_zone(&account.sv, |zone| zone == Z::Bottom) && forward(account);
@@ -545,7 +641,9 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
         return rule(Origin::Behind);
     }
     if sv_front && cp_rear && !sv_rear {
-        return rule(Origin::Ahead);
+        // Parked, it stands beside the lane that a corner leaves.
+        let corner = told(&partner.state) == Some(ContactState::Parked) && !square_front(account);
+        return rule(zone_side(account).filter(|_| corner).map_or(Origin::Ahead, |side| Origin::Beside { side }));
     }
     let side = zone_side(account)?;
     // One way, side by side.

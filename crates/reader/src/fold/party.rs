@@ -1,6 +1,7 @@
 //! One side: kind, acts, state at the contact, reasons to stand, lane, direction, zones, speeds, signals.
 
 use super::Reading;
+use crate::chunk::Spot;
 use crate::frame::{Frame, sided, zone_of};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
 use crate::token::TokenKind;
@@ -131,7 +132,10 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     };
     let keeps = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
     let goes_on = keeps.starts_with("continu") || keeps.starts_with("remain");
+    // "proceeded forward out of a stall".
+    let comes_out = matches!(frame.out_of, Some(Spot::Stall | Spot::Driveway | Spot::Curb));
     match act {
+        Act::Follow | Act::SetOff | Act::Drift if comes_out => Some(Act::PullOut),
         Act::Follow if !goes_on && frame.sense != Sense::Approach && stood().is_some() => Some(Act::SetOff),
         // "passed through the junction" passes nobody.
         Act::Pass
@@ -473,6 +477,14 @@ fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
     all
 }
 
+/// "slowed to about 6 mph": the words before the number, where nothing is told of a later speed.
+fn slowed_to(before: &[crate::token::Token], frame: &Frame) -> bool {
+    let to = before.iter().rev().find(|token| {
+        !matches!(token.text.as_str(), "about" | "approximately" | "around" | "roughly" | "only" | "just" | "~")
+    });
+    frame.act() == Some(Act::Slow) && frame.happened() && to.is_some_and(|token| token.text == "to")
+}
+
 /// Speeds that the words tell of somebody.
 fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
     let tokens = &reading.story.tokens;
@@ -503,7 +515,7 @@ fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
         let limit = near.iter().any(|word| matches!(*word, "zone" | "limit" | "posted"));
         let meaning = if limit {
             SpeedMeaning::Posted
-        } else if frame.is_contact() {
+        } else if frame.is_contact() || slowed_to(&tokens[at.saturating_sub(3)..at], frame) {
             SpeedMeaning::Impact
         } else {
             SpeedMeaning::Approach
@@ -623,11 +635,13 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         (None, Some(Movement::Backing)) => Some(ContactState::Reversing),
         (None, _) if zero => Some(ContactState::Stopped),
         (None, Some(_)) => Some(ContactState::Moving),
-        (None, None) if moves_at_contact(reading) => Some(ContactState::Moving),
+        (None, None) if rolls || moves_at_contact(reading) => Some(ContactState::Moving),
         // Slowing in words, standing in numbers: it had come to stand.
         // Told to come to a stop, and still rolling in numbers.
         (Some(ContactState::Stopped), _)
-            if rolls && !account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact) =>
+            if rolls
+                && (stopping || moves_at_contact(reading))
+                && !account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact) =>
         {
             Some(ContactState::Moving)
         }

@@ -1,11 +1,12 @@
 //! What stands behind a verb and belongs to it: objects, places, directions, lanes.
 
-use super::parser::{Carry, Mention, Parser, transitive};
+use super::parser::{Carry, Mention, Parser};
+use super::row::transitive;
 use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, Spot};
 use crate::lexicon::{Form, Part, Progress, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 impl Parser<'_> {
     /// A part whose owner is not said: "made contact with the rear bumper".
@@ -134,7 +135,10 @@ impl Parser<'_> {
                     && self.frames[frame].happened() =>
             {
                 let comes = self.frames[frame].who.filter(|who| *who != SUBJECT);
-                if let Some(who) = comes.filter(|who| self.world.actors[*who].kind.is_some_and(Kind::is_vehicle)) {
+                let rides = |kind: Kind| {
+                    kind.is_vehicle() || matches!(kind.group(), KindGroup::Motorcycle | KindGroup::Cyclist)
+                };
+                if let Some(who) = comes.filter(|who| self.world.actors[*who].kind.is_some_and(rides)) {
                     self.note(who, Relation::Opposite);
                     self.frames[frame].relations.push((Relation::Opposite, Some(SUBJECT)));
                 }
@@ -297,14 +301,41 @@ impl Parser<'_> {
     /// "on the left side of the roadway".
     pub(super) fn of_road(&self, at: usize) -> bool {
         self.tokens.get(at..(at + 3).min(self.tokens.len())).unwrap_or_default().iter().any(|token| {
-            matches!(token.text.as_str(), "road" | "roadway" | "street" | "alley" | "driveway" | "lane" | "highway")
+            matches!(
+                token.text.as_str(),
+                "road"
+                    | "roadway"
+                    | "street"
+                    | "alley"
+                    | "alleyway"
+                    | "driveway"
+                    | "lane"
+                    | "highway"
+                    | "path"
+                    | "aisle"
+                    | "ramp"
+                    | "avenue"
+            )
         })
     }
 
     pub(super) fn compass(&mut self, compass: Compass, placed: &Placed, carry: &mut Carry) {
+        // "off the south sidewalk" is a place.
+        let place = self.tokens.get(placed.end).is_some_and(|next| {
+            matches!(
+                next.text.as_str(),
+                "sidewalk" | "side" | "curb" | "corner" | "crosswalk" | "leg" | "end" | "shoulder"
+            )
+        });
+        if place {
+            return;
+        }
+        let from = carry.preposition == Some("from");
+        // "arrived from the west" goes east.
+        let bare = matches!(self.tokens[placed.first].text.as_str(), "north" | "south" | "east" | "west");
+        let compass = if from && bare { compass.turned(4) } else { compass };
         let stands = (compass, placed.first, placed.end);
         let onto = matches!(carry.preposition, Some("onto" | "into" | "to"));
-        let from = carry.preposition == Some("from");
         carry.preposition = None;
         // Behind a noun that is an object: "a truck facing east" has its own frame; "yield to a van northbound on ..." is rare.
         match carry.frame {

@@ -2,10 +2,11 @@
 
 mod attach;
 mod parser;
+mod row;
 mod subject;
 
 use crate::chunk::{Joint, Piece, Spot};
-use crate::lexicon::{Form, Lexicon, Occupant, Part, Progress, Relation, Sense};
+use crate::lexicon::{COMPANY, Form, Lexicon, Occupant, Part, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
 use parser::Parser;
@@ -117,6 +118,9 @@ pub struct Own<'a> {
     pub kind: Option<Kind>,
     /// The make by which the company that reports calls it.
     pub make: Option<&'a str>,
+    /// The first word of the company's name, written small: a vehicle called by it is the subject vehicle, as with companies that
+    /// the lexicon knows.
+    pub company: &'a str,
     /// What the record calls the vehicle: it is meant by "the Volvo" where nobody was named before.
     pub vehicle: &'a str,
 }
@@ -128,6 +132,12 @@ const MOST_TOKENS: usize = 6_000;
 pub fn story(text: &str, own: Own<'_>) -> Story {
     let mut tokens = crate::token::tokens(text);
     tokens.truncate(MOST_TOKENS);
+    for at in 0..tokens.len() {
+        let named = tokens[at].capital && tokens[at].text.len() > 2 && tokens[at].text == own.company;
+        if named && Lexicon::get().longest(&tokens, at, |_| true).is_none() {
+            COMPANY.clone_into(&mut tokens[at].text);
+        }
+    }
     let sentences = crate::token::sentences(&tokens);
     let lexicon = Lexicon::get();
     let mut standing = Vec::new();

@@ -1,12 +1,13 @@
 //! One sentence after the other: subjects find their verbs, verbs their objects.
 
 use super::Frame;
+use super::row::{acts, another_finite, next_is_verb, next_preposition, relation_behind, transitive};
 use super::sided;
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, chunks, is_determiner};
 use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, Kind, KindGroup};
+use recrash_model::account::{Act, Kind};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -69,6 +70,8 @@ pub(super) struct Carry {
     pub(super) nobody: bool,
     /// Where who is named next is: "From the right, a van ..."
     pub(super) lead: Option<Relation>,
+    /// Where the clause names who it is about stand words that nobody knows: "a panel fell off".
+    pub(super) stranger: bool,
     /// "Between" waits for the second of a pair.
     pub(super) pair: bool,
 }
@@ -103,13 +106,20 @@ impl Parser<'_> {
         match &placed.chunk {
             Chunk::Noun(noun) => {
                 let hint = relation_behind(all, at, &self.world);
-                let actor = self.world.resolve(noun, (placed.first, placed.end), hint);
-                self.attribute(
-                    noun.owner.as_deref().filter(|_| noun.occupant.is_some()).unwrap_or(noun),
-                    actor,
-                    placed,
-                    carry,
-                );
+                let actor = match self.apposed(noun, all, at, carry) {
+                    Some(actor) => {
+                        self.world.describe(actor, noun, (placed.first, placed.end));
+                        self.attribute(noun, actor, placed, carry);
+                        (carry.governed, carry.after_comma) = (false, false);
+                        return;
+                    }
+                    None => self.world.resolve(noun, (placed.first, placed.end), hint),
+                };
+                // "one standing passenger": the vehicle does not stand.
+                let described = if noun.occupant.is_some() { noun.owner.as_deref() } else { Some(noun) };
+                if let Some(described) = described {
+                    self.attribute(described, actor, placed, carry);
+                }
                 // "in a queue of westbound traffic": the direction is also that of who stands in it.
                 if let (Some(compass), true, Some("of" | "in" | "behind")) =
                     (noun.compass, noun.several, carry.preposition)
@@ -125,6 +135,9 @@ impl Parser<'_> {
                 self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
             }
             Chunk::Piece(piece) => {
+                if carry.filled {
+                    (carry.preposition, carry.relation) = (None, None);
+                }
                 let actor = match &piece.owner {
                     Some(owner) => {
                         let actor = self.world.resolve(owner, (placed.first, placed.end), None);
@@ -197,10 +210,14 @@ impl Parser<'_> {
                     carry.to = true;
                 }
             }
+            // "the corner of Oak Street and Elm Street": no clause begins.
+            Chunk::Joint(Joint::And) if self.names_on_both_sides(all, at) => {}
             Chunk::Joint(joint) => self.joint(*joint, carry, &all[at + 1..]),
             Chunk::Comma => {
                 self.leave_place(carry);
                 carry.after_comma = true;
+                // "The van, unable to stop, struck it": the comma ends what did not happen.
+                carry.negated &= carry.nobody || !carry.has_verb && carry.frame.is_none() && carry.fresh;
                 (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
                 carry.progress = None;
                 carry.described = carry.subject.clone().filter(|_| carry.relative);
@@ -211,6 +228,9 @@ impl Parser<'_> {
                     carry.has_verb = carry.pending.is_empty() && carry.main.is_some();
                 }
                 return;
+            }
+            Chunk::Word if self.touches_by_parts(&self.tokens[placed.first].text, all, at, carry) => {
+                self.verb(Sense::Contact, Form::Past, all, at, carry);
             }
             Chunk::Word => {
                 let word = self.tokens[placed.first].text.as_str();
@@ -242,6 +262,13 @@ impl Parser<'_> {
                     return;
                 }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
+                // "at about 6 mph its bumper touched".
+                carry.filled |=
+                    waits && matches!(word, "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm");
+                let begins = carry.fresh && !waits && matches!(word, "a" | "an" | "the" | "several" | "some" | "two");
+                if begins && matches!(next, Some(Chunk::Word)) {
+                    carry.stranger = true;
+                }
                 carry.filled |= waits && (is_determiner(word) || self.tokens[placed.first].capital);
                 return;
             }
@@ -350,6 +377,17 @@ impl Parser<'_> {
             carry.preposition = None;
             return;
         }
+        // "a heavy truck with a trailer": they are one.
+        if let (Some("with"), Some(last), Some(Kind::Trailer)) =
+            (carry.preposition, &carry.last, self.world.actors[actor].kind)
+            && last.piece.is_none()
+            && !carry.governed
+            && self.world.actors[last.actor].kind.is_some_and(Kind::is_vehicle)
+        {
+            self.world.tow(last.actor, actor);
+            carry.preposition = None;
+            return;
+        }
         if let Some(preposition) = carry.preposition.take() {
             self.object_of(preposition, &mention, placed, carry);
             carry.last = Some(mention);
@@ -448,6 +486,7 @@ impl Parser<'_> {
                 carry.relative = false;
                 carry.governed = false;
                 let nobody = std::mem::take(&mut carry.nobody);
+                carry.stranger = false;
                 (carry.be, carry.to, carry.progress, carry.negated) = (false, false, None, nobody);
                 carry.frame = None;
             }
@@ -487,6 +526,9 @@ impl Parser<'_> {
         self.leave_place(carry);
         carry.clause += 1;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
+        if joint != Joint::And || !matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
+            carry.stranger = false;
+        }
         if joint != Joint::And {
             carry.joint = Some(joint);
             (carry.progress, carry.negated) = (None, false);
@@ -529,6 +571,13 @@ impl Parser<'_> {
         let remains = before.is_some_and(|before| matches!(before.chunk, Chunk::Verb(Sense::Act(Act::Hold), _)));
         let backed = sense == Sense::Act(Act::Reverse) && form == Form::Past && (carry.be || remains);
         let sense = if backed && word == "backed" { Sense::Other } else { sense };
+        // "holding a phone", "held on to the rail".
+        let carried = word.starts_with("hold") || word == "held";
+        let on = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Word | Chunk::Preposition("on")));
+        // "a bicycle ridden by a courier" passes nobody.
+        let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
+        let sense = if ridden { Sense::Other } else { sense };
+        let sense = if carried && on && placed.end == placed.first + 1 { Sense::Other } else { sense };
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         // A finite verb behind a finished relative clause is of the clause around it.
         let finite = (matches!(form, Form::Past | Form::Present)) || (form == Form::Ing && carry.be);
@@ -569,7 +618,7 @@ impl Parser<'_> {
         }
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
-        let who = self.who_of(sense, form, placed, carry, purpose);
+        let who = self.who_of(sense, form, placed, carry, purpose).filter(|_| !carry.stranger);
         let mut frame = self.frame(who.as_ref().map(|mention| mention.actor), sense, form, placed, carry);
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
@@ -662,6 +711,7 @@ impl Parser<'_> {
         }
         let unnamed = frame.who.is_none()
             && !frame.passive
+            && !carry.stranger
             && !matches!(sense, Sense::ContactMade | Sense::LightGreen | Sense::LightRed | Sense::LightYellow);
         if let (Some(also), false) = (&carry.also, frame.passive) {
             let mut twin = frame.clone();
@@ -674,7 +724,7 @@ impl Parser<'_> {
             carry.pending.push(number);
         }
         carry.frame = Some(number);
-        carry.has_verb |= (finite && !described) || carry.be || unnamed;
+        carry.has_verb |= (finite && !described) || carry.be || unnamed || carry.stranger;
         carry.fresh = false;
         carry.governed = false;
         carry.preposition = None;
@@ -722,69 +772,5 @@ impl Carry {
                     | Sense::RearEnd
                     | Sense::Act(Act::Pass | Act::Follow | Act::Cross)
             )
-    }
-}
-
-pub(super) fn acts(kind: Option<Kind>) -> bool {
-    kind.is_none_or(|kind| kind.group() != KindGroup::Object)
-}
-
-/// Whether the verb takes an object.
-pub(super) fn transitive(sense: Sense) -> bool {
-    matches!(
-        sense,
-        Sense::Contact
-            | Sense::ContactMade
-            | Sense::RearEnd
-            | Sense::ReverseContact
-            | Sense::OpenDoorInto
-            | Sense::Headline
-            | Sense::Approach
-            | Sense::Push
-            | Sense::See
-            | Sense::Damage
-            | Sense::Yield
-            | Sense::ExitVehicle
-            | Sense::Other
-            | Sense::Tow
-            | Sense::Act(Act::Pass | Act::Follow | Act::LaneChange | Act::OpenDoor | Act::Cross | Act::Slow)
-    )
-}
-
-fn next_is_verb(all: &[Placed], at: usize) -> bool {
-    for placed in all[at + 1..].iter().take(3) {
-        match &placed.chunk {
-            Chunk::Verb(_, Form::Ing | Form::Base) => return true,
-            Chunk::Preposition("to") | Chunk::Word | Chunk::Be => {}
-            _ => return false,
-        }
-    }
-    false
-}
-
-/// Whether a finite verb stands behind in the same clause.
-fn another_finite(all: &[Placed], at: usize) -> bool {
-    for placed in &all[at + 1..] {
-        match &placed.chunk {
-            Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be => return true,
-            Chunk::Joint(_) | Chunk::Comma | Chunk::Relative => return false,
-            _ => {}
-        }
-    }
-    false
-}
-
-fn next_preposition(all: &[Placed], at: usize) -> Option<&'static str> {
-    all[at + 1..].iter().take(4).find_map(|placed| match placed.chunk {
-        Chunk::Preposition(word) => Some(word),
-        _ => None,
-    })
-}
-
-/// Where the words behind a noun say that it is, seen from the subject vehicle.
-fn relation_behind(all: &[Placed], at: usize, _world: &World) -> Option<Relation> {
-    match (all.get(at + 1).map(|p| &p.chunk)?, all.get(at + 2).map(|p| &p.chunk)) {
-        (Chunk::Relation(relation), Some(Chunk::Noun(noun))) if noun.subject => Some(*relation),
-        _ => None,
     }
 }

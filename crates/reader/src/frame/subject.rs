@@ -1,6 +1,7 @@
 //! Of whom a verb is told, and what its own words name besides.
 
-use super::parser::{Carry, Mention, Parser, acts};
+use super::parser::{Carry, Mention, Parser};
+use super::row::acts;
 use crate::chunk::{Placed, Spot};
 use crate::lexicon::{Form, Sense};
 use recrash_model::account::{Act, LeftRight};

@@ -110,6 +110,10 @@ fn came_from(account: &Account) -> Option<CameFrom> {
         Origin::Beside { side } if thing => from_side(side),
         Origin::Beside { side } => beside(side),
         Origin::Parked { side } if parked => beside(side?),
+        // It had come away from the kerb, and passed.
+        Origin::Parked { .. } if told(&partner.movement) == Some(Movement::Passing) => {
+            alongside(account).map_or(CameFrom::Behind, beside)
+        }
         Origin::Cross { side } => from_side(side),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
             from_side(side?)
@@ -121,7 +125,7 @@ fn came_from(account: &Account) -> Option<CameFrom> {
 /// The side on which one from behind is met: where the flank is touched, or a rear corner by one that is past it with its front.
 fn alongside(account: &Account) -> Option<LeftRight> {
     let partner = account.partner.as_ref()?;
-    let sv = account.sv.zone_values();
+    let sv = worded(&account.sv);
     if sv.is_empty() {
         // Nobody tells where it was touched, and it was passed on a side.
         return partner.acts.iter().find(|fact| fact.act == Act::Pass && !fact.after_contact)?.side;
@@ -134,14 +138,19 @@ fn alongside(account: &Account) -> Option<LeftRight> {
         _ => return None,
     };
     let flank = any(&[Z::FrontLeft, Z::Left, Z::FrontRight, Z::Right]);
-    // What the words name, and not the corner that a column adds to it.
-    let worded: Vec<Z> = partner.zones.iter().filter(|zone| zone.source.is_told()).map(|zone| zone.value).collect();
-    let cp = if worded.is_empty() { partner.zone_values() } else { worded };
-    // A rear corner by one that passes, and whose front is past it.
-    let passes =
+    let cp = worded(partner);
+    // A rear corner by one that passes, and not with its plain front; by one that changes lanes, with its front past it.
+    let passes = partner.acts.iter().any(|fact| fact.act == Act::Pass && !fact.after_contact);
+    let moves_over =
         matches!(told(&partner.movement), Some(Movement::Passing | Movement::ChangingLanes | Movement::Merging));
-    let past = !cp.is_empty() && cp.iter().all(|zone| !zone.is_front());
-    (!sv.contains(&Z::Rear) && (flank || passes && past)).then_some(side)
+    let past = passes && !cp.contains(&Z::Front) || moves_over && cp.iter().all(|zone| !zone.is_front());
+    (!sv.contains(&Z::Rear) && (flank || !cp.is_empty() && past)).then_some(side)
+}
+
+/// Zones as the words name them, without the corners that a column adds; else those of the column.
+fn worded(party: &Party) -> Vec<Z> {
+    let worded: Vec<Z> = party.zones.iter().filter(|zone| zone.source.is_told()).map(|zone| zone.value).collect();
+    if worded.is_empty() { party.zone_values() } else { worded }
 }
 
 fn beside(side: LeftRight) -> CameFrom {
