@@ -3,10 +3,13 @@
 use crate::control;
 use crate::door::Opening;
 use crate::ground::Ground;
+use crate::lateral::{self, PULL_OUT_M};
 use crate::others::{self, Extra};
+use crate::phases::{self, Lead, MOVES_UP_M, Phase};
+use crate::things;
 use crate::told::{Aside, Side, Told, Turning};
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{Account, ContactState, ControlDevice, LaneWord, LeftRight, Obeyed, Origin};
+use recrash_model::account::{Account, ContactState, ControlDevice, Obeyed, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -69,13 +72,16 @@ fn beyond_m(speed_mps: f64) -> f64 {
 }
 
 /// The speeds of one side until the contact: speed at the start, acts, and what is driven until then. [m/s, m]
-struct Pace {
-    speed_mps: f64,
-    acts: Vec<Act>,
-    driven_m: f64,
+pub(crate) struct Pace {
+    pub(crate) speed_mps: f64,
+    pub(crate) acts: Vec<Act>,
+    pub(crate) driven_m: f64,
 }
 
-fn when(time_s: f64, deed: Deed) -> Act {
+/// Stands from the start.
+const STANDING: Pace = Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 };
+
+pub(crate) fn when(time_s: f64, deed: Deed) -> Act {
     Act { id: None, when: Some(Trigger::TimeS(time_s)), delay_s: 0.0, deed }
 }
 
@@ -96,12 +102,21 @@ fn partner_pace(told: &Told) -> Pace {
     let ego = ego_pace(told);
     let rolling_mps = if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 };
     let usual = pace(cp, rolling_mps, STOOD_S);
+    // Who stood behind an ego that moved up stood behind where that was.
+    let moved_up = told.sv.state.stands() && told.sv.phases.last.contains(&Phase::Drives);
+    let behind_it = told.origin == Origin::Behind && (cp.state == ContactState::SettingOff || cp.stood_first);
+    let usual = match start_over(cp.speed_mps, MOVES_UP_M + BEHIND_M) {
+        Some(both_move_up) if moved_up && behind_it => both_move_up,
+        _ => usual,
+    };
+    let ego_came = told.sv.phases.last.is_empty() || told.sv.phases.came;
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
+    let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
         // It came to a stop behind the ego before it set off.
         ContactState::SettingOff | ContactState::Moving
-            if told.origin == Origin::Behind && ego.driven_m > usual.driven_m && !usual.acts.is_empty() =>
+            if told.origin == Origin::Behind && ego_came && ego.driven_m > usual.driven_m && !usual.acts.is_empty() =>
         {
             let moving_s = CONTACT_S - first_time(&usual.acts);
             let braking_s = ROLLING_MPS / STOPPING_MPS2;
@@ -126,29 +141,34 @@ fn partner_pace(told: &Told) -> Pace {
         }
         ContactState::Reversing => start_over(cp.speed_mps, REVERSES_M).unwrap_or(usual),
         // Who comes from the kerb or out of a stall stood there.
-        ContactState::Moving if cp.movement == Some(Movement::EnteringTraffic) && from_stand(told.origin) => {
+        ContactState::Moving if told.stood_beside() || enters && from_stand(told.origin) => {
             let moving_s = (2.0 * PULL_OUT_M / cp.speed_mps * 10.0).round() / 10.0;
             let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
             Pace { speed_mps: 0.0, acts: vec![when(CONTACT_S - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
         }
-        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => {
-            Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 }
+        // Who stood and turned has room for its turn.
+        ContactState::Moving if cp.stood_first && matches!(cp.turning, Turning::Left | Turning::Right) => {
+            start_over(cp.speed_mps, TURNS_M).unwrap_or(usual)
         }
+        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego.driven_m - 0.3 => STANDING,
         _ => usual,
     }
 }
 
+/// How far somebody who stood before it turned has driven at the contact. [m]
+const TURNS_M: f64 = 8.0;
+
+/// Who stands behind the ego stands so far behind it. [m]
+const BEHIND_M: f64 = 2.0;
+
 /// How far somebody has reversed at the contact. [m]
 const REVERSES_M: f64 = 2.5;
-
-/// From how far away somebody pulls out. [m]
-const PULL_OUT_M: f64 = 8.0;
 
 fn from_stand(origin: Origin) -> bool {
     !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)
 }
 
-fn first_time(acts: &[Act]) -> f64 {
+pub(crate) fn first_time(acts: &[Act]) -> f64 {
     acts.iter()
         .find_map(|act| match act.when {
             Some(Trigger::TimeS(time_s)) => Some(time_s),
@@ -169,7 +189,7 @@ fn sets_off(speed_mps: f64, within_m: f64) -> Pace {
 /// How somebody's speed comes to what it is at the contact.
 fn pace(side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
     match side.state {
-        ContactState::Parked => Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 },
+        ContactState::Parked => STANDING,
         ContactState::Stopped => {
             let braking_s = rolling_mps / STOPPING_MPS2;
             let from_s = ((CONTACT_S - stood_s - braking_s) * 10.0).floor() / 10.0;
@@ -247,7 +267,7 @@ fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
 }
 
 /// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.
-fn start_over(speed_mps: f64, driven_m: f64) -> Option<Pace> {
+pub(crate) fn start_over(speed_mps: f64, driven_m: f64) -> Option<Pace> {
     if driven_m < 0.3 {
         return None;
     }
@@ -272,7 +292,8 @@ const AT_LINE_M: f64 = 0.5;
 /// The scenario of a staging.
 pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> ScenarioDraft {
     let ground = &staging.ground;
-    let mut recorded = ego_plan(told, &staging.ground, staging.sv_s_m, staging.sv);
+    let mut recorded = ego_plan(told, ground, staging.sv_s_m, staging.sv);
+    let lead = ego_paces(told, ground, staging.sv_s_m).0;
     let (mut actors, objects) = partner(told, staging);
     let mut parts = Vec::new();
     if let Some(door) = &staging.door {
@@ -286,6 +307,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     let control = control::devices(told, ground);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
+        _ if let Some(lead) = &lead => Some(lead.handover_s(CONTACT_S - HANDOVER_BEFORE_S)),
         // While it still rolls.
         ContactState::Stopped => Some((first_time(&recorded.acts) - ROLLS_S).clamp(0.0, CONTACT_S - HANDOVER_BEFORE_S)),
         _ => Some((CONTACT_S - HANDOVER_BEFORE_S).max(0.0)),
@@ -326,7 +348,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
 
 /// Somebody opens a door.
 fn opens(door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<Part>) {
-    let (to_deg, over_s) = Opening::SWING;
+    let (to_deg, over_s) = (door.to_deg, Opening::OPENS_S);
     parts.push(door.part.clone());
     plan.acts.push(when(CONTACT_S - door.before_s, Deed::Part { part: door.part.id.clone(), to_deg, over_s }));
 }
@@ -396,10 +418,27 @@ fn shift(aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
     when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
 }
 
+/// What the ego did before its last phase where that is told, and its last pace.
+fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Lead>, Pace) {
+    let usual = from_line(told, ground, sv_s_m).unwrap_or_else(|| ego_pace(told));
+    match phases::lead(told, &usual) {
+        Some(lead) if told.sv.state.stands() => (Some(lead), STANDING),
+        lead => (lead, usual),
+    }
+}
+
 fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
-    let mut pace = from_line(told, ground, sv_s_m).unwrap_or_else(|| ego_pace(told));
+    let (lead, mut pace) = ego_paces(told, ground, sv_s_m);
     let aside = told.sv_aside();
     pace.acts.extend(aside.map(|aside| shift(aside, &pace, told.sv.speed_mps)));
+    let reverses = told.sv.state == ContactState::Reversing;
+    let pace = match lead {
+        Some(lead) if reverses || lead.reverses() => {
+            return phases::to_and_fro(lead, pace, sv, (reverses, beyond_m(told.sv.speed_mps)));
+        }
+        Some(lead) => lead.then(pace),
+        None => pace,
+    };
     let lane = |s_m: f64| Place::Lane {
         road: ground.route[0].clone(),
         lane: ground.lane,
@@ -407,7 +446,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         t_m: aside.map_or(0.0, |aside| aside.from_t_m),
         heading_deg: 0.0,
     };
-    if told.sv.state == ContactState::Reversing {
+    if reverses {
         let back = Vec2::from_heading(sv.heading);
         let start = sv.position + back * pace.driven_m;
         let to = sv.position - back * beyond_m(told.sv.speed_mps);
@@ -441,6 +480,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     let (length_m, width_m) = size_of(cp);
     if let Some(thing) = told.thing
         && cp.state.stands()
+        && staging.door.is_none()
     {
         let size = Some(Size { length_m, width_m });
         return (Vec::new(), vec![ObjectSpec { kind: obstacle_kind(thing), at: at(staging.cp), size }]);
@@ -448,13 +488,15 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if told.is_thrown() {
         return (thrown(told, staging), Vec::new());
     }
-    let pace = beside_from_line(told, staging).unwrap_or_else(|| partner_pace(told));
+    let from_stand =
+        things::pace(told).or_else(|| beside_from_line(told, staging)).or_else(|| lateral::from_kerb(told, staging));
+    let pace = from_stand.unwrap_or_else(|| partner_pace(told));
     let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
     }
     let mut actors = vec![actor(course_to(told, staging, pace, at))];
-    actors.extend(told.pushed.then(|| nudger(told, staging)));
+    actors.extend((told.pushed && told.thing.is_none()).then(|| nudger(told, staging)));
     (actors, Vec::new())
 }
 
@@ -500,7 +542,10 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
         let begin = start(told, staging, back_m, aside, motion);
         length(begin).is_some_and(|found| (found - pace.driven_m).abs() < 0.02).then_some(begin)
     };
-    if let Some((begin, mut course)) = with_its_turn(told, staging, &pace, arm_m) {
+    let on_lanes = with_its_turn(told, staging, &pace, arm_m)
+        .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
+        .or_else(|| lateral::turns_in(told, staging, &pace, arm_m));
+    if let Some((begin, mut course)) = on_lanes {
         course.push(beyond);
         let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();
         return ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
@@ -544,17 +589,13 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     let turn = math::wrap_angle(staging.cp.heading - came);
     let mut position = staging.cp.position - way * back_m;
     let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
-    let from_left_m = told.cp_from_left_m().filter(|_| aside && !turns);
-    let beside = beside(told).filter(|_| aside && !turns);
+    let line_y_m = lateral::line_y_m(told, staging).filter(|_| aside && !turns);
     let pulls_out = aside && !turns && told.origin == Origin::Behind && told.cp.movement == Some(Movement::Passing);
     if pulls_out {
         // Out of the ego's lane.
         position.y = staging.sv.position.y;
-    } else if let Some(from_left_m) = from_left_m {
-        position.y = staging.cp.position.y + from_left_m;
-    } else if let Some(side) = beside {
-        let right = if side == LeftRight::Left { -1.0 } else { 1.0 };
-        position.y = staging.sv.position.y - right * crate::ground::LANE_M;
+    } else if let Some(line_y_m) = line_y_m {
+        position.y = line_y_m;
     } else if turn.abs() > 0.01 {
         // An arc of a usual radius before the contact: beside the line of the contact, by what the arc gains.
         let radius = if turns { 8.0_f64 } else { 15.0 }.min(back_m / turn.abs());
@@ -564,16 +605,6 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
             - way.left() * (gain * turn.signum());
     }
     Pose { position, heading: came }
-}
-
-/// On which side of the ego's lane the partner comes along.
-fn beside(told: &Told) -> Option<LeftRight> {
-    match told.origin {
-        // It keeps its lane where the ego changes lanes.
-        Origin::Beside { side } => told.sv_aside().is_none().then_some(side),
-        Origin::Behind if told.cp.lane == Some(LaneWord::Opposing) => Some(LeftRight::Left),
-        _ => None,
-    }
 }
 
 /// The partner stands behind the ego, or comes along behind it, and another runs into it: a car at [`PUSH_MPS`] over its speed.

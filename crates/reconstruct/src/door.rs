@@ -8,6 +8,7 @@ use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{LeftRight, Origin, Striker};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
 use recrash_model::scenario::{Part, PartKind};
 use recrash_model::zones::ContactZone;
 use recrash_plan::acts::{Attached, PartState};
@@ -42,16 +43,20 @@ pub(crate) struct Opening {
     pub(crate) part: Part,
     /// It begins to open so long before the contact. [s]
     pub(crate) before_s: f64,
+    /// The angle that it opens to. [deg]
+    pub(crate) to_deg: f64,
+    /// From its end to where it meets the other. [m]
+    pub(crate) met_m: f64,
 }
 
 impl Opening {
-    /// Angle it opens to, and for how long. [deg, s]
-    pub(crate) const SWING: (f64, f64) = (OPEN_DEG, OPENS_S);
+    /// It opens for so long. [s]
+    pub(crate) const OPENS_S: f64 = OPENS_S;
 
     /// Its box, so long before the contact.
     fn outline(&self, owner: Pose, before_s: f64) -> OrientedBox {
         let share = ((self.before_s - before_s) / OPENS_S).clamp(0.0, 1.0);
-        let angle = (share * OPEN_DEG).to_radians();
+        let angle = (share * self.to_deg).to_radians();
         let attached = Attached { owner: 0, part: self.part.clone() };
         attached.outline(&PartState { angle, ..PartState::default() }, owner)
     }
@@ -114,8 +119,35 @@ fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
                     width_m: THICK_M,
                     axle_m: None,
                 };
-                list.push(Opening { of_sv, part, before_s });
+                let met_m = if before_s > OPENS_S { MET_AT_M } else { SWUNG_INTO_M };
+                list.push(Opening { of_sv, part, before_s, to_deg: OPEN_DEG, met_m });
             }
+        }
+    }
+    list
+}
+
+/// The arm of a gate, and where it may meet the other, from its end. [m]
+const ARM_M: f64 = 3.6;
+const ARM_THICK_M: f64 = 0.1;
+const ARM_MET_M: [f64; 5] = [0.3, 0.02, 0.8, 1.5, 2.2];
+
+/// Arms of a gate to try: they lie along the way through it, and swing across it.
+fn arms() -> Vec<Opening> {
+    let part = Part {
+        id: "arm".to_owned(),
+        kind: PartKind::Arm,
+        x_m: 0.0,
+        y_m: 0.0,
+        length_m: ARM_M,
+        width_m: ARM_THICK_M,
+        axle_m: None,
+    };
+    let mut list = Vec::new();
+    for to_deg in [90.0, -90.0] {
+        for before_s in [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3] {
+            let arm = |met_m: f64| Opening { of_sv: false, part: part.clone(), before_s, to_deg, met_m };
+            list.extend(ARM_MET_M.map(arm));
         }
     }
     list
@@ -125,20 +157,25 @@ fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
 pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
     let of_sv = told.door == Some(Striker::Sv);
     let (owner, other) = if of_sv { (&told.sv, &told.cp) } else { (&told.cp, &told.sv) };
-    if !has_doors(owner.kind) || told.thing.is_some() {
-        return Vec::new();
-    }
-    let openings = openings(told, owner, of_sv);
+    let openings = match told.gate_swings {
+        true => arms(),
+        false if !has_doors(owner.kind) || told.thing.is_some() => return Vec::new(),
+        false => openings(told, owner, of_sv),
+    };
     let mut found = Vec::new();
     let mut trial = 0;
     for sv_s_m in ground.places() {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
-        for (came, heading) in headings(told, sv.heading) {
+        // The post of a gate is not at an angle to the way through it.
+        let through = [sv.heading, sv.heading + math::PI].map(math::wrap_angle).map(|heading| (heading, heading));
+        let faces = if told.gate_swings { through.to_vec() } else { headings(told, sv.heading) };
+        for (came, heading) in faces {
             for opening in &openings {
                 for &point in met_points(other).iter() {
                     trial += 1;
                     let Some((cp, owner_zone, other_zone)) = touch(told, opening, sv, heading, point) else { continue };
-                    let off = zones_off(&owner.zones, owner_zone) + zones_off(&other.zones, other_zone);
+                    let owner_off = if told.gate_swings { 0 } else { zones_off(&owner.zones, owner_zone) };
+                    let off = owner_off + zones_off(&other.zones, other_zone);
                     let (ground, door) = (ground.clone(), Some(opening.clone()));
                     found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, door, cost: (off, trial) });
                 }
@@ -175,8 +212,7 @@ fn touch(
     let origin = Pose { position: Vec2::new(0.0, 0.0), heading };
     let end = |owner: Pose| {
         let door = opening.outline(owner, 0.0);
-        let inside_m = if opening.before_s > OPENS_S { MET_AT_M } else { SWUNG_INTO_M };
-        door.centre + door.axis * (door.half_length - inside_m)
+        door.centre + door.axis * (door.half_length - opening.met_m)
     };
     let position = if opening.of_sv {
         end(sv) - met(&outline(&told.cp, origin))

@@ -2,9 +2,11 @@
 
 use crate::control;
 use crate::door;
+use crate::lateral::is_on_foot;
 use crate::movement::{self, Way};
 use crate::others;
-use crate::told::Told;
+use crate::phases;
+use crate::told::{Slant, Told};
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
@@ -97,24 +99,43 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
         fact(CheckKind::CpZones, near, zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
     }
+    let swung =
+        other_part.as_ref().zip(touch.track).is_some_and(|(part, track)| swung(rollout, track, part, touch.time_s));
+    // Of a thing that stands nothing else is told.
+    let touch = Touch { track: touch.track.filter(|_| !told.gate_swings), ..touch };
+    if told.gate_swings {
+        let observed = if swung { "its arm swung" } else { "nothing swung" };
+        fact(CheckKind::CpState, swung, "swinging".to_owned(), observed.to_owned());
+    } else if told.is_sliding() && touch.track.is_none() {
+        fact(CheckKind::CpState, false, "moving".to_owned(), "it lies there".to_owned());
+    }
     let mut states = vec![(CheckKind::SvState, &told.sv, ego_track, &touch.ego)];
     states.extend(touch.track.map(|track| (CheckKind::CpState, &told.cp, track, &touch.other)));
     for (kind, side, track, seen) in states.into_iter().filter(|(_, side, ..)| side.state_told) {
         // Who is pushed moves when it touches.
-        let pushed = kind == CheckKind::CpState && told.pushed;
+        let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stood = stood(track, touch.time_s);
         let slowed = slowed(track, touch.time_s);
+        let (as_told, phases) = phases::check(&side.phases.last, track, touch.time_s);
         let shown = pushed
             || state(side.state, track, seen, touch.time_s)
                 && (stood || !side.stood_first)
-                && (slowed || side.slowed_from.is_none());
+                && (slowed || side.slowed_from.is_none())
+                && as_told;
         let before = |stood: bool, slowed: bool| match (stood, slowed) {
             (true, _) => ", had stood",
             (false, true) => ", had slowed",
             (false, false) => "",
         };
-        let expected = format!("{}{}", side.state.label(), before(side.stood_first, side.slowed_from.is_some()));
-        fact(kind, shown, expected, format!("{:.2} m/s{}", seen.speed(), before(stood, slowed)));
+        let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
+        if side.phases.last.is_empty() {
+            expected += before(side.stood_first, side.slowed_from.is_some());
+            observed += before(stood, slowed);
+        } else {
+            expected += &format!(": {}", phases::words(&side.phases.last));
+            observed += &format!(": {phases}");
+        }
+        fact(kind, shown, expected, observed);
     }
     for (kind, impact_mps, seen) in
         [(CheckKind::SvSpeed, told.sv.impact_mps, &touch.ego), (CheckKind::CpSpeed, told.cp.impact_mps, &touch.other)]
@@ -133,12 +154,20 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
                 _ => false,
             });
         let observed = if before { "touched by another before" } else { "touched by nobody before" };
-        fact(CheckKind::PassedOn, before, "another touched the partner first".to_owned(), observed.to_owned());
+        let result = match before {
+            true => CheckResult::Shown,
+            // Who pushed a thing is not drawn.
+            false if told.is_sliding() => CheckResult::CannotBeShown,
+            false => CheckResult::NotShown,
+        };
+        let (kind, expected) = (CheckKind::PassedOn, "another touched the partner first".to_owned());
+        list.push(Check { kind, expected, observed: observed.to_owned(), result });
     }
     let mut ways = vec![(CheckKind::SvMovement, &told.sv, ego_track, touch.track, touch.other)];
     ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
     for (kind, side, track, other, met) in ways {
-        let way = Way { scenario, track, other, met, time_s: touch.time_s };
+        let road_rad = ego_track.states[0].heading;
+        let way = Way { scenario, track, other, met, time_s: touch.time_s, road_rad };
         if let Some((expected, result, observed)) = movement::check(side, &way) {
             list.push(Check { kind, expected, observed, result });
         }
@@ -148,8 +177,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         list.push(Check { kind, expected, observed, result });
     };
     if let Some(track) = touch.track.filter(|_| told.origin_told) {
-        let (shown, observed) = origin(told.origin, ego_track, track, told.cp.state);
-        fact(CheckKind::Approach, shown, told.origin.words(), observed);
+        let (shown, observed) = origin(told, ego_track, track);
+        fact(CheckKind::Approach, shown, origin_words(told), observed);
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
         // Who stands there holds what a door of its reaches; a door of the partner's comes there when it opens.
@@ -331,6 +360,17 @@ fn parts_that_touch(
     }
 }
 
+/// A part that has turned by less than this in the last 0.3 s does not swing. [rad]
+const SWINGS_RAD: f64 = 0.05;
+
+/// Whether the part of somebody that touches was swinging then.
+fn swung(rollout: &Rollout, owner: &ActorTrack, part: &OrientedBox, time_s: f64) -> bool {
+    let number = rollout.actors.iter().position(|other| other.id == owner.id);
+    let parts = rollout.actors.iter().filter(|track| track.part_of == number);
+    let before = parts.map(|track| outline_at(track, (time_s - 0.3).max(0.0)));
+    before.map(|before| math::acos(before.axis.dot(part.axis).clamp(-1.0, 1.0))).any(|turned| turned > SWINGS_RAD)
+}
+
 /// A box between two steps.
 fn outline_at(track: &ActorTrack, time_s: f64) -> OrientedBox {
     let at = (time_s / STEP_S).min((track.states.len() - 1) as f64);
@@ -431,11 +471,30 @@ const ASIDE_M: f64 = 1.0;
 /// Who is farther aside than this does not come along the ego's lane. [m]
 const BESIDE_M: f64 = 5.0;
 
+/// Who comes over from its own side, or from the kerb, is farther aside than this when it sets out. [m]
+const OVER_M: f64 = 2.0;
+
+/// Who turned off before it reversed is so much farther aside. [m]
+const TURNED_OFF_M: f64 = 3.0;
+
+fn origin_words(told: &Told) -> String {
+    let more = match (told.comes_over, told.comes_round) {
+        (true, _) => ", on its own side",
+        (_, true) => ", behind",
+        _ => "",
+    };
+    told.origin.words() + more
+}
+
 /// Whether the partner comes from where it is told, seen from the ego when it sets out.
-fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactState) -> (bool, String) {
-    let on_foot = matches!(other.kind, PartnerKind::Pedestrian | PartnerKind::Animal);
+fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
+    let state = told.cp.state;
+    let on_foot = is_on_foot(other.kind);
     // Seen when it sets out.
     let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+    let stands_then = sets_out > 0;
+    let turned_off = matches!(told.cp.slants, Some(Slant::Stood(_)));
+    let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
     let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
     let forward = Vec2::from_heading(ego.heading);
     let way = other.position() - ego.position();
@@ -449,15 +508,18 @@ fn origin(told: Origin, ego: &ActorTrack, other: &ActorTrack, state: ContactStat
     };
     let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
     let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
-    let same_way = facing.abs() < 60.0 || state == ContactState::Reversing;
-    let shown = match told {
+    // A thing has no front.
+    let same_way = facing.abs() < 60.0 || state == ContactState::Reversing || told.is_sliding();
+    let shown = match told.origin {
         Origin::Behind => ahead < 2.0 && same_way && left.abs() < BESIDE_M,
-        Origin::Ahead => ahead > -2.0 && (same_way || on_foot || state.stands()) && left.abs() < BESIDE_M,
-        Origin::Opposite => facing.abs() > 120.0,
-        Origin::Beside { side } => facing.abs() < 60.0 && beside(side),
+        Origin::Ahead => ahead > -2.0 && (same_way || on_foot || state.stands()) && left.abs() < beside_m,
+        Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
+        Origin::Beside { side } => (facing.abs() < 60.0 || told.is_sliding()) && beside(side),
         Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
-            side.is_none_or(beside) || state.stands()
+            let from_there =
+                !told.stood_beside() || stands_then && left.abs() > OVER_M && (!told.comes_round || ahead < 0.0);
+            side.is_none_or(beside) && from_there || state.stands()
         }
         Origin::Above => false,
     };

@@ -29,6 +29,12 @@ pub(crate) struct Ground {
     places: Vec<f64>,
     /// Whether crossing roads are there.
     pub(crate) junction: bool,
+    /// In one direction.
+    pub(crate) lanes: usize,
+    /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
+    pub(crate) kerbs_m: [f64; 2],
+    /// From the ego's line to the middle of the nearest lane of those who come towards it. [m]
+    pub(crate) opposing_m: f64,
 }
 
 impl Ground {
@@ -89,18 +95,24 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
         return junction(told, crossing);
     }
+    let one_way = is_one_way(told);
+    let oncoming = if one_way || told.place == PlaceKind::Highway { 0 } else { 1 };
     let (right, left) = match told.place {
         PlaceKind::Highway => (strips(lanes_for(told, 3), &[StripKind::Shoulder]), Vec::new()),
-        _ if lot => (strips(1, &[StripKind::Stalls]), strips(1, &[StripKind::Stalls])),
+        _ if lot => (strips(1, &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
         _ => (
             strips(lanes_for(told, 2), &[StripKind::Parking, StripKind::Sidewalk]),
-            strips(1, &[StripKind::Parking, StripKind::Sidewalk]),
+            strips(oncoming, &[StripKind::Parking, StripKind::Sidewalk]),
         ),
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     // The rightmost lane, but for a partner that comes by on the right.
     let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
-    let usual = if lanes > 1 && (to_right || passes_right(told)) { lanes - 2 } else { lanes - 1 };
+    let usual = match lanes {
+        _ if one_way => 0,
+        2.. if to_right || passes_right(told) => lanes - 2,
+        _ => lanes - 1,
+    };
     let lane = told_lane(told, lanes).unwrap_or(usual);
     let start = RoadStart::At { x_m: -APPROACH_M, y_m: (lane as f64 + 0.5) * LANE_M, heading_deg: 0.0 };
     let map = GraphMap {
@@ -108,13 +120,20 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         junctions: Vec::new(),
         areas: Vec::new(),
     };
-    with_way(map, vec!["main+".to_owned()], lane as u8, vec![APPROACH_M], false)
+    let across = Across { lanes, lane, oncoming };
+    with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false)
+}
+
+/// Who is parked on the left, facing as the ego does, is so on a one-way street.
+fn is_one_way(told: &Told) -> bool {
+    matches!(told.origin, Origin::Parked { side: Some(LeftRight::Left) })
 }
 
 /// Lanes in the ego's direction: as told, and at least as many as the told lanes need.
 fn lanes_for(told: &Told, usual: usize) -> usize {
-    // Who comes by on the opposite side comes by beside the only lane.
-    let usual = if told.cp.lane == Some(LaneWord::Opposing) && told.sv.lane.is_none() { 1 } else { usual };
+    // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
+    let usual =
+        if (told.cp.lane == Some(LaneWord::Opposing) || told.comes_over) && told.sv.lane.is_none() { 1 } else { usual };
     let needed = [told.sv.lane, told.cp.lane].into_iter().flatten().map(|word| match word {
         LaneWord::Center => 3,
         LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn => 2,
@@ -164,10 +183,13 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
         straight(id, start, length_m, strips(lanes, &[StripKind::Sidewalk]), strips(lanes, &[StripKind::Sidewalk]))
     };
+    let one_way = is_one_way(told);
     let (exit, lane) = match told.sv.turning {
         Turning::Left => ("left+", told_lane(told, lanes).unwrap_or(0)),
         Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
-        Turning::No | Turning::Round => ("ahead+", told_lane(told, lanes).unwrap_or(lanes - 1)),
+        Turning::No | Turning::Round => {
+            ("ahead+", told_lane(told, lanes).unwrap_or(if one_way { 0 } else { lanes - 1 }))
+        }
     };
     // The ego's lane lies on the x axis, or beside it.
     let centre_y = (lanes as f64 - 0.5) * LANE_M;
@@ -206,11 +228,29 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         let behind = told.extras.contains(&Extra::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
         vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
     };
-    with_way(map, vec!["own-".to_owned(), exit.to_owned()], lane as u8, places, true)
+    let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes } };
+    with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true)
 }
 
-fn with_way(map: GraphMap, route: Vec<String>, lane: u8, places: Vec<f64>, junction: bool) -> Ground {
+/// Lanes in the ego's direction, the ego's, 0 is the leftmost, and those of who comes towards it.
+struct Across {
+    lanes: usize,
+    lane: usize,
+    oncoming: usize,
+}
+
+impl Across {
+    /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
+    fn kerbs_m(&self) -> [f64; 2] {
+        let half_m = 0.5 * StripKind::Parking.usual_width_m();
+        [self.oncoming + self.lane, self.lanes - self.lane - 1].map(|between| (between as f64 + 0.5) * LANE_M + half_m)
+    }
+}
+
+fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>, junction: bool) -> Ground {
     let network = RoadNetwork::build(&MapSpec::G(map.clone()));
+    let lane = across.lane as u8;
     let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
-    Ground { map, route, lane, way, places, junction }
+    let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
+    Ground { map, route, lane, way, places, junction, lanes: across.lanes, kerbs_m, opposing_m }
 }

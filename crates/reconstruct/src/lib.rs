@@ -12,8 +12,11 @@ mod control;
 mod door;
 mod facts;
 mod ground;
+mod lateral;
 mod movement;
 mod others;
+mod phases;
+mod things;
 mod told;
 mod touch;
 

@@ -23,8 +23,9 @@ const PARKS_MPS: f64 = 5.0;
 /// Who passes is faster by this. [m/s]
 const FASTER_MPS: f64 = 0.3;
 
-/// Turns begin with more than this, straight on is less than that, and who turns round has turned by more. [deg]
-const TURNS_DEG: f64 = 9.5;
+/// Who turns has turned by more than this at the contact, or by more where it is to meet the other head-on; straight on is less than that, and who turns round has turned by more. [deg]
+const TURNS_DEG: f64 = 20.0;
+const TURNS_WIDE_DEG: f64 = 60.0;
 const STRAIGHT_DEG: f64 = 50.0;
 const ROUND_DEG: f64 = 60.0;
 
@@ -38,6 +39,8 @@ pub(crate) struct Way<'a> {
     pub(crate) met: ActorState,
     /// Of the contact. [s]
     pub(crate) time_s: f64,
+    /// Direction of the road that the ego came along. [rad]
+    pub(crate) road_rad: f64,
 }
 
 impl Way<'_> {
@@ -56,6 +59,13 @@ impl Way<'_> {
     fn beside_m(&self) -> f64 {
         let (first, last) = (&self.until()[0], &self.until()[self.until().len() - 1]);
         Vec2::from_heading(first.heading).cross(last.position() - first.position())
+    }
+
+    /// The angle between it and the road that the ego came along, at the contact. [deg]
+    fn slant_deg(&self) -> f64 {
+        let last = &self.until()[self.until().len() - 1];
+        let along = math::wrap_angle(last.heading - self.road_rad).to_degrees().abs();
+        along.min(180.0 - along)
     }
 
     fn stood(&self) -> bool {
@@ -97,6 +107,11 @@ impl Way<'_> {
     }
 }
 
+/// Who drives at an angle to the road is at least at this one, and who leaves the kerb or parks has turned by more where it is not
+/// aside. [deg]
+const SLANTS_DEG: f64 = 15.0;
+const BENDS_DEG: f64 = 9.5;
+
 /// What is expected, whether it is shown, and what is seen.
 pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, String)> {
     let movement = side.movement?;
@@ -119,21 +134,25 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
             (passed, if passed { "it came by" } else { "it did not come by" }.to_owned())
         }
         Movement::Backing => {
-            let reversed = way.reversed();
-            (reversed, if reversed { "it went backwards" } else { "it did not go backwards" }.to_owned())
+            let (reversed, slant) = (way.reversed(), way.slant_deg());
+            let words = if reversed { "it went backwards" } else { "it did not go backwards" };
+            (
+                reversed && (side.slants.is_none() || slant >= SLANTS_DEG),
+                format!("{words}, at {slant:.0} degrees to the road"),
+            )
         }
         Movement::EnteringTraffic => {
             let (words, degrees) = bent();
             let out = way.starts_off_lanes() || way.stood();
             (
-                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= TURNS_DEG),
+                out && (beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG),
                 format!("{words}, {:.1} m aside", beside_m.abs()),
             )
         }
         Movement::ParkingManeuver => {
             let (words, degrees) = bent();
             let slow = way.until()[way.until().len() - 1].velocity().length() < PARKS_MPS;
-            let turns = way.reversed() || beside_m.abs() >= LEFT_LINE_M || degrees >= TURNS_DEG;
+            let turns = way.reversed() || beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG;
             (slow && turns, format!("{words}, {:.1} m aside", beside_m.abs()))
         }
         Movement::WrongWay => match way.against() {
@@ -151,19 +170,38 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         | Movement::NmAlongside
         | Movement::NmInRoadway => {
             let fits = match side.turning {
-                Turning::Left => turned > TURNS_DEG,
-                Turning::Right => turned < -TURNS_DEG,
                 Turning::No => turned.abs() < STRAIGHT_DEG,
                 Turning::Round => turned.abs() > ROUND_DEG,
+                Turning::Left | Turning::Right => true,
             };
             (fits, turned_words(turned))
         }
     };
+    let least = if side.turns_wide { TURNS_WIDE_DEG } else { TURNS_DEG };
+    let turns = match side.turning {
+        Turning::Left => turned > least,
+        Turning::Right => turned < -least,
+        Turning::No | Turning::Round => true,
+    };
+    let (dodges, dodged) = sideways(LEFT_LINE_M);
+    let shown = shown && turns && (dodges || !side.dodges);
+    let observed = if side.dodges { format!("{observed}, {dodged}") } else { observed };
     Some((word(side), if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
 }
 
 fn word(side: &Side) -> String {
-    side.movement.map_or(String::new(), |movement| movement.label().to_lowercase())
+    let turn = match (side.turning, side.movement) {
+        (_, Some(Movement::LeftTurn | Movement::RightTurn)) => "",
+        (Turning::Left, _) => ", after a left turn",
+        (Turning::Right, _) => ", after a right turn",
+        (Turning::No | Turning::Round, _) => "",
+    };
+    let more = match (side.dodges, side.slants.is_some()) {
+        (true, _) => ", and aside",
+        (_, true) => ", at an angle",
+        _ => "",
+    };
+    side.movement.map_or(String::new(), |movement| movement.label().to_lowercase() + turn + more)
 }
 
 fn turned_words(degrees: f64) -> String {

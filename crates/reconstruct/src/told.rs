@@ -2,10 +2,13 @@
 
 use crate::choices::Choices;
 use crate::ground::LANE_M;
+use crate::lateral;
 use crate::others::{self, Extra};
+use crate::phases::{self, Phases};
+use crate::things::{self, SLIDES_MPS};
 use crate::touch::side_of;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
+    Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     SpeedMeaning, Striker, Untold, told,
 };
 use recrash_model::account::{Control, ControlDevice, LaneWord, Obeyed, SignalState, StandReason};
@@ -47,6 +50,15 @@ pub(crate) enum Turning {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slowed(pub(crate) Option<f64>);
 
+/// How somebody who reverses came to be at an angle to the road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Slant {
+    /// It had turned, to this side where told, before it stood and reversed.
+    Stood(Option<LeftRight>),
+    /// It swung aside while it reversed.
+    Swung,
+}
+
 /// One side of the crash.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Side {
@@ -57,12 +69,20 @@ pub(crate) struct Side {
     pub(crate) stood_first: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
+    /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
+    pub(crate) phases: Phases,
     /// Whether the state is told.
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
     pub(crate) turning: Turning,
+    /// It turns all the way into the road that the other is on, to meet it head-on.
+    pub(crate) turns_wide: bool,
     /// To which side it moves out of its line, where told.
     pub(crate) aside: Option<LeftRight>,
+    /// It is told to have dodged or drifted that way while it drove on.
+    pub(crate) dodges: bool,
+    /// It reverses, and is told to have been at an angle to the road.
+    pub(crate) slants: Option<Slant>,
     pub(crate) zones: Vec<ContactZone>,
     /// It was touched on its roof or from below, and nowhere else.
     pub(crate) only_above_or_below: bool,
@@ -91,8 +111,16 @@ pub(crate) struct Told {
     pub(crate) cp: Side,
     /// The partner is a thing that stands or lies.
     pub(crate) thing: Option<Kind>,
+    /// The partner is a gate that swung as they met.
+    pub(crate) gate_swings: bool,
+    /// The partner is told to have rolled, slid or been pushed.
+    pub(crate) slides: bool,
     pub(crate) origin: Origin,
     pub(crate) origin_told: bool,
+    /// The partner came from the kerb behind the ego, round it.
+    pub(crate) comes_round: bool,
+    /// An oncoming partner left its own side.
+    pub(crate) comes_over: bool,
     pub(crate) order: Option<FirstMover>,
     /// Somebody threw the partner at the subject vehicle.
     pub(crate) pushed: bool,
@@ -139,10 +167,17 @@ impl Told {
         let kind = told(&partner.kind);
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
         let sv = side(&account.sv, None, &mut assumed, "ego");
-        let cp = side(partner, kind, &mut assumed, "partner");
+        let mut cp = side(partner, kind, &mut assumed, "partner");
+        let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
+        if gate_swings {
+            // Its post stands.
+            (cp.state, cp.state_told, cp.size) = (ContactState::Parked, false, Some(things::POST));
+        }
         let origin = told(&account.came_from);
         let origin_told = origin.is_some();
         let origin = origin.or_else(|| assumed_origin(crash_type, &sv, &cp)).unwrap_or(Origin::Behind);
+        let comes_round = origin_told && lateral::comes_round(origin, partner, cp.state, cp.movement);
+        let origin = if comes_round { Origin::Parked { side: Some(LeftRight::Right) } } else { origin };
         let striker = told(&account.striker);
         let mut this = Self {
             crash_type,
@@ -150,8 +185,12 @@ impl Told {
             sv,
             cp,
             thing,
+            slides: things::slides(partner),
+            gate_swings,
             origin,
             origin_told,
+            comes_round,
+            comes_over: lateral::comes_over(origin, partner, told(&partner.movement)),
             order: told(&account.order),
             pushed: partner.did(Act::Pushed)
                 || crash_type == CrashType::Secondary
@@ -167,11 +206,55 @@ impl Told {
             choices: Choices::default(),
             assumed,
         };
+        this.courses(partner);
         this.wanted = others::wanted(&this, &account.others);
         if this.origin_told {
             this.speeds();
         }
         Some(this)
+    }
+
+    /// What the acts tell of the ways beside the movements.
+    fn courses(&mut self, partner: &Party) {
+        let drives_on =
+            |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
+        self.sv.dodges = drives_on(&self.sv) && self.sv_aside().is_some();
+        self.cp.dodges = drives_on(&self.cp) && self.cp_from_left_m().is_some();
+        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
+        if self.cp.state == ContactState::Reversing && along {
+            let before = |fact: &&ActFact| !fact.after_contact && !fact.begun;
+            let reversed =
+                partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).map(|fact| fact.step);
+            let swing = |fact: &&ActFact| matches!(fact.act, Act::Turn | Act::Drift | Act::Swerve);
+            let last = partner.acts.iter().filter(before).rfind(swing);
+            self.cp.slants = last.and_then(|fact| match Some(fact.step) >= reversed {
+                true => Some(Slant::Swung),
+                false => (fact.act == Act::Turn).then_some(Slant::Stood(fact.side)),
+            });
+        }
+        if let Origin::Cross { side } = self.origin {
+            self.cp.turns_wide = self.crash_type == CrashType::HeadOn;
+            // To meet it head-on, who comes from the left turns to the right.
+            let turn =
+                partner.acts.iter().rev().find(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
+            let by_type = self.cp.turns_wide.then(|| side.other());
+            let drives = self.cp.movement.is_none_or(|movement| {
+                matches!(
+                    movement,
+                    Movement::Straight
+                        | Movement::Passing
+                        | Movement::LaneDeparture
+                        | Movement::CrossingIntoOpposingLane
+                )
+            });
+            if self.cp.turning == Turning::No && drives && self.cp.state == ContactState::Moving {
+                self.cp.turning = match turn.and_then(|fact| fact.side).or(by_type) {
+                    Some(LeftRight::Left) => Turning::Left,
+                    Some(LeftRight::Right) => Turning::Right,
+                    None => Turning::No,
+                };
+            }
+        }
     }
 
     /// The kinds of facts that are told and can be held against a rollout.
@@ -184,7 +267,7 @@ impl Told {
             (CheckKind::SvZones, !sv.zones.is_empty() || sv.only_above_or_below),
             (CheckKind::CpZones, !cp.zones.is_empty() && self.thing.is_none() || cp.only_above_or_below),
             (CheckKind::SvState, sv.state_told),
-            (CheckKind::CpState, cp.state_told && moves),
+            (CheckKind::CpState, cp.state_told && moves || self.gate_swings),
             (CheckKind::SvSpeed, sv.impact_mps.is_some()),
             (CheckKind::CpSpeed, cp.impact_mps.is_some()),
             (CheckKind::SvMovement, sv.movement.is_some()),
@@ -286,7 +369,7 @@ impl Told {
 
     /// Speeds at the contact: as told, or such that who closes on whom does.
     fn speeds(&mut self) {
-        let driven_mps = self.driven_mps();
+        let (driven_mps, slides) = (self.driven_mps(), self.is_sliding());
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             ContactState::SettingOff => 1.5,
@@ -296,6 +379,7 @@ impl Told {
             ContactState::Moving => match side.kind {
                 PartnerKind::Pedestrian => 1.4,
                 PartnerKind::Animal => 4.0,
+                PartnerKind::FixedObject if slides => SLIDES_MPS,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
                 _ if side.turning != Turning::No => TURNS_MPS,
                 _ => driven_mps,
@@ -315,7 +399,7 @@ impl Told {
             (Some(told), false) => told.max(0.4),
             (None, false) => fit(usual(&self.cp)),
         };
-        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving {
+        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.is_sliding() {
             let sv = self.sv.speed_mps;
             match self.origin {
                 Origin::Behind | Origin::Beside { .. }
@@ -387,6 +471,7 @@ impl Told {
             Movement::CrossingIntoOpposingLane => CHANGES_M,
             Movement::LaneDeparture => DEPARTS_M,
             Movement::EnteringTraffic | Movement::ParkingManeuver => PULLS_OUT_M,
+            Movement::Straight if self.cp.aside.is_some() => DEPARTS_M,
             _ => return None,
         };
         // Who moves to its left came along on its right.
@@ -411,6 +496,8 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     let impact_mps =
         party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact).map(|speed| speed.value.mps);
     let state = told(&party.state);
+    let slides = state.is_none() && kind.is_some_and(|kind| kind.group() == KindGroup::Object) && things::slides(party);
+    let state = if slides { Some(ContactState::Moving) } else { state };
     let state_told = state.is_some();
     let state = state.unwrap_or_else(|| match movement {
         Some(Movement::Stopped) => ContactState::Stopped,
@@ -439,7 +526,13 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     };
     let goes_aside =
         |act: Act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver);
-    let aside = party.acts.iter().filter(|fact| goes_aside(fact.act) && !fact.after_contact).find_map(|fact| fact.side);
+    // The last before the contact is the one that led to it.
+    let aside = party
+        .acts
+        .iter()
+        .filter(|fact| goes_aside(fact.act) && !fact.after_contact)
+        .filter_map(|fact| fact.side)
+        .next_back();
     // It stood where it did something after it, or held its place.
     let last = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.step).max();
     let stood_first = state == ContactState::Moving
@@ -458,8 +551,16 @@ fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str)
     });
     Side {
         aside,
+        turns_wide: false,
+        dodges: false,
+        slants: None,
         slowed_from,
         stood_first,
+        phases: if who == "ego" && state_told && state != ContactState::Parked {
+            phases::told(party, state)
+        } else {
+            Phases::default()
+        },
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),
         state,

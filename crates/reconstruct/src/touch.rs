@@ -5,7 +5,9 @@
 use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
-use crate::told::{Side, Told, Turning};
+use crate::lateral::is_on_foot;
+use crate::things;
+use crate::told::{Side, Slant, Told, Turning};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -57,7 +59,8 @@ pub(crate) fn size_of(side: &Side) -> (f64, f64) {
 /// Ways of touching, the best first.
 pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
     let ground = ground_for(told);
-    let mut found = if told.door.is_some() { door::stagings(told, &ground) } else { bodies(told, &ground) };
+    let by_part = told.door.is_some() || told.gate_swings;
+    let mut found = if by_part { door::stagings(told, &ground) } else { bodies(told, &ground) };
     found.sort_by_key(|staging| staging.cost);
     // Of those that are almost the same, one.
     let mut kept: Vec<Staging> = Vec::new();
@@ -154,6 +157,12 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
             if left { vec![1.0, -1.0] } else { vec![-1.0, 1.0] }
         }
     };
+    // Into the ego's road, towards it.
+    let into = |came: f64| {
+        let left = if told.cp.turning == Turning::Left { 1.0 } else { -1.0 };
+        let turned = [90.0, 86.0, 94.0, 82.0, 98.0, 75.0, 105.0].map(|off| came + left * degrees(off));
+        turned.map(|heading| (came, heading)).into_iter().filter(|(_, heading)| math::cos(*heading) < -0.2)
+    };
     let aside: &[f64] = &[0.0, 4.0, -4.0, 8.0, -8.0, 14.0, -14.0, 22.0, -22.0];
     let mut list: Vec<(f64, f64)> = Vec::new();
     let turned = |came: f64, list: &mut Vec<(f64, f64)>| match told.cp.turning {
@@ -173,9 +182,25 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
             }
         }
     };
+    if told.is_sliding() {
+        return things::headings(told).into_iter().map(math::wrap_angle).map(|heading| (heading, heading)).collect();
+    }
+    let along_kerb = matches!(told.origin, Origin::Parked { .. }) && !is_on_foot(told.cp.kind);
     match told.origin {
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } => {
             // Along the road, or as the ego has turned.
+            match told.cp.slants {
+                Some(Slant::Stood(side)) => {
+                    let signs = side.map_or(vec![1.0, -1.0], |side| vec![sign(side)]);
+                    let turned = signs.iter().flat_map(|sign| [60.0, 90.0, 45.0, 30.0].map(|off| degrees(sign * off)));
+                    list.extend(turned.map(|heading| (heading, heading)));
+                }
+                Some(Slant::Swung) => {
+                    let slanted = [30.0, -30.0, 22.0, -22.0, 45.0, -45.0, 60.0, -60.0, 90.0, -90.0];
+                    list.extend(slanted.map(|off| (0.0, degrees(off))));
+                }
+                None => {}
+            }
             let follows = told.origin == Origin::Behind && told.sv.turning != Turning::No;
             let bases = match (sv_heading.abs() > 0.02, follows) {
                 (false, _) => vec![0.0],
@@ -199,8 +224,19 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
             }
         }
         // From the left it moves to the right.
-        Origin::Cross { side } => turned(-sign(side) * math::FRAC_PI_2, &mut list),
-        Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => {
+        Origin::Cross { side } => {
+            let came = -sign(side) * math::FRAC_PI_2;
+            let turns = matches!(told.cp.turning, Turning::Left | Turning::Right);
+            if turns && (told.cp.turns_wide || told.sv.state.stands()) {
+                list.extend(into(came));
+            }
+            if !told.cp.turns_wide {
+                turned(came, &mut list);
+            }
+        }
+        Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } | Origin::Parked { side }
+            if !along_kerb =>
+        {
             for from in unknown(side) {
                 let moves = -from * math::FRAC_PI_2;
                 for off in [0.0, 20.0, 40.0, 60.0, -20.0, -40.0] {
@@ -212,7 +248,9 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
                 }
             }
         }
-        Origin::Parked { side } => {
+        // It has come round the ego, and is beside it.
+        Origin::Parked { .. } if told.comes_round => list.extend(aside.iter().map(|off| (0.0, degrees(*off)))),
+        Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } | Origin::Parked { side } => {
             for from in unknown(side) {
                 for off in [10.0, 18.0, 28.0, 5.0, 40.0] {
                     list.push((0.0, -from * degrees(off)));

@@ -163,6 +163,14 @@ impl Chunker<'_> {
             if let Some(found) = self.head(at) {
                 break found;
             }
+            // "an unoccupied and parked van".
+            let adjective = |at: usize| {
+                self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Adjective(_))).is_some()
+            };
+            if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) {
+                at += 1;
+                continue;
+            }
             let known = self.lexicon.longest(self.tokens, at, |meaning| {
                 matches!(meaning, Meaning::Adjective(_) | Meaning::Make | Meaning::Company)
             });

@@ -1,6 +1,7 @@
 //! Movement of both sides just before the conflict, from their acts, states and columns.
 
 use super::Reading;
+use crate::lexicon::Sense;
 use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Source, StandReason, told,
@@ -40,7 +41,8 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     }
     // Who stops in the lane for passengers is parked by the column, and stopped by the words.
     let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
-    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told());
+    let said = reading.before(SUBJECT).any(|(_, frame)| frame.sense == Sense::Parked);
+    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told()) && !said;
     if let (Some(Movement::Parked), true, false, Some(reason)) =
         (told(&account.sv.movement), by_column, account.sv.did(Act::Park), riders)
     {

@@ -227,7 +227,14 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             );
         }
         if let Some(side) = side {
-            return told_as(Origin::Beside { side }, clues.source(|frame| frame.act() == Some(Act::Reverse)));
+            // Its rear on a flank: it stood across.
+            let only = |party: &recrash_model::account::Party, wanted: fn(Z) -> bool| {
+                !party.zones.is_empty() && party.zones.iter().all(|zone| wanted(zone.value))
+            };
+            let across = only(&account.sv, |zone| matches!(zone, Z::Left | Z::Right))
+                && only(account.partner.as_ref()?, |zone| zone == Z::Rear);
+            let value = if across { Origin::Cross { side } } else { Origin::Beside { side } };
+            return told_as(value, clues.source(|frame| frame.act() == Some(Act::Reverse)));
         }
         if has_zone(&account.sv, |zone| zone.is_front()) && !matches!(turn, Some(2..=6)) {
             return Some(Fact::by_rule(Origin::Ahead, "who goes backwards into the front was ahead"));
@@ -634,7 +641,9 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
         return rule(Origin::Behind);
     }
     if sv_front && cp_rear && !sv_rear {
-        return rule(Origin::Ahead);
+        // Parked, it stands beside the lane that a corner leaves.
+        let corner = told(&partner.state) == Some(ContactState::Parked) && !square_front(account);
+        return rule(zone_side(account).filter(|_| corner).map_or(Origin::Ahead, |side| Origin::Beside { side }));
     }
     let side = zone_side(account)?;
     // One way, side by side.

@@ -5,3 +5,4 @@
 mod common;
 mod sabotage;
 mod stories;
+mod ways;

@@ -2,6 +2,7 @@
 
 use crate::common::record;
 use crate::stories::shown;
+use crate::ways;
 use recrash_model::account::{
     Account, ContactState, ControlDevice, Fact, Kind, KindGroup, Obeyed, Origin, SignalState, SpeedMeaning, Striker,
     told,
@@ -12,7 +13,10 @@ use recrash_model::metrics::Answer;
 use recrash_model::narrative::FirstMover;
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::CrashRecord;
-use recrash_model::scenario::{Act, ActorPlan, Aspect, Deed, Device, Leg, Place, ScenarioDraft};
+use recrash_model::rollout::EventKind;
+use recrash_model::scenario::{
+    Act, ActorPlan, Aspect, Deed, Device, Leg, ObjectSpec, ObstacleKind, PartKind, Place, ScenarioDraft,
+};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
@@ -24,7 +28,7 @@ use sha2::{Digest, Sha256};
 type Sabotage = fn(&Account, &mut ScenarioDraft) -> bool;
 
 /// Each with how many of our own stories it must at least be tried on.
-const SABOTAGES: [(&str, usize, Sabotage); 16] = [
+const SABOTAGES: [(&str, usize, Sabotage); 21] = [
     ("a turning partner that goes straight", 2, turn_undone),
     ("a partner from the other direction", 20, other_direction),
     ("a partner mirrored to the other side", 3, other_side),
@@ -41,6 +45,11 @@ const SABOTAGES: [(&str, usize, Sabotage); 16] = [
     ("a standing ego that rolls", 8, standing_ego_rolls),
     ("a partner that never stood", 1, never_stood),
     ("a partner that comes by itself", 1, nobody_throws),
+    ("an oncoming partner that is on the ego's side from the start", 1, never_on_its_side),
+    ("a partner that did not stand at the kerb, in a stall or in a driveway", 2, never_at_the_kerb),
+    ("a thing that rolled in and lies there", 1, thing_lies),
+    ("a gate that does not swing", 1, gate_stays),
+    ("an ego that moved up or back and stands from the start", 2, moved_nowhere),
 ];
 
 /// Whether the sabotaged draft is refused, or at least one told fact is not shown.
@@ -72,6 +81,7 @@ fn tried(made: &[(String, Account, Reconstruction)]) -> Vec<(&'static str, usize
 #[test]
 fn every_sabotage_of_our_own_stories_is_caught() {
     let mut made = shown();
+    made.extend(ways::shown());
     // One whose column tells the speed at the impact.
     let text = "The AV was traveling straight when a car pulled out of a driveway on its right, and the front of the AV made \
                 contact with the left side of the car.";
@@ -349,4 +359,70 @@ fn nobody_throws(_: &Account, draft: &mut ScenarioDraft) -> bool {
     let all = draft.actors.len();
     draft.actors.retain(|actor| actor.id != "pusher");
     draft.actors.len() < all
+}
+
+fn moved_nowhere(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    let stands = told(&account.sv.state) == Some(ContactState::Stopped);
+    let sets_off = |act: &&Act| matches!(act.deed, Deed::Speed { .. });
+    let moves = draft.ego.recorded.as_ref().is_some_and(|plan| plan.acts.iter().any(|act| sets_off(&act)));
+    if !stands || !moves {
+        return false;
+    }
+    let scenario = recrash_roads::check(draft.clone()).expect("it ran").value;
+    let rollout = simulate(&scenario, Ego::Recorded);
+    let touched = rollout.events.iter().find(|event| matches!(event.kind, EventKind::Contact { a: 0, .. }));
+    let Some(touched) = touched else { return false };
+    let at = rollout.actors[0].states[(touched.time_s * 10.0) as usize].pose();
+    let place = Place::at(at.position.x, at.position.y, at.heading.to_degrees());
+    draft.ego.recorded = Some(ActorPlan::standing(place));
+    true
+}
+
+fn never_on_its_side(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    let movement = account.partner.as_ref().and_then(|partner| told(&partner.movement));
+    let crosses = matches!(movement, Some(Movement::CrossingIntoOpposingLane | Movement::LaneDeparture));
+    let straight = draft.ego.route.iter().all(|road| road.starts_with("main"));
+    if told(&account.came_from) != Some(Origin::Opposite) || !crosses || !straight {
+        return false;
+    }
+    let Some((plan, _, [_, contact_m, _])) = approach(draft) else { return false };
+    for place in places(plan) {
+        if let Place::Plane { y_m, .. } = place {
+            *y_m = contact_m;
+        }
+    }
+    true
+}
+
+fn never_at_the_kerb(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    let origin = told(&account.came_from);
+    let stood = matches!(origin, Some(Origin::Parked { .. } | Origin::Stall { .. } | Origin::Driveway { .. }));
+    let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
+    let drives = stood && kind.is_some_and(Kind::is_vehicle) && partner_state(account) == Some(ContactState::Moving);
+    let Some((plan, start, contact)) = approach(draft).filter(|_| drives) else { return false };
+    // It comes along without a stop, and is there at the same time.
+    let length_m = math::hypot(contact[0] - start[0], contact[1] - start[1]);
+    plan.speed_mps = (length_m / 9.0).max(0.3);
+    plan.acts.clear();
+    true
+}
+
+fn thing_lies(_: &Account, draft: &mut ScenarioDraft) -> bool {
+    let rolls = |draft: &ScenarioDraft| {
+        draft.actors.iter().any(|actor| actor.kind == PartnerKind::FixedObject && !actor.plan.course.is_empty())
+    };
+    let Some((_, _, [x_m, y_m, heading_deg])) = approach(draft) else { return false };
+    if !rolls(draft) {
+        return false;
+    }
+    draft.actors.retain(|actor| actor.id != "cp");
+    draft.objects.push(ObjectSpec { kind: ObstacleKind::Debris, at: Place::at(x_m, y_m, heading_deg), size: None });
+    true
+}
+
+fn gate_stays(_: &Account, draft: &mut ScenarioDraft) -> bool {
+    let gate = draft.actors.iter_mut().find(|actor| actor.parts.iter().any(|part| part.kind == PartKind::Arm));
+    let Some(gate) = gate else { return false };
+    gate.plan.acts.clear();
+    true
 }

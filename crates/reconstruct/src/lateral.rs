@@ -1,0 +1,195 @@
+//! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
+
+use crate::came::{Pace, start_over};
+use crate::ground::LANE_M;
+use crate::told::{Told, Turning};
+use crate::touch::Staging;
+use recrash_model::account::{Act, ContactState, LeftRight, Origin, Party};
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::template::Movement;
+use recrash_roads::Course;
+
+/// From how far away somebody pulls out at least. [m]
+pub(crate) const PULL_OUT_M: f64 = 8.0;
+
+/// Length of a way out of the line, so that its bends have this radius at least. [m]
+const LEAST_RADIUS_M: f64 = 10.0;
+
+/// Who leaves its lane has begun so long before the contact, on so much of its way at least and at most. [s, m]
+const LEAVES_S: f64 = 2.5;
+const LEAVES_M: (f64, f64) = (12.0, 60.0);
+
+/// Who walks, or runs on four legs, comes across the kerb; who drives pulls out along it.
+pub(crate) fn is_on_foot(kind: PartnerKind) -> bool {
+    matches!(kind, PartnerKind::Pedestrian | PartnerKind::Animal)
+}
+
+/// Whether the partner pulled out from the kerb behind the ego, and came round it: told are that it pulled out or entered traffic, and that it
+/// passed or came by on the left. Traffic keeps to the right, and so does who is parked.
+pub(crate) fn comes_round(origin: Origin, partner: &Party, state: ContactState, movement: Option<Movement>) -> bool {
+    let passes = movement == Some(Movement::Passing) || partner.did(Act::Pass);
+    let from_there = match origin {
+        Origin::Parked { .. } => passes,
+        Origin::Behind | Origin::Beside { side: LeftRight::Left } => true,
+        _ => false,
+    };
+    let pulls_out = partner.did(Act::PullOut) || movement == Some(Movement::EnteringTraffic);
+    from_there && pulls_out && state == ContactState::Moving
+}
+
+/// Whether an oncoming partner is told to have left its own side.
+pub(crate) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movement>) -> bool {
+    let left = |act: Act| partner.acts.iter().any(|fact| fact.act == act && !fact.after_contact && !fact.begun);
+    let told = match movement {
+        Some(Movement::CrossingIntoOpposingLane | Movement::LaneDeparture | Movement::ChangingLanes) => true,
+        Some(Movement::Straight | Movement::Passing) | None => left(Act::Drift) || left(Act::Swerve),
+        _ => false,
+    };
+    origin == Origin::Opposite && told
+}
+
+impl Told {
+    /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.
+    pub(crate) fn stood_beside(&self) -> bool {
+        let beside = matches!(self.origin, Origin::Parked { .. } | Origin::Stall { .. } | Origin::Driveway { .. });
+        beside && self.cp.state == ContactState::Moving && !is_on_foot(self.cp.kind) && self.thing.is_none()
+    }
+}
+
+/// The line at the kerb that the partner stood on, to the left of the ego's line. [m]
+fn kerb_y_m(told: &Told, staging: &Staging) -> Option<f64> {
+    let Origin::Parked { side } = told.origin else { return None };
+    if !told.stood_beside() {
+        return None;
+    }
+    let [left_m, right_m] = staging.ground.kerbs_m;
+    let on_left = side.map_or(staging.cp.heading < 0.0, |side| side == LeftRight::Left);
+    let (kerb_m, cp_m) = if on_left { (left_m, staging.cp.position.y) } else { (right_m, -staging.cp.position.y) };
+    let aside_m = kerb_m.max(cp_m);
+    Some(if on_left { aside_m } else { -aside_m })
+}
+
+/// The pace of a partner that pulls out from the kerb: from a stand, as far away as its way needs.
+pub(crate) fn from_kerb(told: &Told, staging: &Staging) -> Option<Pace> {
+    let aside_m = (kerb_y_m(told, staging)? - staging.cp.position.y).abs();
+    let length_m = (4.0 * LEAST_RADIUS_M * aside_m).sqrt().max(PULL_OUT_M);
+    start_over(told.cp.speed_mps, length_m)
+}
+
+/// The line that a partner came along before it left it for the contact, to the left of the ego's line; nothing where it is
+/// not told to have left one. [m]
+pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
+    if told.is_sliding() {
+        return None;
+    }
+    if told.comes_over {
+        return Some(staging.ground.opposing_m.max(staging.cp.position.y));
+    }
+    kerb_y_m(told, staging)
+        .or_else(|| told.cp_from_left_m().map(|from_left_m| staging.cp.position.y + from_left_m))
+        .or_else(|| {
+            beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })
+        })
+}
+
+/// On which side of the ego's lane the partner comes along.
+fn beside(told: &Told) -> Option<LeftRight> {
+    use recrash_model::account::LaneWord;
+    match told.origin {
+        // It keeps its lane where the ego changes lanes.
+        Origin::Beside { side } => told.sv_aside().is_none().then_some(side),
+        Origin::Behind if told.cp.lane == Some(LaneWord::Opposing) => Some(LeftRight::Left),
+        _ => None,
+    }
+}
+
+/// Who leaves its lane keeps it until then: where it begins, and the poses that it drives by to the contact.
+pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let leaves = matches!(
+        told.cp.movement,
+        Some(
+            Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane | Movement::LaneDeparture
+        )
+    );
+    if !(leaves || told.cp.dodges || told.comes_over) || told.cp.state != ContactState::Moving || !pace.acts.is_empty()
+    {
+        return None;
+    }
+    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
+    let line_y_m = line_y_m(told, staging)?;
+    let over_m = (LEAVES_S * told.cp.speed_mps).clamp(LEAVES_M.0, LEAVES_M.1);
+    let leaves = Pose { position: Vec2::new(cp.position.x - came.x * over_m, line_y_m), heading: staging.cp_came };
+    let mut course = Course::begin(arm_m);
+    let before_m = if course.curve(leaves, cp, false) { pace.driven_m - course.length_m() } else { return None };
+    let begin = Pose { position: leaves.position - came * before_m, ..leaves };
+    (before_m > 1.0).then(|| (begin, vec![leaves, cp]))
+}
+
+/// Radius of a turn: of the line that the rear axle drives on. [m]
+const TURN_M: f64 = 8.0;
+
+/// Who has turned into the ego's road meets it so far behind its turn, or farther. [m]
+const BEHIND_TURN_M: f64 = 1.0;
+
+/// Who turns drives straight on, and then by one bend to the contact, or into the ego's road and along it: where it begins, and the
+/// poses that it drives by.
+pub(crate) fn turns_in(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let cp = staging.cp;
+    let turn = math::wrap_angle(cp.heading - staging.cp_came);
+    if !matches!(told.cp.turning, Turning::Left | Turning::Right) || told.cp.state == ContactState::Reversing {
+        return None;
+    }
+    if let Some(found) = into_the_road(told, staging, pace, arm_m) {
+        return Some(found);
+    }
+    let bends = bend_before(cp, staging.cp_came, TURN_M.min(pace.driven_m / turn.abs()), arm_m);
+    by_bend(bends, vec![cp], pace, arm_m)
+}
+
+/// Where a bend of this radius that ends in a pose begins.
+fn bend_before(end: Pose, came: f64, radius_m: f64, arm_m: f64) -> Pose {
+    let (turn, way) = (math::wrap_angle(end.heading - came), Vec2::from_heading(came));
+    let axle = end.position - Vec2::from_heading(end.heading) * arm_m;
+    let (along_m, aside_m) = (radius_m * math::sin(turn.abs()), radius_m * (1.0 - math::cos(turn)) * turn.signum());
+    Pose { position: axle - way * (along_m - arm_m) - way.left() * aside_m, heading: came }
+}
+
+/// Straight on to where a bend begins, and by these poses then.
+fn by_bend(bends: Pose, poses: Vec<Pose>, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let mut course = Course::begin(arm_m);
+    let mut from = bends;
+    for pose in &poses {
+        if !course.curve(from, *pose, false) {
+            return None;
+        }
+        from = *pose;
+    }
+    let before_m = pace.driven_m - course.length_m();
+    let begin = Pose { position: bends.position - Vec2::from_heading(bends.heading) * before_m, ..bends };
+    match before_m > 0.5 {
+        true => Some((begin, [bends].into_iter().chain(poses).collect())),
+        false => (before_m > -0.02).then_some((bends, poses)),
+    }
+}
+
+/// Who comes along the crossing road and turns into the ego's, towards it, does so in the junction and not where it meets the ego.
+fn into_the_road(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let (cp, ground) = (staging.cp, &staging.ground);
+    let towards = Vec2::from_heading(cp.heading).x < -0.8;
+    let (Origin::Cross { side }, true, true) = (told.origin, ground.junction, towards) else { return None };
+    // The lane nearest to the ego from the left, the one beside the middle from the right.
+    let lane_m = match side {
+        LeftRight::Left => -(ground.lanes as f64 - 0.5) * LANE_M,
+        LeftRight::Right => 0.5 * LANE_M,
+    };
+    let turned = Pose { heading: math::PI, ..cp };
+    let bends = bend_before(turned, staging.cp_came, TURN_M, arm_m);
+    let behind_m = lane_m - bends.position.x;
+    if behind_m < BEHIND_TURN_M {
+        return None;
+    }
+    let by = |pose: Pose| Pose { position: pose.position + Vec2::new(behind_m, 0.0), ..pose };
+    by_bend(by(bends), vec![by(turned), cp], pace, arm_m)
+}

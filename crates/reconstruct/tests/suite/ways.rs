@@ -1,0 +1,259 @@
+//! What is told of the way to the contact is drawn; and a rollout without it does not pass for it.
+
+use crate::common::account_of;
+use recrash_model::account::{Account, Act, Fact, Origin};
+use recrash_model::math;
+use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::template::Movement;
+use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
+
+const MOVED_UP: &str = "The AV was stopped in a queue of traffic for a red light. The AV proceeded forward a short distance and came to \
+                        a stop. A car approached from behind and the front of the car made contact with the rear of the \
+                        stationary AV.";
+
+const REVERSED_FIRST: &str = "The AV was traveling north behind a truck when the truck came to a stop and the AV stopped behind it. The \
+                              AV reversed and came to a stop. The truck reversed and the rear of the truck made contact with \
+                              the front of the stationary AV.";
+
+const FROM_THE_KERB: &str = "The AV was stopped in the right lane of Elm Street. A van that was parked at the curb behind the AV pulled out \
+                             and passed the AV on the left, and the right side of the van made contact with the rear left corner \
+                             of the stationary AV.";
+
+const CROSSED_OVER: &str = "The AV was traveling east on Oak Street. An oncoming sedan drifted to its left, and the front of the sedan made \
+                            contact with the front right of the AV.";
+
+const TURNED_IN: &str = "The AV was stopped facing north at a red light at the intersection of Elm Street and Oak Street. A pickup truck \
+                         traveling eastbound on Oak Street made a right turn onto southbound Elm Street, and the left side of the \
+                         pickup truck made contact with the rear left of the stationary AV.";
+
+const TURNED_OFF: &str = "The AV was traveling north behind a sedan when the sedan turned left and came to a stop. The sedan then reversed \
+                          and the rear of the sedan made contact with the left side of the AV.";
+
+const SWUNG_BACK: &str = "The AV was stopped behind a sedan. The sedan reversed, swerved to its left, and the rear right corner of the sedan \
+                          made contact with the front left corner of the stationary AV.";
+
+const CAT: &str = "The AV was traveling east when a cat emerged from between parked cars on the right side of the road and ran in front of \
+                   the AV, and the front of the AV made contact with the cat.";
+
+const DRIFTED: &str = "The AV was traveling in the right lane. A sedan behind it drifted to the right, and the front right of the sedan made \
+                       contact with the rear left of the AV.";
+
+const BALL: &str = "The AV was traveling east when a ball rolled into the roadway from the right and made contact with the front right of \
+                    the AV.";
+
+const GATE: &str = "The AV was traveling north when it stopped for a closed gate and began proceeding slowly forward. The gate began \
+                    swinging open into the roadway and made contact with the front of the AV.";
+
+/// The stories of this file, as they are shown.
+pub fn shown() -> Vec<(String, Account, Reconstruction)> {
+    let texts = [
+        ("moved up", MOVED_UP),
+        ("reversed first", REVERSED_FIRST),
+        ("from the kerb", FROM_THE_KERB),
+        ("crossed over", CROSSED_OVER),
+        ("turned in", TURNED_IN),
+        ("turned off", TURNED_OFF),
+        ("swung back", SWUNG_BACK),
+        ("cat", CAT),
+        ("drifted", DRIFTED),
+        ("ball", BALL),
+        ("gate", GATE),
+    ];
+    let told = texts.map(|(name, text)| (name.to_owned(), story(text)));
+    told.into_iter().map(|(name, account)| (name, account.clone(), made(&account))).collect()
+}
+
+fn story(text: &str) -> Account {
+    account_of(text).expect("a story")
+}
+
+/// A staging that shows all that is told.
+fn made(account: &Account) -> Reconstruction {
+    let made = reconstruct(account).expect("it can be staged");
+    assert!(made.is_true(), "{:?}", made.verdict);
+    made
+}
+
+/// What of an account is not shown by the staging of the same account without some of its facts.
+fn missed(account: &Account, without: impl Fn(&mut Account)) -> Vec<CheckKind> {
+    let mut less = account.clone();
+    without(&mut less);
+    assert!(less != *account, "nothing was taken away");
+    let other = made(&less);
+    let scenario = recrash_roads::check(other.draft).expect("it ran").value;
+    let verdict = held_against(account, &scenario, &other.rollout).expect("it can be staged");
+    verdict.checks.iter().filter(|check| check.result == CheckResult::NotShown).map(|check| check.kind).collect()
+}
+
+fn without_acts(account: &mut Account, acts: &[Act]) {
+    account.sv.acts.retain(|fact| !acts.contains(&fact.act));
+}
+
+fn speeds(track: &ActorTrack) -> Vec<f64> {
+    track.states.iter().take(90).map(|state| state.speed()).collect()
+}
+
+#[test]
+fn an_ego_that_moved_up_stands_moves_and_stands_again() {
+    let account = story(MOVED_UP);
+    let shown = made(&account);
+    let speeds = speeds(shown.rollout.ego_track());
+    let stood = speeds.iter().position(|speed| *speed == 0.0).expect("it stands");
+    let moved = stood + speeds[stood..].iter().position(|speed| *speed > 1.0).expect("it moves up");
+    assert!(speeds[moved..].contains(&0.0), "{speeds:?}");
+    // The system under test takes over where it stands before that.
+    let handover_s = shown.draft.ego.handover_s.expect("a handover");
+    assert_eq!(speeds[(handover_s * 10.0) as usize], 0.0, "{handover_s}: {speeds:?}");
+    assert_eq!(missed(&account, |less| without_acts(less, &[Act::SetOff, Act::Stop])), [CheckKind::SvState]);
+}
+
+#[test]
+fn who_stood_behind_an_ego_that_moved_up_moves_up_too() {
+    let account = story(
+        "The AV was stopped at a red light. The AV proceeded forward a short distance and came to a stop. A truck that was \
+         stopped behind the AV proceeded forward, and the front of the truck made contact with the rear of the stationary AV.",
+    );
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert_eq!((states[0].speed(), shown.rollout.ego_track().states[0].speed()), (0.0, 0.0));
+    assert!(met.x - states[0].x > 4.0 && met.speed() > 0.5, "{met:?}");
+}
+
+#[test]
+fn an_ego_that_reversed_before_it_stood_reverses() {
+    let account = story(REVERSED_FIRST);
+    let shown = made(&account);
+    assert!(speeds(shown.rollout.ego_track()).iter().any(|speed| *speed < -1.0));
+    assert_eq!(missed(&account, |less| without_acts(less, &[Act::Reverse])), [CheckKind::SvState]);
+}
+
+fn partner_without_acts(account: &mut Account, acts: &[Act]) {
+    account.partner.as_mut().expect("a partner").acts.retain(|fact| !acts.contains(&fact.act));
+}
+
+fn partner_moves(account: &mut Account, movement: Movement) {
+    account.partner.as_mut().expect("a partner").movement = Some(Fact::by_rule(movement, "made for this test"));
+}
+
+/// The partner's states, and the one at the contact.
+fn partner(made: &Reconstruction) -> (&[ActorState], ActorState) {
+    let track = made.rollout.actors.iter().find(|track| track.id == "cp").expect("a partner");
+    (&track.states, track.states[89])
+}
+
+fn degrees_between(one: f64, other: f64) -> f64 {
+    math::wrap_angle(one - other).to_degrees().abs()
+}
+
+#[test]
+fn who_pulls_out_and_passes_comes_from_the_kerb_behind() {
+    let account = story(FROM_THE_KERB);
+    let shown = made(&account);
+    let ((states, _), ego) = (partner(&shown), shown.rollout.ego_track().states[89]);
+    assert_eq!(states[0].speed(), 0.0);
+    assert!(states[0].x < ego.x - 8.0 && states[0].y < -2.0, "{:?}", states[0]);
+    let beside = missed(&account, |less| {
+        partner_without_acts(less, &[Act::PullOut]);
+        partner_moves(less, Movement::Straight);
+    });
+    assert!(beside.contains(&CheckKind::Approach), "{beside:?}");
+}
+
+#[test]
+fn who_crosses_over_comes_from_its_own_side_wherever_it_hits_the_ego() {
+    let account = story(CROSSED_OVER);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(states[..50].iter().all(|state| state.y > 3.0), "it keeps its lane until then");
+    assert!(met.y < 0.0, "{met:?}");
+    let straight = missed(&account, |less| {
+        partner_without_acts(less, &[Act::Drift]);
+        partner_moves(less, Movement::Straight);
+    });
+    assert!(straight.contains(&CheckKind::Approach) && straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn who_turns_into_the_egos_road_does_so_in_the_junction() {
+    let account = story(TURNED_IN);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(degrees_between(met.heading, math::PI) < 20.0, "{met:?}");
+    let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
+    assert!(states[..89].iter().all(|state| scenario.network().on_road(state.position())));
+    let straight = missed(&account, |less| {
+        partner_without_acts(less, &[Act::Turn]);
+        partner_moves(less, Movement::Straight);
+    });
+    assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn a_told_turn_of_who_is_said_to_go_straight_on_from_a_crossing_road_is_drawn() {
+    let mut account = story(TURNED_IN);
+    partner_moves(&mut account, Movement::Straight);
+    assert!(degrees_between(partner(&made(&account)).1.heading, math::PI) < 20.0);
+    let straight = missed(&account, |less| partner_without_acts(less, &[Act::Turn]));
+    assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn who_turned_off_before_it_reversed_stands_across_the_road() {
+    let account = story(TURNED_OFF);
+    let shown = made(&account);
+    assert!((30.0..150.0).contains(&degrees_between(partner(&shown).0[0].heading, 0.0)));
+    let parallel = missed(&account, |less| partner_without_acts(less, &[Act::Turn]));
+    assert!(parallel.contains(&CheckKind::CpMovement), "{parallel:?}");
+}
+
+#[test]
+fn who_swings_aside_while_it_reverses_comes_to_stand_at_an_angle() {
+    let account = story(SWUNG_BACK);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(degrees_between(states[0].heading, 0.0) < 1.0 && degrees_between(met.heading, 0.0) > 15.0);
+    let parallel = missed(&account, |less| partner_without_acts(less, &[Act::Swerve]));
+    assert!(parallel.contains(&CheckKind::CpMovement), "{parallel:?}");
+}
+
+#[test]
+fn an_animal_from_between_parked_cars_runs_across() {
+    let shown = made(&story(CAT));
+    assert!(degrees_between(partner(&shown).0[0].heading, math::FRAC_PI_2) < 1.0);
+}
+
+#[test]
+fn who_is_told_to_have_drifted_while_it_drove_on_does() {
+    let mut account = story(DRIFTED);
+    account.came_from = Some(Fact::by_rule(Origin::Behind, "made for this test"));
+    partner_moves(&mut account, Movement::Straight);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(states[0].y - met.y > 1.0);
+    let straight = missed(&account, |less| partner_without_acts(less, &[Act::Drift]));
+    assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn a_thing_that_rolled_into_the_way_rolls() {
+    let account = story(BALL);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(met.y - states[0].y > 3.0, "{:?} to {met:?}", states[0]);
+    let lies = missed(&account, |less| {
+        partner_without_acts(less, &[Act::Roll]);
+        less.partner.as_mut().expect("a partner").state = None;
+    });
+    assert!(lies.contains(&CheckKind::CpState), "{lies:?}");
+}
+
+#[test]
+fn a_gate_that_swung_swings_into_the_ego() {
+    let account = story(GATE);
+    let shown = made(&account);
+    let arm = shown.rollout.actors.iter().find(|track| track.part_of.is_some()).expect("an arm");
+    assert!(degrees_between(arm.states[80].heading, arm.states[89].heading) > 20.0);
+    let shut = missed(&account, |less| partner_without_acts(less, &[Act::OpenDoor]));
+    assert!(shut.contains(&CheckKind::CpState), "{shut:?}");
+}
