@@ -81,7 +81,7 @@ pub(crate) fn from_kerb(told: &Told, staging: &Staging) -> Option<Pace> {
 /// The line that a partner came along before it left it for the contact, to the left of the ego's line; nothing where it is
 /// not told to have left one. [m]
 pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
-    if told.is_sliding() {
+    if told.comes_across() {
         return None;
     }
     if told.comes_over {
