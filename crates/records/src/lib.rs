@@ -46,8 +46,8 @@ use std::io::Cursor;
 /// Name of the built-in sample.
 pub const SAMPLE_NAME: &str = "built-in sample";
 
-/// The built-in sample: invented reports of invented companies in the columns of the second edition, with the paper's
-/// template counts. Written by `cargo run -p recrash-records --example make_sample`.
+/// The built-in sample: invented reports of invented companies in the columns of the second edition, with the real file's
+/// shares of crash types, stops, companies, copies and versions. Written by `cargo run -p recrash-records --example make_sample`.
 pub const SAMPLE_CSV: &str = include_str!("../data/sample.csv");
 
 /// Largest file that is read, in bytes.

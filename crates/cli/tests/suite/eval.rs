@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 const HEADER: &str = "half,report,version,file,entity,road,sv_movement,cp_movement,approach,order,sv_zones,cp_zones,collision,excluded,note";
 /// Right in every field that is known; its half is the developed one.
-const DEV: &str = "dev,90104-54,1,sample,Acme,intersection,straight,straight,right,unknown,,,angle,no,";
-/// Wrong on purpose: the partner came from the left.
-const HELD_OUT: &str = "held-out,90104-33,1,sample,Acme,intersection,straight,straight,right,unknown,,,angle,no,";
+const DEV: &str = "dev,90103-311,1,sample,Acme,intersection,straight,straight,left,unknown,,,angle,no,";
+/// Wrong on purpose: the partner came from the right.
+const HELD_OUT: &str = "held-out,90101-317,1,sample,Acme,intersection,straight,straight,left,unknown,,,angle,no,";
 const NOWHERE: &str = "dev,90104-99994,1,sample,Acme,street,unknown,unknown,unknown,unknown,,,unknown,unknown,";
 
 struct Files {
@@ -53,7 +53,7 @@ fn scores_are_told_by_half_and_held_out_disagreements_only_where_they_are_asked_
     let shown = &held_out["disagreements"][0];
     assert_eq!(
         (&shown["record"], &shown["label"], &shown["said"]),
-        (&"90104-33/1".into(), &"right".into(), &"left".into())
+        (&"90101-317/1".into(), &"left".into(), &"right".into())
     );
     let text = eval(&files, &[]);
     let text = String::from_utf8_lossy(&text.stdout).into_owned();
@@ -72,7 +72,7 @@ fn records_that_are_not_there_are_named_and_where_none_is_the_command_stops() {
 
 #[test]
 fn wrong_labels_are_told_by_row_and_column() {
-    let wrong = DEV.replace(",right,", ",behind,");
+    let wrong = DEV.replace(",left,", ",behind,");
     let output = eval(&files(&[&wrong]), &[]);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(3), "{told}");
@@ -87,8 +87,8 @@ fn a_model_is_asked_by_batch_and_its_answers_are_scored() {
     assert_eq!(eval(&files, &more).status.code(), Some(4));
     let request: Value = serde_json::from_str(&std::fs::read_to_string(out.join("requests.jsonl")).unwrap()).unwrap();
     let column = |value: &str, name: &str| serde_json::json!({"value": value, "words": null, "column": name});
-    let from = serde_json::json!({"value": {"cross": {"side": "right"}}, "words": "From the right", "column": null});
-    let answer = serde_json::json!({"report": "90104-54/1", "crash_type": "intersection", "came_from": from,
+    let from = serde_json::json!({"value": {"cross": {"side": "left"}}, "words": "came from its left", "column": null});
+    let answer = serde_json::json!({"report": "90103-311/1", "crash_type": "intersection", "came_from": from,
         "sv": {"movement": column("straight", "SV Pre-Crash Movement")},
         "partner": {"movement": column("straight", "CP Pre-Crash Movement")}});
     let line = serde_json::json!({
@@ -134,7 +134,7 @@ fn the_reader_is_scored_on_labels_of_accounts_and_those_only() {
     let refused = eval(&files, &["--agent", "reader"]);
     assert_eq!(refused.status.code(), Some(3), "labels of records are not of accounts");
     files.labels = files.folder.path().join("accounts.csv");
-    let row = "dev,90104-54,1,sample,intersection,responder,cp,moving,under_way,unknown,straight,none,right,unknown,sv_and_partner,,,unknown,";
+    let row = "dev,90103-311,1,sample,intersection,responder,cp,moving,under_way,unknown,straight,none,left,unknown,sv_and_partner,,,unknown,";
     std::fs::write(&files.labels, format!("{ACCOUNTS_HEADER}\n{row}\n")).unwrap();
     let scored = json(&eval(&files, &["--agent", "reader", "--json"]));
     assert_eq!((share(&scored, "dev", "came_from"), share(&scored, "dev", "crash_type")), (1.0, 1.0));

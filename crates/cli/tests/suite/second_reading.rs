@@ -6,26 +6,20 @@ use crate::common::server::Reply;
 use crate::live::{Folder, ledger, read, server, shares, shown};
 use serde_json::{Value, json};
 
-/// Somebody ran into the truck from behind; the built-in reader takes it that others crashed.
+/// A branch lay in the lane; the built-in reader takes the person who was hurt for the partner.
 fn read_by_a_careful_model() -> Value {
     let quoted = |value: Value, words: &str| json!({"value": value, "words": words, "column": null});
     let by_column = |value: &str, name: &str| json!({"value": value, "words": null, "column": name});
     json!({
-        "report": "90106-218/1", "crash_type": "front_to_rear",
+        "report": "90101-261/2", "crash_type": "single_vehicle",
         "sv": {
             "movement": by_column("straight", "SV Pre-Crash Movement"),
-            "state": quoted(json!("moving"), "The Haulwright truck slowed with it"),
-            "zones": [by_column("rear", "SV Contact Area")],
+            "state": quoted(json!("moving"), "The Northlight AV was driving"),
+            "zones": [by_column("bottom", "SV Contact Area")],
         },
-        "partner": {
-            "kind": quoted(json!("suv"), "a black SUV"),
-            "movement": by_column("straight", "CP Pre-Crash Movement"),
-            "state": quoted(json!("moving"), "was hit from behind by a black SUV"),
-            "zones": [by_column("front", "CP Contact Area")],
-        },
-        "came_from": quoted(json!("behind"), "was hit from behind by a black SUV"),
-        "striker": quoted(json!("cp"), "was hit from behind by a black SUV"),
-        "first_contact": quoted(json!("sv_and_partner"), "was hit from behind by a black SUV"),
+        "partner": {"kind": quoted(json!("tree_branch"), "A fallen branch")},
+        "striker": quoted(json!("sv"), "the Northlight AV made contact with it"),
+        "first_contact": quoted(json!("object"), "the Northlight AV made contact with it"),
     })
 }
 
@@ -34,7 +28,7 @@ fn a_model_reads_what_the_built_in_reader_did_not_read_whole() {
     let folder = Folder::new();
     let server = server(|request| {
         let asks = |report: &str| request.messages()[1]["content"].as_str().unwrap().contains(report);
-        asks("Report 90106-218/1.").then(|| Reply::Text(read_by_a_careful_model().to_string()))
+        asks("Report 90101-261/2.").then(|| Reply::Text(read_by_a_careful_model().to_string()))
     });
     let out = folder.suite();
     let run = |more: &[&str]| {
@@ -46,7 +40,7 @@ fn a_model_reads_what_the_built_in_reader_did_not_read_whole() {
     assert!(output.status.success(), "{}", shown(&output));
     // How many and at which price is said before the first question; only those are asked about.
     let told = shown(&output);
-    assert!(told.contains(" of 270 readable incidents (") && told.contains("at a price that is not known"), "{told}");
+    assert!(told.contains(" of 312 readable incidents (") && told.contains("at a price that is not known"), "{told}");
     let readers = read(&out.join("1-accounts.agents.json"));
     let asked = readers.as_object().unwrap().len();
     assert!((1..150).contains(&asked), "{asked}");
@@ -64,9 +58,9 @@ fn a_model_reads_what_the_built_in_reader_did_not_read_whole() {
         .iter()
         .filter(|account| account["author"]["model"] == "scripted")
         .collect();
-    assert!(by_model.iter().any(|account| account["report"] == "90106-218/1"), "{by_model:?}");
+    assert!(by_model.iter().any(|account| account["report"] == "90101-261/2"), "{by_model:?}");
     let cases = summary["cases"].as_array().unwrap();
-    let case = cases.iter().find(|case| case["told"] == "90106-218/1").expect("it is in the suite");
+    let case = cases.iter().find(|case| case["told"] == "90101-261/2").expect("it is in the suite");
     assert_eq!((&case["recorded"]["faithful"] == "no", &case["failure"]), (false, &Value::Null), "{case}");
     assert_eq!(case["narrated"]["outcome"], "first answer");
     // Nothing is asked again, and the ledger alone gives the same.

@@ -3,5 +3,6 @@
 mod any_text;
 mod common;
 mod incidents;
+mod sample;
 mod scores;
 mod stories;

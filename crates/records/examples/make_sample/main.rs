@@ -2,13 +2,17 @@
 //! `cargo run -p recrash-records --example make_sample > crates/records/data/sample.csv`.
 //!
 //! Events, companies, places and ids are invented, and so is every sentence. What follows NHTSA's file is the shape: the
-//! columns, the template counts of the paper, and the untidiness (redactions, copies, versions, gaps, slips of the pen).
+//! columns, the shares of crash types, stops and companies, and the untidiness (redactions, copies, versions, gaps, slips of
+//! the pen).
+//!
+//! With the word `meant`, what each incident's story means, as a table: what a reader should find.
 //!
 //! With a number, so many copies of it as reports of incidents of their own, for measuring large suites:
 //! `cargo run -p recrash-records --example make_sample -- 10 > large.csv`.
 
 mod generator;
 
+use generator::Meant;
 use std::io;
 
 /// What stood beside the road in a copy, so that no two narratives are the same.
@@ -40,12 +44,20 @@ const BESIDE: [&str; 24] = [
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let sample = generator::sample_csv();
-    match std::env::args().nth(1) {
-        None => print!("{sample}"),
-        Some(copies) => write_copies(&sample, copies.parse()?)?,
+    let sample = generator::sample();
+    match std::env::args().nth(1).as_deref() {
+        None => print!("{}", sample.csv),
+        Some("meant") => print_meant(&sample.meant),
+        Some(copies) => write_copies(&sample.csv, copies.parse()?)?,
     }
     Ok(())
+}
+
+fn print_meant(meant: &[Meant]) {
+    println!("incident,crash_type,state,movement");
+    for Meant { incident, kind, state, movement } in meant {
+        println!("{incident},{},{},{}", kind.label(), state.label(), movement.label());
+    }
 }
 
 fn write_copies(sample: &str, copies: usize) -> Result<(), Box<dyn std::error::Error>> {

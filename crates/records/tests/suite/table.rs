@@ -84,7 +84,7 @@ fn the_sample_spreads_as_its_generator_says() {
         assert_eq!((records, usable), (set.records.len(), set.usable.len()), "{}", distribution.field);
     }
     let road = |name: &str| all[1].values.iter().find(|v| v.value == name).map(|v| v.usable);
-    assert_eq!((road("intersection"), road("highway"), road("traffic_circle")), (Some(214), Some(20), Some(1)));
+    assert_eq!((road("intersection"), road("highway"), road("traffic_circle")), (Some(72), Some(14), Some(2)));
 }
 
 #[cfg(feature = "parquet")]

@@ -1,17 +1,20 @@
 //! The generator: stories and a seed in, the text of a CSV file out.
 
-mod others;
+mod entities;
+mod stories;
 mod story;
 mod telling;
 
+use entities::{BRIGHTLANE, ENTITIES, Entity, HAULWRIGHT};
 use recrash_model::Seed;
+use recrash_model::account::{ContactState, CrashType};
 use recrash_model::record::Edition;
 use recrash_model::seed::Rng;
 use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone;
 use recrash_records::published_header;
-use story::{STORIES, Story};
-use telling::{ENTITIES, Entity, Facts, MANUFACTURER, Partner, Place, between, chance, pick};
+use story::Story;
+use telling::{Facts, Partner, Place, between, chance, pick};
 
 /// Seed of the committed sample.
 const SEED: Seed = Seed(20_210_629);
@@ -19,8 +22,8 @@ const SEED: Seed = Seed(20_210_629);
 const REDACTED: &str = "[REDACTED, MAY CONTAIN CONFIDENTIAL BUSINESS INFORMATION]";
 const PERSONAL: &str = "[MAY CONTAIN PERSONALLY IDENTIFIABLE INFORMATION]";
 
-/// Rows with a withheld narrative.
-const REDACTED_ROWS: usize = 52;
+/// Incidents whose narrative is withheld as a whole.
+const WITHHELD_INCIDENTS: usize = 6;
 /// Crash reports without any narrative.
 const EMPTY_ROWS: usize = 3;
 
@@ -43,6 +46,8 @@ const MONTHS: [&str; 12] = [
 #[derive(Clone)]
 struct Report {
     entity: &'static Entity,
+    /// Who files it, and under what number of reports: the entity, or who copies it.
+    filed_by: (&'static str, u32),
     number: usize,
     version: u32,
     incident: String,
@@ -50,7 +55,7 @@ struct Report {
     road: RoadType,
     work_zone: bool,
     sv: Movement,
-    cp: Movement,
+    cp: Option<Movement>,
     partner: Partner,
     city: &'static str,
     state: &'static str,
@@ -69,26 +74,37 @@ struct Report {
     narrative: String,
 }
 
-/// The sample as a CSV file of the second edition.
-pub fn sample_csv() -> String {
-    let mut reports = Vec::new();
-    for (kind, story) in STORIES.iter().enumerate() {
-        add_rows(&mut reports, story, &format!("usable {kind}"));
+/// The sample: a CSV file of the second edition, and what a reader should find in it.
+pub struct Sample {
+    pub csv: String,
+    pub meant: Vec<Meant>,
+}
+
+/// What the story of an incident means.
+#[derive(Debug, Clone)]
+pub struct Meant {
+    /// The incident, as in the column.
+    pub incident: String,
+    /// Its crash type.
+    pub kind: CrashType,
+    /// What the subject vehicle does at the contact.
+    pub state: ContactState,
+    /// The subject vehicle's movement, as told.
+    pub movement: Movement,
+}
+
+/// The sample.
+pub fn sample() -> Sample {
+    let mut maker = Maker::default();
+    for (kind, story) in stories::all().enumerate() {
+        for way in 0..story.incidents {
+            maker.add_incident(story, way, &format!("story {kind} {way}"));
+        }
     }
-    for (kind, story) in others::OTHERS.iter().enumerate() {
-        add_rows(&mut reports, story, &format!("other {kind}"));
+    for row in 0..WITHHELD_INCIDENTS + EMPTY_ROWS {
+        maker.add_withheld(row);
     }
-    for row in 0..REDACTED_ROWS + EMPTY_ROWS {
-        let mut rng = SEED.child(&format!("withheld {row}")).rng();
-        let story = &STORIES[rng.below(STORIES.len())];
-        let mut report = report(&mut rng, story, reports.len() + 1);
-        report.narrative = match row {
-            _ if row >= REDACTED_ROWS => String::new(),
-            _ if chance(&mut rng, 0.7) => REDACTED.to_owned(),
-            _ => format!("{} The speed was {REDACTED}.", report.narrative),
-        };
-        reports.push(report);
-    }
+    let Maker { mut reports, meant, .. } = maker;
     SEED.child("order").rng().shuffle(&mut reports);
 
     let columns: Vec<&str> = published_header(Edition::Second).collect();
@@ -97,44 +113,119 @@ pub fn sample_csv() -> String {
     for (at, narrative) in [(40, ""), (190, "Nothing to report for this month.")] {
         rows.insert(at, no_news(&columns, at, narrative));
     }
-    rows.iter().map(|row| line(row)).collect()
+    Sample { csv: rows.iter().map(|row| line(row)).collect(), meant }
 }
 
-/// Adds the rows of one kind of story: about one in four is a later version or a manufacturer's copy of another.
-fn add_rows(reports: &mut Vec<Report>, story: &'static Story, name: &str) {
-    let repeats = story.rows / 4;
-    let first = reports.len();
-    for row in 0..story.rows - repeats {
-        let mut rng = SEED.child(&format!("{name} {row}")).rng();
-        let number = reports.len() + 1;
-        reports.push(report(&mut rng, story, number));
+/// Makes the reports, one incident after the other.
+#[derive(Default)]
+struct Maker {
+    reports: Vec<Report>,
+    meant: Vec<Meant>,
+    /// How many incidents there are on the highway, of the other entities, and of each entity.
+    on_highway: usize,
+    elsewhere: usize,
+    of_entity: [usize; ENTITIES.len()],
+}
+
+impl Maker {
+    /// Adds an incident: its report, and where it is its turn, a copy of it and a later version.
+    fn add_incident(&mut self, story: &Story, way: usize, name: &str) {
+        let mut rng = SEED.child(name).rng();
+        let at = self.next_entity(story.road);
+        let entity = &ENTITIES[at];
+        let count = self.of_entity[at];
+        self.of_entity[at] += 1;
+        let mut first = report(&mut rng, story, way, entity, self.reports.len() + 1);
+        // What the paper's templates can use stands in full.
+        if !in_a_template(story) && is_due(count, entity.withholds) {
+            let software =
+                ["The software version was", "The system's plan at that time was", "The cause was found to be"];
+            first.narrative = format!("{} {} {REDACTED}.", first.narrative, pick(&mut rng, &software));
+        }
+        self.meant.push(Meant {
+            incident: first.incident.clone(),
+            kind: story.kind,
+            state: story.state,
+            movement: match story.state {
+                ContactState::Stopped => Movement::Stopped,
+                ContactState::Parked => Movement::Parked,
+                _ => story.sv,
+            },
+        });
+        self.reports.push(first.clone());
+        if entity.copied.is_some_and(|(_, share)| is_due(count, share)) {
+            let number = self.reports.len() + 1;
+            self.reports.push(copy(&first, number));
+        }
+        if is_due(count, entity.updates) {
+            self.reports.push(later_version(&mut rng, &first));
+        }
     }
-    for row in 0..repeats {
-        let mut rng = SEED.child(&format!("{name} again {row}")).rng();
-        let original = reports[first + row].clone();
-        let number = reports.len() + 1;
-        reports.push(repeat(&mut rng, original, number));
+
+    /// Adds a crash report whose narrative is withheld, or empty.
+    fn add_withheld(&mut self, row: usize) {
+        let mut rng = SEED.child(&format!("withheld {row}")).rng();
+        let kinds: Vec<&Story> = stories::all().collect();
+        let entity = &ENTITIES[self.next_entity(RoadType::Street)];
+        let story = pick(&mut rng, &kinds);
+        let mut report = report(&mut rng, story, row, entity, self.reports.len() + 1);
+        report.narrative = if row < WITHHELD_INCIDENTS { REDACTED.to_owned() } else { String::new() };
+        self.reports.push(report);
+    }
+
+    /// The entity of the next incident: the shares come out as near as they can, after any number of incidents.
+    fn next_entity(&mut self, road: RoadType) -> usize {
+        if road == RoadType::Highway {
+            self.on_highway += 1;
+            if self.on_highway.is_multiple_of(2) {
+                return HAULWRIGHT;
+            }
+        }
+        self.elsewhere += 1;
+        // The golden ratio spreads them evenly over every kind of story.
+        let mut left = (self.elsewhere as f64 * 0.618_033_988_749_894_8).fract();
+        for (at, entity) in ENTITIES.iter().enumerate() {
+            if left < entity.share {
+                return at;
+            }
+            left -= entity.share;
+        }
+        0
     }
 }
 
-/// A later version of a report, or a copy of it by another entity.
-fn repeat(rng: &mut Rng, original: Report, number: usize) -> Report {
-    let mut report = original;
-    let (northlight, calder, tern) = (&ENTITIES[0], &ENTITIES[1], &ENTITIES[4]);
-    if report.entity.name == calder.name {
-        report.entity = &MANUFACTURER;
-        report.number = number;
-        report.narrative = format!("{}{}", MANUFACTURER.opening, report.narrative);
-        return report;
-    }
-    if report.entity.name == northlight.name && chance(rng, 0.5) {
-        report.entity = tern;
-        report.number = number;
-        report.narrative = report.narrative.replace(northlight.closing, tern.closing);
-        return report;
-    }
+/// Whether it is the turn of the incident after so many, where a share of them is wanted.
+fn is_due(count: usize, share: f64) -> bool {
+    ((count + 1) as f64 * share).floor() > (count as f64 * share).floor()
+}
+
+/// Whether the paper's profile has a template for it.
+fn in_a_template(story: &Story) -> bool {
+    matches!(story.road, RoadType::Intersection | RoadType::Highway | RoadType::TrafficCircle)
+        && Movement::PAPER.contains(&story.sv)
+        && story.cp.is_some_and(|cp| Movement::PAPER.contains(&cp))
+}
+
+/// A copy of a report by another company.
+fn copy(original: &Report, number: usize) -> Report {
+    let mut report = original.clone();
+    let Some((copier, _)) = original.entity.copied else { return report };
+    report.filed_by = (copier.name, copier.id_prefix);
+    report.number = number;
+    report.narrative = if copier.only_refers() {
+        copier.opening.replace("{report}", &original.report_id())
+    } else {
+        let told = original.narrative.replace(original.entity.closing, "");
+        format!("{}{told}{}", copier.opening, copier.closing)
+    };
+    report
+}
+
+/// A later version of a report.
+fn later_version(rng: &mut Rng, original: &Report) -> Report {
+    let mut report = original.clone();
     report.version += 1;
-    report.report_type = "10-Day Update";
+    report.report_type = pick(rng, &["10-Day Update", "10-Day Update", "Update"]);
     report.narrative = match rng.below(5) {
         0 => "No update to narrative. Please refer to the first version of this report.".to_owned(),
         1 => format!("The account is unchanged; the field on injuries was corrected. {}", report.narrative),
@@ -145,16 +236,7 @@ fn repeat(rng: &mut Rng, original: Report, number: usize) -> Report {
     report
 }
 
-fn report(rng: &mut Rng, story: &Story, number: usize) -> Report {
-    let highway = story.road == RoadType::Highway;
-    let entity = match rng.below(100) {
-        0..50 if highway => &ENTITIES[5],
-        0..42 => &ENTITIES[0],
-        42..68 => &ENTITIES[1],
-        68..82 => &ENTITIES[2],
-        82..90 if !highway => &ENTITIES[3],
-        _ => &ENTITIES[4],
-    };
+fn report(rng: &mut Rng, story: &Story, way: usize, entity: &'static Entity, number: usize) -> Report {
     let partner = telling::partner(rng, story.partners);
     let place: Place = telling::place(rng, story.road);
     let (sv_zones, cp_zones) = pick(rng, story.contacts);
@@ -164,10 +246,10 @@ fn report(rng: &mut Rng, story: &Story, number: usize) -> Report {
     let cp_mph = between(rng, story.cp_mph).min(if slow { 16 } else { u32::MAX });
     let (year, month, minute) = (between(rng, (2022, 2024)), rng.below(12), between(rng, (5 * 60, 23 * 60 + 59)));
     let severity = match rng.below(100) {
-        0..80 => "No Injuries Reported",
-        80..91 => "Minor",
-        91..94 => "Moderate",
-        94 => "Serious",
+        0..84 => "No Injuries Reported",
+        84..93 => "Minor",
+        93..95 => "Moderate",
+        95 => "Serious",
         _ => "Unknown",
     };
     let facts = Facts {
@@ -183,7 +265,7 @@ fn report(rng: &mut Rng, story: &Story, number: usize) -> Report {
         cp_zones,
         severity,
     };
-    let narrative = telling::narrative(rng, story, &facts);
+    let narrative = telling::narrative(rng, story, way, &facts);
     let (weather, wet) = match rng.below(20) {
         0..14 => ("Weather - Clear", false),
         14..17 => ("Weather - Cloudy", false),
@@ -193,6 +275,7 @@ fn report(rng: &mut Rng, story: &Story, number: usize) -> Report {
     let cp_zones_known = !(partner.0.starts_with("Non-Motorist") && chance(rng, 0.5));
     Report {
         entity,
+        filed_by: (entity.name, entity.id_prefix),
         number,
         version: 1,
         incident: incident(rng),
@@ -211,7 +294,7 @@ fn report(rng: &mut Rng, story: &Story, number: usize) -> Report {
         wet,
         weather,
         posted_mph: posted_limit(story, sv_mph.max(cp_mph.min(40))),
-        sv_mph: (!chance(rng, 0.06)).then_some(sv_mph),
+        sv_mph: (!chance(rng, 0.02)).then_some(sv_mph),
         sv_zones,
         cp_zones: if cp_zones_known { cp_zones } else { &[] },
         severity,
@@ -251,6 +334,10 @@ fn clock(minute: u32) -> String {
 }
 
 impl Report {
+    fn report_id(&self) -> String {
+        format!("{}-{}", self.filed_by.1, self.number)
+    }
+
     fn cells(&self, columns: &[&str]) -> Vec<String> {
         let month = |month: usize, year: u32| format!("{}-{year}", MONTHS[month][..3].to_uppercase());
         let next = (self.month + 1) % 12;
@@ -270,9 +357,9 @@ impl Report {
                 return tick(column == self.weather);
             }
             match column {
-                "Report ID" => format!("{}-{}", self.entity.id_prefix, self.number),
+                "Report ID" => self.report_id(),
                 "Report Version" => self.version.to_string(),
-                "Reporting Entity" => self.entity.name.to_owned(),
+                "Reporting Entity" => self.filed_by.0.to_owned(),
                 "Report Type" => self.report_type.to_owned(),
                 "Report Month" => {
                     if self.report_type == "Monthly" {
@@ -314,7 +401,7 @@ impl Report {
                 "Crash With" => self.partner.0.to_owned(),
                 "Highest Injury Severity Alleged" => self.severity.to_owned(),
                 "Property Damage?" => "Yes".to_owned(),
-                "CP Pre-Crash Movement" => movement(self.cp).to_owned(),
+                "CP Pre-Crash Movement" => self.cp.map_or("Other, see Narrative", movement).to_owned(),
                 "SV Pre-Crash Movement" => movement(self.sv).to_owned(),
                 "SV Any Air Bags Deployed?" | "CP Any Air Bags Deployed?" => "No".to_owned(),
                 "SV Precrash Speed (MPH)" => self.sv_mph.map(|mph| mph.to_string()).unwrap_or_default(),
@@ -332,9 +419,9 @@ impl Report {
 /// A row that says that there is nothing to report.
 fn no_news(columns: &[&str], number: usize, narrative: &str) -> Vec<String> {
     let cell = |column: &str| match column {
-        "Report ID" => format!("{}-{}", ENTITIES[4].id_prefix, 900 + number),
+        "Report ID" => format!("{}-{}", ENTITIES[BRIGHTLANE].id_prefix, 900 + number),
         "Report Version" => "1".to_owned(),
-        "Reporting Entity" => ENTITIES[4].name.to_owned(),
+        "Reporting Entity" => ENTITIES[BRIGHTLANE].name.to_owned(),
         "Report Type" => "No New or Updated Incident Reports".to_owned(),
         "Same Incident ID" => " ".to_owned(),
         "Narrative" => narrative.to_owned(),
@@ -359,13 +446,19 @@ fn movement(movement: Movement) -> &'static str {
         Movement::Straight => "Proceeding Straight",
         Movement::LeftTurn => "Making Left Turn",
         Movement::RightTurn => "Making Right Turn",
-        Movement::UTurn => "Making U-Turn",
         Movement::ChangingLanes => "Changing Lanes",
         Movement::Stopped => "Stopped",
         Movement::Parked => "Parked",
         Movement::Backing => "Backing",
         Movement::LaneDeparture => "Lane / Road Departure",
         Movement::NmCrossing => "NM Crossing Roadway",
+        Movement::NmInRoadway => "NM in Roadway - Other",
+        Movement::Passing => "Passing",
+        Movement::Merging => "Merging",
+        Movement::EnteringTraffic => "Entering Traffic",
+        Movement::ParkingManeuver => "Parking Maneuver",
+        Movement::CrossingIntoOpposingLane => "Crossing into Opposing Lane",
+        Movement::WrongWay => "Traveling Wrong Way",
         _ => "Other, see Narrative",
     }
 }

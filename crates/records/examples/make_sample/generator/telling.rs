@@ -1,6 +1,8 @@
-//! From a story to the words of a report: who reports, what the partner is called, where it happened, how it ended.
+//! From a story to the words of a report: what the partner is called, where it happened, how it ended.
 
+use super::entities::Entity;
 use super::story::{From, Partners, Story};
+use recrash_model::account::{ContactState, CrashType};
 use recrash_model::seed::Rng;
 use recrash_model::template::RoadType;
 use recrash_model::zones::ContactZone;
@@ -20,130 +22,6 @@ pub fn between(rng: &mut Rng, (low, high): (u32, u32)) -> u32 {
     low + rng.below((high - low + 1) as usize) as u32
 }
 
-/// A company that reports, with its ways. All are invented.
-pub struct Entity {
-    pub name: &'static str,
-    pub operator: &'static str,
-    pub id_prefix: u32,
-    pub subject: &'static str,
-    pub make: &'static str,
-    pub model: &'static str,
-    pub driver: &'static str,
-    /// Masks streets and days as `[XXX]`, as NHTSA does.
-    pub masks: bool,
-    pub opening: &'static str,
-    pub engaged: &'static [&'static str],
-    pub closing: &'static str,
-}
-
-pub const ENTITIES: &[Entity] = &[
-    Entity {
-        name: "Northlight Robotics, Inc.",
-        operator: "Northlight Robotics",
-        id_prefix: 90101,
-        subject: "the Northlight AV",
-        make: "Northlight",
-        model: "N3",
-        driver: "None",
-        masks: true,
-        opening: "On {month} [XXX], {year} at {clock} a Northlight AV was in a crash with {cp} in {city}.\n",
-        engaged: &[
-            "The automated driving system was engaged.",
-            "The ADS was driving throughout.",
-            "The ADS was on and nobody was in the driver's seat.",
-        ],
-        closing: " Northlight will amend this report if it learns more.",
-    },
-    Entity {
-        name: "Calder Autonomy",
-        operator: "Calder Autonomy",
-        id_prefix: 90102,
-        subject: "the Calder test vehicle",
-        make: "Quill",
-        model: "Vantage",
-        driver: "In-Vehicle (Commercial / Test)",
-        masks: false,
-        opening: "",
-        engaged: &[
-            "The vehicle was in autonomous mode with a test driver at the wheel.",
-            "The test driver took over about one second before the contact.",
-            "It was driving in autonomous mode.",
-        ],
-        closing: "",
-    },
-    Entity {
-        name: "Meridian Drive LLC",
-        operator: "Meridian Drive",
-        id_prefix: 90103,
-        subject: "the Meridian AV",
-        make: "Meridian",
-        model: "One",
-        driver: "Remote (Commercial / Test)",
-        masks: false,
-        opening: "{city}, {street} near {cross}, {clock}. ",
-        engaged: &["Level 4 operation was active.", "The AV was in driverless operation, watched from remote."],
-        closing: " Logs and video have been kept.",
-    },
-    Entity {
-        name: "Brightlane Mobility Co.",
-        operator: "Brightlane Mobility",
-        id_prefix: 90104,
-        subject: "the shuttle",
-        make: "Brightlane",
-        model: "Loop 8",
-        driver: "In-Vehicle and Remote (Commercial / Test)",
-        masks: false,
-        opening: "Shuttle on its route in {city}. ",
-        engaged: &["An attendant was on board. The shuttle was in automated mode."],
-        closing: " Service was paused for the day.",
-    },
-    Entity {
-        name: "Tern Transit Services",
-        operator: "Tern Transit Services",
-        id_prefix: 90105,
-        subject: "the AV",
-        make: "Northlight",
-        model: "N2",
-        driver: "In-Vehicle (Commercial / Test)",
-        masks: true,
-        opening: "{clock} local time, {city}. ",
-        engaged: &[
-            "The safety operator had hands off the wheel and the ADS was engaged.",
-            "The safety operator braked and steered shortly before the impact.",
-        ],
-        closing: " Tern Transit Services files this as the employer of the safety operator.",
-    },
-    Entity {
-        name: "Haulwright Trucking Systems",
-        operator: "Haulwright Trucking Systems",
-        id_prefix: 90106,
-        subject: "the Haulwright truck",
-        make: "Oxbridge",
-        model: "T780",
-        driver: "In-Vehicle (Commercial / Test)",
-        masks: true,
-        opening: "",
-        engaged: &["The truck was driving autonomously with a licensed driver on board."],
-        closing: " The trailer was inspected and released.",
-    },
-];
-
-/// The manufacturer that files copies of Calder's reports.
-pub const MANUFACTURER: Entity = Entity {
-    name: "Quill Motors of America",
-    operator: "Calder Autonomy",
-    id_prefix: 90107,
-    subject: "the Calder test vehicle",
-    make: "Quill",
-    model: "Vantage",
-    driver: "In-Vehicle (Commercial / Test)",
-    masks: false,
-    opening: "Quill Motors built the vehicle that Calder Autonomy operates, and passes on Calder's account below without \
-              having looked into it. ",
-    engaged: &["It was driving in autonomous mode."],
-    closing: "",
-};
-
 /// A partner: value of `Crash With`, as first named, as named after that.
 pub type Partner = (&'static str, &'static str, &'static str);
 
@@ -161,10 +39,12 @@ const CARS: &[Partner] = &[
 const OTHERS: &[Partner] = &[
     ("Pickup Truck", "a pickup truck", "the pickup"),
     ("Pickup Truck", "a red pickup", "the pickup"),
+    ("Pickup Truck", "a pickup truck", "the pickup truck"),
+    ("Heavy Truck", "a box truck", "the box truck"),
+    ("Heavy Truck", "a flatbed truck", "the flatbed truck"),
     ("Van", "a delivery van", "the van"),
     ("Van", "a minivan", "the minivan"),
     ("Bus", "a city bus", "the bus"),
-    ("Heavy Truck", "a box truck", "the box truck"),
     ("First Responder Vehicle", "a police car", "the police car"),
     ("Other, see Narrative", "a golf cart", "the golf cart"),
 ];
@@ -173,37 +53,62 @@ const TRUCKS: &[Partner] = &[
     ("Heavy Truck", "a tanker truck", "the tanker"),
     ("Heavy Truck", "a dump truck", "the dump truck"),
 ];
-const RIDERS: &[Partner] = &[
+pub const CYCLISTS: &[Partner] = &[
     ("Non-Motorist: Cyclist", "a cyclist", "the cyclist"),
     ("Non-Motorist: Cyclist", "a person on a bicycle", "the bicyclist"),
-    ("Non-Motorist: Other", "a person on an electric scooter", "the scooter rider"),
-    ("Non-Motorist: Other", "a skateboarder", "the skateboarder"),
 ];
-const MOTORCYCLES: &[Partner] = &[
-    ("Motorcycle", "a motorcycle", "the motorcycle"),
-    ("Motorcycle", "a motor scooter", "the motor scooter"),
-    ("Motorcycle", "a moped", "the moped"),
+pub const SCOOTERS: &[Partner] = &[("Non-Motorist: Other", "a person on an electric scooter", "the scooter rider")];
+pub const WALKERS: &[Partner] = &[("Non-Motorist: Pedestrian", "a pedestrian", "the pedestrian")];
+pub const MOTORCYCLES: &[Partner] =
+    &[("Motorcycle", "a motorcycle", "the motorcycle"), ("Motorcycle", "a moped", "the moped")];
+pub const ANIMALS: &[Partner] =
+    &[("Animal", "a deer", "the deer"), ("Animal", "a dog", "the dog"), ("Animal", "a coyote", "the coyote")];
+pub const DELIVERY_ROBOTS: &[Partner] = &[("Other, see Narrative", "a delivery robot", "the delivery robot")];
+pub const CARGO: &[Partner] = &[("Heavy Truck", "a flatbed truck", "the flatbed truck")];
+pub const PARKED_CARS: &[Partner] = &[
+    ("Passenger Car", "a parked sedan", "the parked sedan"),
+    ("SUV", "a parked SUV", "the parked SUV"),
+    ("Pickup Truck", "a parked pickup truck", "the parked pickup truck"),
+];
+pub const DEBRIS: &[Partner] = &[
+    ("Other, see Narrative", "a piece of metal debris", "the debris"),
+    ("Other Fixed Object", "a strip of tire", "the strip of tire"),
+    ("Other, see Narrative", "a wooden pallet", "the pallet"),
+    ("Other Fixed Object", "a fallen branch", "the branch"),
+];
+pub const LOOSE: &[Partner] = &[
+    ("Other, see Narrative", "an empty shopping cart", "the shopping cart"),
+    ("Other, see Narrative", "a trash can", "the trash can"),
+];
+pub const CURBS: &[Partner] =
+    &[("Other Fixed Object", "the curb", "the curb"), ("Other Fixed Object", "a raised curb", "the curb")];
+pub const POTHOLES: &[Partner] =
+    &[("Other Fixed Object", "a pothole", "the pothole"), ("Other, see Narrative", "a deep pothole", "the pothole")];
+pub const CHAINS: &[Partner] =
+    &[("Other Fixed Object", "a chain", "the chain"), ("Other Fixed Object", "a metal chain", "the chain")];
+pub const GATES: &[Partner] =
+    &[("Other Fixed Object", "a gate arm", "the gate arm"), ("Other Fixed Object", "an automatic gate", "the gate")];
+pub const CONES: &[Partner] = &[
+    ("Other Fixed Object", "a traffic cone", "the traffic cone"),
+    ("Other Fixed Object", "a construction barrel", "the barrel"),
+];
+pub const POLES: &[Partner] =
+    &[("Pole / Tree", "a metal pole", "the pole"), ("Pole / Tree", "a sign post", "the sign post")];
+
+pub const WIDE: &[Partner] = &[
+    ("Heavy Truck", "a garbage truck", "the garbage truck"),
+    ("Bus", "a city bus", "the bus"),
+    ("Heavy Truck", "a box truck", "the box truck"),
+    ("Heavy Truck", "a cement truck", "the cement truck"),
 ];
 
 /// A partner of the kind the story can have.
 pub fn partner(rng: &mut Rng, partners: Partners) -> Partner {
-    let (rider, motorcycle, truck) = match partners {
-        Partners::Motor => (0.0, 0.0, 0.0),
-        Partners::Any => (0.25, 0.3, 0.0),
-        Partners::Light => (0.5, 1.0, 0.0),
-        Partners::Riders => (1.0, 0.0, 0.0),
-        Partners::Trucks => (0.0, 0.0, 0.45),
-    };
-    if chance(rng, rider) {
-        pick(rng, RIDERS)
-    } else if chance(rng, motorcycle) {
-        pick(rng, MOTORCYCLES)
-    } else if chance(rng, truck) {
-        pick(rng, TRUCKS)
-    } else if chance(rng, 0.75) {
-        pick(rng, CARS)
-    } else {
-        pick(rng, OTHERS)
+    match partners {
+        Partners::Of(these) => pick(rng, these),
+        Partners::Trucks if chance(rng, 0.6) => pick(rng, TRUCKS),
+        _ if chance(rng, 0.75) => pick(rng, CARS),
+        _ => pick(rng, OTHERS),
     }
 }
 
@@ -265,47 +170,62 @@ pub struct Facts<'a> {
     pub severity: &'static str,
 }
 
-/// The whole narrative of a story.
-pub fn narrative(rng: &mut Rng, story: &Story, facts: &Facts<'_>) -> String {
-    let telling = pick(rng, story.tellings);
-    let impact =
-        if facts.partner.0.starts_with("Non-Motorist") { pick(rng, IMPACTS_LIGHT) } else { pick(rng, IMPACTS) };
-    let engaged = pick(rng, facts.entity.engaged);
-    let outcome = outcome(rng, facts);
-    let text = format!("{}{telling} {impact} {engaged} {outcome}{}", facts.entity.opening, facts.entity.closing);
+/// The whole narrative of a story, told in the way of this number.
+pub fn narrative(rng: &mut Rng, story: &Story, way: usize, facts: &Facts<'_>) -> String {
+    let telling = story.tellings[way % story.tellings.len()];
+    let (opening, impact) = (pick(rng, facts.entity.openings), pick(rng, story.impacts));
+    let rolls = !matches!(story.state, ContactState::Stopped | ContactState::Parked);
+    let taken_over = rolls && !facts.entity.taken_over.is_empty() && chance(rng, 0.6);
+    let driver = pick(rng, if taken_over { facts.entity.taken_over } else { facts.entity.engaged });
+    let on_foot = matches!(story.kind, CrashType::Cyclist | CrashType::Pedestrian);
+    let outcome = outcome(rng, facts, story.cp.is_some() && !on_foot);
+    let text = format!("{opening}{telling} {impact} {driver} {outcome}{}", facts.entity.closing);
     let filled = fill(rng, &text, story.from, facts);
     if chance(rng, 0.1) { with_a_slip(rng, &filled) } else { filled }
 }
 
-const IMPACTS: &[&str] = &[
+pub const IMPACTS: &[&str] = &[
     "The {cp_hit} of {it} made contact with the {sv_hit} of {sv}.",
     "Contact was between the {sv_hit} of {sv} and the {cp_hit} of {it}.",
     "{Sv} was touched at the {sv_hit} by the {cp_hit} of {it}.",
     "The impact was at the {sv_hit} of {sv}, with the {cp_hit} of {it}.",
     "Marks were found on the {sv_hit} of {sv} and on the {cp_hit} of the other vehicle.",
 ];
-const IMPACTS_LIGHT: &[&str] = &[
+pub const IMPACTS_LIGHT: &[&str] = &[
     "{It} and {sv} made contact at the {sv_hit} of {sv}.",
     "Contact was with the {sv_hit} of {sv}. {It} fell and got up again.",
     "The {sv_hit} of {sv} was hit.",
 ];
+pub const IMPACTS_OF_THINGS: &[&str] = &[
+    "The {sv_hit} of {sv} made contact with {it}.",
+    "Contact was with the {sv_hit} of {sv}.",
+    "{Sv} stopped, and damage was found on its {sv_hit}.",
+];
+pub const IMPACTS_UNDERNEATH: &[&str] =
+    &["The underside of {sv} was damaged.", "A tire of {sv} lost air.", "Damage was found on the underbody of {sv}."];
+pub const IMPACTS_OF_ANIMALS: &[&str] =
+    &["Contact was with the {sv_hit} of {sv}.", "The {sv_hit} of {sv} made contact with {it}. {It} ran off."];
+pub const IMPACTS_OF_DOORS: &[&str] = &[
+    "The door was bent, and the {cp_hit} of {it} was scratched.",
+    "The door of {sv} was damaged at its edge.",
+    "The contact was between the door and {it}.",
+];
 
-fn outcome(rng: &mut Rng, facts: &Facts<'_>) -> &'static str {
+/// How it ended; with or without another party to speak of.
+fn outcome(rng: &mut Rng, facts: &Facts<'_>, other_party: bool) -> &'static str {
     match facts.severity {
         "Minor" => pick(
             rng,
             &[
-                "One person complained of neck pain and declined transport.",
+                "A passenger complained of neck pain and declined transport.",
                 "A minor injury was reported.",
-                "The other party had a bruised knee.",
+                "One passenger had a bruised knee.",
             ],
         ),
         "Moderate" => "One person was taken to hospital with moderate injuries.",
         "Serious" => "One person was seriously injured.",
-        "Unknown" => {
-            pick(rng, &["The other party left without giving details.", "It is not known if anyone was hurt."])
-        }
-        _ => pick(
+        "Unknown" => pick(rng, &["It is not known if anyone was hurt.", "No details of the other party are known."]),
+        _ if other_party => pick(
             rng,
             &[
                 "No injuries were reported.",
@@ -313,6 +233,18 @@ fn outcome(rng: &mut Rng, facts: &Facts<'_>) -> &'static str {
                 "Damage was minor and there were no injuries.",
                 "Both drove away. No injuries.",
                 "A sensor housing was damaged; no one was injured.",
+                "Both vehicles were damaged. No injuries were reported at the scene.",
+                "The other party left without giving details. No injuries are known.",
+                "Police were called and no injuries were reported.",
+            ],
+        ),
+        _ => pick(
+            rng,
+            &[
+                "No injuries were reported.",
+                "Nobody was hurt.",
+                "There was minor damage and no injury.",
+                "One vehicle was towed. No injuries.",
             ],
         ),
     }
@@ -376,7 +308,7 @@ fn speed(rng: &mut Rng, mph: u32, probability: f64) -> String {
 
 /// Zones in words; the widest bumper damage is called by its middle.
 fn zones(rng: &mut Rng, zones: &[ContactZone]) -> String {
-    use ContactZone::{Front, FrontLeft, FrontRight, Left, Rear, RearLeft, RearRight, Right};
+    use ContactZone::{Bottom, Front, FrontLeft, FrontRight, Left, Rear, RearLeft, RearRight, Right};
     if zones.contains(&Front) && zones.len() == 3 {
         return pick(rng, &["front", "whole front"]).to_owned();
     }
@@ -394,6 +326,7 @@ fn zones(rng: &mut Rng, zones: &[ContactZone]) -> String {
             Rear => pick(rng, &["rear", "rear bumper"]),
             RearLeft => pick(rng, &["rear left corner", "left rear quarter"]),
             RearRight => pick(rng, &["rear right corner", "right rear quarter"]),
+            Bottom => "underside",
             _ => "body",
         })
         .collect();
