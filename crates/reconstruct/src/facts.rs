@@ -478,9 +478,10 @@ const OVER_M: f64 = 2.0;
 const TURNED_OFF_M: f64 = 3.0;
 
 fn origin_words(told: &Told) -> String {
-    let more = match (told.comes_over, told.comes_round) {
-        (true, _) => ", on its own side",
-        (_, true) => ", behind",
+    let more = match (told.comes_over, told.comes_round, told.comes_across()) {
+        (true, ..) => ", on its own side",
+        (_, true, _) => ", behind",
+        (_, _, true) => ", across",
         _ => "",
     };
     told.origin.words() + more
@@ -508,13 +509,18 @@ fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
     };
     let on = |side: LeftRight, angle: f64| if side == LeftRight::Left { angle < 0.0 } else { angle > 0.0 };
     let beside = |side: LeftRight| if side == LeftRight::Left { left > ASIDE_M } else { left < -ASIDE_M };
-    // A thing has no front.
-    let same_way = facing.abs() < 60.0 || state == ContactState::Reversing || told.is_sliding();
+    let same_way = match told.comes_across() {
+        true => (30.0..150.0).contains(&facing.abs()),
+        false => facing.abs() < 60.0 || state == ContactState::Reversing,
+    };
     let shown = match told.origin {
         Origin::Behind => ahead < 2.0 && same_way && left.abs() < BESIDE_M,
-        Origin::Ahead => ahead > -2.0 && (same_way || on_foot || state.stands()) && left.abs() < beside_m,
+        Origin::Ahead => {
+            let faces = same_way || on_foot && !told.comes_across() || state.stands();
+            ahead > -2.0 && faces && left.abs() < beside_m
+        }
         Origin::Opposite => facing.abs() > 120.0 && (!told.comes_over || left > OVER_M),
-        Origin::Beside { side } => (facing.abs() < 60.0 || told.is_sliding()) && beside(side),
+        Origin::Beside { side } => (facing.abs() < 60.0 || told.comes_across()) && same_way && beside(side),
         Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
             let from_there =

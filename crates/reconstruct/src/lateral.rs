@@ -26,8 +26,8 @@ pub(crate) fn is_on_foot(kind: PartnerKind) -> bool {
     matches!(kind, PartnerKind::Pedestrian | PartnerKind::Animal)
 }
 
-/// Whether the partner pulled out from the kerb behind the ego, and came round it: told are that it pulled out or entered traffic, and that it
-/// passed or came by on the left. Traffic keeps to the right, and so does who is parked.
+/// Whether the partner pulled out from the kerb behind the ego, and came round it: told are that it pulled out or entered traffic,
+/// and that it passed or came by on the left. Traffic keeps to the right, and so does who is parked.
 pub(crate) fn comes_round(origin: Origin, partner: &Party, state: ContactState, movement: Option<Movement>) -> bool {
     let passes = movement == Some(Movement::Passing) || partner.did(Act::Pass);
     let from_there = match origin {
@@ -81,7 +81,7 @@ pub(crate) fn from_kerb(told: &Told, staging: &Staging) -> Option<Pace> {
 /// The line that a partner came along before it left it for the contact, to the left of the ego's line; nothing where it is
 /// not told to have left one. [m]
 pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
-    if told.is_sliding() {
+    if told.comes_across() {
         return None;
     }
     if told.comes_over {

@@ -1,10 +1,13 @@
-//! Things that move by themselves: what rolls, slides or is pushed into the way, and gates.
+//! Things that move by themselves: what rolls, slides or is pushed into the way, and gates; and who walks or
+//! runs into it.
 
 use crate::came::{Pace, start_over};
+use crate::lateral::is_on_foot;
 use crate::told::Told;
 use recrash_model::account::{Act, ContactState, Kind, LeftRight, Origin, Party, Striker, told};
 use recrash_model::math;
 use recrash_model::scenario::Size;
+use recrash_model::template::Movement;
 
 /// How fast a thing is that rolls or slides, from how far away. [m/s, m]
 pub(crate) const SLIDES_MPS: f64 = 2.0;
@@ -31,11 +34,25 @@ impl Told {
     pub(crate) fn is_sliding(&self) -> bool {
         self.thing.is_some() && self.slides && self.cp.state == ContactState::Moving
     }
+
+    /// Whether the partner comes across from aside: a thing, somebody on foot, or an animal.
+    pub(crate) fn comes_across(&self) -> bool {
+        self.is_sliding() || self.walks_across && self.cp.state == ContactState::Moving
+    }
 }
 
-/// It lies aside, and then comes.
+/// Whether it is told of somebody on foot, or of an animal, that it went into the ego's way or across.
+pub(crate) fn walks_across(origin: Origin, partner: &Party) -> bool {
+    let along = matches!(origin, Origin::Ahead | Origin::Beside { .. });
+    let on_foot = told(&partner.kind).and_then(Kind::partner_kind).is_some_and(is_on_foot);
+    let crosses = told(&partner.movement) == Some(Movement::NmCrossing);
+    let enters = [Act::Cross, Act::Enter, Act::PullOut].into_iter().any(|act| partner.did(act));
+    along && on_foot && (crosses || enters)
+}
+
+/// It lies or stands aside, and then comes.
 pub(crate) fn pace(told: &Told) -> Option<Pace> {
-    told.is_sliding().then(|| start_over(told.cp.speed_mps, SLIDES_M)).flatten()
+    told.comes_across().then(|| start_over(told.cp.speed_mps, SLIDES_M)).flatten()
 }
 
 /// Across the ego's lane: from the told side, or from both.

@@ -113,6 +113,8 @@ pub(crate) struct Told {
     pub(crate) thing: Option<Kind>,
     /// The partner is a gate that swung as they met.
     pub(crate) gate_swings: bool,
+    /// The partner is on foot, or an animal, and is told to have come across.
+    pub(crate) walks_across: bool,
     /// The partner is told to have rolled, slid or been pushed.
     pub(crate) slides: bool,
     pub(crate) origin: Origin,
@@ -187,6 +189,7 @@ impl Told {
             thing,
             slides: things::slides(partner),
             gate_swings,
+            walks_across: things::walks_across(origin, partner),
             origin,
             origin_told,
             comes_round,
@@ -399,7 +402,7 @@ impl Told {
             (Some(told), false) => told.max(0.4),
             (None, false) => fit(usual(&self.cp)),
         };
-        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.is_sliding() {
+        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.comes_across() {
             let sv = self.sv.speed_mps;
             match self.origin {
                 Origin::Behind | Origin::Beside { .. }

@@ -182,7 +182,7 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
             }
         }
     };
-    if told.is_sliding() {
+    if told.comes_across() {
         return things::headings(told).into_iter().map(math::wrap_angle).map(|heading| (heading, heading)).collect();
     }
     let along_kerb = matches!(told.origin, Origin::Parked { .. }) && !is_on_foot(told.cp.kind);
@@ -223,9 +223,9 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
                 turned(math::PI, &mut list);
             }
         }
-        // From the left it moves to the right.
         Origin::Cross { side } => {
-            let came = -sign(side) * math::FRAC_PI_2;
+            // From the left it moves to the right; who reverses faces back.
+            let came = -sign(side) * math::FRAC_PI_2 + if reverses { math::PI } else { 0.0 };
             let turns = matches!(told.cp.turning, Turning::Left | Turning::Right);
             if turns && (told.cp.turns_wide || told.sv.state.stands()) {
                 list.extend(into(came));
@@ -239,6 +239,10 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
         {
             for from in unknown(side) {
                 let moves = -from * math::FRAC_PI_2;
+                if matches!(told.cp.turning, Turning::Left | Turning::Right) && !reverses {
+                    turned(moves, &mut list);
+                    continue;
+                }
                 for off in [0.0, 20.0, 40.0, 60.0, -20.0, -40.0] {
                     let toward = moves + from * degrees(off);
                     list.push((

@@ -141,7 +141,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let (reading, actor) = (clues.reading, clues.actor);
     let walks = told(&account.partner.as_ref()?.kind)
         .is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist));
-    let side = clues.side().or_else(|| side_by_compass(reading, actor, account).filter(|_| walks));
+    let side = clues.side().or_else(|| side_of_road(reading, actor, account).filter(|_| walks));
     let frames = || reading.before(actor).filter(|(_, frame)| frame.happened());
     let did = |act: Act| frames().any(|(_, frame)| frame.act() == Some(act));
     let told_as = |value: Origin, source: Source| Some(Fact { value, source });
@@ -417,28 +417,37 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     None
 }
 
-/// The side of the road from which somebody comes, where a direction names it: "from the north side of the street".
-fn side_by_compass(reading: &Reading<'_>, actor: Actor, account: &Account) -> Option<LeftRight> {
-    let own = after_its_turn(account)?;
+/// The side of the road from which somebody comes, where its words name it: "from the north side of the street", "between cars on the
+/// right side of the road".
+fn side_of_road(reading: &Reading<'_>, actor: Actor, account: &Account) -> Option<LeftRight> {
+    let own = after_its_turn(account);
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
-    let named = |at: usize| match word(at) {
+    let compass = |at: usize| match word(at) {
         "north" | "northern" => Some(Compass::North),
         "east" | "eastern" => Some(Compass::East),
         "south" | "southern" => Some(Compass::South),
         "west" | "western" => Some(Compass::West),
         _ => None,
     };
+    let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
     let comes =
         |act: Option<Act>| matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve));
     reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(_, frame)| {
         let (first, end) = (frame.first, reading.story.sentences[frame.sentence].end);
-        let there = (first..end).filter(|&at| matches!(word(at + 1), "side" | "sidewalk" | "curb")).find_map(named)?;
-        match own.eighths_to(there) {
-            1..=3 => Some(LeftRight::Right),
-            5..=7 => Some(LeftRight::Left),
-            _ => None,
-        }
+        (first..end).find_map(|at| {
+            let kerb = matches!(word(at + 1), "sidewalk" | "curb");
+            match word(at) {
+                "left" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Left),
+                "right" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Right),
+                _ if kerb || word(at + 1) == "side" => match own?.eighths_to(compass(at)?) {
+                    1..=3 => Some(LeftRight::Right),
+                    5..=7 => Some(LeftRight::Left),
+                    _ => None,
+                },
+                _ => None,
+            }
+        })
     })
 }
 

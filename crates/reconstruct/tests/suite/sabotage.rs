@@ -187,6 +187,10 @@ fn other_direction(account: &Account, draft: &mut ScenarioDraft) -> bool {
     let Some((plan, _, contact)) = approach(draft).filter(|_| !stands && account.came_from.is_some()) else {
         return false;
     };
+    // Of who comes across ahead nobody says from which side.
+    if told(&account.came_from) == Some(Origin::Ahead) && (50.0..130.0).contains(&contact[2].abs()) {
+        return false;
+    }
     for place in places(plan) {
         if let Place::Plane { x_m, y_m, heading_deg } = place {
             (*x_m, *y_m) = (2.0 * contact[0] - *x_m, 2.0 * contact[1] - *y_m);

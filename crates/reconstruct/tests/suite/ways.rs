@@ -1,7 +1,7 @@
 //! What is told of the way to the contact is drawn; and a rollout without it does not pass for it.
 
 use crate::common::account_of;
-use recrash_model::account::{Account, Act, Fact, Origin};
+use recrash_model::account::{Account, Act, Fact, LeftRight, Origin};
 use recrash_model::math;
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::rollout::{ActorState, ActorTrack};
@@ -218,9 +218,20 @@ fn who_swings_aside_while_it_reverses_comes_to_stand_at_an_angle() {
 }
 
 #[test]
-fn an_animal_from_between_parked_cars_runs_across() {
-    let shown = made(&story(CAT));
-    assert!(degrees_between(partner(&shown).0[0].heading, math::FRAC_PI_2) < 1.0);
+fn an_animal_runs_across_wherever_it_is_said_to_come_from() {
+    for origin in
+        [Origin::Parked { side: Some(LeftRight::Right) }, Origin::Beside { side: LeftRight::Right }, Origin::Ahead]
+    {
+        let mut account = story(CAT);
+        account.came_from = Some(Fact::by_rule(origin, "made for this test"));
+        account.order = None;
+        let shown = made(&account);
+        assert!(degrees_between(partner(&shown).0[0].heading, math::FRAC_PI_2) < 35.0, "{origin:?}");
+        if !matches!(origin, Origin::Parked { .. }) {
+            let along = missed(&account, |less| partner_without_acts(less, &[Act::Enter, Act::PullOut, Act::Cross]));
+            assert!(along.contains(&CheckKind::Approach), "{origin:?}: {along:?}");
+        }
+    }
 }
 
 #[test]
@@ -256,4 +267,17 @@ fn a_gate_that_swung_swings_into_the_ego() {
     assert!(degrees_between(arm.states[80].heading, arm.states[89].heading) > 20.0);
     let shut = missed(&account, |less| partner_without_acts(less, &[Act::OpenDoor]));
     assert!(shut.contains(&CheckKind::CpState), "{shut:?}");
+}
+
+#[test]
+fn who_reverses_out_of_a_crossing_road_moves_from_there() {
+    let mut account = story(
+        "The AV was traveling north. A van reversed out of a driveway on the left, and the rear of the van made contact with the \
+         left side of the AV.",
+    );
+    account.came_from = Some(Fact::by_rule(Origin::Cross { side: LeftRight::Left }, "made for this test"));
+    account.order = None;
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(states[0].y > met.y + 1.0 && met.speed() < 0.0, "{:?} to {met:?}", states[0]);
 }
