@@ -371,7 +371,6 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     if sv_drifts && striker == Some(Striker::Both) && !cp_came_over {
         return rule(Role::Both, "both moved over");
     }
-    let _ = reading;
     rule(Role::Responder, "the other moved into it")
 }
 
