@@ -23,7 +23,7 @@ pub fn section(context: &Context) -> Markup {
             @if suite.sample {
                 p.banner role="note" {
                     (icon::bang())
-                    span { strong { "Built-in sample. " } "These records were written for recrash, with the paper's template counts. No real crash is shown. Give " code { "--records FILE" } " to use NHTSA's file." }
+                    span { strong { "Built-in sample. " } "These records were written for recrash, with the shares of crash types in NHTSA's files. No real crash is shown. Give " code { "--records FILE" } " to use NHTSA's file." }
                 }
             }
             @match &suite.accounts { Some(accounts) => (account_tiles(context, accounts)), None => (tiles(context)) }
