@@ -201,6 +201,7 @@ pub enum Progress {
 pub struct Lexicon {
     phrases: BTreeMap<String, Vec<Phrase>>,
     progress: BTreeMap<String, Progress>,
+    models: Vec<String>,
     reasons: Vec<(Vec<String>, StandReason)>,
     features: Vec<(Vec<String>, RoadFeature)>,
     places: Vec<(Vec<String>, PlaceKind)>,
@@ -214,7 +215,7 @@ pub struct Lexicon {
 struct File {
     subject: Subject,
     kinds: BTreeMap<Kind, Vec<String>>,
-    makes: Words,
+    makes: Makes,
     occupants: Occupants,
     adjectives: BTreeMap<String, Vec<String>>,
     verb: Vec<Verb>,
@@ -236,7 +237,8 @@ struct Subject {
 }
 
 #[derive(Deserialize)]
-struct Words {
+struct Makes {
+    models: Vec<String>,
     words: Vec<String>,
 }
 
@@ -443,6 +445,7 @@ impl Lexicon {
         let mut lexicon = Self {
             phrases: BTreeMap::new(),
             progress: BTreeMap::new(),
+            models: file.makes.models,
             reasons: lists(&file.reasons),
             features: lists(&file.features),
             places: lists(&file.places),
@@ -524,6 +527,11 @@ impl Lexicon {
             }
         }
         best
+    }
+
+    /// Whether a word is the name of a model of cars.
+    pub fn is_model(&self, word: &str) -> bool {
+        self.models.iter().any(|model| model == word)
     }
 
     /// How far the verb behind this word came, where the word says so.

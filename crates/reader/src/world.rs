@@ -35,10 +35,14 @@ pub struct Known {
     pub lane: Option<(LaneWord, usize, usize)>,
     /// When it was named last.
     pub last: usize,
+    /// The sentence that named it last.
+    pub sentence: Option<usize>,
     /// How often it was named.
     pub mentions: usize,
     /// A clause was about it.
     pub acted: bool,
+    /// It was called a tractor.
+    pub tractor: bool,
     /// Who tows it.
     pub towed_by: Option<Actor>,
 }
@@ -80,12 +84,32 @@ impl World {
 
     /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
     pub fn resolve(&mut self, noun: &Noun, tokens: (usize, usize), hint: Option<Relation>) -> Actor {
+        // "One of the cyclists" comes from where they all do.
+        let group = noun
+            .kind
+            .filter(|_| noun.one_of)
+            .and_then(|kind| self.latest(|known| known.several && known.kind == Some(kind)))
+            .map(|group| (self.actors[group].heading, self.actors[group].relations.clone()));
         let actor = self.find(noun, hint).unwrap_or_else(|| self.add(noun));
+        if let Some((heading, relations)) = group {
+            let known = &mut self.actors[actor];
+            known.heading = known.heading.or(heading);
+            if known.relations.is_empty() {
+                known.relations = relations;
+            }
+        }
         let actor = self.actors[actor].towed_by.unwrap_or(actor);
         self.clock += 1;
         let known = &mut self.actors[actor];
+        known.sentence = Some(self.sentence);
+        known.tractor |= noun.tractor;
         known.last = self.clock;
         known.mentions += 1;
+        if actor == SUBJECT && noun.subject {
+            // "The Prius" of "a Parcelway Prius".
+            let new = noun.names.iter().filter(|name| crate::lexicon::Lexicon::get().is_model(name));
+            known.names.extend(new.cloned());
+        }
         if actor != SUBJECT
             && let Some(owner) = noun.owner.as_deref().filter(|_| noun.occupant.is_some())
         {
@@ -218,6 +242,15 @@ impl World {
         {
             return Some(SUBJECT);
         }
+        // "The front of the tractor": of a truck that tells, unless another one was called so.
+        let named_so = self.actors[1..].iter().any(|known| known.tractor);
+        if noun.tractor
+            && noun.article == Article::Definite
+            && self.actors[SUBJECT].kind.is_some_and(truck)
+            && !named_so
+        {
+            return Some(SUBJECT);
+        }
         let fits = |known: &Known| {
             (known.kind.is_none() || known.kind.is_some_and(|known| same_kind(known, kind)))
                 && (noun.number.is_none() || known.number.is_none() || noun.number == known.number)
@@ -319,6 +352,15 @@ impl World {
             Occupant::Driver if plain && !self.own_driver => {
                 self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT)
             }
+            // "The rider came off", told of a motorcycle.
+            Occupant::Rider if noun.article == Article::Definite && !noun.several => self
+                .latest(|known| known.acted)
+                .filter(|&actor| {
+                    let kind = self.actors[actor].kind.map(Kind::group);
+                    let rides = matches!(kind, Some(KindGroup::Motorcycle | KindGroup::Cyclist));
+                    rides && self.actors[actor].last > self.actors[SUBJECT].last
+                })
+                .unwrap_or(SUBJECT),
             _ => SUBJECT,
         }
     }

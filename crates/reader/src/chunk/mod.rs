@@ -35,6 +35,10 @@ pub struct Noun {
     pub adjectives: Vec<Adjective>,
     /// Direction, as in "an eastbound van".
     pub compass: Option<Compass>,
+    /// One of several: "one of the cyclists".
+    pub one_of: bool,
+    /// It is called a tractor, the front half of a truck.
+    pub tractor: bool,
     /// More than one.
     pub several: bool,
     /// Somebody in a vehicle.
@@ -54,6 +58,8 @@ impl Noun {
             names: Vec::new(),
             adjectives: Vec::new(),
             compass: None,
+            one_of: false,
+            tractor: false,
             several: false,
             occupant: None,
             owner: None,
@@ -470,6 +476,17 @@ impl Chunker<'_> {
         if self.text(at) == "back"
             && matches!(self.text(at + 1), "to" | "onto" | "into" | "of" | "pain" | "injury")
             && single
+        {
+            return None;
+        }
+        // "at walking pace", "from crossing streets", "behind a driveway opening".
+        let paced = matches!(self.text(at + 1), "pace" | "speed" | "speeds");
+        if form == Form::Ing && single && (paced || matches!(self.text(at + 1), "street" | "streets" | "roads")) {
+            return None;
+        }
+        if self.text(at) == "opening"
+            && single
+            && matches!(word_before, "driveway" | "gate" | "fence" | "median" | "wall" | "an" | "the")
         {
             return None;
         }

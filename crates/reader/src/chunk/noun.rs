@@ -22,6 +22,11 @@ impl Chunker<'_> {
                 (open, at) = (true, at + 1);
                 continue;
             }
+            // "the roof-mounted sensor dome".
+            if word == "mounted" && !parts.is_empty() && self.part(at + 1).is_some() {
+                at += 1;
+                continue;
+            }
             if word == "and" && !parts.is_empty() && self.part(at + 1).is_some() && self.noun(at + 1).is_none() {
                 at += 1;
                 continue;
@@ -49,6 +54,23 @@ impl Chunker<'_> {
             // "the rear of both the van and the bus" has one owner: the first.
             if matches!(self.text(behind), "both" | "another") {
                 behind += usize::from(self.text(behind) == "both");
+            }
+            // "the edge of the open door".
+            let door = (behind + 1..behind + 4).find(|&at| matches!(self.text(at), "door" | "doors"));
+            if let Some(further) = door.filter(|_| DETERMINERS.contains(&self.text(behind)) && self.text(at) == "of")
+                && let Some((inner, length)) = self.piece(behind).filter(|(inner, _)| inner.door)
+                && further < behind + length
+            {
+                for part in inner.parts {
+                    if !parts.contains(&part) {
+                        parts.push(part);
+                    }
+                }
+                let open = open || inner.open;
+                return Some((
+                    Piece { parts, door: true, mirror, open, owner: inner.owner, its: its || inner.its },
+                    behind + length - first,
+                ));
             }
             if let Some((noun, length)) =
                 self.noun(behind).filter(|(noun, _)| noun.subject || noun.kind.is_some_and(can_own))
@@ -136,6 +158,7 @@ impl Chunker<'_> {
     pub(super) fn noun(&self, first: usize) -> Option<(Noun, usize)> {
         let mut noun = Noun::unnamed();
         let mut at = first;
+        let mut one_of = false;
         match self.text(at) {
             "the" | "this" | "that" | "these" | "those" | "its" | "their" | "our" | "his" | "her" => {
                 noun.article = Article::Definite;
@@ -143,8 +166,8 @@ impl Chunker<'_> {
             }
             // "one of the cyclists", "each of the vans".
             "one" if self.text(at + 1) == "of" && matches!(self.text(at + 2), "the" | "these" | "those") => {
-                noun.article = Article::Definite;
-                at += 3;
+                noun.article = Article::Indefinite;
+                (one_of, at) = (true, at + 3);
             }
             "a" | "an" | "one" => {
                 noun.article = Article::Indefinite;
@@ -233,7 +256,12 @@ impl Chunker<'_> {
             strange += 1;
             at += 1;
         };
-        self.heads(noun, first, at, company, make, head)
+        let (mut noun, length) = self.heads(noun, first, at, company, make, head)?;
+        if one_of {
+            (noun.one_of, noun.several) = (noun.several, false);
+            noun.article = if noun.one_of { Article::Indefinite } else { Article::Definite };
+        }
+        Some((noun, length))
     }
 
     /// Whether a word that nobody knows may stand before a noun, as in "a charter bus": no small word, and the noun is next.
@@ -370,6 +398,12 @@ impl Chunker<'_> {
         {
             return None;
         }
+        // "the leaf of the gate", "a tight fit": names of models are written large.
+        let model = self.lexicon.is_model(self.text(at));
+        let of_company = self.text(at) == "pilot" && at > 0 && self.tokens[at - 1].text == "drive";
+        if model && found.length == 1 && (!self.tokens[at].capital || of_company) {
+            return None;
+        }
         if matches!(self.text(at), "sign") && at > self.first && matches!(self.text(at - 1), "stop" | "yield") {
             return None;
         }
@@ -391,7 +425,16 @@ impl Chunker<'_> {
         let mut plural = false;
         while let Some((meaning, length)) = head {
             match meaning {
-                Meaning::Subject => subject = true,
+                Meaning::Subject => {
+                    subject = true;
+                    // "An automated shuttle": "the shuttle" further on.
+                    noun.kind = noun.kind.or(match self.text(at + length - 1) {
+                        _ if length == 1 => None,
+                        "shuttle" | "bus" => Some(Kind::Bus),
+                        "truck" => Some(Kind::HeavyTruck),
+                        _ => None,
+                    });
+                }
                 Meaning::Kind(Kind::Trailer) if noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) => {
                     noun.kind = Some(Kind::SemiTrailerTruck);
                 }
@@ -399,6 +442,10 @@ impl Chunker<'_> {
                     noun.kind = Some(Kind::PickupWithTrailer)
                 }
                 Meaning::Kind(kind) => {
+                    if length == 1 && self.lexicon.is_model(self.text(at)) {
+                        noun.names.push(self.text(at).to_owned());
+                    }
+                    noun.tractor = length == 1 && self.text(at) == "tractor";
                     // "a passenger sedan" carries passengers, and is none.
                     if kind.is_vehicle() && matches!(noun.occupant, Some((Occupant::Rider, _))) {
                         (noun.occupant, noun.owner) = (None, None);
@@ -495,6 +542,13 @@ impl Chunker<'_> {
                 at = behind + 1 + length;
             }
         }
+        // "a person in the driver's seat of the van" is somebody in the van.
+        if noun.kind == Some(Kind::Pedestrian)
+            && let Some((owner, behind)) = self.seated(at)
+        {
+            (noun.owner, noun.occupant, noun.kind) = (Some(Box::new(owner)), Some((Occupant::Rider, false)), None);
+            return Some((noun, behind - first));
+        }
         // "a person on a scooter", "a rider of a bicycle" is who rides it.
         let on_foot = noun
             .kind
@@ -559,6 +613,24 @@ impl Chunker<'_> {
             return Some((person, at + 1 + length - first));
         }
         Some((noun, at - first))
+    }
+
+    /// The vehicle in which somebody is by the words here, and the token behind it: "sitting in the back seat of the van".
+    fn seated(&self, at: usize) -> Option<(Noun, usize)> {
+        let mut behind = at;
+        while matches!(self.text(behind), "who" | "was" | "sitting" | "seated" | "sat" | "waiting") {
+            behind += 1;
+        }
+        if !matches!(self.text(behind), "in" | "inside" | "aboard") {
+            return None;
+        }
+        behind += 1;
+        if let Some(seat) = (behind..behind + 6).find(|&at| self.text(at) == "seat") {
+            behind = seat + 1 + usize::from(matches!(self.text(seat + 1), "of" | "in"));
+        }
+        let (owner, length) = self.noun(behind)?;
+        let vehicle = owner.subject || owner.kind.is_some_and(Kind::is_vehicle) && owner.kind != Some(Kind::Vehicle);
+        (vehicle && owner.occupant.is_none() && !owner.several).then_some((owner, behind + length))
     }
 
     /// Behind a trailer that stands here, with at most two words before it.

@@ -49,6 +49,13 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     }
     let Some(number) = reading.contacts.first else { return by_fronts(account) };
     let frame = &reading.story.frames[number];
+    let meets = frame.sense == Sense::ContactMade
+        && reading.story.tokens[frame.first..frame.end.max(frame.first + 2)]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "met" | "meet" | "meeting" | "together" | "each"));
+    if meets && frame.who.is_none() && !sv_stands && !cp_stands {
+        return Some(Fact { value: Striker::Both, source: reading.of(frame) });
+    }
     // "Its front corner and that of the van collided".
     let twin = number.checked_sub(1).map(|before| &reading.story.frames[before]).into_iter();
     let twin = twin.chain(reading.story.frames.get(number + 1)).find(|other| {
@@ -76,7 +83,9 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     let value = match (frame.who, frame.object) {
         (Some(SUBJECT), _) => {
             // "The rear of the subject vehicle made contact with the front of the car": who moved forward into whom.
-            let rear = has_zone(&account.sv, |zone| zone.is_rear());
+            let over = [Act::LaneChange, Act::Drift, Act::Swerve].into_iter().any(|act| account.sv.did(act));
+            let rear = has_zone(&account.sv, |zone| zone.is_rear())
+                && !(over && !has_zone(&account.sv, |zone| zone == recrash_model::zones::ContactZone::Rear));
             if rear && sv != Some(ContactState::Reversing) { Striker::Cp } else { Striker::Sv }
         }
         (Some(who), _) if who != SUBJECT => Striker::Cp,
@@ -245,6 +254,9 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
     }
     if sv == ContactState::Reversing {
         let both = striker_backed_away(account) || cp_state(account) == Some(ContactState::Reversing);
+        if striker == Some(Striker::Both) {
+            return rule(Role::Both, "both went backwards");
+        }
         return if both { rule(Role::Responder, "it backed away") } else { rule(Role::Initiator, "it went backwards") };
     }
     let cp_stands = cp_state(account).is_some_and(ContactState::stands) && !partner.did(Act::OpenDoor);
@@ -368,7 +380,8 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return rule(Role::Both, "it changed lanes");
     }
     let cp_came_over = told(&partner.movement) == Some(Movement::CrossingIntoOpposingLane);
-    if sv_drifts && striker == Some(Striker::Both) && !cp_came_over {
+    let head_on = told(&account.crash_type) == Some(CrashType::HeadOn) && cp_moves;
+    if sv_drifts && striker == Some(Striker::Both) && !cp_came_over && !head_on {
         return rule(Role::Both, "both moved over");
     }
     rule(Role::Responder, "the other moved into it")

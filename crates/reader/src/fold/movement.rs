@@ -97,7 +97,10 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                     (fact.value, same_way, passed_last(partner))
                 {
                     *fact = Fact { value: Movement::Passing, source: passed.source.clone() };
-                } else if fact.value == Movement::Passing && oncoming {
+                } else if fact.value == Movement::Passing
+                    && oncoming
+                    && !(column == Some(Movement::Passing) && passes_another(reading))
+                {
                     fact.value = Movement::Straight;
                 }
                 if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
@@ -135,6 +138,15 @@ fn over_the_line(reading: &Reading<'_>) -> Option<Source> {
         let over =
             (first..end).any(|at| matches!(tokens[at].text.as_str(), "over" | "across" | "crossed" | "crossing"));
         (crosses && line && over).then(|| reading.of(frame))
+    })
+}
+
+/// Whether the partner goes round somebody else, up to the contact.
+fn passes_another(reading: &Reading<'_>) -> bool {
+    let Some(actor) = reading.contacts.partner else { return false };
+    let passes = |frame: &crate::frame::Frame| frame.happened() && frame.act() == Some(Act::Pass);
+    reading.before(actor).any(|(_, frame)| {
+        passes(frame) && frame.object.is_some_and(|object| object != crate::world::SUBJECT && object != actor)
     })
 }
 

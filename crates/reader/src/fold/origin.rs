@@ -336,6 +336,11 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
                         clues.source(|frame| frame.act() == Some(Act::LaneChange)),
                     );
                 }
+                let flank = !account.sv.zones.is_empty()
+                    && account.sv.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::Right));
+                if let (true, false, Some(side)) = (flank, sv_stands, zone_side(account)) {
+                    return Some(Fact { value: Origin::Beside { side }, source });
+                }
                 if sv_stands || has_zone(&account.sv, |zone| zone.is_rear()) {
                     return Some(Fact { value: Origin::Behind, source });
                 }

@@ -49,7 +49,7 @@ pub(crate) fn crash_type(reading: &Reading<'_>, account: &Account) -> Option<Fac
 fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
     let partner = account.partner.as_ref()?;
     if group(account) == Some(KindGroup::Object) {
-        return Some(if told(&partner.kind) == Some(Kind::Cargo) {
+        return Some(if told(&partner.kind) == Some(Kind::Cargo) || off_a_vehicle(reading) {
             (CrashType::Other, "cargo")
         } else {
             (CrashType::SingleVehicle, "a thing")
@@ -162,7 +162,8 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
                 || (cp_turns
                     && turn_side(partner) == Some(LeftRight::Left)
                     && !(sv_turns && turn_side(&account.sv) == Some(LeftRight::Left)))
-                || told(&partner.movement) == Some(Movement::UTurn);
+                || told(&partner.movement) == Some(Movement::UTurn)
+                || told(&partner.movement) == Some(Movement::LeftTurn) && !partner.did(Act::Turn) && !sv_turns;
             // Left side on left side they passed each other, and only then it turned, or began to.
             let left = |party: &Party, corner: bool| {
                 use recrash_model::zones::ContactZone as Z;
@@ -209,6 +210,34 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         }
         Some(Origin::Above) | None => by_columns(reading, account),
     }
+}
+
+/// Whether the thing came off a vehicle that drove: "a ladder dropped off the pickup".
+fn off_a_vehicle(reading: &Reading<'_>) -> bool {
+    let Some(actor) = reading.contacts.partner else { return false };
+    let story = &reading.story;
+    let vehicle = |word: &str| {
+        story.world.actors.iter().skip(1).any(|known| {
+            known.kind.is_some_and(Kind::is_vehicle)
+                && known.kind_tokens.is_some_and(|(first, end)| {
+                    story.tokens[first..end].iter().any(|token| token.text == word && token.text.len() > 2)
+                })
+        })
+    };
+    let struck = reading.contacts.first.is_some_and(|first| story.frames[first].who == Some(actor));
+    struck
+        && reading.before(actor).any(|(number, frame)| {
+            let (first, end) = reading.window(number);
+            let had = first > 0 && story.tokens[first - 1].text == "had";
+            let of_it =
+                ["detach", "separat", "broke", "tore"].iter().any(|stem| story.tokens[first].text.starts_with(stem));
+            let from = story.tokens[first..end].iter().position(|token| matches!(token.text.as_str(), "from" | "off"));
+            frame.act() == Some(Act::Fall)
+                && frame.happened()
+                && !had
+                && !of_it
+                && from.is_some_and(|at| story.tokens[first + at..end].iter().take(8).any(|token| vehicle(&token.text)))
+        })
 }
 
 /// Whether both go the same way round a corner, in lanes side by side: told as a turn, as a turn to come, or by the lane for it.

@@ -25,6 +25,8 @@ impl Parser<'_> {
 
     /// A noun behind a preposition.
     pub(super) fn object_of(&mut self, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
+        // "a cyclist between the van and the curb": a pair, whatever verb comes.
+        carry.pair |= preposition == "between" && carry.frame.is_none() && !self.world.actors[mention.actor].several;
         let Some(frame) = carry.frame else { return };
         let actor = mention.actor;
         let sense = self.frames[frame].sense;
@@ -66,14 +68,14 @@ impl Parser<'_> {
             "into" | "onto" | "with" | "against" | "between" | "and" | "upon" | "on" | "at" | "to" => {
                 if sense == Sense::Push && preposition != "with" {
                     // Pushed into somebody: who was pushed touches them.
-                    let pushed = self.frames[frame].object;
-                    let placed_frame = Placed { chunk: Chunk::Word, first: self.frames[frame].first, end: placed.end };
-                    let mut contact = self.frame(pushed, Sense::Contact, Form::Past, &placed_frame, carry);
-                    contact.object = Some(actor);
-                    contact.on.clone_from(&mention.piece);
-                    contact.progress = Progress::Real;
-                    self.frames.push(contact);
-                    return;
+                    return self.touch(frame, self.frames[frame].object, mention, placed, carry);
+                }
+                // "slid on into the rear of the van", "came to rest with its nose against it".
+                let into =
+                    matches!(preposition, "into" | "against") && self.tokens.get(placed.end).is_none_or(not_possessive);
+                if into && self.runs_into(frame, mention) {
+                    let who = self.frames[frame].who;
+                    return self.touch(frame, who, mention, placed, carry);
                 }
                 let taken = &mut self.frames[frame];
                 let contact = matches!(
@@ -151,6 +153,44 @@ impl Parser<'_> {
             }
             _ => {}
         }
+    }
+
+    /// Who is pushed, or drives on, into somebody touches them.
+    fn touch(&mut self, frame: usize, who: Option<Actor>, mention: &Mention, placed: &Placed, carry: &Carry) {
+        let before = &self.frames[frame];
+        let (negated, progress) = (before.negated, before.progress);
+        let words = Placed { chunk: Chunk::Word, first: before.first, end: placed.end };
+        let with = before.with.clone();
+        let mut contact = self.frame(who, Sense::Contact, Form::Past, &words, carry);
+        contact.object = Some(mention.actor);
+        contact.on.clone_from(&mention.piece);
+        (contact.negated, contact.with) = (negated, with);
+        contact.progress = if negated { progress } else { Progress::Real };
+        self.frames.push(contact);
+    }
+
+    /// Whether somebody moves into a part of another, or into another that is named as a whole.
+    fn runs_into(&self, frame: usize, mention: &Mention) -> bool {
+        let frame = &self.frames[frame];
+        let moves = matches!(
+            frame.act(),
+            Some(
+                Act::Follow
+                    | Act::SetOff
+                    | Act::Drift
+                    | Act::Swerve
+                    | Act::Roll
+                    | Act::Fall
+                    | Act::LoseControl
+                    | Act::Accelerate
+                    | Act::LaneChange
+                    | Act::Slow
+            )
+        );
+        let apart = frame.who.is_some_and(|who| who != mention.actor);
+        let rides = self.world.actors[mention.actor].kind.is_none_or(|kind| kind.group() != KindGroup::Object);
+        let named = mention.actor == SUBJECT || mention.piece.is_some();
+        moves && apart && rides && named && mention.person.is_none() && frame.happened() && frame.object.is_none()
     }
 
     /// Where somebody is: of the frame, or of the noun before.
@@ -234,6 +274,9 @@ impl Parser<'_> {
             Some(Chunk::Piece(piece)) => piece.owner.is_some() || piece.its,
             _ => false,
         };
+        // "going by it on its left a cyclist slipped": whose left it is stands there.
+        let possessed = self.tokens[placed.first..placed.end].iter().any(|token| token.text == "its");
+        let governs = governs && !possessed;
         // "behind [XXX]", "next to the mall": places.
         let last = self.tokens[placed.end - 1].text.as_str();
         let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
@@ -376,6 +419,11 @@ impl Parser<'_> {
     pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {
         let into = matches!(carry.preposition, Some("into" | "onto" | "to")) || carry.to;
         let from = carry.preposition == Some("from");
+        // "was part way across the bicycle lane": not its own.
+        if matches!(carry.preposition, Some("across" | "over" | "past" | "between")) {
+            carry.preposition = None;
+            return;
+        }
         (carry.preposition, carry.to) = (None, false);
         let stands = (lane, placed.first, placed.end);
         let Some(frame) = carry.frame else {
@@ -437,4 +485,9 @@ impl Parser<'_> {
             taken.out_of.get_or_insert(spot);
         }
     }
+}
+
+/// Whether a word is no "'s": what it stands behind is named for itself.
+fn not_possessive(token: &crate::token::Token) -> bool {
+    token.text != "'s"
 }

@@ -1,5 +1,6 @@
 //! Event frames: who did what, to whom, where, in which order; folded from the chunks of one sentence after the other.
 
+mod adverbs;
 mod attach;
 mod parser;
 mod row;
@@ -155,6 +156,8 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         parser.read(*sentence);
     }
     let (mut frames, world) = (parser.frames, parser.world);
+    frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
+    adverbs::apply(&mut frames, &tokens, &sentences);
     // "a sedan and a van collided": with each other.
     for at in 1..frames.len() {
         let (before, after) = frames.split_at_mut(at);

@@ -1,6 +1,7 @@
 //! One sentence after the other: subjects find their verbs, verbs their objects.
 
 use super::Frame;
+use super::adverbs::goes_about;
 use super::row::{acts, another_finite, next_is_verb, next_preposition, relation_behind, transitive};
 use super::sided;
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, chunks, is_determiner};
@@ -27,6 +28,8 @@ pub(super) struct Carry {
     pub(super) has_verb: bool,
     /// Who the sentence is about.
     pub(super) main: Option<Mention>,
+    /// Whom the sentence has been about so far.
+    pub(super) mains: Vec<Actor>,
     /// Noun named last.
     pub(super) last: Option<Mention>,
     /// The noun named last stands behind a preposition or a relation.
@@ -130,6 +133,10 @@ impl Parser<'_> {
                 // "At this time a van ...": the van is not behind "at".
                 if carry.filled && noun.article != Article::None {
                     (carry.preposition, carry.relation) = (None, None);
+                    // "It opened its door at the moment a van was driving by": the van begins a clause.
+                    if matches!(next, Some(Chunk::Be)) {
+                        carry.frame = None;
+                    }
                 }
                 let person = noun.occupant.map(|(who, _)| who);
                 self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
@@ -265,7 +272,9 @@ impl Parser<'_> {
                 // "at about 6 mph its bumper touched".
                 carry.filled |=
                     waits && matches!(word, "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm");
-                let begins = carry.fresh && !waits && matches!(word, "a" | "an" | "the" | "several" | "some" | "two");
+                let clause = carry.fresh || carry.after_comma && carry.has_verb && carry.joint.is_some();
+                let begins =
+                    clause && !waits && matches!(word, "a" | "an" | "the" | "several" | "some" | "two" | "one");
                 if begins && matches!(next, Some(Chunk::Word)) {
                     carry.stranger = true;
                 }
@@ -291,15 +300,34 @@ impl Parser<'_> {
 
     /// Who is meant by `it` and `its`.
     fn its(&self, carry: &Carry) -> Actor {
+        // "The bus was shoved back, and its bumper touched": whom another one moves.
+        let pushed = self.frames.last().filter(|frame| {
+            carry.fresh && frame.sentence == self.sentence && frame.sense == Sense::Push && frame.happened()
+        });
+        if let Some(pushed) = pushed.and_then(|frame| frame.object) {
+            return pushed;
+        }
         let actor = self.of_sentence(carry);
         // "The van drifted over and hit its right side": nobody hits itself.
         let hits = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
-            matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact)
+            matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
                 && frame.who == Some(actor)
                 && frame.object.is_none()
                 && !carry.fresh
         });
+        // "ran into the sedan, driving it forward": whom it struck.
+        let struck = self.frames.iter().rev().skip(1).find(|frame| {
+            frame.sentence == self.sentence && frame.is_contact() && frame.who == Some(actor) && frame.object.is_some()
+        });
+        let pushes = carry.frame.is_some_and(|frame| self.frames[frame].sense == Sense::Push);
+        if let (true, Some(Some(struck))) = (hits && pushes, struck.map(|frame| frame.object)) {
+            return struck;
+        }
         match hits {
+            // "A motorcycle was eastbound when a van turned across it and clipped it": of a sentence without the subject vehicle.
+            true if actor != SUBJECT && self.world.actors[SUBJECT].sentence != Some(self.sentence) => {
+                carry.mains.iter().rev().copied().find(|before| *before != actor).unwrap_or(SUBJECT)
+            }
             true if actor != SUBJECT => SUBJECT,
             true => self.world.other().unwrap_or(actor),
             false => actor,
@@ -472,6 +500,7 @@ impl Parser<'_> {
                 }
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
                     carry.main = Some(mention.clone());
+                    carry.mains.push(actor);
                 }
                 if carry.also.as_ref().is_some_and(|also| carry.subject.as_ref() != Some(also) || also.actor == actor) {
                     carry.also = None;
@@ -577,6 +606,7 @@ impl Parser<'_> {
         // "a bicycle ridden by a courier" passes nobody.
         let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
         let sense = if ridden { Sense::Other } else { sense };
+        let sense = if self.drives_another(sense, form, &word, all, at, carry) { Sense::Push } else { sense };
         let sense = if carried && on && placed.end == placed.first + 1 { Sense::Other } else { sense };
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         // A finite verb behind a finished relative clause is of the clause around it.
@@ -616,9 +646,11 @@ impl Parser<'_> {
                 return;
             }
         }
+        let both = self.of_both(sense, all, at, carry);
+        let sense = if both { Sense::ContactMade } else { sense };
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
-        let who = self.who_of(sense, form, placed, carry, purpose).filter(|_| !carry.stranger);
+        let who = self.who_of(sense, form, placed, carry, purpose).filter(|_| !carry.stranger && !both);
         let mut frame = self.frame(who.as_ref().map(|mention| mention.actor), sense, form, placed, carry);
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
@@ -675,14 +707,10 @@ impl Parser<'_> {
             && frame.progress == Progress::Real
         {
             // "moved forward to pass it": begun. "slowed to turn": not.
-            let going = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|before| {
-                before.who == frame.who
-                    && before.happened()
-                    && matches!(
-                        before.act(),
-                        Some(Act::Follow | Act::SetOff | Act::Drift | Act::Accelerate | Act::Reverse)
-                    )
-            });
+            let going = carry
+                .frame
+                .map(|frame| &self.frames[frame])
+                .is_some_and(|before| before.who == frame.who && before.happened() && goes_about(before.act()));
             frame.progress =
                 match (carry.pushed, going && matches!(frame.act(), Some(Act::Pass | Act::Park | Act::LaneChange))) {
                     (true, _) => Progress::Real,
@@ -694,8 +722,9 @@ impl Parser<'_> {
             frame.progress = Progress::Wished;
         }
         frame.passive = be && form == Form::Past && matches!(next_preposition(all, at), Some("by"));
-        if be && form == Form::Past && matches!(sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact) {
-            // "was struck", with or without a "by" behind it.
+        let done_to = matches!(sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push);
+        if be && form == Form::Past && done_to {
+            // "was struck", "was shoved back", with or without a "by" behind it.
             frame.object = frame.who.take();
             frame.on = frame.with.take();
             frame.passive = true;

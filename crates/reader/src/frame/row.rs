@@ -18,11 +18,114 @@ impl Parser<'_> {
         at > 0 && name(all.get(at - 1)) && name(all.get(at + 1))
     }
 
+    /// Whether the clause is about two vehicles at once: "the vehicles met", "the mirrors of the two vehicles touched each other".
+    pub(super) fn of_both(&self, sense: Sense, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let Some(subject) =
+            carry.subject.as_ref().filter(|_| sense == Sense::Contact && !carry.be && carry.also.is_none())
+        else {
+            return false;
+        };
+        let before = &self.tokens[subject.end.saturating_sub(3)..subject.end];
+        let known = before.iter().any(|token| matches!(token.text.as_str(), "the" | "both"));
+        let plural = before.last().is_some_and(|token| {
+            matches!(token.text.as_str(), "vehicles" | "cars" | "trucks" | "two" | "mirrors" | "bumpers" | "they")
+        });
+        let object = matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Noun(_) | Chunk::Pronoun));
+        let each_other =
+            self.tokens[all[at].end..].first().is_some_and(|next| matches!(next.text.as_str(), "each" | "one"));
+        self.world.actors[subject.actor].several && known && plural && (!object || each_other)
+    }
+
+    /// Whether a verb of moving has somebody as its object: "driving it forward into the van", "the impact moved the bus", "was driven
+    /// into the rear".
+    pub(super) fn drives_another(
+        &self,
+        sense: Sense,
+        form: Form,
+        word: &str,
+        all: &[Placed],
+        at: usize,
+        carry: &Carry,
+    ) -> bool {
+        let moves = matches!(
+            word,
+            "drive"
+                | "drove"
+                | "driven"
+                | "driving"
+                | "move"
+                | "moved"
+                | "moving"
+                | "spin"
+                | "spun"
+                | "spinning"
+                | "slide"
+                | "slid"
+                | "sliding"
+                | "roll"
+                | "rolled"
+                | "rolling"
+                | "turned"
+                | "turning"
+                | "rotated"
+        );
+        if !moves || all[at].end != all[at].first + 1 && !matches!(sense, Sense::Act(Act::Follow)) {
+            return false;
+        }
+        let behind = || {
+            all[at + 1..].iter().take_while(|placed| {
+                !matches!(placed.chunk, Chunk::Verb(..) | Chunk::Comma | Chunk::Joint(_) | Chunk::Be | Chunk::Relative)
+            })
+        };
+        let into = |placed: &Placed| matches!(placed.chunk, Chunk::Preposition("into" | "onto" | "against"));
+        let ahead = |placed: &Placed| {
+            matches!(
+                self.tokens[placed.first].text.as_str(),
+                "forward" | "backward" | "backwards" | "back" | "sideways"
+            )
+        };
+        let part = behind().any(|placed| {
+            matches!(placed.chunk, Chunk::Piece(_)) || matches!(&placed.chunk, Chunk::Noun(noun) if noun.subject)
+        });
+        if carry.be && form == Form::Past {
+            // "was driven forward into the rear of": no person who drives.
+            let by = behind().any(|placed| matches!(placed.chunk, Chunk::Preposition("by")));
+            return !by && part && behind().any(into);
+        }
+        let object = match all.get(at + 1).map(|placed| &placed.chunk) {
+            Some(Chunk::Pronoun) => true,
+            Some(Chunk::Noun(noun)) => {
+                noun.occupant.is_none() && (noun.subject || noun.kind.is_some_and(Kind::is_vehicle)) && !noun.several
+            }
+            _ => false,
+        };
+        let other = carry.subject.as_ref().is_none_or(|subject| match all.get(at + 1).map(|placed| &placed.chunk) {
+            Some(Chunk::Noun(noun)) => !(noun.subject && subject.actor == SUBJECT),
+            _ => true,
+        });
+        object
+            && other
+            && (behind().any(|placed| into(placed)) && part
+                || behind().any(ahead) && carry.subject.as_ref().is_none_or(|subject| subject.person.is_none()))
+    }
+
     /// Whether a verb that nobody knows stands between a part of one and a part of another: "its fender raked the side of the van".
     pub(super) fn touches_by_parts(&self, word: &str, all: &[Placed], at: usize, carry: &Carry) -> bool {
-        let part = carry.subject.as_ref().filter(|subject| subject.piece.is_some() && carry.last_is(Some(subject)));
-        let past =
-            word.len() > 3 && word.ends_with("ed") || matches!(word, "met" | "caught" | "tore" | "bent" | "broke");
+        let met = matches!(word, "met" | "caught");
+        // "the vehicles met rear bumper to rear bumper", "it and the van met at their front corners".
+        let pair = carry.also.is_some() || self.of_both(Sense::Contact, all, at, carry);
+        let parts = all[at + 1..].iter().take(4).any(|placed| matches!(placed.chunk, Chunk::Piece(_)));
+        if word == "met" && pair && parts && !carry.has_verb {
+            return true;
+        }
+        let into =
+            matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Preposition("into" | "against" | "along")));
+        let whole = |actor: Actor| acts(self.world.actors[actor].kind) || met || into;
+        let part = carry.subject.as_ref().filter(|subject| {
+            (subject.piece.is_some() && carry.last_is(Some(subject)))
+                || subject.person.is_none() && subject.actor != SUBJECT && (met || into) && whole(subject.actor)
+        });
+        let past = word.len() > 3 && word.ends_with("ed") || met || matches!(word, "tore" | "bent" | "broke");
         let next =
             all[at + 1..].iter().take(3).find(|placed| !matches!(placed.chunk, Chunk::Word | Chunk::Preposition(_)));
         let other = next.is_some_and(|placed| match &placed.chunk {

@@ -106,7 +106,8 @@ impl Parser<'_> {
         // "by crossing the line": who does the rest.
         let by = carry.preposition == Some("by");
         let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
-        if adjacent && participle && carry.has_verb && self.touches_last(sense, form, placed, carry) {
+        let of_place = carry.governed && carry.frame.is_none() && form == Form::Past;
+        if adjacent && participle && (carry.has_verb || of_place) && self.touches_last(sense, form, placed, carry) {
             return carry.last.clone();
         }
         carry.subject.clone()
@@ -139,7 +140,10 @@ impl Parser<'_> {
             return false;
         }
         // "and then for a cyclist approaching from behind": right behind the noun.
-        let bare = carry.frame.is_none() && carry.governed && between.is_empty() && form == Form::Ing;
+        // "alongside cars parked at the curb".
+        let stands =
+            matches!(sense, Sense::Act(Act::Park | Act::Stop | Act::Hold) | Sense::Parked) && form == Form::Past;
+        let bare = carry.frame.is_none() && carry.governed && between.is_empty() && (form == Form::Ing || stands);
         bare || carry.frame.is_some_and(|frame| {
             let frame = &self.frames[frame];
             frame.object == Some(last.actor)

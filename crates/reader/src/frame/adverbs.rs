@@ -1,0 +1,170 @@
+//! What the words behind a verb make of it: "emerged in reverse", "entered against the signal", "passed in front of the bus".
+
+use super::Frame;
+use crate::lexicon::{Form, Progress, Relation, Sense};
+use crate::token::{Sentence, Token};
+use crate::world::SUBJECT;
+use recrash_model::account::Act;
+
+/// Places that are passed on the way, and are nobody.
+const PLACES: [&str; 26] = [
+    "sign",
+    "line",
+    "light",
+    "signal",
+    "intersection",
+    "junction",
+    "driveway",
+    "corner",
+    "entrance",
+    "entry",
+    "exit",
+    "street",
+    "road",
+    "curve",
+    "bend",
+    "circle",
+    "crosswalk",
+    "ramp",
+    "lot",
+    "alley",
+    "space",
+    "spot",
+    "stall",
+    "curb",
+    "gap",
+    "block",
+];
+
+/// Reads the words behind every verb of moving once more.
+pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sentence]) {
+    let mut number = 0;
+    while number < frames.len() {
+        let end = behind(frames, number, sentences);
+        let frame = &frames[number];
+        let words: Vec<&str> = tokens[frame.first..end].iter().map(|token| token.text.as_str()).collect();
+        if backwards(frame, &words) {
+            frames[number].sense = Sense::Act(Act::Reverse);
+        } else if out_from_behind(frame, &words) {
+            frames[number].sense = Sense::Act(Act::Enter);
+        } else if passes_nobody(frame, &words) {
+            frames[number].sense = Sense::Act(Act::Follow);
+        } else if pulls_out_to_pass(frames, number, &words) {
+            frames[number].sense = Sense::Act(Act::Drift);
+        }
+        let frame = &frames[number];
+        let goes =
+            matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::Cross | Act::Turn | Act::SetOff | Act::Pass));
+        if goes && frame.happened() && frame.who != Some(SUBJECT) && against_signal(&words) {
+            let ran = Frame { sense: Sense::Act(Act::RunRed), side: None, ..frame.clone() };
+            frames.insert(number + 1, ran);
+            number += 1;
+        }
+        number += 1;
+    }
+}
+
+/// The token behind the words of a frame: where the next one begins, or the sentence ends.
+fn behind(frames: &[Frame], number: usize, sentences: &[Sentence]) -> usize {
+    let frame = &frames[number];
+    let end = sentences[frame.sentence].end;
+    let next = frames[number + 1..].iter().find(|next| next.sentence == frame.sentence && next.first > frame.first);
+    next.map_or(end, |next| next.first).clamp(frame.end.min(end), end)
+}
+
+/// "came out in reverse", "left its stall tail first", "rolled backwards".
+fn backwards(frame: &Frame, words: &[&str]) -> bool {
+    let moves = matches!(
+        frame.act(),
+        Some(
+            Act::Follow
+                | Act::PullOut
+                | Act::Enter
+                | Act::SetOff
+                | Act::Drift
+                | Act::Roll
+                | Act::Accelerate
+                | Act::Park
+        )
+    );
+    let parks = frame.act() == Some(Act::Park)
+        && words.first().is_some_and(|word| word.starts_with("revers") || word.starts_with("back"));
+    let pair =
+        |one: &[&str], two: &[&str]| words.windows(2).any(|pair| one.contains(&pair[0]) && two.contains(&pair[1]));
+    let says = pair(&["in"], &["reverse"])
+        || pair(&["tail", "rear", "end"], &["first"])
+        || words.iter().any(|word| matches!(*word, "backward" | "backwards" | "rearward" | "rearwards"));
+    moves && frame.sense != Sense::Parked && (says || parks)
+}
+
+/// "emerged on the right from behind a stopped bus": into view, and from no kerb.
+fn out_from_behind(frame: &Frame, words: &[&str]) -> bool {
+    let hidden =
+        words.windows(2).any(|pair| pair[0] == "from" && matches!(pair[1], "behind" | "between" | "around" | "beyond"));
+    frame.act() == Some(Act::PullOut)
+        && frame.out_of.is_none()
+        && hidden
+        && words.first().is_some_and(|word| word.starts_with("emerg"))
+}
+
+/// "passed in front of the bus", "drove past the yield sign".
+fn passes_nobody(frame: &Frame, words: &[&str]) -> bool {
+    if frame.act() != Some(Act::Pass) || frame.who == Some(SUBJECT) || frame.object.is_some() || frame.side.is_some() {
+        return false;
+    }
+    let across = frame
+        .relations
+        .iter()
+        .any(|(relation, to)| matches!(relation, Relation::Ahead | Relation::Behind) && to.is_some());
+    let own = frame.end - frame.first;
+    let place = words.iter().skip(own).take(4).any(|word| PLACES.contains(word));
+    across || place && frame.relations.is_empty()
+}
+
+/// "pulled out over the line to get by": begun to pass, and from no kerb.
+fn pulls_out_to_pass(frames: &[Frame], number: usize, words: &[&str]) -> bool {
+    let frame = &frames[number];
+    if frame.act() != Some(Act::PullOut) || frame.out_of.is_some() {
+        return false;
+    }
+    let from = words.iter().any(|word| matches!(*word, "from" | "curb" | "kerb"));
+    let passes = frames[number + 1..].iter().take(2).any(|next| {
+        next.sentence == frame.sentence && next.who == frame.who && next.act() == Some(Act::Pass) && next.happened()
+    });
+    let over =
+        words.windows(2).any(|pair| pair[1].starts_with("line") && matches!(pair[0], "center" | "yellow" | "dividing"))
+            || words.iter().any(|word| matches!(*word, "centerline" | "centreline"));
+    !from && (passes || over)
+}
+
+/// "entered the crosswalk at a run against the pedestrian signal".
+fn against_signal(words: &[&str]) -> bool {
+    words.iter().enumerate().any(|(at, word)| {
+        let next = &words[at + 1..words.len().min(at + 5)];
+        *word == "against"
+            && !next.contains(&"pole")
+            && next.iter().any(|word| matches!(*word, "signal" | "signals" | "red" | "hand"))
+    })
+}
+
+/// Whether a frame tells a purpose that was gone about: "swung out to get past".
+pub(super) fn goes_about(act: Option<Act>) -> bool {
+    matches!(
+        act,
+        Some(Act::Follow | Act::SetOff | Act::Drift | Act::Accelerate | Act::Reverse | Act::PullOut | Act::Swerve)
+    )
+}
+
+/// Doors are opened only where the sentence names one: "a driveway opening".
+pub(super) fn names_door(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool {
+    let sentence = sentences[frame.sentence];
+    let opens = frame.sense == Sense::Act(Act::OpenDoor);
+    let word = |text: &str| {
+        text.starts_with("door")
+            || matches!(text, "hatch" | "trunk" | "liftgate" | "tailgate" | "hood" | "gate" | "gates" | "ramp")
+    };
+    !opens
+        || frame.form == Form::Present
+        || frame.progress == Progress::Wished
+        || tokens[sentence.first..sentence.end].iter().any(|token| word(&token.text))
+}
