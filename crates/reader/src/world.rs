@@ -41,6 +41,8 @@ pub struct Known {
     pub mentions: usize,
     /// A clause was about it.
     pub acted: bool,
+    /// The group that it is one of.
+    pub group: Option<Actor>,
     /// It was called a tractor.
     pub tractor: bool,
     /// Who tows it.
@@ -85,17 +87,22 @@ impl World {
     /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
     pub fn resolve(&mut self, noun: &Noun, tokens: (usize, usize), hint: Option<Relation>) -> Actor {
         // "One of the cyclists" comes from where they all do.
-        let group = noun
-            .kind
-            .filter(|_| noun.one_of)
-            .and_then(|kind| self.latest(|known| known.several && known.kind == Some(kind)))
-            .map(|group| (self.actors[group].heading, self.actors[group].relations.clone()));
+        let group = noun.kind.filter(|_| noun.one_of).and_then(|kind| {
+            let fits = |known: Kind| known == kind || kind == Kind::Vehicle;
+            (1..self.actors.len())
+                .rfind(|&group| self.actors[group].several && self.actors[group].kind.is_some_and(fits))
+        });
         let actor = self.find(noun, hint).unwrap_or_else(|| self.add(noun));
-        if let Some((heading, relations)) = group {
+        if let Some(group) = group.filter(|group| *group != actor) {
+            let of = self.actors[group].clone();
             let known = &mut self.actors[actor];
-            known.heading = known.heading.or(heading);
+            known.heading = known.heading.or(of.heading);
+            known.group = Some(group);
             if known.relations.is_empty() {
-                known.relations = relations;
+                known.relations = of.relations;
+            }
+            if noun.kind == Some(Kind::Vehicle) && known.kind.is_none_or(|kind| kind == Kind::Vehicle) {
+                (known.kind, known.kind_tokens) = (of.kind, of.kind_tokens);
             }
         }
         let actor = self.actors[actor].towed_by.unwrap_or(actor);
@@ -290,7 +297,11 @@ impl World {
             }
         }
         if let Some(relation) = relation_of(noun).or(hint) {
-            let there = self.latest(|known| fits(known) && known.relations.iter().any(|(place, _)| *place == relation));
+            let there = self.latest(|known| {
+                known.several == noun.several
+                    && fits(known)
+                    && known.relations.iter().any(|(place, _)| *place == relation)
+            });
             if there.is_some() {
                 return there;
             }
@@ -374,6 +385,11 @@ impl World {
     /// Who else was named last.
     pub fn other(&self) -> Option<Actor> {
         self.latest(|known| known.kind.is_none_or(acts) && known.mentions > 0)
+    }
+
+    /// The thing that was named last.
+    pub fn thing(&self) -> Option<Actor> {
+        (1..self.actors.len()).max_by_key(|&actor| self.actors[actor].last)
     }
 
     /// Somebody else of its kind, the one named last.

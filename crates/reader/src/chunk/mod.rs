@@ -294,7 +294,7 @@ impl Chunker<'_> {
                 *length == longest && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
             });
             if let Some((piece, length)) =
-                piece.filter(|(piece, length)| *length == longest && (piece.owner.is_some() || !thing))
+                piece.filter(|(piece, length)| *length == longest && (piece.owner.is_some() || piece.its || !thing))
             {
                 return (Some(Chunk::Piece(piece)), length);
             }
@@ -484,6 +484,15 @@ impl Chunker<'_> {
         if form == Form::Ing && single && (paced || matches!(self.text(at + 1), "street" | "streets" | "roads")) {
             return None;
         }
+        // "moved left without signaling".
+        let moves = |word: &str| {
+            ["mov", "veer", "turn", "steer", "swerv", "merg", "drift", "shift", "slid", "swung", "pull"]
+                .iter()
+                .any(|stem| word.starts_with(stem))
+        };
+        if self.text(at) == "left" && moves(word_before) {
+            return None;
+        }
         if self.text(at) == "opening"
             && single
             && matches!(word_before, "driveway" | "gate" | "fence" | "median" | "wall" | "an" | "the")
@@ -534,7 +543,7 @@ impl Chunker<'_> {
         match word {
             "to" | "not" | "had" | "has" | "have" | "will" | "would" | "could" | "can" | "may" | "might" | "should"
             | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"
-            | "safely" => true,
+            | "safely" | "almost" | "nearly" => true,
             "and" | "or" => {
                 before.iter().rev().skip(1).take(4).any(|placed| matches!(placed.chunk, Chunk::Verb(_, Form::Base)))
             }

@@ -8,6 +8,9 @@ use recrash_model::account::{Kind, KindGroup};
 impl Chunker<'_> {
     /// A part of a vehicle, with whose it is.
     pub(super) fn piece(&self, first: usize) -> Option<(Piece, usize)> {
+        if self.loose_wheel(first).is_some() {
+            return None;
+        }
         let mut at = first;
         let mut its = false;
         if DETERMINERS.contains(&self.text(at)) {
@@ -88,6 +91,15 @@ impl Chunker<'_> {
                         at = further;
                     }
                 }
+            } else if matches!(self.text(behind), "its" | "their") && self.part(behind + 1).is_some() {
+                let mut further = behind + 1;
+                while let Some((part, length)) = self.part(further) {
+                    if !parts.contains(&part) {
+                        parts.push(part);
+                    }
+                    further += length;
+                }
+                (its, at) = (true, further);
             } else if self.text(behind) == "it" {
                 (its, at) = (true, behind + 1);
             } else if self.text(at) == "of" {
@@ -154,9 +166,41 @@ impl Chunker<'_> {
         Some((part, found.length))
     }
 
+    /// Behind a wheel or a tire that is on no vehicle: "a wheel came off a truck", and "the wheel" further on.
+    fn loose_wheel(&self, first: usize) -> Option<usize> {
+        let wheel = |at: usize| matches!(self.text(at), "wheel" | "tire");
+        let loose = |at: usize| {
+            wheel(at + 1)
+                && matches!(self.text(at), "a" | "loose" | "detached" | "stray" | "spare" | "runaway")
+                && !matches!(
+                    self.text(at + 2),
+                    "of" | "well"
+                        | "rim"
+                        | "tread"
+                        | "debris"
+                        | "carcass"
+                        | "scrap"
+                        | "change"
+                        | "shop"
+                        | "stop"
+                        | "arch"
+                )
+        };
+        let begins = loose(first);
+        let again =
+            self.text(first) == "the" && wheel(first + 1) && self.text(first + 2) != "of" && (0..first).any(loose);
+        (begins || again).then_some(first + 2)
+    }
+
     /// Somebody or something that is named here.
     pub(super) fn noun(&self, first: usize) -> Option<(Noun, usize)> {
         let mut noun = Noun::unnamed();
+        if let Some(behind) = self.loose_wheel(first) {
+            let definite = self.text(first) == "the";
+            noun.article = if definite { Article::Definite } else { Article::Indefinite };
+            noun.kind = Some(Kind::LooseWheel);
+            return Some((noun, behind - first));
+        }
         let mut at = first;
         let mut one_of = false;
         match self.text(at) {
@@ -165,9 +209,9 @@ impl Chunker<'_> {
                 at += 1;
             }
             // "one of the cyclists", "each of the vans".
-            "one" if self.text(at + 1) == "of" && matches!(self.text(at + 2), "the" | "these" | "those") => {
+            "one" if self.text(at + 1) == "of" && matches!(self.text(at + 2), "the" | "these" | "those" | "them") => {
                 noun.article = Article::Indefinite;
-                (one_of, at) = (true, at + 3);
+                (one_of, at) = (true, at + if self.text(at + 2) == "them" { 2 } else { 3 });
             }
             "a" | "an" | "one" => {
                 noun.article = Article::Indefinite;
@@ -179,6 +223,11 @@ impl Chunker<'_> {
         let mut company = false;
         let mut make = false;
         let mut strange = 0;
+        // "one of them": of those named before.
+        if one_of && self.text(at) == "them" {
+            (noun.one_of, noun.kind, noun.article) = (true, Some(Kind::Vehicle), Article::Indefinite);
+            return Some((noun, at + 1 - first));
+        }
         let head = loop {
             if at >= self.tokens.len() || at > first + 10 || self.tokens[at].kind == TokenKind::Mark {
                 return self.only_named(noun, first, at.min(self.tokens.len()), company, make);
@@ -193,6 +242,19 @@ impl Chunker<'_> {
             if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) {
                 at += 1;
                 continue;
+            }
+            // "the larger piece of the pallet".
+            let measure = matches!(
+                self.text(at),
+                "piece" | "pieces" | "part" | "section" | "chunk" | "strip" | "sheet" | "fragment" | "remains" | "pile"
+            );
+            if measure
+                && self.text(at + 1) == "of"
+                && noun.article != Article::None
+                && let Some((inner, length)) = self.noun(at + 2)
+                && inner.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
+            {
+                return Some((Noun { article: noun.article, ..inner }, at + 2 + length - first));
             }
             let known = self.lexicon.longest(self.tokens, at, |meaning| {
                 matches!(meaning, Meaning::Adjective(_) | Meaning::Make | Meaning::Company)
@@ -232,7 +294,12 @@ impl Chunker<'_> {
                         at = behind;
                         continue;
                     }
-                    Meaning::Company if self.tokens[at].capital => company = true,
+                    Meaning::Company if self.tokens[at].capital => {
+                        company = true;
+                        // "a Tern-operated shuttle".
+                        let behind = self.text(at + found.length);
+                        at += usize::from(matches!(behind, "operated" | "equipped" | "owned" | "branded" | "built"));
+                    }
                     _ => return self.only_named(noun, first, at, company, make),
                 }
                 at += found.length;
@@ -400,7 +467,9 @@ impl Chunker<'_> {
         }
         // "the leaf of the gate", "a tight fit": names of models are written large.
         let model = self.lexicon.is_model(self.text(at));
-        let of_company = self.text(at) == "pilot" && at > 0 && self.tokens[at - 1].text == "drive";
+        let of_company = self.text(at) == "pilot"
+            && (self.text(at + 1).starts_with("assist")
+                || at > 0 && matches!(self.tokens[at - 1].text.as_str(), "drive" | "highway"));
         if model && found.length == 1 && (!self.tokens[at].capital || of_company) {
             return None;
         }
@@ -629,13 +698,15 @@ impl Chunker<'_> {
             behind = seat + 1 + usize::from(matches!(self.text(seat + 1), "of" | "in"));
         }
         let (owner, length) = self.noun(behind)?;
-        let vehicle = owner.subject || owner.kind.is_some_and(Kind::is_vehicle) && owner.kind != Some(Kind::Vehicle);
+        let vehicle = owner.subject
+            || owner.kind.is_some_and(Kind::is_vehicle)
+                && (owner.kind != Some(Kind::Vehicle) || !owner.names.is_empty());
         (vehicle && owner.occupant.is_none() && !owner.several).then_some((owner, behind + length))
     }
 
     /// Behind a trailer that stands here, with at most two words before it.
     fn trailer(&self, at: usize) -> Option<usize> {
-        let found = (at..at + 3).find(|&at| matches!(self.text(at), "trailer" | "chassis" | "container"))?;
+        let found = (at..at + 3).find(|&at| matches!(self.text(at), "trailer" | "chassis" | "container" | "load"))?;
         (at..found).all(|at| self.tokens[at].kind == TokenKind::Word).then_some(found + 1)
     }
 

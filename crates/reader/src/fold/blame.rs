@@ -17,11 +17,9 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     account.partner.as_ref()?;
     let rule = |value, name: &str| Some(Fact::by_rule(value, name));
     if group(account) == Some(KindGroup::Object) {
-        let flies = account
-            .partner
-            .as_ref()
-            .filter(|partner| !is_fixed(partner))
-            .is_some_and(|partner| partner.did(Act::Fall) || partner.did(Act::Roll) || partner.did(Act::Pushed));
+        let flies = account.partner.as_ref().filter(|partner| !is_fixed(partner)).is_some_and(|partner| {
+            partner.did(Act::Fall) || partner.did(Act::Roll) || partner.did(Act::Pushed) || came_down(reading)
+        });
         let sv_stands = sv_state(account).is_some_and(ContactState::stands);
         return match (flies, sv_stands) {
             (true, true) => rule(Striker::Cp, "a thing that moves into one that stands"),
@@ -94,6 +92,24 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         _ => return by_fronts(account),
     };
     Some(Fact { value, source: reading.of(frame) })
+}
+
+/// Whether the words of the contact say that the partner moved there: "the arm came down on it", "the gate swung into it".
+fn came_down(reading: &Reading<'_>) -> bool {
+    let Some(number) = reading.contacts.first else { return false };
+    let frame = &reading.story.frames[number];
+    let word = reading.story.tokens[frame.first].text.as_str();
+    let moves = [
+        "com", "came", "clos", "lower", "land", "fall", "fell", "swing", "swung", "drop", "toppl", "roll", "blew",
+        "blow",
+    ];
+    let moves =
+        moves.iter().chain(&["bounc", "flew", "fly", "slid", "tip", "tumbl"]).any(|stem| word.starts_with(stem));
+    let comes = !(word.starts_with("com") || word.starts_with("came"))
+        || reading.story.tokens[frame.first..frame.end].iter().any(|token| token.text == "down");
+    let partner = reading.contacts.partner;
+    let wheel = partner.is_some_and(|partner| reading.story.world.actors[partner].kind == Some(Kind::LooseWheel));
+    frame.who.is_some() && frame.who == partner && (wheel || moves && comes)
 }
 
 /// Whether the words have the subject vehicle, or a part of it, make contact with the thing.
@@ -237,7 +253,8 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return rule(Role::Responder, "it stood");
     }
     if group(account) == Some(KindGroup::Object) {
-        let flies = matches!(told(&partner.kind), Some(Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo));
+        let flies =
+            matches!(told(&partner.kind), Some(Kind::TreeBranch | Kind::LooseWheel | Kind::Cargo)) && !lay(reading);
         let appears = flies || comes(reading, partner);
         return if appears {
             rule(Role::Responder, "something came into its way")
@@ -427,7 +444,7 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
     let sv_stands = sv_state(account)?.stands();
     let cp_stands = cp_state(account).is_some_and(ContactState::stands);
     if group(account) == Some(KindGroup::Object) {
-        let comes = told(&account.striker) == Some(Striker::Cp) && !partner.did(Act::Fall);
+        let comes = told(&account.striker) == Some(Striker::Cp);
         return if comes {
             rule(FirstMover::Sv, "a thing moved into its way")
         } else {

@@ -103,6 +103,34 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
                 {
                     fact.value = Movement::Straight;
                 }
+                // Who drives by one that stands, one way, flank on flank, passes it.
+                let side_on = |party: &Party| {
+                    use recrash_model::zones::ContactZone as Z;
+                    let told: Vec<Z> = party.zones.iter().map(|zone| zone.value).collect();
+                    !told.is_empty()
+                        && told.iter().all(|zone| !matches!(zone, Z::Front | Z::Rear | Z::Top | Z::Bottom))
+                        && told.iter().any(|zone| matches!(zone, Z::Left | Z::Right))
+                };
+                let stands = told(&account.sv.state).is_some_and(ContactState::stands);
+                let by_itself = account.door.is_none()
+                    && partner
+                        .acts
+                        .iter()
+                        .filter(|fact| !fact.after_contact)
+                        .all(|fact| matches!(fact.act, Act::Follow | Act::Slow | Act::Accelerate | Act::SetOff));
+                let beside = account
+                    .came_from
+                    .as_ref()
+                    .is_some_and(|from| matches!(from.value, Origin::Behind | Origin::Beside { .. }));
+                if fact.value == Movement::Straight
+                    && stands
+                    && beside
+                    && by_itself
+                    && side_on(&account.sv)
+                    && side_on(partner)
+                {
+                    *fact = Fact::by_rule(Movement::Passing, "who drives by one that stands");
+                }
                 if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
                     (fact.value, oncoming, column)
                 {

@@ -117,8 +117,8 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let (true, Some(side)) = (clues.reading.did(clues.actor, Act::Roll), zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "what rolls comes from the side that it touches"));
     }
-    let lies =
-        matches!(kind, Some(Kind::Debris | Kind::Pothole | Kind::Object)) && account.partner.as_ref()?.acts.is_empty();
+    let lies = matches!(kind, Some(Kind::Debris | Kind::Pothole | Kind::Object | Kind::LooseWheel))
+        && account.partner.as_ref()?.acts.is_empty();
     let on_road = forward(account)
         && (lies || zone_side(account).is_none() && !account.sv.zones.iter().any(|zone| zone.value.is_rear()));
     if on_road || has_zone(&account.sv, |zone| zone.is_front()) {

@@ -58,7 +58,8 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
     if !reading.contacts.others_only
         && (partner.did(Act::Pushed)
             || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
-            || separate(reading))
+            || separate(reading)
+            || of_a_crash(reading))
         && !drove_on(reading)
     {
         return Some((CrashType::Secondary, "another contact threw the partner at it"));
@@ -148,6 +149,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
             if rear_end
                 || front_rear(account)
                 || (front(&account.sv) && partner.zones.is_empty())
+                || (account.sv.zones.is_empty() && rear(partner) && !sideways)
                 || (account.sv.zones.is_empty() && partner.zones.is_empty() && !sideways && !account.sv.did(Act::Pass))
                 || (front(&account.sv) && !sideways && !account.sv.did(Act::Pass))
             {
@@ -238,6 +240,16 @@ fn off_a_vehicle(reading: &Reading<'_>) -> bool {
                 && !of_it
                 && from.is_some_and(|at| story.tokens[first + at..end].iter().take(8).any(|token| vehicle(&token.text)))
         })
+}
+
+/// Whether the partner is one of several that collided: "Two vehicles collided. One of them spun into it".
+fn of_a_crash(reading: &Reading<'_>) -> bool {
+    let (Some(first), Some(partner)) = (reading.contacts.first, reading.contacts.partner) else { return false };
+    let group = reading.story.world.actors[partner].group;
+    group.is_some()
+        && reading.story.frames[..first]
+            .iter()
+            .any(|frame| frame.is_contact() && frame.who == group && frame.object != Some(crate::world::SUBJECT))
 }
 
 /// Whether both go the same way round a corner, in lanes side by side: told as a turn, as a turn to come, or by the lane for it.

@@ -43,7 +43,7 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
         let end = behind(frames, number, sentences);
         let frame = &frames[number];
         let words: Vec<&str> = tokens[frame.first..end].iter().map(|token| token.text.as_str()).collect();
-        if backwards(frame, &words) {
+        if backwards(frame, &words) || still_backwards(frames, number, &words) {
             frames[number].sense = Sense::Act(Act::Reverse);
         } else if out_from_behind(frame, &words) {
             frames[number].sense = Sense::Act(Act::Enter);
@@ -95,6 +95,20 @@ fn backwards(frame: &Frame, words: &[&str]) -> bool {
         || pair(&["tail", "rear", "end"], &["first"])
         || words.iter().any(|word| matches!(*word, "backward" | "backwards" | "rearward" | "rearwards"));
     moves && frame.sense != Sense::Parked && (says || parks)
+}
+
+/// "shifted into reverse and came back until ...".
+fn still_backwards(frames: &[Frame], number: usize, words: &[&str]) -> bool {
+    let frame = &frames[number];
+    let before = frames[..number].iter().rev().find(|before| before.who == frame.who);
+    let reverses = before.is_some_and(|before| {
+        before.sentence == frame.sentence && before.act() == Some(Act::Reverse) && before.happened()
+    });
+    let back = words.first().is_some_and(|word| matches!(*word, "came" | "coming" | "rolled" | "moved" | "kept"))
+        && words
+            .get(1)
+            .is_some_and(|word| matches!(*word, "back" | "until" | "into" | "toward" | "towards" | "coming"));
+    matches!(frame.act(), Some(Act::Follow | Act::Roll | Act::Drift)) && reverses && back
 }
 
 /// "emerged on the right from behind a stopped bus": into view, and from no kerb.

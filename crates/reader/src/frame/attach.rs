@@ -65,7 +65,10 @@ impl Parser<'_> {
                     }
                 }
             }
-            "into" | "onto" | "with" | "against" | "between" | "and" | "upon" | "on" | "at" | "to" => {
+            "into" | "onto" | "with" | "against" | "between" | "and" | "upon" | "on" | "at" | "to" | "off" => {
+                if preposition == "off" && !self.frames[frame].is_contact() {
+                    return;
+                }
                 if sense == Sense::Push && preposition != "with" {
                     // Pushed into somebody: who was pushed touches them.
                     return self.touch(frame, self.frames[frame].object, mention, placed, carry);
@@ -276,7 +279,11 @@ impl Parser<'_> {
         };
         // "going by it on its left a cyclist slipped": whose left it is stands there.
         let possessed = self.tokens[placed.first..placed.end].iter().any(|token| token.text == "its");
-        let governs = governs && !possessed;
+        // "From an alley on the left a van came".
+        let indefinite = matches!(next, Some(Chunk::Noun(noun)) if noun.article == crate::chunk::Article::Indefinite);
+        let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead");
+        let begins = indefinite && side && carry.frame.is_none() && carry.subject.is_none();
+        let governs = governs && !possessed && !begins;
         // "behind [XXX]", "next to the mall": places.
         let last = self.tokens[placed.end - 1].text.as_str();
         let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")
@@ -408,6 +415,14 @@ impl Parser<'_> {
     }
 
     pub(super) fn side(&mut self, side: LeftRight, carry: &Carry) {
+        // "moved left": over.
+        if let Some(frame) = carry.frame
+            && self.frames[frame].sense == Sense::Act(Act::Follow)
+            && self.frames[frame].who != Some(SUBJECT)
+            && ["mov", "slid", "swung"].iter().any(|stem| self.tokens[self.frames[frame].first].text.starts_with(stem))
+        {
+            self.frames[frame].sense = Sense::Act(Act::Drift);
+        }
         if let Some(frame) = carry.frame
             && self.frames[frame].act().is_some_and(sided)
             && self.frames[frame].side.is_none()
@@ -456,7 +471,13 @@ impl Parser<'_> {
     pub(super) fn spot(&mut self, spot: Spot, carry: &mut Carry) {
         let word = carry.preposition.take();
         carry.to = false;
-        let Some(frame) = carry.frame else { return };
+        let Some(frame) = carry.frame else {
+            // "From an alley a van nosed out".
+            if matches!(word, Some("from" | "out")) && carry.subject.is_none() {
+                carry.out_of = Some(spot);
+            }
+            return;
+        };
         let taken = &mut self.frames[frame];
         let moves = matches!(
             taken.act(),
@@ -487,7 +508,7 @@ impl Parser<'_> {
     }
 }
 
-/// Whether a word is no "'s": what it stands behind is named for itself.
+/// Whether what stands before this word is named for itself, and not "the van's lane", "the AVs path".
 fn not_possessive(token: &crate::token::Token) -> bool {
-    token.text != "'s"
+    !matches!(token.text.as_str(), "'s" | "lane" | "lanes" | "path" | "way" | "right")
 }

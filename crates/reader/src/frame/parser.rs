@@ -4,7 +4,7 @@ use super::Frame;
 use super::adverbs::goes_about;
 use super::row::{acts, another_finite, next_is_verb, next_preposition, relation_behind, transitive};
 use super::sided;
-use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, chunks, is_determiner};
+use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, Spot, chunks, is_determiner};
 use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
@@ -30,6 +30,8 @@ pub(super) struct Carry {
     pub(super) main: Option<Mention>,
     /// Whom the sentence has been about so far.
     pub(super) mains: Vec<Actor>,
+    /// Out of where who is named next comes: "From an alley, a van ..."
+    pub(super) out_of: Option<Spot>,
     /// Noun named last.
     pub(super) last: Option<Mention>,
     /// The noun named last stands behind a preposition or a relation.
@@ -118,6 +120,18 @@ impl Parser<'_> {
                     }
                     None => self.world.resolve(noun, (placed.first, placed.end), hint),
                 };
+                // "A van left its stall as the vehicle was going by": not the van.
+                let plain = noun.kind == Some(Kind::Vehicle)
+                    && noun.article == Article::Definite
+                    && noun.adjectives.is_empty()
+                    && noun.names.is_empty()
+                    && noun.number.is_none()
+                    && !noun.several
+                    && noun.occupant.is_none();
+                let of_main = carry.main.as_ref().is_some_and(|main| main.actor == actor && main.actor != SUBJECT);
+                let other =
+                    plain && of_main && carry.fresh && carry.joint == Some(Joint::While) && self.world.topic == SUBJECT;
+                let actor = if other && matches!(next, Some(Chunk::Be | Chunk::Verb(..))) { SUBJECT } else { actor };
                 // "one standing passenger": the vehicle does not stand.
                 let described = if noun.occupant.is_some() { noun.owner.as_deref() } else { Some(noun) };
                 if let Some(described) = described {
@@ -152,6 +166,8 @@ impl Parser<'_> {
                         Some(actor)
                     }
                     None if piece.its => Some(self.its(carry)),
+                    // "The edge of the open door touched": of whom it was opened.
+                    None if piece.door && carry.fresh && self.door_of().is_some() => self.door_of(),
                     // "It set off, and the rear tire touched": of whom the sentence is about.
                     None if carry.fresh && matches!(next, Some(Chunk::Verb(..) | Chunk::Be)) => Some(self.its(carry)),
                     None => None,
@@ -176,7 +192,7 @@ impl Parser<'_> {
                         Some(Chunk::Preposition("at" | "within") | Chunk::Relative)
                     ) => {}
             Chunk::Pronoun => {
-                let actor = self.its(carry);
+                let actor = self.not_itself(self.its(carry), carry);
                 self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             }
             Chunk::Relative => {
@@ -227,6 +243,12 @@ impl Parser<'_> {
                 carry.negated &= carry.nobody || !carry.has_verb && carry.frame.is_none() && carry.fresh;
                 (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
                 carry.progress = None;
+                // "It waited and, although a message came, opened its door": who the sentence is about goes on.
+                let goes_on = matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present)));
+                if goes_on && carry.stranger && carry.joint.is_some() && carry.main.is_some() {
+                    (carry.stranger, carry.row, carry.has_verb) = (false, true, true);
+                    (carry.subject, carry.frame) = (carry.main.clone(), None);
+                }
                 carry.described = carry.subject.clone().filter(|_| carry.relative);
                 if carry.relative && carry.has_verb {
                     // A relative clause ends at its comma.
@@ -242,7 +264,8 @@ impl Parser<'_> {
             Chunk::Word => {
                 let word = self.tokens[placed.first].text.as_str();
                 // "time to turn" is no turn; "at which time it turned" is one.
-                let waits_for = word != "time" || matches!(next, Some(Chunk::Preposition("to")));
+                let waits_for = !matches!(word, "time" | "space" | "room" | "set" | "order" | "ready" | "route")
+                    || matches!(next, Some(Chunk::Preposition("to" | "for")));
                 if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for) {
                     self.progress(progress, carry);
                 }
@@ -314,6 +337,8 @@ impl Parser<'_> {
                 && frame.who == Some(actor)
                 && frame.object.is_none()
                 && !carry.fresh
+                // "was hit by its front bumper".
+                || frame.is_contact() && frame.passive && frame.object == Some(actor) && frame.who.is_none()
         });
         // "ran into the sedan, driving it forward": whom it struck.
         let struck = self.frames.iter().rev().skip(1).find(|frame| {
@@ -329,8 +354,34 @@ impl Parser<'_> {
                 carry.mains.iter().rev().copied().find(|before| *before != actor).unwrap_or(SUBJECT)
             }
             true if actor != SUBJECT => SUBJECT,
-            true => self.world.other().unwrap_or(actor),
+            true => self.world.other().or(self.world.thing()).unwrap_or(actor),
             false => actor,
+        }
+    }
+
+    /// Whose door was opened last.
+    fn door_of(&self) -> Option<Actor> {
+        self.frames.iter().rev().find(|frame| frame.act() == Some(Act::OpenDoor) && frame.happened())?.who
+    }
+
+    /// Nobody is behind itself, or comes toward itself: "the car following it", "a van coming toward it".
+    fn not_itself(&self, actor: Actor, carry: &Carry) -> Actor {
+        let frame = carry.frame.map(|frame| &self.frames[frame]);
+        let doer = frame.and_then(|frame| frame.who).or(carry.subject.as_ref().map(|subject| subject.actor));
+        let takes = frame.is_some_and(|frame| {
+            frame.object.is_none()
+                && !carry.fresh
+                && !carry.after_comma
+                && matches!(frame.act(), Some(Act::Follow | Act::Pass))
+                && transitive(frame.sense)
+        });
+        let place = matches!(carry.preposition, Some("toward" | "towards" | "past" | "around" | "against"));
+        if doer != Some(actor) || !(carry.relation.is_some() || place || takes && carry.preposition.is_none()) {
+            return actor;
+        }
+        match actor {
+            SUBJECT => self.world.other().unwrap_or(actor),
+            _ => SUBJECT,
         }
     }
 
@@ -606,6 +657,9 @@ impl Parser<'_> {
         // "a bicycle ridden by a courier" passes nobody.
         let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
         let sense = if ridden { Sense::Other } else { sense };
+        // "had almost come to rest".
+        let nearly = placed.first > 0 && matches!(self.tokens[placed.first - 1].text.as_str(), "almost" | "nearly");
+        let sense = if nearly && sense == Sense::Act(Act::Stop) { Sense::Act(Act::Slow) } else { sense };
         let sense = if self.drives_another(sense, form, &word, all, at, carry) { Sense::Push } else { sense };
         let sense = if carried && on && placed.end == placed.first + 1 { Sense::Other } else { sense };
         let next = all.get(at + 1).map(|placed| &placed.chunk);
@@ -737,6 +791,13 @@ impl Parser<'_> {
         }
         if frame.act() == Some(Act::PullOut) {
             frame.out_of = self.spot_in(placed);
+        }
+        let comes = matches!(
+            frame.act(),
+            Some(Act::PullOut | Act::Enter | Act::Follow | Act::Reverse | Act::SetOff | Act::Drift | Act::Turn)
+        );
+        if comes && frame.out_of.is_none() && frame.who.is_some_and(|who| who != SUBJECT) {
+            frame.out_of = carry.out_of.take();
         }
         let unnamed = frame.who.is_none()
             && !frame.passive

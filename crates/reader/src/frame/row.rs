@@ -114,7 +114,9 @@ impl Parser<'_> {
         let met = matches!(word, "met" | "caught");
         // "the vehicles met rear bumper to rear bumper", "it and the van met at their front corners".
         let pair = carry.also.is_some() || self.of_both(Sense::Contact, all, at, carry);
-        let parts = all[at + 1..].iter().take(4).any(|placed| matches!(placed.chunk, Chunk::Piece(_)));
+        let mut clause =
+            all[at + 1..].iter().take(4).take_while(|placed| !matches!(placed.chunk, Chunk::Comma | Chunk::Joint(_)));
+        let parts = clause.any(|placed| matches!(placed.chunk, Chunk::Piece(_)));
         if word == "met" && pair && parts && !carry.has_verb {
             return true;
         }
@@ -141,7 +143,7 @@ impl Parser<'_> {
         let before = at.checked_sub(2).map(|two| (&all[two].chunk, &all[two + 1].chunk))?;
         let (Chunk::Noun(named), Chunk::Comma) = before else { return None };
         let subject = carry.subject.as_ref().filter(|_| !carry.has_verb)?;
-        let definite = named.article != Article::Indefinite && named.occupant.is_none();
+        let definite = (named.article != Article::Indefinite || named.one_of) && named.occupant.is_none();
         let kinds = noun.article == Article::Indefinite && noun.occupant.is_none() && !noun.several;
         let same = carry.last_is(Some(subject)) && carry.after_comma && carry.main.as_ref() == Some(subject);
         let known = self.world.actors[subject.actor].kind;
@@ -210,6 +212,22 @@ pub(super) fn next_preposition(all: &[Placed], at: usize) -> Option<&'static str
 
 /// Where the words behind a noun say that it is, seen from the subject vehicle.
 pub(super) fn relation_behind(all: &[Placed], at: usize, _world: &World) -> Option<Relation> {
+    // "the vehicle traveling behind was unable to stop".
+    let mut further = at + 1;
+    while further < at + 4
+        && matches!(
+            all.get(further).map(|p| &p.chunk),
+            Some(Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing) | Chunk::Relative | Chunk::Be)
+        )
+    {
+        further += 1;
+    }
+    if let (Some(Chunk::Relation(relation @ (Relation::Behind | Relation::Ahead))), false) = (
+        all.get(further).map(|p| &p.chunk),
+        matches!(all.get(further + 1).map(|p| &p.chunk), Some(Chunk::Noun(noun)) if !noun.subject),
+    ) {
+        return Some(*relation);
+    }
     match (all.get(at + 1).map(|p| &p.chunk)?, all.get(at + 2).map(|p| &p.chunk)) {
         (Chunk::Relation(relation), Some(Chunk::Noun(noun))) if noun.subject => Some(*relation),
         _ => None,

@@ -29,7 +29,9 @@ impl Parser<'_> {
 
     /// The side that the words of a verb name: "moved into the left lane".
     pub(super) fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
-        self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
+        // "left its stall" is no side.
+        let leaves = usize::from(self.tokens[placed.first].text == "left");
+        self.tokens[placed.first + leaves..placed.end].iter().find_map(|token| match token.text.as_str() {
             "left" | "leftmost" => Some(LeftRight::Left),
             "right" | "rightmost" => Some(LeftRight::Right),
             _ => None,
@@ -101,7 +103,9 @@ impl Parser<'_> {
         {
             return carry.last.clone();
         }
-        let adjacent = carry.last.is_some() && !carry.after_comma && !carry.fresh;
+        // "because of the cars parked there": right behind the noun.
+        let behind = carry.governed && carry.last.as_ref().is_some_and(|last| last.end == placed.first);
+        let adjacent = carry.last.is_some() && !carry.after_comma && (!carry.fresh || behind);
         // A participle behind an object belongs to the object: "yielding to a van stopped in the lane".
         // "by crossing the line": who does the rest.
         let by = carry.preposition == Some("by");

@@ -1,4 +1,4 @@
-//! The reader on mini narratives of our own: `stories.toml`, a case a behaviour.
+//! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, and `families.toml`, each kind of crash in many wordings.
 
 use crate::common::{self, account_of, facts};
 use serde::Deserialize;
@@ -16,12 +16,17 @@ struct Story {
     expect: BTreeMap<String, String>,
 }
 
+fn stories() -> Vec<Story> {
+    let files = [include_str!("stories.toml"), include_str!("families.toml")];
+    files.iter().flat_map(|text| toml::from_str::<File>(text).unwrap().story).collect()
+}
+
 #[test]
 fn every_story_is_read_as_told() {
-    let file: File = toml::from_str(include_str!("stories.toml")).unwrap();
-    assert!(file.story.len() >= 80, "{} stories", file.story.len());
+    let stories = stories();
+    assert!(stories.len() >= 140, "{} stories", stories.len());
     let mut wrong = Vec::new();
-    for story in &file.story {
+    for story in &stories {
         let account = account_of(&story.text).unwrap_or_else(|| panic!("{}: no account", story.name));
         let facts = facts(&account);
         for (name, expected) in &story.expect {
@@ -36,8 +41,7 @@ fn every_story_is_read_as_told() {
 
 #[test]
 fn every_told_fact_stands_in_the_narrative() {
-    let file: File = toml::from_str(include_str!("stories.toml")).unwrap();
-    for story in &file.story {
+    for story in &stories() {
         let account = account_of(&story.text).unwrap();
         let json = serde_json::to_value(&account).unwrap();
         common::each_source(&json, &mut |words| {
