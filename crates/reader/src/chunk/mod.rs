@@ -343,7 +343,7 @@ impl Chunker<'_> {
             "following" if matches!(next, "the" | "this") && at == self.first => (Joint::After, 1),
             "before" | "until" => (Joint::Before, 1),
             "prior" if next == "to" => (Joint::Before, 2),
-            "because" | "due" | "since" => (Joint::Because, 1),
+            "because" | "due" | "since" | "although" | "though" | "whereas" => (Joint::Because, 1),
             _ => return None,
         })
     }

@@ -244,12 +244,7 @@ impl Chunker<'_> {
                 continue;
             }
             // "the larger piece of the pallet".
-            let measure = matches!(
-                self.text(at),
-                "piece" | "pieces" | "part" | "section" | "chunk" | "strip" | "sheet" | "fragment" | "remains" | "pile"
-            );
-            if measure
-                && self.text(at + 1) == "of"
+            if self.measures(at)
                 && noun.article != Article::None
                 && let Some((inner, length)) = self.noun(at + 2)
                 && inner.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
@@ -261,7 +256,9 @@ impl Chunker<'_> {
             });
             if let Some(found) = known {
                 match found.meaning {
-                    Meaning::Adjective(adjective) if make && !matches!(adjective, Adjective::Plain) => {
+                    Meaning::Adjective(adjective)
+                        if make && (!matches!(adjective, Adjective::Plain) || self.verb_stands(at)) =>
+                    {
                         return self.only_named(noun, first, at, company, make);
                     }
                     Meaning::Adjective(adjective) => {
@@ -395,7 +392,19 @@ impl Chunker<'_> {
             || word.ends_with("ed")
             || word.ends_with("ing");
         let known = self.part(at).is_some() || self.spot(at).is_some() || self.lane(at).is_some();
-        !small && !known && self.tokens[at].kind == TokenKind::Word && self.head(at + 1).is_some()
+        !small
+            && !known
+            && self.tokens[at].kind == TokenKind::Word
+            && (self.head(at + 1).is_some() || self.measures(at + 1))
+    }
+
+    /// Whether the words here are a piece of something: "the larger piece of the pallet".
+    fn measures(&self, at: usize) -> bool {
+        let piece = matches!(
+            self.text(at),
+            "piece" | "pieces" | "part" | "section" | "chunk" | "strip" | "sheet" | "fragment" | "remains" | "pile"
+        );
+        piece && self.text(at + 1) == "of"
     }
 
     pub(super) fn verb_stands(&self, at: usize) -> bool {

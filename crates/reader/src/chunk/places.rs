@@ -202,6 +202,17 @@ impl Chunker<'_> {
             ) => (Spot::Stall, 2),
             ("parking", "lot" | "garage" | "area" | "structure") => (Spot::Driveway, 2),
             ("stall" | "carport", _) => (Spot::Stall, 1),
+            // "out of a space", "from its spot".
+            ("space" | "spot" | "bay", _)
+                if at >= 2
+                    && matches!(self.text(at - 1), "a" | "its" | "the" | "his" | "her" | "their")
+                    && matches!(self.text(at - 2), "of" | "from") =>
+            {
+                (Spot::Stall, 1)
+            }
+            ("parking" | "loading", "bay") => (Spot::Stall, 2),
+            ("car", "park") | ("service" | "filling", "station") => (Spot::Driveway, 2),
+            ("minor" | "intersecting" | "crossing", "street" | "road") => (Spot::SideStreet, 2),
             ("gas", "station") | ("driveway", "exit") => (Spot::Driveway, 2),
             ("driveway" | "garage" | "alley" | "alleyway" | "lot", _) => (Spot::Driveway, 1),
             ("sidewalk", _) => (Spot::Sidewalk, 1),

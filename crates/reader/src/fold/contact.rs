@@ -206,9 +206,14 @@ fn comes_first(story: &Story, number: usize, crash: usize, touching: &[(usize, A
 
 /// Who was named last before this frame, or announced.
 fn near(story: &Story, record: &CrashRecord, number: usize) -> Option<Actor> {
-    let named = story.frames[..number].iter().rev().find_map(|frame| {
-        [frame.who, frame.object].into_iter().flatten().find(|&actor| actor != SUBJECT && lively(story, actor))
-    });
+    let before = |several: bool| {
+        story.frames[..number].iter().rev().find_map(|frame| {
+            let one = |actor: Actor| several || !story.world.actors[actor].several;
+            let mut pair = [frame.who, frame.object].into_iter().flatten();
+            pair.find(|&actor| actor != SUBJECT && lively(story, actor) && one(actor))
+        })
+    };
+    let named = before(false).or_else(|| before(true));
     named.or_else(|| announced(story)).or_else(|| only_other(story, record))
 }
 

@@ -56,7 +56,7 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
         });
     }
     if !reading.contacts.others_only
-        && (partner.did(Act::Pushed)
+        && (partner.did(Act::Pushed) && !partner.did(Act::Reverse)
             || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
             || separate(reading)
             || of_a_crash(reading))

@@ -3,6 +3,7 @@
 mod adverbs;
 mod attach;
 mod parser;
+mod pronoun;
 mod row;
 mod subject;
 

@@ -1,0 +1,82 @@
+//! Who is meant by `it`, `its` and a door that is nobody's.
+
+use super::parser::{Carry, Parser};
+use super::row::{acts, transitive};
+use crate::lexicon::Sense;
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::Act;
+
+impl Parser<'_> {
+    /// Who is meant by `it` and `its`.
+    pub(super) fn its(&self, carry: &Carry) -> Actor {
+        // "The bus was shoved back, and its bumper touched": whom another one moves.
+        let pushed = self.frames.last().filter(|frame| {
+            carry.fresh && frame.sentence == self.sentence && frame.sense == Sense::Push && frame.happened()
+        });
+        if let Some(pushed) = pushed.and_then(|frame| frame.object) {
+            return pushed;
+        }
+        let actor = self.of_sentence(carry);
+        // "The van drifted over and hit its right side": nobody hits itself.
+        let hits = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
+            matches!(frame.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
+                && frame.who == Some(actor)
+                && frame.object.is_none()
+                && !carry.fresh
+                // "was hit by its front bumper".
+                || frame.is_contact() && frame.passive && frame.object == Some(actor) && frame.who.is_none()
+        });
+        // "ran into the sedan, driving it forward": whom it struck.
+        let struck = self.frames.iter().rev().skip(1).find(|frame| {
+            frame.sentence == self.sentence && frame.is_contact() && frame.who == Some(actor) && frame.object.is_some()
+        });
+        let pushes = carry.frame.is_some_and(|frame| self.frames[frame].sense == Sense::Push);
+        if let (true, Some(Some(struck))) = (hits && pushes, struck.map(|frame| frame.object)) {
+            return struck;
+        }
+        match hits {
+            // "A motorcycle was eastbound when a van turned across it and clipped it": of a sentence without the subject vehicle.
+            true if actor != SUBJECT && self.world.actors[SUBJECT].sentence != Some(self.sentence) => {
+                carry.mains.iter().rev().copied().find(|before| *before != actor).unwrap_or(SUBJECT)
+            }
+            true if actor != SUBJECT => SUBJECT,
+            true => self.world.other().or(self.world.thing()).unwrap_or(actor),
+            false => actor,
+        }
+    }
+
+    /// Whose door was opened last.
+    pub(super) fn door_of(&self) -> Option<Actor> {
+        self.frames.iter().rev().find(|frame| frame.act() == Some(Act::OpenDoor) && frame.happened())?.who
+    }
+
+    /// Nobody is behind itself, or comes toward itself: "the car following it", "a van coming toward it".
+    pub(super) fn not_itself(&self, actor: Actor, carry: &Carry) -> Actor {
+        let frame = carry.frame.map(|frame| &self.frames[frame]);
+        let doer = frame.and_then(|frame| frame.who).or(carry.subject.as_ref().map(|subject| subject.actor));
+        let takes = frame.is_some_and(|frame| {
+            frame.object.is_none()
+                && !carry.fresh
+                && !carry.after_comma
+                && matches!(frame.act(), Some(Act::Follow | Act::Pass))
+                && transitive(frame.sense)
+        });
+        let place = matches!(carry.preposition, Some("toward" | "towards" | "past" | "around" | "against"));
+        if doer != Some(actor) || !(carry.relation.is_some() || place || takes && carry.preposition.is_none()) {
+            return actor;
+        }
+        match actor {
+            SUBJECT => self.world.other().unwrap_or(actor),
+            _ => SUBJECT,
+        }
+    }
+
+    /// Who the sentence is about, as far as it can be meant by a pronoun.
+    fn of_sentence(&self, carry: &Carry) -> Actor {
+        let of_sentence = carry.main.as_ref().or(carry.subject.as_ref()).map(|mention| mention.actor);
+        match of_sentence {
+            Some(actor) if actor == SUBJECT || acts(self.world.actors[actor].kind) => actor,
+            _ => self.world.pronoun(),
+        }
+    }
+}
