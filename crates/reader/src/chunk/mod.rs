@@ -399,8 +399,10 @@ impl Chunker<'_> {
         }
         let mut found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
         // "rolled into the roadway" touches nobody.
-        if matches!(found.meaning, Meaning::Verb(Sense::Contact, _)) && self.goes_to_a_place(at + found.length) {
-            let others = |meaning: Meaning| matches!(meaning, Meaning::Verb(sense, _) if sense != Sense::Contact);
+        if matches!(found.meaning, Meaning::Verb(Sense::Contact | Sense::OpenDoorInto, _))
+            && self.goes_to_a_place(at + found.length)
+        {
+            let others = |meaning: Meaning| matches!(meaning, Meaning::Verb(sense, _) if !matches!(sense, Sense::Contact | Sense::OpenDoorInto));
             found = self.lexicon.longest(self.tokens, at, others)?;
         }
         let Meaning::Verb(sense, form) = found.meaning else { return None };

@@ -213,7 +213,9 @@ fn near(story: &Story, record: &CrashRecord, number: usize) -> Option<Actor> {
             pair.find(|&actor| actor != SUBJECT && lively(story, actor) && one(actor))
         })
     };
-    let named = before(false).or_else(|| before(true));
+    // "The mirrors of the two vehicles touched": of two.
+    let pair = story.frames[number].sense == Sense::ContactMade;
+    let named = before(false).filter(|_| pair).or_else(|| before(true));
     named.or_else(|| announced(story)).or_else(|| only_other(story, record))
 }
 

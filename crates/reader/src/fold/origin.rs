@@ -348,6 +348,12 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             _ => {}
         }
     }
+    if let (Some(own), Some(other)) = (climbs(reading, SUBJECT), climbs(reading, actor))
+        && own != other
+        && turn.is_none()
+    {
+        return Some(Fact::by_rule(Origin::Opposite, "one uphill, the other downhill"));
+    }
     if did(Act::WrongWay) && !crosses {
         return told_as(Origin::Opposite, clues.source(|frame| frame.act() == Some(Act::WrongWay)));
     }
@@ -452,6 +458,20 @@ fn side_of_road(reading: &Reading<'_>, actor: Actor, account: &Account) -> Optio
                 },
                 _ => None,
             }
+        })
+    })
+}
+
+/// Whether somebody is told to go uphill (or downhill).
+fn climbs(reading: &Reading<'_>, actor: Actor) -> Option<bool> {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).find_map(|(number, frame)| {
+        let (first, end) = reading.window(number);
+        let goes = matches!(frame.act(), Some(Act::Follow | Act::SetOff | Act::Drift | Act::Pass));
+        tokens[first..end].iter().filter(|_| goes).find_map(|token| match token.text.as_str() {
+            "uphill" => Some(true),
+            "downhill" => Some(false),
+            _ => None,
         })
     })
 }

@@ -399,7 +399,7 @@ impl Parser<'_> {
                     matches!(taken.act(), Some(Act::Turn | Act::UTurn | Act::PullOut | Act::Enter | Act::LaneChange));
                 if taken.heading.is_none() {
                     taken.heading = Some(stands);
-                    taken.onto = onto || (turns && taken.act() != Some(Act::Enter));
+                    taken.onto = !from && (onto || (turns && taken.act() != Some(Act::Enter)));
                 }
                 let (who, onto) = (taken.who, taken.onto);
                 if let (Some(who), false) = (who, onto) {

@@ -8,7 +8,7 @@ use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, Spot, chunks, is_
 use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, Kind};
+use recrash_model::account::{Act, Kind, LeftRight};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -221,6 +221,11 @@ impl Parser<'_> {
             }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
+            // "waiting on the AV's right".
+            Chunk::Side(side) if self.side_of_subject(all, at) => {
+                let relation = if *side == LeftRight::Left { Relation::Left } else { Relation::Right };
+                self.relate(relation, Some(SUBJECT), carry);
+            }
             Chunk::Side(side) => self.side(*side, carry),
             Chunk::Lane(lane) => self.lane(*lane, placed, carry),
             Chunk::Spot(spot) => self.spot(*spot, carry),
@@ -476,7 +481,16 @@ impl Parser<'_> {
                         && waiting.object != Some(SUBJECT)
                         && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
                     let dangles = new && (stands || goes_on || passes);
-                    self.frames[pending].who = Some(if dangles { self.world.topic } else { actor });
+                    if self.frames[pending].passive {
+                        self.frames[pending].object = Some(actor);
+                        continue;
+                    }
+                    let who = if dangles { self.world.topic } else { actor };
+                    self.frames[pending].who = Some(who);
+                    // "While turning left from southbound Oak Street, it ...".
+                    if let (Some(heading), false) = (self.frames[pending].heading, self.frames[pending].onto) {
+                        self.world.actors[who].heading.get_or_insert(heading);
+                    }
                 }
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
                     carry.main = Some(mention.clone());
@@ -578,20 +592,26 @@ impl Parser<'_> {
         // "traffic was backed up" stands.
         let before = at.checked_sub(1).map(|at| &all[at]);
         let remains = before.is_some_and(|before| matches!(before.chunk, Chunk::Verb(Sense::Act(Act::Hold), _)));
-        let backed = sense == Sense::Act(Act::Reverse) && form == Form::Past && (carry.be || remains);
+        let away =
+            self.tokens.get(placed.end).is_some_and(|next| matches!(next.text.as_str(), "out" | "into" | "from"))
+                || placed.end > placed.first + 1 && self.tokens[placed.end - 1].text != "up";
+        let backed = sense == Sense::Act(Act::Reverse) && form == Form::Past && (carry.be || remains) && !away;
         let sense = if backed && word == "backed" { Sense::Other } else { sense };
         // "holding a phone", "held on to the rail".
         let carried = word.starts_with("hold") || word == "held";
         let on = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Word | Chunk::Preposition("on")));
         // "a bicycle ridden by a courier" passes nobody.
         let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
+        let next = all.get(at + 1).map(|placed| &placed.chunk);
         let sense = if ridden { Sense::Other } else { sense };
+        // "The wind blew a cart into it".
+        let blows = sense == Sense::Act(Act::Fall) && matches!(word.as_str(), "blew" | "blow" | "blowing");
+        let sense = if blows && matches!(next, Some(Chunk::Noun(_))) { Sense::Push } else { sense };
         // "had almost come to rest".
         let nearly = placed.first > 0 && matches!(self.tokens[placed.first - 1].text.as_str(), "almost" | "nearly");
         let sense = if nearly && sense == Sense::Act(Act::Stop) { Sense::Act(Act::Slow) } else { sense };
         let sense = if self.drives_another(sense, form, &word, all, at, carry) { Sense::Push } else { sense };
         let sense = if carried && on && placed.end == placed.first + 1 { Sense::Other } else { sense };
-        let next = all.get(at + 1).map(|placed| &placed.chunk);
         // A finite verb behind a finished relative clause is of the clause around it.
         let finite = (matches!(form, Form::Past | Form::Present)) || (form == Form::Ing && carry.be);
         if carry.relative
@@ -712,6 +732,10 @@ impl Parser<'_> {
             frame.on = frame.with.take();
             frame.passive = true;
         }
+        // "Struck by a coupe, a parked van ...": who is named next.
+        let leading = carry.fresh && !be && carry.subject.is_none() && form == Form::Past && done_to;
+        let leading = leading && matches!(next, Some(Chunk::Preposition("by")));
+        frame.passive |= leading;
         if matches!(sense, Sense::Push) && carry.pushed {
             carry.pushed = false;
         }
@@ -739,7 +763,7 @@ impl Parser<'_> {
         }
         self.frames.push(frame);
         let number = self.frames.len() - 1;
-        if unnamed {
+        if unnamed || leading {
             carry.pending.push(number);
         }
         carry.frame = Some(number);

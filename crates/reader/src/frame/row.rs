@@ -36,6 +36,14 @@ impl Parser<'_> {
         self.world.actors[subject.actor].several && known && plural && (!object || each_other)
     }
 
+    /// Whether a side is that of the subject vehicle: "on the AV's right".
+    pub(super) fn side_of_subject(&self, all: &[Placed], at: usize) -> bool {
+        let Some(from) = at.checked_sub(3) else { return false };
+        matches!(all[from].chunk, Chunk::Preposition("on" | "to" | "from" | "at"))
+            && matches!(&all[from + 1].chunk, Chunk::Noun(noun) if noun.subject)
+            && self.tokens[all[from + 2].first].text == "'s"
+    }
+
     /// Whether a verb of moving has somebody as its object: "driving it forward into the van", "the impact moved the bus", "was driven
     /// into the rear".
     pub(super) fn drives_another(

@@ -42,7 +42,7 @@ impl Parser<'_> {
     pub(super) fn spot_in(&self, placed: &Placed) -> Option<Spot> {
         self.tokens[placed.first..placed.end].iter().find_map(|token| match token.text.as_str() {
             "stall" | "space" | "spot" | "carport" => Some(Spot::Stall),
-            "driveway" | "lot" | "garage" | "alley" => Some(Spot::Driveway),
+            "driveway" | "lot" | "garage" | "alley" | "station" => Some(Spot::Driveway),
             "curb" => Some(Spot::Curb),
             _ => None,
         })
