@@ -1,11 +1,13 @@
 //! Both simulators side by side, with a MetaDrive that fails everywhere, and with a real one where
 //! `RECRASH_METADRIVE_PYTHON` names an interpreter that has it.
 
+use recrash_lab::judge;
+use recrash_lab::parity::{Agreement, Pair};
 use recrash_metadrive::{Drive, Metadrive};
 use recrash_model::rollout::Rollout;
 use recrash_pipeline::{
     NoProgress, OpenLoopRequest, Options, Parity, ParityRequest, ParitySource, PipelineError, Resources, Stage, Suite,
-    open_loop, parity, run_stage,
+    load_profile, open_loop, parity, run_stage,
 };
 use recrash_roads::Scenario;
 use recrash_sim::Ego;
@@ -144,6 +146,49 @@ fn the_ego_takes_over_and_sees_who_is_there_in_the_same_step_on_both() {
         let brakes = |rollout: &Rollout| rollout.actors[0].states.iter().position(|state| state.throttle == -1.0);
         assert_eq!((brakes(&ours), brakes(&theirs)), (Some(first), Some(first)));
     }
+}
+
+/// Every case of the gallery that MetaDrive can hold, with its policy in the ego's seat.
+#[test]
+fn the_gallery_agrees() {
+    let Some(python) = metadrive() else { return };
+    let metadrive =
+        Metadrive::start(recrash_metadrive::Options { workers: 2, ..recrash_metadrive::Options::new(python) });
+    let metadrive = metadrive.expect("it starts");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let folders = std::fs::read_dir(root).expect("there are cases").map(|entry| entry.expect("readable").path());
+    let files =
+        folders.filter(|folder| folder.is_dir()).flat_map(|folder| std::fs::read_dir(folder).expect("readable"));
+    let mut files: Vec<PathBuf> = files.map(|entry| entry.expect("readable").path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
+    files.sort();
+    let read = |file: &PathBuf| {
+        let text = std::fs::read_to_string(file).expect("readable");
+        recrash_roads::check(recrash_roads::read_draft(&text).expect("a draft").value).expect("a scenario").value
+    };
+    let cases: Vec<Scenario> = files.iter().map(read).collect();
+    let profile = load_profile("paper").expect("it is there");
+    let (mut pairs, mut refused) = (Vec::new(), Vec::new());
+    let theirs = metadrive.simulate_all(&cases, &Drive::MetadriveIdm, &|_| {});
+    for (case, theirs) in cases.iter().zip(theirs) {
+        match theirs {
+            Err(error) if error.is_refused() => refused.push(error.to_string()),
+            theirs => {
+                let ours = judge(case, recrash_sim::simulate(case, Ego::MetadriveIdm), &profile, None);
+                let theirs = theirs.map(|rollout| judge(case, rollout, &profile, None));
+                let theirs = theirs.as_ref().map_err(ToString::to_string);
+                pairs.push(Pair::of(case.draft().id.clone(), case.draft(), &ours, theirs));
+            }
+        }
+    }
+    let other: Vec<_> = pairs.iter().filter(|pair| !pair.same_verdict() || !pair.same_gap()).collect();
+    for pair in &other {
+        println!("{}: {}", pair.name, pair.remark());
+    }
+    let all = Agreement::of(&pairs);
+    println!("{} cases, {} refused: {refused:#?}\n{all:?}", cases.len(), refused.len());
+    assert!(all.pairs * 100 >= 85 * cases.len() && all.errors == 0, "{refused:#?}");
+    assert!(all.same_verdict * 100 >= 95 * all.pairs && all.same_gap * 100 >= 90 * all.pairs, "{all:?}");
 }
 
 /// Somebody beside the lanes is nobody to follow, and is one as soon as the lane begins under him.
