@@ -70,7 +70,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
         false => first_time(&usual.acts),
     };
     let moved_up_m = past_line_m(told, ground, sv_s_m).filter(|_| sv.state.stands()).unwrap_or(MOVES_UP_M);
-    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, moved_up_m.max(MOVES_UP_M)) {
+    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, moved_up_m.max(MOVES_UP_M), 0.0) {
         Some(lead) if sv.state.stands() => (Some(lead), STANDING),
         lead => (lead, usual),
     }
@@ -110,9 +110,15 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
         true => &came_behind,
         false => &cp.phases,
     };
-    match phases::lead(phases, begins_s, told.choices.rolling_mps, MOVES_UP_M) {
-        Some(lead) if stands => (Some(lead), STANDING),
-        lead => (lead, last),
+    let lead = |longer_s: f64| phases::lead(phases, begins_s, told.choices.rolling_mps, MOVES_UP_M, longer_s);
+    let Some(usual) = lead(0.0) else { return (None, last) };
+    let last = if stands { STANDING } else { last };
+    // Who is ahead came ahead of the ego, and stopped before it did.
+    let driven_m = usual.driven_m() + if cp.state == ContactState::Reversing { -last.driven_m } else { last.driven_m };
+    let past_m = driven_m - ego_m + AHEAD_M;
+    match told.origin == Origin::Ahead && usual.speed_mps > 0.0 && past_m > 0.0 {
+        true => (lead(past_m / usual.speed_mps), last),
+        false => (Some(usual), last),
     }
 }
 
@@ -197,6 +203,9 @@ const BEHIND_M: f64 = 2.0;
 
 /// How far somebody has reversed at the contact. [m]
 const REVERSES_M: f64 = 2.5;
+
+/// Who came along ahead of the ego was so much farther ahead than it is at the contact, at least. [m]
+const AHEAD_M: f64 = 1.0;
 
 /// Who backed first did so by so long. [s]
 const BACKS_EARLIER_S: f64 = 1.0;

@@ -197,7 +197,14 @@ impl Lead {
 }
 
 /// What comes before the last phase of somebody, which begins then: before it sets off, or before it stands. [s]
-pub(crate) fn lead(phases: &[Phase], mut time_s: f64, rolling_mps: f64, moves_up_m: f64) -> Option<Lead> {
+/// `moves_up_m`: how far it moves between two stands; `longer_s`: so much longer it stands where it stood first.
+pub(crate) fn lead(
+    phases: &[Phase],
+    mut time_s: f64,
+    rolling_mps: f64,
+    moves_up_m: f64,
+    longer_s: f64,
+) -> Option<Lead> {
     let before = phases.split_last().map(|(_, before)| before).filter(|before| !before.is_empty())?;
     let (came, before) = match before.split_first() {
         Some((Phase::Drives, rest)) => (true, rest),
@@ -229,9 +236,9 @@ pub(crate) fn lead(phases: &[Phase], mut time_s: f64, rolling_mps: f64, moves_up
     };
     let backs_s = moves.iter().find(|(_, _, reverse)| *reverse).map(|(from_s, ..)| *from_s);
     let mut lead = Lead { backs_s, speed_mps: 0.0, acts: Vec::new(), stretches: Vec::new(), stands_s };
-    if came && time_s >= LEAST_APPROACH_S {
+    if came && time_s - longer_s >= LEAST_APPROACH_S {
         // It comes along, brakes, and stands.
-        let stands_s = if before.first() == Some(&Phase::Stands) { time_s } else { time_s - STANDS_S };
+        let stands_s = if before.first() == Some(&Phase::Stands) { time_s } else { time_s - STANDS_S } - longer_s;
         let speed_mps = rolling_mps.min(BRAKES_MPS2 * (stands_s - ROLLS_S)).max(0.5);
         let braking_s = (speed_mps / BRAKES_MPS2 * 10.0).ceil() / 10.0;
         let from_s = stands_s - braking_s;

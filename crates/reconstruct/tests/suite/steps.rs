@@ -38,7 +38,7 @@ fn an_ego_that_came_to_a_stop_before_it_drove_on_comes_along_first() {
     let account = story(WAITED);
     let speeds = speeds(&made(&account));
     assert!(speeds[0] > 3.0 && speeds.contains(&0.0) && speeds[speeds.len() - 1] > 1.0, "{speeds:?}");
-    assert!(missed(&account, |less| without_acts(less, &[Act::Follow])).contains(&CheckKind::SvState));
+    assert!(missed(&account, |less| without_acts(less, &[Act::Stop])).contains(&CheckKind::SvState));
 }
 
 #[test]
