@@ -84,7 +84,11 @@ fn past_line_m(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
 impl Told {
     /// Whether the partner stood behind the ego and set off then.
     fn waits_behind(&self) -> bool {
-        self.origin == Origin::Behind && (self.cp.state == ContactState::SettingOff || self.cp.stood_first)
+        // Who is told to be this slow when it hits an ego that stands did not come along at that speed.
+        let crept = self.cp.state == ContactState::Moving
+            && self.sv.state.stands()
+            && self.cp.impact_mps.is_some_and(|mps| mps < CREEPS_MPS);
+        self.origin == Origin::Behind && (self.cp.state == ContactState::SettingOff || self.cp.stood_first || crept)
     }
 }
 
@@ -132,6 +136,7 @@ fn last_pace(told: &Told) -> Pace {
     let from_m = match told.waits_behind() {
         true if cp.movement == Some(Movement::Passing) => COMES_ROUND_M,
         true if moved_up => MOVES_UP_M + BEHIND_M,
+        true if usual.speed_mps > 0.0 => MOVES_UP_M,
         _ => return usual,
     };
     start_over(contact_s, cp.speed_mps, from_m).unwrap_or(usual)
@@ -200,6 +205,9 @@ const TURNS_M: f64 = 8.0;
 
 /// Who stands behind the ego stands so far behind it. [m]
 const BEHIND_M: f64 = 2.0;
+
+/// Who is slower than this in traffic has set off, or comes to a stop. [m/s]
+const CREEPS_MPS: f64 = 4.0;
 
 /// How far somebody has reversed at the contact. [m]
 const REVERSES_M: f64 = 2.5;
