@@ -213,7 +213,7 @@ pub(crate) fn outcome(
         least_gap: run.metrics.min_gap.filter(|gap| gap.value.is_finite()),
         severity: run.severity.clone(),
         preventability: preventability(&run.rollout),
-        cause: cause(&run.rollout, &run.metrics, &run.findings),
+        cause: cause(scenario.network(), &run.rollout, &run.metrics, &run.findings),
         faithful: test.expectation.is_some().then(|| run.faithful()),
         met: recorded.map(|recorded| met(run, recorded, scenario)),
     }
