@@ -181,6 +181,11 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
         format!("\n{}: {}\nother egos: {}", triage.class.label(), triage.class.meaning(), other_egos(triage))
     });
+    let cause = run.cause.map_or_else(String::new, |cause| format!("\ncause: {}", cause.label()));
+    let bracket = run
+        .preventability
+        .as_ref()
+        .map_or_else(String::new, |found| format!("\npreventability: {}", found.bracket().label()));
     let edited = match &case.edited[..] {
         [] => String::new(),
         files => format!("\nedited by hand: {}", files.join(", ")),
@@ -190,7 +195,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         format!("crash type: {}\nincident: {}\nsituation met: {met}\n", account.crash_type.label(), account.incident)
     });
     format!(
-        "{what}template: {}\ntells: {origin}\nleast gap: {gap}{severity}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
+        "{what}template: {}\ntells: {origin}\nleast gap: {gap}{severity}{cause}{bracket}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
         case.template,
         words::name(&run.metrics.termination),
         run.rerun_command

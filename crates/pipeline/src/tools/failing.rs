@@ -10,7 +10,6 @@ use crate::simulators::{SimulatorKind, start_simulator};
 use crate::tools::freezing::Opened;
 use crate::tools::testing::{Bench, TestRequest};
 use rayon::prelude::*;
-use recrash_lab::causes::cause;
 use recrash_lab::minimal::{Needed, minimal};
 use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::run_scenario;
@@ -134,8 +133,7 @@ fn failing<'a>(bench: &'a Bench, only: &[String]) -> Result<Vec<Failing<'a>>, Pi
             Ok(run) => run,
             Err(error) => return Some(Err(PipelineError::not_run(&error))),
         };
-        let cause = cause(scenario.network(), &run.rollout, &run.metrics, &run.findings);
-        run.failed().then(|| Ok(Failing { test, scenario, findings: run.finding_kinds(), cause }))
+        run.failed().then(|| Ok(Failing { test, scenario, findings: run.finding_kinds(), cause: run.cause }))
     };
     bench.threads.install(|| bench.tests().filter_map(fails).collect())
 }
