@@ -399,6 +399,8 @@ fn a_night_that_could_not_be_run_is_not_green() {
     let (code, _, errors) = test(&place, &[&compared[..], &["--fail-on", "broken,worse"]].concat());
     assert!(code == 5 && errors.contains("36 not run of 36 tests"), "{errors}");
     assert_eq!(test(&place, &compared).0, 0, "nothing is to be failed on");
+    let first_night = |ego: &str| test(&place, &["--ego", ego, "--fail-on", "not_run", "--quiet"]).0;
+    assert_eq!((first_night(&dies), first_night(&base)), (5, 0), "a failure is no news on the first night");
     let fail_on = ["compare", "base.json", "new.json", "--fail-on", "broken", "--quiet"];
     assert_eq!(place.run(&fail_on).0, 5);
     let mended = ["compare", "new.json", "base.json", "--fail-on", "broken", "--quiet"];
