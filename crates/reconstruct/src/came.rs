@@ -491,7 +491,14 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     let from_stand =
         things::pace(told).or_else(|| beside_from_line(told, staging)).or_else(|| lateral::from_kerb(told, staging));
     let pace = from_stand.unwrap_or_else(|| partner_pace(told));
-    let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
+    let actor = |plan: ActorPlan| Actor {
+        id: "cp".to_owned(),
+        kind: cp.kind,
+        size: cp.size,
+        mass_kg: None,
+        parts: Vec::new(),
+        plan,
+    };
     if pace.driven_m == 0.0 {
         return (vec![actor(ActorPlan::standing(at(staging.cp)))], Vec::new());
     }
@@ -516,7 +523,14 @@ fn nudger(told: &Told, staging: &Staging) -> Actor {
         course: vec![Leg::Curve { to: place(touches + way * beyond_m(speed_mps)), reverse: false }],
         ..ActorPlan::standing(place(start))
     };
-    Actor { id: "pusher".to_owned(), kind: PartnerKind::PassengerCar, size: None, parts: Vec::new(), plan }
+    Actor {
+        id: "pusher".to_owned(),
+        kind: PartnerKind::PassengerCar,
+        size: None,
+        mass_kg: None,
+        parts: Vec::new(),
+        plan,
+    }
 }
 
 /// The line by which the partner comes to the contact, as long as its pace needs.
@@ -620,7 +634,8 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
         acts,
         ..ActorPlan::standing(place(from))
     };
-    let actor = |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, parts: Vec::new(), plan };
+    let actor =
+        |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan };
     let braking_s = ROLLING_MPS / STOPPING_MPS2;
     let from_s = ((CONTACT_S - STOOD_S - braking_s) * 10.0).floor() / 10.0;
     let driven_m = ROLLING_MPS * from_s + 0.5 * ROLLING_MPS * braking_s;
