@@ -2,6 +2,7 @@
 
 mod adverbs;
 mod attach;
+mod build;
 mod parser;
 mod pronoun;
 mod row;

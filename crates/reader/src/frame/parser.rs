@@ -4,8 +4,8 @@ use super::Frame;
 use super::adverbs::goes_about;
 use super::row::{acts, another_finite, next_is_verb, next_preposition, relation_behind, transitive};
 use super::sided;
-use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed, Spot, chunks, is_determiner};
-use crate::lexicon::{Adjective, Form, Lexicon, Occupant, Progress, Relation, Sense};
+use crate::chunk::{Article, Chunk, Joint, Piece, Placed, Spot, chunks, is_determiner};
+use crate::lexicon::{Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
 use recrash_model::account::{Act, Kind, LeftRight};
@@ -326,58 +326,6 @@ impl Parser<'_> {
         carry.began = true;
     }
 
-    /// What the adjectives of a noun say of it.
-    fn attribute(&mut self, noun: &Noun, actor: Actor, placed: &Placed, carry: &Carry) {
-        for adjective in &noun.adjectives {
-            let (sense, side) = match adjective {
-                Adjective::Stopped => (Sense::Act(Act::Hold), None),
-                Adjective::Parked => (Sense::Parked, None),
-                Adjective::Doing if actor != SUBJECT && !noun.several => match self.doing(placed) {
-                    Some((act, side)) => (Sense::Act(act), side),
-                    None => continue,
-                },
-                _ => continue,
-            };
-            let mut frame = self.frame(Some(actor), sense, Form::Past, placed, carry);
-            (frame.aside, frame.state, frame.negated, frame.progress) = (true, true, false, Progress::Real);
-            frame.side = side;
-            self.frames.push(frame);
-        }
-    }
-
-    pub(super) fn frame(&self, who: Option<Actor>, sense: Sense, form: Form, placed: &Placed, carry: &Carry) -> Frame {
-        Frame {
-            who,
-            with: None,
-            sense,
-            form,
-            object: None,
-            on: None,
-            side: match sense {
-                Sense::Sided(_, side) => Some(side),
-                _ => None,
-            },
-            relations: Vec::new(),
-            heading: None,
-            onto: false,
-            lane: None,
-            out_of: None,
-            negated: carry.negated,
-            progress: carry.progress.unwrap_or(Progress::Real),
-            state: false,
-            aside: false,
-            joint: carry.joint,
-            person: None,
-            described: carry.relative,
-            passive: false,
-            clause: carry.clause,
-            sentence: self.sentence,
-            looks_back: self.looks_back,
-            first: placed.first,
-            end: placed.end,
-        }
-    }
-
     fn mention(&mut self, mention: Mention, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
         let actor = mention.actor;
         let governed = carry.preposition.is_some() || carry.relation.is_some();
@@ -460,7 +408,12 @@ impl Parser<'_> {
                     return;
                 }
                 // "While stopped at a light, a man began to cross": of somebody new it is not told.
-                let new = self.world.actors[actor].mentions == 1 && actor != SUBJECT && carry.main.is_none();
+                let new = actor != SUBJECT && carry.main.is_none() && {
+                    let known = &self.world.actors[actor];
+                    // Only the headline has named it so far.
+                    let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
+                    known.mentions == 1 || named_only
+                };
                 for pending in std::mem::take(&mut carry.pending) {
                     let waiting = &self.frames[pending];
                     let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
@@ -714,10 +667,19 @@ impl Parser<'_> {
                 .frame
                 .map(|frame| &self.frames[frame])
                 .is_some_and(|before| before.who == frame.who && before.happened() && goes_about(before.act()));
+            let enters = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|before| {
+                let words = &self.tokens[before.first..placed.first];
+                before.who == frame.who
+                    && before.happened()
+                    && before.act() == Some(Act::Enter)
+                    && words.iter().any(|token| matches!(token.text.as_str(), "intersection" | "junction"))
+            });
             frame.progress =
                 match (carry.pushed, going && matches!(frame.act(), Some(Act::Pass | Act::Park | Act::LaneChange))) {
                     (true, _) => Progress::Real,
                     (_, true) => Progress::Tried,
+                    // "entered the intersection to make a left turn": so it did.
+                    _ if enters && frame.act() == Some(Act::Turn) => Progress::Real,
                     _ => Progress::Wished,
                 };
         }
