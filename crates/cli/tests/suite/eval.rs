@@ -187,16 +187,16 @@ fn the_reader_reads_invented_reports_as_well_as_the_documentation_says() {
 }
 
 const STORY_FLOORS: [(&str, f64); 10] = [
-    ("crash_type", 0.89),
-    ("role", 0.89),
-    ("striker", 0.91),
+    ("crash_type", 0.92),
+    ("role", 0.90),
+    ("striker", 0.92),
     ("sv_state", 0.97),
     ("driver", 0.96),
     ("sv_movement", 0.95),
-    ("cp_movement", 0.85),
-    ("came_from", 0.86),
-    ("order", 0.89),
-    ("first_contact", 0.93),
+    ("cp_movement", 0.86),
+    ("came_from", 0.89),
+    ("order", 0.91),
+    ("first_contact", 0.94),
 ];
 
 const FLOORS: [(&str, f64); 14] = [

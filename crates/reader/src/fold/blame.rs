@@ -82,8 +82,8 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
         (Some(SUBJECT), _) => {
             // "The rear of the subject vehicle made contact with the front of the car": who moved forward into whom.
             let over = [Act::LaneChange, Act::Drift, Act::Swerve].into_iter().any(|act| account.sv.did(act));
-            let rear = has_zone(&account.sv, |zone| zone.is_rear())
-                && !(over && !has_zone(&account.sv, |zone| zone == recrash_model::zones::ContactZone::Rear));
+            let plain = has_zone(&account.sv, |zone| zone == recrash_model::zones::ContactZone::Rear);
+            let rear = has_zone(&account.sv, |zone| zone.is_rear()) && (plain || !over);
             if rear && sv != Some(ContactState::Reversing) { Striker::Cp } else { Striker::Sv }
         }
         (Some(who), _) if who != SUBJECT => Striker::Cp,

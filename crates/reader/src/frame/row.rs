@@ -113,7 +113,7 @@ impl Parser<'_> {
         });
         object
             && other
-            && (behind().any(|placed| into(placed)) && part
+            && (behind().any(into) && part
                 || behind().any(ahead) && carry.subject.as_ref().is_none_or(|subject| subject.person.is_none()))
     }
 
