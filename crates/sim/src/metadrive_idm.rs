@@ -189,8 +189,11 @@ fn view(scene: &Scene<'_>, me: usize, lane: LaneIndex) -> LaneView {
         }
     };
     for (other, actor) in scene.actors.iter().enumerate() {
-        if other != me && actor.present && actor.on_lane {
-            consider(actor.place.lane, actor.place.s, actor.velocity, actor.speed);
+        if other != me
+            && actor.present
+            && let Some((other_lane, other_s)) = scene.registered_lane(other)
+        {
+            consider(other_lane, other_s, actor.velocity, actor.speed);
         }
     }
     for obstacle in scene.obstacles {
