@@ -260,7 +260,14 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         return (thrown(told, staging), Vec::new());
     }
     let (lead, pace) = partner_paces(told, staging);
-    let actor = |plan: ActorPlan| Actor { id: "cp".to_owned(), kind: cp.kind, size: cp.size, parts: Vec::new(), plan };
+    let actor = |plan: ActorPlan| Actor {
+        id: "cp".to_owned(),
+        kind: cp.kind,
+        size: cp.size,
+        mass_kg: None,
+        parts: Vec::new(),
+        plan,
+    };
     let (plan, begin) = match pace.driven_m {
         0.0 => (ActorPlan::standing(at(staging.cp)), staging.cp),
         _ => course_to(told, staging, pace, at),
@@ -294,7 +301,14 @@ fn nudger(told: &Told, staging: &Staging) -> Actor {
         course: vec![Leg::Curve { to: place(touches + way * beyond_m(speed_mps)), reverse: false }],
         ..ActorPlan::standing(place(start))
     };
-    Actor { id: "pusher".to_owned(), kind: PartnerKind::PassengerCar, size: None, parts: Vec::new(), plan }
+    Actor {
+        id: "pusher".to_owned(),
+        kind: PartnerKind::PassengerCar,
+        size: None,
+        mass_kg: None,
+        parts: Vec::new(),
+        plan,
+    }
 }
 
 /// The line by which the partner comes to the contact, as long as its pace needs.
@@ -408,7 +422,8 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
         acts,
         ..ActorPlan::standing(place(from))
     };
-    let actor = |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, parts: Vec::new(), plan };
+    let actor =
+        |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan };
     let braking_s = ROLLING_MPS / STOPPING_MPS2;
     let from_s = ((told.contact_s - STOOD_S - braking_s) * 10.0).floor() / 10.0;
     let driven_m = ROLLING_MPS * from_s + 0.5 * ROLLING_MPS * braking_s;

@@ -163,5 +163,5 @@ fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
             (PartnerKind::PassengerCar, crossing(crossing_m(staging), way, CROSSES_MPS))
         }
     };
-    Actor { id: extra.id().to_owned(), kind, size: None, parts: Vec::new(), plan }
+    Actor { id: extra.id().to_owned(), kind, size: None, mass_kg: None, parts: Vec::new(), plan }
 }

@@ -22,6 +22,7 @@ fn track(id: &str, role: Role, way: Way) -> ActorTrack {
         kind: PartnerKind::PassengerCar,
         length_m: 4.5,
         width_m: 1.9,
+        mass_kg: None,
         appears_s: 0.0,
         gone_s: None,
         states: (0..STEPS).map(state).collect(),
