@@ -432,6 +432,9 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
 /// Who turns back by more than this on its way swings. [deg]
 const MOST_BACK_DEG: f64 = 30.0;
 
+/// Nobody turns faster in a step. [deg]
+const FASTEST_TURN_DEG: f64 = 20.0;
+
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
 const AS_STAGED_S: f64 = 0.15;
 
@@ -462,8 +465,11 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
     // Every second.
     let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
-    let turns = track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
-    let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
+    let turns = || track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+    if turns().any(|turn| turn.to_degrees().abs() > FASTEST_TURN_DEG) {
+        return true;
+    }
+    let (all, net) = turns().fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
     beside || (all - net.abs()).to_degrees() > MOST_BACK_DEG
 }
 
