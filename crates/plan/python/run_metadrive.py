@@ -339,6 +339,16 @@ class Actor:
         self.vehicle.set_heading_theta(heading)
         self.vehicle.set_velocity([vx, vy])
 
+    def let_go(self, now, turning):
+        """Puts it on its wheels where its recorded driver leaves it: its springs carry it, and its body is a physics step
+        ahead of what one sees, as that of any vehicle that drives."""
+        x, y, heading, vx, vy = now
+        ahead = Law.step_s / SUBSTEPS
+        self.vehicle.set_position((x + vx * ahead, y + vy * ahead), Law.settled_height_m)
+        self.vehicle.set_heading_theta(heading + turning * ahead)
+        self.vehicle.body.setLinearVelocity(LVector3(vx, vy, 0.0))
+        self.vehicle.set_angular_velocity(turning)
+
     def state(self):
         """Position, heading and velocity."""
         if self.gone is not None:
@@ -564,6 +574,8 @@ class World:
             if end is not None:
                 tracks += parts
                 return {"end": end, "time_s": self.step * Law.step_s, "tracks": tracks, "events": self.events}
+            if self.scene and self.scene["recorded"] and self.step == self.scene["handover"]:
+                self.actors[0].let_go(self.scene["recorded"]["states"][self.step], self.scene["handover_turns_radps"])
             present = [actor for actor in self.actors if actor.gone is None]
             for actor, action in zip(self.actors, actions):
                 if actor.gone is None:

@@ -101,10 +101,12 @@ class PlannedActor:
     policy_name = "plan"
 
     def __init__(self, world, spec):
-        self.spec, self.vehicle, self.parts = spec, world.box(spec), []
+        self.spec, self.parts, self.now = spec, [], spec["states"][0]
+        # Policies find a body by where it was in the last physics step, and a new one where it was made: whoever is there
+        # from the beginning is seen at once, and who appears a step later, as in the native simulator.
+        self.vehicle = world.box(spec, self.now[:2], self.now[2])
         self.radius = 0.5 * math.hypot(spec["length_m"], spec["width_m"])
         self.halted, self.gone, self.place, self.policy = False, None, self, self
-        self.now = spec["states"][0]
         self.carry(world, 0, 0.0)
 
     def is_there(self, step):

@@ -121,6 +121,9 @@ pub const HALT_SHORT_M: f64 = 0.3;
 /// A place farther behind than this has been passed. [m]
 pub const PASSED_LINE_M: f64 = 1.5;
 
+/// Height of the centre of mass of a vehicle whose four springs carry it, by the springs of `docs/models/vehicle.md`. [m]
+pub const SETTLED_HEIGHT_M: f64 = 0.6 - 9.81 / (4.0 * 40.0);
+
 /// Time for which it stands at a stop sign; assumed. [steps]
 pub const SIGN_STEPS: u32 = 10;
 
@@ -161,6 +164,7 @@ pub struct Constants {
     pub sign_steps: u32,
     pub pull_over_m: f64,
     pub straight_before_m: f64,
+    pub settled_height_m: f64,
 }
 
 impl Constants {
@@ -194,5 +198,6 @@ impl Constants {
         sign_steps: SIGN_STEPS,
         pull_over_m: PULL_OVER_M,
         straight_before_m: STRAIGHT_BEFORE_M,
+        settled_height_m: SETTLED_HEIGHT_M,
     };
 }

@@ -11,6 +11,7 @@ use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
+use recrash_plan::constants::SETTLED_HEIGHT_M;
 use wide::f64x2;
 
 /// Physics step. [s]
@@ -205,7 +206,7 @@ impl VehicleState {
             forward_mps: velocity.dot(axis).max(0.0),
             leftward_mps: velocity.dot(axis.left()),
             yaw_rate,
-            height_m: FREE_HEIGHT_M - GRAVITY_MPS2 / (4.0 * SPRING_PER_S2),
+            height_m: SETTLED_HEIGHT_M,
             ..Self::new(pose, 0.0)
         }
     }

@@ -6,6 +6,7 @@
 //! reproduced here.
 
 use recrash_model::geometry::Vec2;
+use recrash_model::math;
 use recrash_model::scenario::MapSpec;
 use recrash_roads::graph::GroundArea;
 use recrash_roads::path::SegmentShape;
@@ -236,6 +237,35 @@ impl LaneTable {
         best.map(|(_, index)| index)
     }
 
+    /// The lane that somebody with a plan is on, and the place along it: one of `way`, the ego's, before any other, by the
+    /// lanes' true edges. MetaDrive's worker is told the same (`recrash_plan::metadrive`). [m]
+    pub(crate) fn lane_of_plan(&self, way: &[LaneIndex], point: Vec2, heading: f64) -> Option<(LaneIndex, f64)> {
+        let mut best: Option<(f64, LaneIndex, f64)> = None;
+        for &index in way {
+            let lane = self.lane(index);
+            let (s, t) = lane.local(point);
+            if lane.holds(s, t) && best.is_none_or(|(least, ..)| t.abs() < least) {
+                best = Some((t.abs(), index, s));
+            }
+        }
+        if let Some((_, index, s)) = best {
+            return Some((index, s));
+        }
+        let mut best: Option<((bool, f64), LaneIndex, f64)> = None;
+        for (index, lane) in self.lanes.iter().enumerate() {
+            let (s, t) = lane.local(point);
+            if !lane.holds(s, t) {
+                continue;
+            }
+            let turned = math::wrap_angle(lane.heading(s) - heading).abs();
+            let misfit = (turned > math::FRAC_PI_2, t.abs() + lane.width_m(s) * turned);
+            if best.is_none_or(|(least, ..)| misfit < least) {
+                best = Some((misfit, index as LaneIndex, s));
+            }
+        }
+        best.map(|(_, index, s)| (index, s))
+    }
+
     /// Whether a point lies on a paved area beside the lanes: a driveway, a forecourt.
     pub(crate) fn is_paved(&self, point: Vec2) -> bool {
         self.paved.iter().any(|area| area.contains(point))
@@ -283,6 +313,12 @@ impl Navigator {
     #[inline]
     pub(crate) fn next_road(&self, routes: &[RoadId]) -> Option<RoadId> {
         (!self.on_last_road()).then(|| routes[(self.route.0 + self.at + 1) as usize])
+    }
+
+    /// The next road that is another: a route that changes lanes names its road more than once.
+    pub(crate) fn next_other_road(&self, routes: &[RoadId]) -> Option<RoadId> {
+        let road = self.road(routes);
+        routes[(self.route.0 + self.at) as usize..self.route.1 as usize].iter().copied().find(|next| *next != road)
     }
 
     /// Whether it is still where its route begins.

@@ -192,7 +192,6 @@ impl Run {
                 seen.progress.follow(&setting.lanes, &setting.route_lanes, &seen.place, body.pose.position);
                 // Background traffic that has left the road goes on straight and is out of the game.
                 seen.present = seen.place.on_road || member.role != Role::Traffic;
-                seen.on_lane = programme.is_none() || seen.place.on_road;
             }
         }
         let ego = &state.seen[0];
@@ -443,5 +442,65 @@ fn pedal_mps2(kind: recrash_model::kinds::PartnerKind, throttle: f64, speed_mps:
         0.0
     } else {
         throttle * spec.brake_demand_mps2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::LaneIndex;
+    use recrash_model::scenario::MapSpec;
+    use recrash_plan::metadrive::{NO_HANDOVER, Run as Told};
+    use recrash_roads::{LaneId, check, read_draft};
+    use std::path::{Path, PathBuf};
+
+    /// All files below `cases/`.
+    fn cases() -> Vec<PathBuf> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+        let folders = std::fs::read_dir(root).expect("there are cases").map(|entry| entry.unwrap().path());
+        let files = folders.filter(|folder| folder.is_dir()).flat_map(|folder| std::fs::read_dir(folder).unwrap());
+        files
+            .map(|entry| entry.unwrap().path())
+            .filter(|file| file.extension().is_some_and(|is| is == "json"))
+            .collect()
+    }
+
+    /// Two drivers with the same eyes see the same people only where both are told the same lanes.
+    #[test]
+    fn who_moves_by_a_plan_is_on_the_lane_that_metadrive_is_told() {
+        let (mut on_lanes, mut beside) = (0, 0);
+        for file in cases() {
+            let draft = read_draft(&std::fs::read_to_string(&file).unwrap()).unwrap().value;
+            let scenario = check(draft).unwrap().value;
+            let Some(told) = Told::new(&scenario, NO_HANDOVER).ok().and_then(|told| told.scene) else { continue };
+            let mut way = scenario.ego().path.roads.clone();
+            way.dedup();
+            let name = |lane: LaneIndex| {
+                let lane = scenario.network().lane(LaneId(lane));
+                let road = scenario.network().road(lane.road);
+                let (from, to) = match way.iter().position(|known| *known == lane.road) {
+                    _ if !matches!(scenario.draft().map, MapSpec::G(_)) => (road.from.clone(), road.to.clone()),
+                    Some(place) => (format!("way{place}"), format!("way{}", place + 1)),
+                    None => (format!("road{}:0", lane.road.0), format!("road{}:1", lane.road.0)),
+                };
+                (from, to, lane.index)
+            };
+            let mut run = Run::new(&scenario, Seat::BuiltIn(Ego::Recorded));
+            let known = told.ends.as_ref().map_or(u32::MAX, |(step, _)| *step);
+            while run.termination().is_none() && run.state.step < known && !run.state.ego_contact {
+                for (actor, planned) in (1 + scenario.partners().len()..).zip(&told.planned) {
+                    if run.state.movers[actor] != Mover::Plan || !run.state.seen[actor].present {
+                        continue;
+                    }
+                    let named = planned.lanes.iter().rfind(|(since, _)| *since <= run.state.step);
+                    let named = named.and_then(|(_, lane)| lane.clone());
+                    let ours = run.scene().registered_lane(actor).map(|(lane, _)| name(lane));
+                    assert_eq!(ours, named, "{file:?}, {}, step {}", planned.id, run.state.step);
+                    *if ours.is_some() { &mut on_lanes } else { &mut beside } += 1;
+                }
+                run.step(None);
+            }
+        }
+        assert!(on_lanes > 1000 && beside > 100, "{on_lanes} {beside}");
     }
 }

@@ -21,8 +21,6 @@ pub(crate) struct Seen {
     pub(crate) half_width: f64,
     /// Still in the world: background traffic that drove off the map is not.
     pub(crate) present: bool,
-    /// On the lane that its place names; who moves by a plan may be beside all.
-    pub(crate) on_lane: bool,
     /// Along its plan's course, where it moves by one; `None` of the ego, whose place is that on its route. [m]
     pub(crate) plan_s_m: Option<f64>,
 }
@@ -70,10 +68,27 @@ impl Scene<'_> {
         self.lanes.of_road(self.actors[actor].place.road(self.routes))
     }
 
+    /// The lanes of the road after that, leftmost first; `None` on the last.
+    pub(crate) fn lanes_after(&self, actor: usize) -> Option<&[LaneIndex]> {
+        let next = self.actors[actor].place.next_other_road(self.routes)?;
+        Some(self.lanes.of_road(next))
+    }
+
     /// The lane of an actor's path that it is beside.
     #[inline]
     pub(crate) fn path_lane(&self, actor: usize) -> LaneIndex {
         self.route_lanes[self.actors[actor].progress.at as usize]
+    }
+
+    /// The lane an actor counts as on to a driver with MetaDrive's eyes, and its place along it; who moves by a plan may be
+    /// beside all. [m]
+    pub(crate) fn registered_lane(&self, actor: usize) -> Option<(LaneIndex, f64)> {
+        let seen = &self.actors[actor];
+        if seen.plan_s_m.is_none() {
+            return Some((seen.place.lane, seen.place.s));
+        }
+        let ego_way = &self.route_lanes[..self.actors[0].progress.end as usize];
+        self.lanes.lane_of_plan(ego_way, seen.pose.position, seen.pose.heading)
     }
 
     /// How far an actor has come along its path. [m]

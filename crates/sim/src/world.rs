@@ -338,7 +338,6 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
         half_length: 0.5 * spec.length_m,
         half_width: 0.5 * spec.width_m,
         present: true,
-        on_lane: true,
         plan_s_m: None,
     });
 }

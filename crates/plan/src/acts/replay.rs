@@ -38,6 +38,8 @@ pub struct ReplayTrack {
     pub gone: Option<u32>,
     /// From this step on its plan changes nothing any more.
     pub over: u32,
+    /// How fast it turns in its last state. [rad/s]
+    pub turns_radps: f64,
 }
 
 /// Where a part is: a state for every step.
@@ -85,8 +87,9 @@ impl Member<'_> {
 
     /// Writes down where everything is.
     fn note(&mut self) {
-        let (pose, velocity) = self.pose();
+        let (pose, velocity, turns_radps) = self.programme.motion(&self.progress);
         let at = pose.position;
+        self.track.turns_radps = turns_radps;
         self.track.states.push([at.x, at.y, pose.heading, velocity.x, velocity.y]);
         let owner = if self.number == 0 { Pose::default() } else { pose };
         for (attached, state, track) in &mut self.parts {

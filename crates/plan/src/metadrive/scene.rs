@@ -21,6 +21,8 @@ pub struct Scene {
     pub recorded: Option<Planned>,
     /// The step at which the ego's policy takes over.
     pub handover: u32,
+    /// How fast the ego turns there. [rad/s]
+    pub handover_turns_radps: f64,
     /// Road users with a plan, in the scenario's order.
     pub planned: Vec<Planned>,
     /// Boxes that belong to others, in the order of rollouts.
@@ -123,6 +125,7 @@ impl Scene {
         }
         let replay = replay(scenario, handover);
         let size = recrash_model::vehicle::VehicleSpec::of(scenario.ego().kind);
+        let handover_turns_radps = replay.ego.as_ref().map_or(0.0, |track| track.turns_radps);
         let recorded =
             replay.ego.map(|track| planned(&names, EGO_ID, (scenario.ego().kind, size.length_m, size.width_m), track));
         let actors = draft.actors.iter().zip(scenario.actors()).zip(replay.actors);
@@ -153,6 +156,7 @@ impl Scene {
         Ok(Some(Self {
             lanes: if network { lanes(&names) } else { Vec::new() },
             handover: if recorded.is_some() { handover } else { 0 },
+            handover_turns_radps,
             recorded,
             planned,
             parts,
@@ -251,7 +255,7 @@ fn planned(names: &LaneNames<'_>, id: &str, body: (PartnerKind, f64, f64), track
         }
     }
     let (kind, length_m, width_m) = body;
-    let ReplayTrack { states, appears, gone, over } = track;
+    let ReplayTrack { states, appears, gone, over, .. } = track;
     Planned { id: id.to_owned(), kind, length_m, width_m, states, appears, gone, over, lanes }
 }
 

@@ -339,6 +339,16 @@ class Actor:
         self.vehicle.set_heading_theta(heading)
         self.vehicle.set_velocity([vx, vy])
 
+    def let_go(self, now, turning):
+        """Puts it on its wheels where its recorded driver leaves it: its springs carry it, and its body is a physics step
+        ahead of what one sees, as that of any vehicle that drives."""
+        x, y, heading, vx, vy = now
+        ahead = Law.step_s / SUBSTEPS
+        self.vehicle.set_position((x + vx * ahead, y + vy * ahead), Law.settled_height_m)
+        self.vehicle.set_heading_theta(heading + turning * ahead)
+        self.vehicle.body.setLinearVelocity(LVector3(vx, vy, 0.0))
+        self.vehicle.set_angular_velocity(turning)
+
     def state(self):
         """Position, heading and velocity."""
         if self.gone is not None:
@@ -564,6 +574,8 @@ class World:
             if end is not None:
                 tracks += parts
                 return {"end": end, "time_s": self.step * Law.step_s, "tracks": tracks, "events": self.events}
+            if self.scene and self.scene["recorded"] and self.step == self.scene["handover"]:
+                self.actors[0].let_go(self.scene["recorded"]["states"][self.step], self.scene["handover_turns_radps"])
             present = [actor for actor in self.actors if actor.gone is None]
             for actor, action in zip(self.actors, actions):
                 if actor.gone is None:
@@ -1051,10 +1063,12 @@ class PlannedActor:
     policy_name = "plan"
 
     def __init__(self, world, spec):
-        self.spec, self.vehicle, self.parts = spec, world.box(spec), []
+        self.spec, self.parts, self.now = spec, [], spec["states"][0]
+        # Policies find a body by where it was in the last physics step, and a new one where it was made: whoever is there
+        # from the beginning is seen at once, and who appears a step later, as in the native simulator.
+        self.vehicle = world.box(spec, self.now[:2], self.now[2])
         self.radius = 0.5 * math.hypot(spec["length_m"], spec["width_m"])
         self.halted, self.gone, self.place, self.policy = False, None, self, self
-        self.now = spec["states"][0]
         self.carry(world, 0, 0.0)
 
     def is_there(self, step):
