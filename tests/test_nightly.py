@@ -30,24 +30,37 @@ def night(recrash: str, suite: Path, tmp_path_factory: pytest.TempPathFactory) -
     compared = ["--baseline", "base.json", "--junit", "junit.xml", "--out", "new.json", "--quiet"]
     assert run(folder, recrash, "test", "cases", "--ego", "metadrive-idm", *compared) == 0
     assert run(folder, recrash, "evidence", str(suite), "--tuned", "--out", "evidence", "--quiet") == 0
+    # Real accounts have crash types, each a group of its own.
+    assert run(folder, recrash, "run", "--budget", "30", "--tune-budget", "1", "--out", "told", "--quiet") == 0
+    assert run(folder, recrash, "freeze", "told", "--out", "typed", "--quiet") == 0
+    assert run(folder, recrash, "test", "typed", "--ego", "idm", "--out", "typed-base.json", "--quiet") == 0
+    compared = ["--baseline", "typed-base.json", "--junit", "typed.xml", "--out", "typed-new.json", "--quiet"]
+    assert run(folder, recrash, "test", "typed", "--ego", "metadrive-idm", *compared) == 0
     return folder
 
 
-def standing(night: Path) -> dict[str, str]:
+def standing(night: Path, results: tuple[str, str]) -> dict[str, str]:
     """How each test stands, worked out from both results alone: failed, skipped or passed."""
     verdicts = [
         {test["id"]: test["runs"][0]["verdict"] for test in json.loads((night / name).read_text())["tests"]}
-        for name in ("base.json", "new.json")
+        for name in results
     ]
     return {test: f"{verdicts[0][test]}, {verdicts[1][test]}" for test in verdicts[1]}
 
 
-def test_two_parsers_read_the_same_of_the_junit_file(night: Path) -> None:
-    one = junitparser.JUnitXml.fromfile(str(night / "junit.xml"))
+@pytest.mark.parametrize(
+    ("name", "results", "groups"),
+    [("junit.xml", ("base.json", "new.json"), 1), ("typed.xml", ("typed-base.json", "typed-new.json"), 5)],
+)
+def test_two_parsers_read_the_same_of_the_junit_file(
+    night: Path, name: str, results: tuple[str, str], groups: int
+) -> None:
+    one = junitparser.JUnitXml.fromfile(str(night / name))
+    assert len(list(one)) >= groups, "a group for each crash type"
     cases = {case.name: case for group in one for case in group}
-    with (night / "junit.xml").open() as file:
+    with (night / name).open() as file:
         _, other = xunitparser.parse(file)
-    expected = standing(night)
+    expected = standing(night, results)
     assert len(cases) == other.testsRun == len(expected) == one.tests
     assert one.failures == len(other.failures) and one.skipped == len(other.skipped) and one.errors == 0
     failed = {case.name for case in cases.values() if any(isinstance(r, junitparser.Failure) for r in case.result)}

@@ -7,6 +7,9 @@ import subprocess
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+import junitparser
+import xunitparser
+
 
 def test_results_csv_has_a_row_for_every_run(suite: Path) -> None:
     with open(suite / "results.csv", newline="", encoding="utf-8") as file:
@@ -24,6 +27,11 @@ def test_junit_counts_what_it_holds(suite: Path) -> None:
         assert int(element.get("failures", "-1")) == len(element.findall("testcase/failure"))
     names = [(element.get("name"), case.get("name")) for element in suites for case in element.findall("testcase")]
     assert len(names) == len(set(names)) > 0
+    one = junitparser.JUnitXml.fromfile(str(suite / "junit.xml"))
+    with (suite / "junit.xml").open() as file:
+        _, other = xunitparser.parse(file)
+    assert (one.tests, one.failures) == (other.testsRun, len(other.failures))
+    assert one.tests == len(names)
 
 
 def test_the_summary_agrees_with_the_rollouts(suite: Path) -> None:

@@ -10,9 +10,13 @@ use rayon::ThreadPool;
 use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
 use recrash_model::seed::Seed;
+use std::sync::{Mutex, PoisonError};
 
 /// Fewer slots than this are not worth another thread.
 const GRAIN: usize = 16;
+
+/// A thread takes its share in about so many turns, so that none waits long for the last.
+const TURNS: usize = 8;
 
 /// What happens when an episode has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,7 +42,7 @@ pub struct Settings {
     pub autoreset: Autoreset,
     /// Judges every episode that ended by this profile.
     pub judged_by: Option<SystemProfile>,
-    /// Threads; 1 starts none.
+    /// Threads, the caller's own among them; 1 starts none.
     pub threads: usize,
 }
 
@@ -203,7 +207,7 @@ impl Batch {
         let pool = match settings.threads {
             0 | 1 => None,
             threads => {
-                let built = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                let built = rayon::ThreadPoolBuilder::new().num_threads(threads - 1).build();
                 Some(built.map_err(|_| BatchError::Threads(threads))?)
             }
         };
@@ -317,13 +321,24 @@ impl Batch {
             return Err(BatchError::Ended { slot });
         }
         let shared = Shared { scenes: &self.scenes, sums: &self.sums, settings: &self.settings };
-        let slots = &mut self.slots[..];
+        let all = Part { slots: &mut self.slots, actions, outputs };
         match &self.pool {
-            None => step_all(&shared, slots, actions, outputs, usize::MAX),
-            Some(pool) => {
-                let grain = (slots.len() / (4 * pool.current_num_threads())).max(GRAIN);
-                pool.install(|| step_all(&shared, slots, actions, outputs, grain));
+            Some(pool) if all.slots.len() > GRAIN => {
+                let threads = pool.current_num_threads() + 1;
+                let grain = (all.slots.len() / (TURNS * threads)).max(GRAIN);
+                let rest = Mutex::new(Some(all));
+                let work = || {
+                    while let Some(part) = next(&rest, grain, &shared) {
+                        part.step(&shared);
+                    }
+                };
+                // The caller's thread does not wait until another is awake.
+                pool.in_place_scope(|scope| {
+                    (1..threads).for_each(|_| scope.spawn(|_| work()));
+                    work();
+                });
             }
+            _ => all.step(&shared),
         }
         Ok(())
     }
@@ -371,35 +386,47 @@ fn size(what: &'static str, wanted: usize, got: usize) -> Result<(), BatchError>
     if wanted == got { Ok(()) } else { Err(BatchError::Size { what, wanted, got }) }
 }
 
-/// Steps slots, halved from thread to thread until they are few.
-fn step_all(shared: &Shared<'_>, slots: &mut [Slot], actions: Actions<'_>, outputs: Outputs<'_>, grain: usize) {
-    if slots.len() > grain {
-        let half = slots.len() / 2;
-        let (first, second) = slots.split_at_mut(half);
-        let (first_actions, second_actions) = actions.split_at(half, shared.settings.handles);
-        let (first_out, second_out) = outputs.split_at(half, &shared.settings.view);
-        rayon::join(
-            || step_all(shared, first, first_actions, first_out, grain),
-            || step_all(shared, second, second_actions, second_out, grain),
-        );
-        return;
+/// Some of the slots, with what belongs to them.
+struct Part<'a> {
+    slots: &'a mut [Slot],
+    actions: Actions<'a>,
+    outputs: Outputs<'a>,
+}
+
+/// The next slots that nobody has taken; `None` when all are.
+fn next<'a>(rest: &Mutex<Option<Part<'a>>>, slots: usize, shared: &Shared<'_>) -> Option<Part<'a>> {
+    let mut rest = rest.lock().unwrap_or_else(PoisonError::into_inner);
+    let Part { slots: all, actions, outputs } = rest.take()?;
+    if all.len() <= slots {
+        return Some(Part { slots: all, actions, outputs });
     }
-    let mut outputs = outputs;
-    for (number, slot) in slots.iter_mut().enumerate() {
-        let (row, rest) = outputs.split_at(1, &shared.settings.view);
-        outputs = rest;
-        let handles = shared.settings.handles;
-        slot.step(
-            shared,
-            |scene, observation| match actions {
-                Actions::Numbers(numbers) => {
-                    let pair = [f64::from(numbers[2 * number]), f64::from(numbers[2 * number + 1])];
-                    handles.of_numbers(pair, scene, observation)
-                }
-                Actions::Acts(acts) => Handles::of_act(acts[number] as usize, scene, observation),
-            },
-            &mut row.into_row(),
-        );
+    let (first, second) = all.split_at_mut(slots);
+    let (first_actions, second_actions) = actions.split_at(slots, shared.settings.handles);
+    let (first_out, second_out) = outputs.split_at(slots, &shared.settings.view);
+    *rest = Some(Part { slots: second, actions: second_actions, outputs: second_out });
+    Some(Part { slots: first, actions: first_actions, outputs: first_out })
+}
+
+impl Part<'_> {
+    /// Every slot of it goes on for a step.
+    fn step(self, shared: &Shared<'_>) {
+        let Self { slots, actions, mut outputs } = self;
+        for (number, slot) in slots.iter_mut().enumerate() {
+            let (row, rest) = outputs.split_at(1, &shared.settings.view);
+            outputs = rest;
+            let handles = shared.settings.handles;
+            slot.step(
+                shared,
+                |scene, observation| match actions {
+                    Actions::Numbers(numbers) => {
+                        let pair = [f64::from(numbers[2 * number]), f64::from(numbers[2 * number + 1])];
+                        handles.of_numbers(pair, scene, observation)
+                    }
+                    Actions::Acts(acts) => Handles::of_act(acts[number] as usize, scene, observation),
+                },
+                &mut row.into_row(),
+            );
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Runs of scenarios, judged: whichever simulator gave the rollout, what is measured and said is the same.
 
+use crate::causes::cause;
 use recrash_metrics::{faithfulness, findings, measure, severity_of};
 use recrash_model::metrics::{Check, CheckKind, CheckResult, Expectation, Timed, Verdict};
 use recrash_model::profile::SystemProfile;
@@ -39,7 +40,10 @@ pub fn judge_by(scenario: &Scenario, rollout: Rollout, profile: &SystemProfile, 
     let metrics = measure(scenario, &rollout, &profile.failure);
     let found = findings(scenario, &rollout, &metrics, &profile.failure);
     let severity = severity_of(&rollout);
-    JudgedRun::new(rollout, metrics, found, severity, verdict)
+    let cause = cause(scenario.network(), &rollout, &metrics, &found);
+    let mut run = JudgedRun::new(rollout, metrics, found, severity, verdict);
+    run.judgement.cause = cause;
+    run
 }
 
 /// Nearer than this to what it crashed with in the record, the ego is in the situation of the record. [m]

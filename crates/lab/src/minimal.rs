@@ -187,7 +187,7 @@ fn elements(draft: &ScenarioDraft, record: Option<&Value>) -> Vec<Element> {
     }
     lists(&document, "/ego", &OF_EGO, &mut all);
     if let Some(record) = record {
-        numbers(&document, record, String::new(), &mut all);
+        numbers(&document, [&document, record], String::new(), &mut all);
     }
     settings(&document, &mut all);
     all
@@ -205,29 +205,32 @@ fn lists(document: &Value, parent: &str, names: &[&str], all: &mut Vec<Element>)
         for at in 0..members {
             let pointer = format!("{list}/{at}");
             let id = document.pointer(&format!("{pointer}/id")).and_then(Value::as_str);
-            let name = id.map_or_else(|| pointer.clone(), |id| format!("{pointer} ({id})"));
+            let name = match id {
+                Some(id) => id.to_owned(),
+                None => spoken(document, &pointer),
+            };
             all.push(Element { pointer, name, set_back: None });
         }
     }
 }
 
 /// Numbers that are not the record's. Where a list is another one, its numbers say nothing.
-fn numbers(document: &Value, record: &Value, pointer: String, all: &mut Vec<Element>) {
+fn numbers(whole: &Value, [document, record]: [&Value; 2], pointer: String, all: &mut Vec<Element>) {
     match (document, record) {
         (Value::Number(now), Value::Number(told)) if now != told => {
-            let name = format!("{pointer}: {now} where the record has {told}");
+            let name = format!("{}: {now} where the record has {told}", spoken(whole, &pointer));
             all.push(Element { pointer, name, set_back: Some(record.clone()) });
         }
         (Value::Object(now), Value::Object(told)) => {
             for (name, value) in now.iter().filter(|(name, _)| !matches!(name.as_str(), "source" | "map")) {
                 if let Some(other) = told.get(name) {
-                    numbers(value, other, format!("{pointer}/{name}"), all);
+                    numbers(whole, [value, other], format!("{pointer}/{name}"), all);
                 }
             }
         }
         (Value::Array(now), Value::Array(told)) if now.len() == told.len() => {
             for (at, (value, other)) in now.iter().zip(told).enumerate() {
-                numbers(value, other, format!("{pointer}/{at}"), all);
+                numbers(whole, [value, other], format!("{pointer}/{at}"), all);
             }
         }
         _ => {}
@@ -240,13 +243,13 @@ fn settings(document: &Value, all: &mut Vec<Element>) {
     for (name, usual) in defaults.as_object().into_iter().flatten() {
         let pointer = format!("/environment/{name}");
         if let Some(now) = document.pointer(&pointer).filter(|now| *now != usual) {
-            all.push(set_back(&pointer, &format!("{pointer}: {now}"), usual.clone()));
+            all.push(set_back(&pointer, &format!("{name}: {}", bare(now)), usual.clone()));
         }
     }
     if document.get("after_contact_s").is_some() {
         all.push(Element {
             pointer: "/after_contact_s".to_owned(),
-            name: "/after_contact_s".to_owned(),
+            name: "time after the contact".to_owned(),
             set_back: None,
         });
     }
@@ -265,22 +268,46 @@ fn own_settings(document: &Value, owner: &str, all: &mut Vec<Element>) {
     let at = |name: &str| document.pointer(&format!("{owner}/{name}"));
     if at("kind").is_some_and(|kind| kind != "passenger_car") {
         let pointer = format!("{owner}/kind");
-        let name = format!("{pointer}: {}", at("kind").unwrap_or(&Value::Null));
+        let name = format!("{}: {}", spoken(document, &pointer), at("kind").map_or_else(String::new, bare));
         all.push(Element { pointer, name, set_back: Some(Value::from("passenger_car")) });
     }
     for name in ["size", "plan/obeys_control", "plan/appears_s", "policy/speed_kp"] {
         if at(name).is_some_and(|value| !value.is_null()) {
             let pointer = format!("{owner}/{name}");
-            all.push(Element { name: pointer.clone(), pointer, set_back: None });
+            all.push(Element { name: spoken(document, &pointer), pointer, set_back: None });
         }
     }
     for name in ["start/delta_t_m", "plan/start/t_m", "plan/start/heading_deg"] {
         let is_lane = !name.ends_with("heading_deg") || at("plan/start/road").is_some();
         if is_lane && at(name).and_then(Value::as_f64).is_some_and(|value| value != 0.0) {
             let pointer = format!("{owner}/{name}");
-            all.push(Element { name: pointer.clone(), pointer, set_back: Some(Value::from(0.0)) });
+            all.push(Element { name: spoken(document, &pointer), pointer, set_back: Some(Value::from(0.0)) });
         }
     }
+}
+
+/// What a pointer leads to, in words: which field, as the format calls it, and whose.
+fn spoken(document: &Value, pointer: &str) -> String {
+    let counted = |word: &str| word.parse::<usize>().map_or_else(|_| word.to_owned(), |at| (at + 1).to_string());
+    let words: Vec<&str> = pointer.trim_start_matches('/').split('/').collect();
+    let (owner, fields) = match words[..] {
+        ["ego", ref fields @ ..] => ("the ego".to_owned(), fields),
+        [list @ ("partners" | "actors" | "objects" | "obstacles"), at, ref fields @ ..] => {
+            let id = document.pointer(&format!("/{list}/{at}/id")).and_then(Value::as_str);
+            let kind = if list == "objects" { "thing" } else { list.trim_end_matches('s') };
+            (id.map_or_else(|| format!("{kind} {}", counted(at)), str::to_owned), fields)
+        }
+        ref others => return others.iter().map(|word| counted(word)).collect::<Vec<_>>().join(" "),
+    };
+    // These say only where in the format a field stands.
+    let fields: Vec<String> =
+        fields.iter().filter(|word| !["plan", "start", "policy"].contains(word)).map(|word| counted(word)).collect();
+    if fields.is_empty() { owner } else { format!("{} of {owner}", fields.join(" ")) }
+}
+
+/// A value without the quotation marks of JSON.
+fn bare(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
 /// The least move of one other that makes the scenario pass.
@@ -317,6 +344,7 @@ fn moved_twin(draft: &ScenarioDraft, trial: &mut Trial) -> Result<Option<Twin>, 
 }
 
 fn twin(draft: &ScenarioDraft, who: Who, moved: ScenarioDraft, how: &str, by_m: f64) -> Twin {
-    let difference = format!("{} {by_m:.2} m {how}", who.name(draft));
+    let by = if by_m < 0.1 { format!("{:.1} cm", 100.0 * by_m) } else { format!("{by_m:.2} m") };
+    let difference = format!("{} {by} {how}", who.name(draft));
     Twin { draft: moved, difference, moved_m: Some(by_m) }
 }

@@ -145,7 +145,11 @@ pub(crate) fn rollout(scenario: &Scenario, drive: &Drive, run: &Run, done: Done)
     let actors: Vec<ActorTrack> = tracks
         .into_iter()
         .zip(&done.tracks)
-        .map(|(track, states)| ActorTrack { states: states.iter().map(state).collect(), ..track })
+        .map(|(track, states)| ActorTrack {
+            mass_kg: scenario.draft().actors.iter().find(|actor| actor.id == track.id).and_then(|actor| actor.mass_kg),
+            states: states.iter().map(state).collect(),
+            ..track
+        })
         .collect();
     let events = done.events.iter().map(|each| event(each, actors.len(), scenario.obstacles().len()));
     Some(Rollout {
@@ -184,7 +188,18 @@ fn empty_tracks(run: &Run) -> Vec<ActorTrack> {
 
 fn track(id: &str, role: Role, kind: PartnerKind, (length_m, width_m): (f64, f64)) -> ActorTrack {
     let id = id.to_owned();
-    ActorTrack { id, role, part_of: None, kind, length_m, width_m, appears_s: 0.0, gone_s: None, states: Vec::new() }
+    ActorTrack {
+        id,
+        role,
+        part_of: None,
+        kind,
+        length_m,
+        width_m,
+        mass_kg: None,
+        appears_s: 0.0,
+        gone_s: None,
+        states: Vec::new(),
+    }
 }
 
 fn state(&[x, y, heading, vx, vy, steer, throttle]: &[f64; 7]) -> ActorState {

@@ -25,8 +25,10 @@ pub enum Cause {
     BrakedLate,
     /// It braked with nothing in its way, and was hit from behind.
     BrakedForNothing,
-    /// It stood where others drive, and was hit.
+    /// It stood across a way on which others drive another way than it, and was hit.
     StoodInTheWay,
+    /// It stood in its own way, and was hit.
+    StruckStanding,
     /// It moved, and was hit from behind or from the side by somebody it could not have seen ahead.
     WasStruck,
     /// It hit a thing that stands or lies.
@@ -41,8 +43,9 @@ pub enum Cause {
 
 impl Cause {
     /// Every cause, in the order in which the rules ask.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::StoodInTheWay,
+        Self::StruckStanding,
         Self::BrakedForNothing,
         Self::TurnedAcross,
         Self::MovedInto,
@@ -71,7 +74,8 @@ impl Cause {
             Self::FollowedTooClosely => "followed too closely",
             Self::BrakedLate => "braked late",
             Self::BrakedForNothing => "braked for nothing, hit from behind",
-            Self::StoodInTheWay => "stood where it blocks",
+            Self::StoodInTheWay => "stood where it blocks others",
+            Self::StruckStanding => "was struck while it stood",
             Self::WasStruck => "was struck by somebody not ahead",
             Self::HitObject => "hit a thing on its way",
             Self::LeftRoad => "left the road",

@@ -154,8 +154,28 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Tests that changed so.
-    pub fn of(&self, change: Change) -> impl Iterator<Item = &Compared> {
-        self.tests.iter().filter(move |test| test.change == change)
+    /// Tests that changed so, the most harmful first, then by id.
+    pub fn of(&self, change: Change) -> Vec<&Compared> {
+        let mut tests: Vec<&Compared> = self.tests.iter().filter(|test| test.change == change).collect();
+        tests.sort_by(|a, b| b.harm_mps().total_cmp(&a.harm_mps()));
+        tests
     }
+
+    /// How many tests were on both sides with the same content, so that they can be compared at all.
+    pub fn comparable(&self) -> usize {
+        let apart = [Change::Changed, Change::Added, Change::Removed];
+        self.tests.iter().filter(|test| !apart.contains(&test.change)).count()
+    }
+}
+
+impl Compared {
+    /// The greater delta-v of both sides. [m/s]
+    pub fn harm_mps(&self) -> f64 {
+        [&self.base, &self.new].into_iter().flatten().map(|side| side.delta_v_mps).fold(0.0, f64::max)
+    }
+}
+
+/// A probability as tables tell it: no probability is 0.
+pub fn shown_p(p: f64) -> String {
+    if p < 0.001 { "<0.001".to_owned() } else { format!("{p:.3}") }
 }

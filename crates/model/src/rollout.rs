@@ -3,6 +3,7 @@
 use crate::geometry::{OrientedBox, Pose, Vec2};
 use crate::kinds::PartnerKind;
 use crate::scenario::ObstacleKind;
+use crate::vehicle::VehicleSpec;
 use serde::{Deserialize, Serialize};
 
 /// The rollouts' format tag.
@@ -78,6 +79,9 @@ pub struct ActorTrack {
     pub length_m: f64,
     /// Width of its box. [m]
     pub width_m: f64,
+    /// Its mass, where the scenario gives it one that is not its kind's. [kg]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_kg: Option<f64>,
     /// It is not in the world before this time. [s]
     #[serde(default, skip_serializing_if = "is_zero")]
     pub appears_s: f64,
@@ -163,6 +167,11 @@ impl ActorState {
 }
 
 impl ActorTrack {
+    /// Its mass; `None` for what stands firm. [kg]
+    pub fn mass_kg(&self) -> Option<f64> {
+        self.mass_kg.or(VehicleSpec::mass_kg(self.kind))
+    }
+
     /// The actor's box at a step; far away from everything while it is not in the world.
     pub fn outline(&self, step: usize) -> OrientedBox {
         let mut pose = self.states[step].pose();

@@ -1,8 +1,10 @@
 //! Judged runs: what one ego did in one scenario, and what that says. Every table, page and export of the suite reads this
 //! one type.
 
+use crate::cause::Cause;
 use crate::hash::Fnv;
 use crate::metrics::{Answer, Finding, FindingKind, Metrics, Verdict};
+use crate::preventability::Preventability;
 use crate::rollout::Rollout;
 use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
@@ -43,6 +45,12 @@ pub struct Judgement {
     /// How bad the ego's first contact with a road user is, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub severity: Option<Severity>,
+    /// What led to the failure, where it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<Cause>,
+    /// What reference drivers make of the ego's contact, where they were asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preventability: Option<Preventability>,
 }
 
 impl JudgedRun {
@@ -65,6 +73,8 @@ impl JudgedRun {
             findings,
             verdict,
             severity,
+            cause: None,
+            preventability: None,
         };
         Self { judgement, rollout }
     }

@@ -94,7 +94,7 @@ fn main() {
                         .states
                         .iter()
                         .step_by(10)
-                        .map(|s| format!("({:.1} {:.1} {:.0})", s.x, s.y, s.speed() * 10.0))
+                        .map(|s| format!("({:.1} {:.1} {:.0}d {:.1})", s.x, s.y, s.heading.to_degrees(), s.speed()))
                         .collect();
                     println!("  {}: {}", track.id, states.join(" "));
                 }

@@ -1,13 +1,13 @@
 //! Signals and signs: drawn as they are told, and held against who drove past them when.
 
-use crate::came::CONTACT_S;
 use crate::ground::Ground;
-use crate::told::{Side, Told};
+use crate::side::{Side, Turning};
+use crate::told::Told;
 use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState};
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
-use recrash_model::scenario::{Aspect, Control, Device, MapSpec, Phase};
+use recrash_model::scenario::{Act, ActorPlan, Aspect, Control, Deed, Device, MapSpec, Phase, Trigger};
 use recrash_roads::{ControlPlacement, Scenario};
 
 /// Longest phase. [s]
@@ -33,7 +33,7 @@ const STANDS_MPS: f64 = 0.1;
 const BESIDE_M: f64 = 1.5;
 
 /// The devices that are told, and on the other arms what goes with them.
-pub(crate) fn devices(told: &Told, ground: &Ground) -> Vec<Control> {
+pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan) -> Vec<Control> {
     if !ground.junction {
         return Vec::new();
     }
@@ -62,7 +62,16 @@ pub(crate) fn devices(told: &Told, ground: &Ground) -> Vec<Control> {
     }
     let signal = |said: &Option<(&'static str, &Side, Said)>| {
         let (_, side, said) = said.as_ref().filter(|(_, _, said)| said.device == ControlDevice::Signal)?;
-        Some(program(said.state, side))
+        let is_ego = std::ptr::eq(*side, &told.sv);
+        let changed_s = match sets_off_s(ego).filter(|_| is_ego) {
+            Some(sets_off_s) => sets_off_s - GREEN_BEFORE_S,
+            None if side.state.stands() => told.contact_s - CHANGED_S,
+            None => told.contact_s - CHANGED_BEFORE_DRIVING_S,
+        };
+        let stood_there =
+            is_ego && told.sv.state.stands() && told.sv.turning != Turning::No && said.state == Some(SignalState::Red);
+        let state = if stood_there && sets_off_s(ego).is_some() { Some(SignalState::TurnedGreen) } else { said.state };
+        Some(program(state, side, told.contact_s, changed_s.max(0.1)))
     };
     let (own, other) = (signal(&said[0]), signal(&said[1]));
     if own.is_none() && other.is_none() {
@@ -81,16 +90,29 @@ pub(crate) fn devices(told: &Told, ground: &Ground) -> Vec<Control> {
     list
 }
 
+/// When the ego sets off last, where it does. [s]
+fn sets_off_s(ego: &ActorPlan) -> Option<f64> {
+    let sets_off = |act: &&Act| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
+    let stood = ego.speed_mps == 0.0 || ego.acts.iter().any(|act| matches!(act.deed, Deed::Stop { .. }));
+    let last = ego.acts.iter().rfind(sets_off).filter(|_| stood)?;
+    match last.when {
+        Some(Trigger::TimeS(time_s)) => Some(time_s),
+        _ => None,
+    }
+}
+
+/// A signal has turned green so long before the ego that waited for it sets off. [s]
+const GREEN_BEFORE_S: f64 = 0.5;
+
 /// A program that shows at the contact what is told.
-fn program(state: Option<SignalState>, side: &Side) -> Vec<Phase> {
+fn program(state: Option<SignalState>, side: &Side, contact_s: f64, changed_s: f64) -> Vec<Phase> {
     let phase = |show: Aspect, for_s: f64| Phase { show, for_s };
-    let changed_s = CONTACT_S - if side.state.stands() { CHANGED_S } else { CHANGED_BEFORE_DRIVING_S };
     match state {
         Some(SignalState::Red) => vec![phase(Aspect::Red, ALWAYS_S)],
         Some(SignalState::Green) => vec![phase(Aspect::Green, ALWAYS_S)],
         Some(SignalState::TurnedGreen) => vec![phase(Aspect::Red, changed_s), phase(Aspect::Green, ALWAYS_S)],
         Some(SignalState::Yellow) => vec![
-            phase(Aspect::Green, CONTACT_S - 0.5 * YELLOW_S),
+            phase(Aspect::Green, contact_s - 0.5 * YELLOW_S),
             phase(Aspect::Yellow, YELLOW_S),
             phase(Aspect::Red, ALWAYS_S),
         ],
@@ -164,14 +186,16 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
     };
     let state = match said.state {
         None => true,
-        Some(SignalState::Red) => shows(time_s) == Some(Aspect::Red),
+        Some(SignalState::Red) => {
+            [Some(time_s), passage.stood_s].into_iter().flatten().any(|at_s| shows(at_s) == Some(Aspect::Red))
+        }
         Some(SignalState::Green) => shows(time_s) == Some(Aspect::Green),
         Some(SignalState::Yellow) => shows(time_s) == Some(Aspect::Yellow),
         Some(SignalState::TurnedGreen) => shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]),
         Some(SignalState::TurnedRed) => shows(contact_s) == Some(Aspect::Red) && just(&[Aspect::Green, Aspect::Yellow]),
     };
     let kept = match control.device {
-        Device::StopSign {} => passage.crossed_s.is_none() || passage.stood,
+        Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
         Device::YieldSign {} => true,
         Device::Signal { .. } => passage.crossed_s.is_none_or(|at_s| shows(at_s) != Some(Aspect::Red)),
     };
@@ -193,8 +217,8 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
 struct Passage {
     /// When its front crossed the line. [s]
     crossed_s: Option<f64>,
-    /// It stood at the line before.
-    stood: bool,
+    /// When it stood at the line first. [s]
+    stood_s: Option<f64>,
 }
 
 /// A stop line, and the direction across it.
@@ -225,19 +249,22 @@ fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
         let share = (point - line.from).dot(along) / (length * length);
         ((0.0..=1.0).contains(&share), (point - line.from).dot(line.ahead))
     };
-    let mut stood = false;
+    let mut stood_s = None;
     for step in 0..=until {
         let (beside, past_m) = on(front(step));
-        stood |= beside && (-AT_LINE_M..=0.5).contains(&past_m) && track.states[step].velocity().length() < STANDS_MPS;
+        let at_line = beside && (-AT_LINE_M..=0.5).contains(&past_m);
+        if at_line && track.states[step].velocity().length() < STANDS_MPS {
+            stood_s = stood_s.or(Some(STEP_S * step as f64));
+        }
         if step > 0 {
             let (was_beside, was_m) = on(front(step - 1));
             if was_m <= 0.0 && past_m > 0.0 && (beside || was_beside) {
-                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood });
+                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood_s });
             }
         }
     }
     let state = &track.states[until];
     let (beside, past_m) = on(front(until));
     let heads_there = Vec2::from_heading(state.heading).dot(line.ahead) > 0.5;
-    (beside && heads_there && (-40.0..=0.5).contains(&past_m)).then_some(Passage { crossed_s: None, stood })
+    (beside && heads_there && (-40.0..=0.5).contains(&past_m)).then_some(Passage { crossed_s: None, stood_s })
 }

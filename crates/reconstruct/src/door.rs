@@ -2,7 +2,8 @@
 
 use crate::came::sv_at_contact;
 use crate::ground::Ground;
-use crate::told::{Side, Told};
+use crate::side::Side;
+use crate::told::Told;
 use crate::touch::{Staging, headings, points, side_of, size_of, velocity, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{LeftRight, Origin, Striker};
@@ -168,7 +169,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         // The post of a gate is not at an angle to the way through it.
         let through = [sv.heading, sv.heading + math::PI].map(math::wrap_angle).map(|heading| (heading, heading));
-        let faces = if told.gate_swings { through.to_vec() } else { headings(told, sv.heading) };
+        let faces = if told.gate_swings { through.to_vec() } else { headings(told, sv.heading, sv.heading) };
         for (came, heading) in faces {
             for opening in &openings {
                 for &point in met_points(other).iter() {

@@ -6,7 +6,8 @@ use crate::lateral::is_on_foot;
 use crate::movement::{self, Way};
 use crate::others;
 use crate::phases;
-use crate::told::{Slant, Told};
+use crate::side::Slant;
+use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
@@ -63,10 +64,15 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         return list;
     };
     let by_partner = touch.track.is_none_or(|track| track.id == "cp");
-    let who = if by_partner { "the partner" } else { "somebody else" };
+    let undisturbed = told.pushed || !touched_before(rollout, &touch);
+    let who = match (by_partner, undisturbed) {
+        (true, true) => "the partner",
+        (true, false) => "the partner, after another",
+        (false, _) => "somebody else",
+    };
     fact(
         CheckKind::Contact,
-        by_partner,
+        by_partner && undisturbed,
         "a contact with the partner".to_owned(),
         format!("with {who} at {:.2} s", touch.time_s),
     );
@@ -116,23 +122,30 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stood = stood(track, touch.time_s);
         let slowed = slowed(track, touch.time_s);
-        let (as_told, phases) = phases::check(&side.phases.last, track, touch.time_s);
+        let (as_told, phases) = phases::check(&side.phases, track, touch.time_s);
+        let backs_first = told.backs_first.filter(|_| kind == CheckKind::CpState && !told.sv.phases.is_empty());
+        let in_order = backs_first.is_none_or(|first| phases::back_in_order(first, ego_track, track, touch.time_s));
         let shown = pushed
             || state(side.state, track, seen, touch.time_s)
                 && (stood || !side.stood_first)
                 && (slowed || side.slowed_from.is_none())
-                && as_told;
+                && as_told
+                && in_order;
         let before = |stood: bool, slowed: bool| match (stood, slowed) {
             (true, _) => ", had stood",
             (false, true) => ", had slowed",
             (false, false) => "",
         };
         let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
-        if side.phases.last.is_empty() {
+        if let Some(first) = backs_first {
+            expected += if first == Striker::Cp { ", backed first" } else { ", backed after the ego" };
+            observed += if in_order { ", so it did" } else { ", so it did not" };
+        }
+        if side.phases.is_empty() {
             expected += before(side.stood_first, side.slowed_from.is_some());
             observed += before(stood, slowed);
         } else {
-            expected += &format!(": {}", phases::words(&side.phases.last));
+            expected += &format!(": {}", phases::words(&side.phases));
             observed += &format!(": {phases}");
         }
         fact(kind, shown, expected, observed);
@@ -147,12 +160,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         }
     }
     if told.pushed {
-        let number = rollout.actors.iter().position(|track| track.id == "cp");
-        let before =
-            rollout.events.iter().take_while(|event| event.time_s < touch.time_s).any(|event| match event.kind {
-                EventKind::Contact { a, b, .. } => a != 0 && (Some(a) == number || Some(b) == number),
-                _ => false,
-            });
+        let before = touched_before(rollout, &touch);
         let observed = if before { "touched by another before" } else { "touched by nobody before" };
         let result = match before {
             true => CheckResult::Shown,
@@ -314,7 +322,10 @@ fn order(first: FirstMover, [ego, other]: [(&ActorTrack, f64); 2], point: Vec2, 
             let local = outline.to_local(point);
             local.x.abs() <= outline.half_length + reach_m && local.y.abs() <= outline.half_width + reach_m
         };
-        (0..until).find(covers).map_or(time_s, |step| 0.1 * step as f64)
+        // Who passed the place before, and came back to it, is there when it is back.
+        let last = (0..until).rfind(&covers);
+        let since = last.map(|last| (0..last).rfind(|step| !covers(step)).map_or(0, |step| step + 1));
+        since.map_or(time_s, |step| 0.1 * step as f64)
     };
     let (ego_s, other_s) = (there_s(ego), there_s(other));
     let earlier_s = other_s - ego_s;
@@ -381,6 +392,15 @@ fn outline_at(track: &ActorTrack, time_s: f64) -> OrientedBox {
     OrientedBox::new(Pose { position, heading }, track.length_m, track.width_m)
 }
 
+/// Whether the partner touched somebody else before.
+fn touched_before(rollout: &Rollout, touch: &Touch<'_>) -> bool {
+    let number = rollout.actors.iter().position(|track| track.id == "cp");
+    rollout.events.iter().take_while(|event| event.time_s < touch.time_s).any(|event| match event.kind {
+        EventKind::Contact { a, b, .. } => a != 0 && (Some(a) == number || Some(b) == number),
+        _ => false,
+    })
+}
+
 fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
     rollout.events.iter().find_map(|event| match &event.kind {
         EventKind::Contact { a: 0, b, a_state, b_state } => {
@@ -412,6 +432,9 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
 /// Who turns back by more than this on its way swings. [deg]
 const MOST_BACK_DEG: f64 = 30.0;
 
+/// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
+const AS_STAGED_S: f64 = 0.15;
+
 /// Who slowed has lost at least this. [m/s]
 const SLOWED_MPS: f64 = 1.0;
 
@@ -422,7 +445,8 @@ fn slowed(track: &ActorTrack, time_s: f64) -> bool {
     track.states[..=until].iter().any(|state| state.velocity().length() > now_mps + SLOWED_MPS)
 }
 
-/// Whether a partner that drives along or across the road is beside it on its way to the contact, or swings one way and back the other.
+/// Whether a partner that drives along or across the road is beside it on its way to the contact, or swings one way and back the other, or
+/// touches the ego before or after it was to.
 /// Nobody tells that it did not.
 pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> bool {
     let drives = !matches!(told.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal | PartnerKind::FixedObject);
@@ -431,6 +455,9 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
     );
     let Some(touch) = first_touch(rollout).filter(|_| drives && on_road) else { return false };
+    if (touch.time_s - told.contact_s).abs() > AS_STAGED_S {
+        return true;
+    }
     let Some(track) = touch.track else { return false };
     let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
     // Every second.

@@ -1,7 +1,8 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
 use crate::others::Extra;
-use crate::told::{Told, Turning};
+use crate::side::Turning;
+use crate::told::Told;
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
@@ -211,7 +212,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     };
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
     let at_line: &[f64] = match told.sv.state {
-        ContactState::Stopped if told.sv.control.is_some() => &[-5.0, -8.0],
+        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => &[-5.0, -8.0],
         ContactState::SettingOff if told.sv.control.is_some() => &[3.0, 1.0, 5.0, -3.0],
         _ => &[],
     };

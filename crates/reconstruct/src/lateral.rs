@@ -1,8 +1,9 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
-use crate::came::{Pace, start_over};
 use crate::ground::LANE_M;
-use crate::told::{Told, Turning};
+use crate::pace::{Pace, start_over};
+use crate::side::Turning;
+use crate::told::Told;
 use crate::touch::Staging;
 use recrash_model::account::{Act, ContactState, LeftRight, Origin, Party};
 use recrash_model::geometry::{Pose, Vec2};
@@ -75,7 +76,7 @@ fn kerb_y_m(told: &Told, staging: &Staging) -> Option<f64> {
 pub(crate) fn from_kerb(told: &Told, staging: &Staging) -> Option<Pace> {
     let aside_m = (kerb_y_m(told, staging)? - staging.cp.position.y).abs();
     let length_m = (4.0 * LEAST_RADIUS_M * aside_m).sqrt().max(PULL_OUT_M);
-    start_over(told.cp.speed_mps, length_m)
+    start_over(told.contact_s, told.cp.speed_mps, length_m)
 }
 
 /// The line that a partner came along before it left it for the contact, to the left of the ego's line; nothing where it is

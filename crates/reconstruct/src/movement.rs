@@ -1,6 +1,6 @@
 //! Told movements, held against the way that was driven.
 
-use crate::told::{Side, Turning};
+use crate::side::{Side, Turning};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
@@ -121,7 +121,15 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
     let (shown, observed) = match movement {
         Movement::Stopped | Movement::Parked => {
             let stood = way.stood();
-            (stood, if stood { "it stood" } else { "it never stood" }.to_owned())
+            let words = if stood { "it stood" } else { "it never stood" };
+            (
+                stood,
+                if side.turning == Turning::No {
+                    words.to_owned()
+                } else {
+                    format!("{words}, {}", turned_words(turned))
+                },
+            )
         }
         Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane => sideways(CHANGED_M),
         Movement::LaneDeparture => sideways(LEFT_LINE_M),
@@ -170,7 +178,7 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         | Movement::NmAlongside
         | Movement::NmInRoadway => {
             let fits = match side.turning {
-                Turning::No => turned.abs() < STRAIGHT_DEG,
+                Turning::No => side.turns_later || turned.abs() < STRAIGHT_DEG,
                 Turning::Round => turned.abs() > ROUND_DEG,
                 Turning::Left | Turning::Right => true,
             };

@@ -1,6 +1,6 @@
 //! Others than the two: those for whom the ego stood.
 
-use crate::came::{CONTACT_S, straight_plan};
+use crate::came::straight_plan;
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{ContactState, Kind, KindGroup, Origin, Other as InStory, StandReason};
@@ -146,7 +146,7 @@ fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
     let front_m = 0.5 * size_of(&told.sv).0;
     let crossing = |ahead_m: f64, way: Vec2, speed_mps: f64| {
         let met = sv.position + ahead * ahead_m;
-        straight_plan(met - way * (speed_mps * (CONTACT_S - CROSSES_BEFORE_S)), way, speed_mps)
+        straight_plan(met - way * (speed_mps * (told.contact_s - CROSSES_BEFORE_S)), way, (speed_mps, told.contact_s))
     };
     let (kind, plan) = match extra {
         Extra::Lead => {
@@ -163,5 +163,5 @@ fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
             (PartnerKind::PassengerCar, crossing(crossing_m(staging), way, CROSSES_MPS))
         }
     };
-    Actor { id: extra.id().to_owned(), kind, size: None, parts: Vec::new(), plan }
+    Actor { id: extra.id().to_owned(), kind, size: None, mass_kg: None, parts: Vec::new(), plan }
 }

@@ -1,8 +1,7 @@
-//! What the ego did before the last thing that it does: it stood, moved up and stood again, or reversed first.
+//! What somebody did before the last thing that it does: it came and stood, moved up and stood again, or reversed first.
 
-use crate::came::{CONTACT_S, Pace, first_time, when};
-use crate::told::Told;
-use recrash_model::account::{Act, ActFact, ContactState, Party};
+use crate::pace::{Pace, when};
+use recrash_model::account::{Act, ActFact, ContactState, Party, Striker};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::rollout::{ActorState, ActorTrack};
 use recrash_model::scenario::{self, ActorPlan, Deed, Leg, Place};
@@ -35,20 +34,11 @@ impl Phase {
 }
 
 /// So many phases are drawn and checked, the last one counted.
-const MOST_PHASES: usize = 3;
+const MOST_PHASES: usize = 4;
 
-/// The last things that somebody is told to have done before the contact.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(crate) struct Phases {
-    /// They end in what it does at the contact; empty where they say no more than the state there and that it came there or stood
-    /// before.
-    pub(crate) last: Vec<Phase>,
-    /// It came driving before the first of them.
-    pub(crate) came: bool,
-}
-
-/// What is told of them.
-pub(crate) fn told(party: &Party, state: ContactState) -> Phases {
+/// What is told of them: the last things that somebody did before the contact, ended by what it does there. Empty where they say no
+/// more than the state there, and that it came there or stood before.
+pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun).collect();
     acts.sort_by_key(|fact| fact.step);
     let mut list: Vec<Phase> = Vec::new();
@@ -71,6 +61,10 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Phases {
             Act::Reverse => Phase::Reverses,
             _ => continue,
         };
+        // Who came to a stop came along before.
+        if list.is_empty() && fact.act == Act::Stop {
+            list.push(Phase::Drives);
+        }
         if list.last() != Some(&phase) {
             list.push(phase);
         }
@@ -87,14 +81,9 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Phases {
     if list.last() != Some(&last) {
         list.push(last);
     }
-    let mut last = list.split_off(list.len().saturating_sub(MOST_PHASES));
-    let mut came = !list.is_empty();
-    // Everybody came from somewhere.
-    if last.first() == Some(&Phase::Drives) {
-        (last, came) = (last.split_off(1), true);
-    }
-    let says_more = last.len() == MOST_PHASES || last[..last.len().saturating_sub(1)].contains(&Phase::Reverses);
-    if says_more { Phases { last, came } } else { Phases::default() }
+    let last = list.split_off(list.len().saturating_sub(MOST_PHASES));
+    let before = &last[..last.len() - 1];
+    if last.len() > 2 || before.contains(&Phase::Reverses) { last } else { Vec::new() }
 }
 
 /// A phase that is shorter than this on the way from one gear to the other is none. [steps]
@@ -134,21 +123,34 @@ pub(crate) fn check(told: &[Phase], track: &ActorTrack, time_s: f64) -> (bool, S
     (shown.ends_with(told), words(seen))
 }
 
+/// Whether the one who is told to have backed first did.
+pub(crate) fn back_in_order(first: Striker, ego: &ActorTrack, partner: &ActorTrack, time_s: f64) -> bool {
+    let until = (time_s * 10.0).floor() as usize;
+    let backs = |track: &ActorTrack| track.states.iter().take(until + 1).position(|state| state.speed() < -STANDS_MPS);
+    match (backs(ego), backs(partner)) {
+        (Some(ego), Some(partner)) if first == Striker::Cp => partner < ego,
+        (Some(ego), Some(partner)) => ego < partner,
+        _ => false,
+    }
+}
+
 /// For sentences.
 pub(crate) fn words(phases: &[Phase]) -> String {
     phases.iter().map(|phase| phase.word()).collect::<Vec<_>>().join(", ")
 }
 
-/// Who moves up between two stands, or backs, gains this speed in so long, and loses it in so long. [m/s, s]
-const MOVES_UP: (f64, f64) = (2.0, 1.7);
+/// Who moves up between two stands gains speed so fast. [m/s^2]
+const MOVES_UP_MPS2: f64 = 1.2;
+
+/// Who backs gains this speed in so long, and whoever moves between two stands loses its speed in so long. [m/s, s]
 const BACKS_UP: (f64, f64) = (1.5, 1.2);
 const BRAKES_S: f64 = 1.2;
 
 /// It brakes for its first stop with so much: less than makes plans brake by themselves before they change gear. [m/s^2]
 const BRAKES_MPS2: f64 = 1.8;
 
-/// How far somebody moves up. [m]
-pub(crate) const MOVES_UP_M: f64 = 0.5 * MOVES_UP.0 * (MOVES_UP.1 + BRAKES_S);
+/// How far somebody moves up, where nothing tells it. [m]
+pub(crate) const MOVES_UP_M: f64 = 2.9;
 
 /// It stands for so long between, and it rolls for so long before it brakes for its first stop. [s]
 const STANDS_S: f64 = 1.0;
@@ -163,6 +165,8 @@ pub(crate) struct Lead {
     pub(crate) acts: Vec<scenario::Act>,
     /// What is driven before the last phase, and whether in reverse, in order. [m]
     stretches: Vec<(f64, bool)>,
+    /// It begins to reverse then, where it does. [s]
+    pub(crate) backs_s: Option<f64>,
     /// It stands then: after it has reversed, or before it moves up. [s]
     stands_s: f64,
 }
@@ -173,9 +177,14 @@ impl Lead {
         self.stretches.iter().any(|(_, reverse)| *reverse)
     }
 
+    /// How far it goes, back and forth. [m]
+    pub(crate) fn driven_m(&self) -> f64 {
+        self.stretches.iter().map(|(length_m, reverse)| if *reverse { -length_m } else { *length_m }).sum()
+    }
+
     /// Forward all the way, and then the last pace.
     pub(crate) fn then(self, last: Pace) -> Pace {
-        let before_m: f64 = self.stretches.iter().map(|(length_m, _)| length_m).sum();
+        let before_m = self.driven_m();
         let acts = self.acts.into_iter().chain(last.acts).collect();
         Pace { speed_mps: self.speed_mps, acts, driven_m: before_m + last.driven_m }
     }
@@ -187,14 +196,19 @@ impl Lead {
     }
 }
 
-/// What comes before the last phase of an ego whose phases are told: before it sets off, or before it stands.
-pub(crate) fn lead(told: &Told, last: &Pace) -> Option<Lead> {
-    let phases = &told.sv.phases.last;
+/// What comes before the last phase of somebody, which begins then: before it sets off, or before it stands. [s]
+/// `moves_up_m`: how far it moves between two stands; `longer_s`: so much longer it stands where it stood first.
+pub(crate) fn lead(
+    phases: &[Phase],
+    mut time_s: f64,
+    rolling_mps: f64,
+    moves_up_m: f64,
+    longer_s: f64,
+) -> Option<Lead> {
     let before = phases.split_last().map(|(_, before)| before).filter(|before| !before.is_empty())?;
-    let mut time_s = match told.sv.state.stands() {
-        true => CONTACT_S - told.choices.stood_s,
-        false if last.speed_mps > 0.0 => return None,
-        false => first_time(&last.acts),
+    let (came, before) = match before.split_first() {
+        Some((Phase::Drives, rest)) => (true, rest),
+        _ => (false, before),
     };
     // From the end: what is done at which time.
     time_s = (time_s * 10.0).floor() / 10.0;
@@ -204,7 +218,7 @@ pub(crate) fn lead(told: &Told, last: &Pace) -> Option<Lead> {
             Phase::Stands => time_s -= STANDS_S,
             Phase::Drives | Phase::Reverses => {
                 let reverse = *phase == Phase::Reverses;
-                let way = if reverse { BACKS_UP } else { MOVES_UP };
+                let way = if reverse { BACKS_UP } else { moves_up(moves_up_m) };
                 time_s -= way.1 + BRAKES_S;
                 moves.push((time_s, way, reverse));
             }
@@ -220,11 +234,12 @@ pub(crate) fn lead(told: &Told, last: &Pace) -> Option<Lead> {
         (None, Some((from_s, ..))) => from_s - 0.5 * STANDS_S,
         (None, None) => time_s,
     };
-    let mut lead = Lead { speed_mps: 0.0, acts: Vec::new(), stretches: Vec::new(), stands_s };
-    if told.sv.phases.came && time_s >= LEAST_APPROACH_S {
+    let backs_s = moves.iter().find(|(_, _, reverse)| *reverse).map(|(from_s, ..)| *from_s);
+    let mut lead = Lead { backs_s, speed_mps: 0.0, acts: Vec::new(), stretches: Vec::new(), stands_s };
+    if came && time_s - longer_s >= LEAST_APPROACH_S {
         // It comes along, brakes, and stands.
-        let stands_s = if before[0] == Phase::Stands { time_s } else { time_s - STANDS_S };
-        let speed_mps = told.choices.rolling_mps.min(BRAKES_MPS2 * (stands_s - ROLLS_S)).max(0.5);
+        let stands_s = if before.first() == Some(&Phase::Stands) { time_s } else { time_s - STANDS_S } - longer_s;
+        let speed_mps = rolling_mps.min(BRAKES_MPS2 * (stands_s - ROLLS_S)).max(0.5);
         let braking_s = (speed_mps / BRAKES_MPS2 * 10.0).ceil() / 10.0;
         let from_s = stands_s - braking_s;
         lead.acts.push(when(from_s, Deed::Stop { rate_mps2: speed_mps / braking_s, at_m: None }));
@@ -240,34 +255,33 @@ pub(crate) fn lead(told: &Told, last: &Pace) -> Option<Lead> {
     Some(lead)
 }
 
-/// The plan of an ego that changes gear: along the line that it stands on at the contact, back and forth.
-pub(crate) fn to_and_fro(lead: Lead, last: Pace, at: Pose, (reverse, beyond_m): (bool, f64)) -> ActorPlan {
-    let ahead = Vec2::from_heading(at.heading);
-    let degrees = at.heading.to_degrees();
+/// The speed that somebody gains who moves up so far between two stands, and how long it gains it. [m/s, s]
+fn moves_up(way_m: f64) -> (f64, f64) {
+    let gained_mps = 0.5 * MOVES_UP_MPS2 * ((BRAKES_S * BRAKES_S + 8.0 * way_m / MOVES_UP_MPS2).sqrt() - BRAKES_S);
+    let gaining_s = (gained_mps / MOVES_UP_MPS2 * 10.0).round().max(1.0) / 10.0;
+    (2.0 * way_m / (gaining_s + BRAKES_S), gaining_s)
+}
+
+/// The same plan with what came before it: along the line on which it begins, back and forth.
+pub(crate) fn before(lead: Lead, plan: ActorPlan, begin: Pose) -> ActorPlan {
+    let ahead = Vec2::from_heading(begin.heading);
+    let degrees = begin.heading.to_degrees();
     let place = |x_m: f64| {
-        let point = at.position + ahead * x_m;
+        let point = begin.position + ahead * x_m;
         Place::at(point.x, point.y, degrees)
     };
     let gear = |reverse: bool| if reverse { -1.0 } else { 1.0 };
-    let mut stretches = lead.stretches;
-    if last.driven_m > 0.0 {
-        stretches.push((last.driven_m, reverse));
-    }
-    let start_m = -stretches.iter().map(|(length_m, reverse)| gear(*reverse) * length_m).sum::<f64>();
-    let mut x_m = start_m;
-    let mut course = Vec::new();
-    for (length_m, reverse) in stretches {
-        x_m += gear(reverse) * length_m;
+    let start_m = -lead.driven_m();
+    let (mut x_m, mut course) = (start_m, Vec::new());
+    for (length_m, reverse) in &lead.stretches {
+        x_m += gear(*reverse) * length_m;
         // What goes on in the same gear is one leg.
-        if matches!(course.last(), Some(Leg::Curve { reverse: before, .. }) if *before == reverse) {
+        if matches!(course.last(), Some(Leg::Curve { reverse: before, .. }) if before == reverse) {
             course.pop();
         }
-        course.push(Leg::Curve { to: place(x_m), reverse });
+        course.push(Leg::Curve { to: place(x_m), reverse: *reverse });
     }
-    if last.driven_m > 0.0 {
-        course.pop();
-        course.push(Leg::Curve { to: place(gear(reverse) * beyond_m), reverse });
-    }
-    let acts = lead.acts.into_iter().chain(last.acts).collect();
-    ActorPlan { speed_mps: lead.speed_mps, course, acts, ..ActorPlan::standing(place(start_m)) }
+    course.extend(plan.course);
+    let acts = lead.acts.into_iter().chain(plan.acts).collect();
+    ActorPlan { speed_mps: lead.speed_mps, course, acts, start: place(start_m), ..plan }
 }

@@ -1,8 +1,8 @@
 //! Things that move by themselves: what rolls, slides or is pushed into the way, and gates; and who walks or
 //! runs into it.
 
-use crate::came::{Pace, start_over};
 use crate::lateral::is_on_foot;
+use crate::pace::{Pace, start_over};
 use crate::told::Told;
 use recrash_model::account::{Act, ContactState, Kind, LeftRight, Origin, Party, Striker, told};
 use recrash_model::math;
@@ -52,7 +52,7 @@ pub(crate) fn walks_across(origin: Origin, partner: &Party) -> bool {
 
 /// It lies or stands aside, and then comes.
 pub(crate) fn pace(told: &Told) -> Option<Pace> {
-    told.comes_across().then(|| start_over(told.cp.speed_mps, SLIDES_M)).flatten()
+    told.comes_across().then(|| start_over(told.contact_s, told.cp.speed_mps, SLIDES_M)).flatten()
 }
 
 /// Across the ego's lane: from the told side, or from both.

@@ -4,18 +4,17 @@ use crate::choices::Choices;
 use crate::ground::LANE_M;
 use crate::lateral;
 use crate::others::{self, Extra};
-use crate::phases::{self, Phases};
+use crate::side::{Side, Slant, Turning, side};
 use crate::things::{self, SLIDES_MPS};
 use crate::touch::side_of;
+use recrash_model::account::StandReason;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
-    SpeedMeaning, Striker, Untold, told,
+    Striker, Untold, told,
 };
-use recrash_model::account::{Control, ControlDevice, LaneWord, Obeyed, SignalState, StandReason};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
-use recrash_model::scenario::Size;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 
@@ -28,79 +27,21 @@ const DEPARTS_M: f64 = 1.6;
 const KERB_M: f64 = 2.6;
 const CHANGES_M: f64 = 2.2;
 
+/// When they touch, and when where more is told of what they did before. [s]
+const CONTACT_S: f64 = 9.0;
+const LATE_CONTACT_S: f64 = 12.0;
+
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
 
 /// Who comes after an ego that comes to a stop, and does not stop, is no slower. [m/s]
 const AFTER_MPS: f64 = 5.2;
 
+/// Who sets off behind an ego that moves is faster than it by so much. [m/s]
+const SETS_OFF_FASTER_MPS: f64 = 1.0;
+
 /// Speed in a turn. [m/s]
 const TURNS_MPS: f64 = 5.0;
-
-/// How somebody turns before the contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Turning {
-    No,
-    Left,
-    Right,
-    Round,
-}
-
-/// That somebody slowed, and from which speed, where told. [m/s]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Slowed(pub(crate) Option<f64>);
-
-/// How somebody who reverses came to be at an angle to the road.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Slant {
-    /// It had turned, to this side where told, before it stood and reversed.
-    Stood(Option<LeftRight>),
-    /// It swung aside while it reversed.
-    Swung,
-}
-
-/// One side of the crash.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Side {
-    pub(crate) kind: PartnerKind,
-    pub(crate) size: Option<Size>,
-    pub(crate) state: ContactState,
-    /// It stood before it moved, where told.
-    pub(crate) stood_first: bool,
-    /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
-    pub(crate) slowed_from: Option<Slowed>,
-    /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
-    pub(crate) phases: Phases,
-    /// Whether the state is told.
-    pub(crate) state_told: bool,
-    pub(crate) movement: Option<Movement>,
-    pub(crate) turning: Turning,
-    /// It turns all the way into the road that the other is on, to meet it head-on.
-    pub(crate) turns_wide: bool,
-    /// To which side it moves out of its line, where told.
-    pub(crate) aside: Option<LeftRight>,
-    /// It is told to have dodged or drifted that way while it drove on.
-    pub(crate) dodges: bool,
-    /// It reverses, and is told to have been at an angle to the road.
-    pub(crate) slants: Option<Slant>,
-    pub(crate) zones: Vec<ContactZone>,
-    /// It was touched on its roof or from below, and nowhere else.
-    pub(crate) only_above_or_below: bool,
-    /// Speed at the contact, where told. [m/s]
-    pub(crate) impact_mps: Option<f64>,
-    /// Speed at the contact that is staged. [m/s]
-    pub(crate) speed_mps: f64,
-    pub(crate) lane: Option<LaneWord>,
-    /// The signal or sign in front of it, where told.
-    pub(crate) control: Option<Control>,
-}
-
-impl Side {
-    /// Whether it parks, or comes from the kerb or out of a stall.
-    pub(crate) fn is_slow(&self) -> bool {
-        matches!(self.movement, Some(Movement::EnteringTraffic | Movement::ParkingManeuver))
-    }
-}
 
 /// An account, in the terms of a staging.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,6 +82,10 @@ pub(crate) struct Told {
     pub(crate) wanted: Vec<Extra>,
     /// Those of them in the scene.
     pub(crate) extras: Vec<Extra>,
+    /// Who of the two backed first, where both did.
+    pub(crate) backs_first: Option<Striker>,
+    /// When they touch. [s]
+    pub(crate) contact_s: f64,
     pub(crate) choices: Choices,
     pub(crate) assumed: Vec<String>,
 }
@@ -181,6 +126,7 @@ impl Told {
         let comes_round = origin_told && lateral::comes_round(origin, partner, cp.state, cp.movement);
         let origin = if comes_round { Origin::Parked { side: Some(LeftRight::Right) } } else { origin };
         let striker = told(&account.striker);
+        let sv_reverses = sv.state == ContactState::Reversing;
         let mut this = Self {
             crash_type,
             place,
@@ -206,10 +152,13 @@ impl Told {
             posted_mps: told(&account.place.posted_mps),
             wanted: Vec::new(),
             extras: Vec::new(),
+            backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
+            contact_s: CONTACT_S,
             choices: Choices::default(),
             assumed,
         };
         this.courses(partner);
+        this.phases();
         this.wanted = others::wanted(&this, &account.others);
         if this.origin_told {
             this.speeds();
@@ -221,7 +170,7 @@ impl Told {
     fn courses(&mut self, partner: &Party) {
         let drives_on =
             |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
-        self.sv.dodges = drives_on(&self.sv) && self.sv_aside().is_some();
+        self.sv.dodges = (drives_on(&self.sv) || self.sv.stopped_aside.is_some()) && self.sv_aside().is_some();
         self.cp.dodges = drives_on(&self.cp) && self.cp_from_left_m().is_some();
         let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
         if self.cp.state == ContactState::Reversing && along {
@@ -234,6 +183,12 @@ impl Told {
                 true => Some(Slant::Swung),
                 false => (fact.act == Act::Turn).then_some(Slant::Stood(fact.side)),
             });
+        }
+        // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
+        let follows = self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear;
+        let turns = matches!(self.cp.turning, Turning::Left | Turning::Right);
+        if follows && turns && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff) {
+            (self.cp.turning, self.cp.turns_later) = (Turning::No, true);
         }
         if let Origin::Cross { side } = self.origin {
             self.cp.turns_wide = self.crash_type == CrashType::HeadOn;
@@ -258,6 +213,16 @@ impl Told {
                 };
             }
         }
+    }
+
+    /// What the two did before, as far as it can be drawn: of who comes from beside the road, or stood across it, the state says enough.
+    fn phases(&mut self) {
+        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. } | Origin::Opposite);
+        if !along || matches!(self.cp.slants, Some(Slant::Stood(_))) {
+            self.cp.phases.clear();
+        }
+        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty();
+        self.contact_s = if more { LATE_CONTACT_S } else { CONTACT_S };
     }
 
     /// The kinds of facts that are told and can be held against a rollout.
@@ -402,6 +367,10 @@ impl Told {
             (Some(told), false) => told.max(0.4),
             (None, false) => fit(usual(&self.cp)),
         };
+        // Who sets off behind an ego that moves is faster.
+        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::SettingOff && self.origin == Origin::Behind {
+            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + SETS_OFF_FASTER_MPS);
+        }
         if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.comes_across() {
             let sv = self.sv.speed_mps;
             match self.origin {
@@ -437,10 +406,18 @@ impl Told {
     /// How the ego leaves its line.
     pub(crate) fn sv_aside(&self) -> Option<Aside> {
         let (left, right) = (LeftRight::Left, LeftRight::Right);
-        if self.sv.turning != Turning::No || self.sv.state.stands() || self.sv.state == ContactState::Reversing {
+        let stopped = self.sv.stopped_aside.filter(|_| self.sv.phases.len() < 3);
+        let stands = self.sv.state.stands() && stopped.is_none();
+        if self.sv.turning != Turning::No || stands || self.sv.state == ContactState::Reversing {
             return None;
         }
-        let movement = self.sv.movement?;
+        let movement = match stopped {
+            Some(Act::LaneChange) => Movement::ChangingLanes,
+            Some(Act::PullOut) => Movement::EnteringTraffic,
+            Some(Act::PullOver | Act::Park) => Movement::ParkingManeuver,
+            Some(_) => Movement::LaneDeparture,
+            None => self.sv.movement?,
+        };
         let towards = self.sv.aside.or(match self.origin {
             Origin::Beside { side } | Origin::Cross { side } => Some(side),
             _ => None,
@@ -480,6 +457,9 @@ impl Told {
         // Who moves to its left came along on its right.
         let own_left = self.cp.aside.map(|side| if side == LeftRight::Left { -1.0 } else { 1.0 });
         let from_left = own_left.map(|own| own * against).or_else(|| match self.origin {
+            // Who parks does so on the right; who came along behind the ego leaves its lane.
+            _ if self.cp.movement == Some(Movement::ParkingManeuver) => Some(against),
+            Origin::Behind => side_of(&self.sv.zones).map(|side| -side),
             Origin::Beside { side } | Origin::Parked { side: Some(side) } => {
                 Some(if side == LeftRight::Left { 1.0 } else { -1.0 })
             }
@@ -489,134 +469,13 @@ impl Told {
     }
 }
 
-fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
-    let kind = kind.or_else(|| told(&party.kind));
-    let partner_kind = kind.and_then(Kind::partner_kind);
-    if partner_kind.is_none() && who == "partner" {
-        assumed.push("the partner is a passenger car".to_owned());
-    }
-    let movement = told(&party.movement);
-    let impact_mps =
-        party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact).map(|speed| speed.value.mps);
-    let state = told(&party.state);
-    let slides = state.is_none() && kind.is_some_and(|kind| kind.group() == KindGroup::Object) && things::slides(party);
-    let state = if slides { Some(ContactState::Moving) } else { state };
-    let state_told = state.is_some();
-    let state = state.unwrap_or_else(|| match movement {
-        Some(Movement::Stopped) => ContactState::Stopped,
-        Some(Movement::Parked) => ContactState::Parked,
-        Some(Movement::Backing) => ContactState::Reversing,
-        _ if impact_mps == Some(0.0) => ContactState::Stopped,
-        _ if kind.is_some_and(|kind| kind.group() == KindGroup::Object) => ContactState::Stopped,
-        _ => ContactState::Moving,
-    });
-    // Who moves backwards moves.
-    let backs = state == ContactState::Moving && movement == Some(Movement::Backing);
-    let state = if backs { ContactState::Reversing } else { state };
-    if !state_told {
-        assumed.push(format!("the {who} is {state:?} at the contact"));
-    }
-    let turned = |side: LeftRight| {
-        party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)
+/// Who of the two is told to have backed first.
+fn backs_first(sv: &Party, partner: &Party) -> Option<Striker> {
+    let first = |party: &Party| {
+        let backs = |fact: &&ActFact| fact.act == Act::Reverse && !fact.after_contact && !fact.begun;
+        party.acts.iter().filter(backs).map(|fact| fact.step).min()
     };
-    let turning = match movement {
-        Some(Movement::LeftTurn) => Turning::Left,
-        Some(Movement::RightTurn) => Turning::Right,
-        Some(Movement::UTurn) => Turning::Round,
-        None if turned(LeftRight::Left) => Turning::Left,
-        None if turned(LeftRight::Right) => Turning::Right,
-        _ => Turning::No,
-    };
-    let goes_aside =
-        |act: Act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver);
-    // The last before the contact is the one that led to it.
-    let aside = party
-        .acts
-        .iter()
-        .filter(|fact| goes_aside(fact.act) && !fact.after_contact)
-        .filter_map(|fact| fact.side)
-        .next_back();
-    // It stood where it did something after it, or held its place.
-    let last = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.step).max();
-    let stood_first = state == ContactState::Moving
-        && party.acts.iter().any(|fact| {
-            let stands = match fact.act {
-                Act::Hold | Act::SetOff => true,
-                Act::Stop => Some(fact.step) < last,
-                _ => false,
-            };
-            stands && !fact.after_contact && !fact.begun
-        });
-    let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
-    let slowed_from = (slows && !stood_first && state == ContactState::Moving).then(|| {
-        let approach = party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Approach);
-        Slowed(approach.map(|speed| speed.value.mps))
-    });
-    Side {
-        aside,
-        turns_wide: false,
-        dodges: false,
-        slants: None,
-        slowed_from,
-        stood_first,
-        phases: if who == "ego" && state_told && state != ContactState::Parked {
-            phases::told(party, state)
-        } else {
-            Phases::default()
-        },
-        kind: partner_kind.unwrap_or_default(),
-        size: kind.and_then(size_of),
-        state,
-        state_told,
-        movement,
-        turning,
-        only_above_or_below: !party.zones.is_empty()
-            && party.zone_values().iter().all(|zone| matches!(zone, ContactZone::Top | ContactZone::Bottom)),
-        zones: party
-            .zone_values()
-            .into_iter()
-            .filter(|z| !matches!(z, ContactZone::Top | ContactZone::Bottom))
-            .collect(),
-        impact_mps,
-        speed_mps: 0.0,
-        lane: told(&party.lane),
-        control: control(party),
-    }
-}
-
-/// The signal or sign in front of somebody; who is told to have run one had one.
-fn control(party: &Party) -> Option<Control> {
-    let ran = |device, state| Some(Control { device, state, obeyed: Some(Obeyed::No) });
-    if party.did(Act::RunRed) {
-        return ran(ControlDevice::Signal, Some(SignalState::Red));
-    }
-    if party.did(Act::RunStop) {
-        return ran(ControlDevice::StopSign, None);
-    }
-    // What is said last is nearest to the contact.
-    party.controls.last().map(|fact| fact.value)
-}
-
-/// Sizes of kinds that are longer or shorter than the group they belong to; usual ones, assumed. [m]
-fn size_of(kind: Kind) -> Option<Size> {
-    let size = |length_m: f64, width_m: f64| Some(Size { length_m, width_m });
-    match kind {
-        Kind::SemiTrailerTruck => size(16.0, 2.6),
-        Kind::BoxTruck | Kind::FoodTruck => size(7.5, 2.4),
-        Kind::Ambulance => size(6.8, 2.3),
-        Kind::FireTruck => size(10.0, 2.5),
-        Kind::Tram => size(22.0, 2.6),
-        Kind::Forklift => size(3.0, 1.2),
-        Kind::Trailer => size(5.0, 2.2),
-        Kind::DeliveryRobot | Kind::Cart | Kind::Scooter => size(0.8, 0.6),
-        Kind::Wall | Kind::Curb => size(6.0, 0.3),
-        Kind::Gate | Kind::Chain | Kind::Barrier => size(0.2, 4.0),
-        Kind::Pole | Kind::Sign | Kind::Cone => size(0.3, 0.3),
-        Kind::Debris | Kind::LooseWheel | Kind::TreeBranch | Kind::Cargo | Kind::Object | Kind::Pothole => {
-            size(0.6, 0.6)
-        }
-        _ => None,
-    }
+    Some(if first(partner)? < first(sv)? { Striker::Cp } else { Striker::Sv })
 }
 
 /// From where a partner comes of whom nobody says it, where the type leaves no choice.

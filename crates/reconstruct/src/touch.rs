@@ -6,8 +6,9 @@ use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::lateral::is_on_foot;
+use crate::side::{Side, Slant, Turning};
 use crate::things;
-use crate::told::{Side, Slant, Told, Turning};
+use crate::told::Told;
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -83,7 +84,9 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
     let mut trial = 0;
     for sv_s_m in ground.places() {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
-        for (came, heading) in headings(told, sv.heading) {
+        let behind_m = 0.5 * (size_of(&told.sv).0 + size_of(&told.cp).0);
+        let behind = ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
+        for (came, heading) in headings(told, sv.heading, behind) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
                 for &sv_point in points(sv_zone) {
                     for &cp_point in points(cp_zone) {
@@ -142,8 +145,9 @@ const fn sign(side: LeftRight) -> f64 {
     }
 }
 
-/// Headings of the partner to try: as it came, and at the contact. Of who reverses, the way it faces. [rad]
-pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
+/// Headings of the partner to try: as it came, and at the contact. Of who reverses, the way it faces. `behind`: of the ego's way where
+/// somebody is who touches its rear. [rad]
+pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f64)> {
     let degrees = |deg: f64| deg * math::PI / 180.0;
     let reverses = told.cp.state == ContactState::Reversing;
     let unknown = |side: Option<LeftRight>| match side {
@@ -204,7 +208,7 @@ pub(crate) fn headings(told: &Told, sv_heading: f64) -> Vec<(f64, f64)> {
             let follows = told.origin == Origin::Behind && told.sv.turning != Turning::No;
             let bases = match (sv_heading.abs() > 0.02, follows) {
                 (false, _) => vec![0.0],
-                (true, true) => vec![sv_heading, 0.0],
+                (true, true) => vec![behind, sv_heading, 0.0],
                 (true, false) => vec![0.0, sv_heading],
             };
             if told.cp.turning == Turning::No {

@@ -7,14 +7,14 @@ use crate::junit::{attributes, safe};
 use crate::words::fixed;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
-use recrash_model::comparison::{Change, Compared, Comparison, Side};
+use recrash_model::comparison::{Change, Compared, Comparison, Side, shown_p};
 use recrash_model::results::{TestResult, TestResults, TestVerdict};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Tests that a summary tells one by one, of each change.
 const TOLD: usize = 30;
-/// Annotations of one kind that GitHub shows.
+/// Annotations of one level that GitHub shows of a step.
 const ANNOTATED: usize = 10;
 
 /// How a test stands in continuous integration.
@@ -58,7 +58,8 @@ pub fn junit(results: &TestResults, comparison: Option<&Comparison>) -> String {
         let head = counts(&name, &all);
         let suites = writer.create_element("testsuites").with_attributes(attributes(&pairs(&head)));
         suites.write_inner_content(|writer| {
-            groups.iter().try_for_each(|(kind, tests)| group(writer, results, kind, tests))
+            let mut groups = groups.iter().enumerate();
+            groups.try_for_each(|(place, (kind, tests))| group(writer, results, kind, tests, place == 0))
         })?;
         std::io::Result::Ok(())
     })();
@@ -99,23 +100,28 @@ fn seconds(test: &TestResult) -> f64 {
     test.runs.iter().filter_map(|run| run.outcome.as_ref()).map(|outcome| outcome.duration_s).sum()
 }
 
+/// A crash type. What the whole run has in common stands in the first alone: readers that put all groups into one refuse a
+/// property that comes twice.
 fn group(
     writer: &mut Writer<Vec<u8>>,
     results: &TestResults,
     kind: &str,
     tests: &[(&TestResult, Option<&Compared>)],
+    is_first: bool,
 ) -> std::io::Result<()> {
     let head = counts(kind, tests);
     writer.create_element("testsuite").with_attributes(attributes(&pairs(&head))).write_inner_content(|writer| {
-        let settings = [
-            ("suite", results.suite.as_str()),
-            ("profile", &results.profile),
-            ("ego", &results.ego),
-            ("simulator", &results.simulator),
-            ("seeds", &results.seeds.to_string()),
-            ("generator", &format!("recrash {}", results.recrash)),
-        ];
-        properties(writer, &settings)?;
+        if is_first {
+            let settings = [
+                ("suite", results.suite.as_str()),
+                ("profile", &results.profile),
+                ("ego", &results.ego),
+                ("simulator", &results.simulator),
+                ("seeds", &results.seeds.to_string()),
+                ("generator", &format!("recrash {}", results.recrash)),
+            ];
+            properties(writer, &settings)?;
+        }
         tests.iter().try_for_each(|(test, compared)| case(writer, results, test, *compared))
     })?;
     Ok(())
@@ -206,27 +212,26 @@ pub fn github(comparison: &Comparison) -> String {
     let mut text = String::new();
     let escaped = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
     let property = |text: &str| escaped(text).replace(':', "%3A").replace(',', "%2C");
-    let kinds = [
-        ("error", Change::Broken),
-        ("error", Change::Worse),
-        ("warning", Change::Flaky),
-        ("warning", Change::NotRun),
-        ("notice", Change::Fixed),
+    let levels: [(&str, &[Change], usize); 3] = [
+        ("error", &[Change::Broken, Change::Worse], ANNOTATED),
+        ("warning", &[Change::Flaky, Change::NotRun], ANNOTATED),
+        // One is kept for the line about all.
+        ("notice", &[Change::Fixed], ANNOTATED - 1),
     ];
-    for (level, change) in kinds {
-        let tests: Vec<&Compared> = comparison.of(change).collect();
-        for test in tests.iter().take(ANNOTATED) {
-            let title = property(&format!("{}: {}", change.label(), test.id));
+    for (level, changes, room) in levels {
+        let tests: Vec<&Compared> = changes.iter().flat_map(|change| comparison.of(*change)).collect();
+        let told = if tests.len() > room { room - 1 } else { tests.len() };
+        for test in &tests[..told] {
+            let title = property(&format!("{}: {}", test.change.label(), test.id));
             let _ = writeln!(text, "::{level} title={title}::{}", escaped(&test.why));
         }
-        if tests.len() > ANNOTATED {
-            let more = tests.len() - ANNOTATED;
-            let _ = writeln!(
-                text,
-                "::{level} title={}::and {more} more tests are {}",
-                property(change.label()),
-                change.label()
-            );
+        let left = |change: &&Change| {
+            let count = tests[told..].iter().filter(|test| test.change == **change).count();
+            (count > 0).then(|| format!("{count} more {}", change.label()))
+        };
+        let left: Vec<String> = changes.iter().filter_map(|change| left(&change)).collect();
+        if !left.is_empty() {
+            let _ = writeln!(text, "::{level} title=and more::{}", left.join(", "));
         }
     }
     let _ = writeln!(text, "::notice title=recrash::{}", escaped(&sentence(comparison)));
@@ -260,16 +265,20 @@ pub fn markdown(comparison: &Comparison) -> String {
             used.iter().map(|change| format!(" {} |", row.changes.get(change).unwrap_or(&0))).collect();
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} |{counts} {:.3} |",
-            row.crash_type, row.tests, row.base_failed, row.new_failed, row.p
+            "| {} | {} | {} | {} |{counts} {} |",
+            row.crash_type,
+            row.tests,
+            row.base_failed,
+            row.new_failed,
+            shown_p(row.p)
         );
     }
     let _ = writeln!(text, "\np: McNemar's exact test of broken against fixed.");
     for change in used.into_iter().filter(|change| *change != Change::Same) {
-        let tests: Vec<&Compared> = comparison.of(change).collect();
+        let tests = comparison.of(change);
         let _ = writeln!(text, "\n## {} ({})\n", capital(change.label()), tests.len());
         for test in tests.iter().take(TOLD) {
-            let p = test.p.map_or_else(String::new, |p| format!(" (p {p:.3})"));
+            let p = test.p.map_or_else(String::new, |p| format!(" (p {})", shown_p(p)));
             let _ = writeln!(text, "- {}: {}{p}{}", code(&test.id), plain(&test.why), sides(test));
         }
         if tests.len() > TOLD {

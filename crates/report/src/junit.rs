@@ -24,7 +24,9 @@ pub fn render(suite: &SuiteView) -> String {
             ("errors", "0"),
             ("skipped", &total(|group| group.skipped())),
         ]));
-        suites.write_inner_content(|writer| groups.iter().try_for_each(|group| group.write(writer, suite)))?;
+        suites.write_inner_content(|writer| {
+            groups.iter().enumerate().try_for_each(|(place, group)| group.write(writer, suite, place == 0))
+        })?;
         std::io::Result::Ok(())
     })();
     written.expect("written into memory");
@@ -62,7 +64,9 @@ impl Group<'_> {
         self.cases.iter().filter(|case| (self.run)(case).is_none()).count()
     }
 
-    fn write(&self, writer: &mut Writer<Vec<u8>>, suite: &SuiteView) -> std::io::Result<()> {
+    /// What the whole run has in common stands in the first group alone: readers that put all groups into one refuse a
+    /// property that comes twice.
+    fn write(&self, writer: &mut Writer<Vec<u8>>, suite: &SuiteView, is_first: bool) -> std::io::Result<()> {
         let element = writer.create_element("testsuite").with_attributes(attributes(&[
             ("name", self.name),
             ("tests", &self.cases.len().to_string()),
@@ -80,13 +84,15 @@ impl Group<'_> {
                 ("command", &suite.command),
                 ("generator", &suite.generated_by),
             ];
-            writer.create_element("properties").write_inner_content(|writer| {
-                for (name, value) in settings {
-                    let property = attributes(&[("name", name), ("value", value)]);
-                    writer.create_element("property").with_attributes(property).write_empty()?;
-                }
-                Ok(())
-            })?;
+            if is_first {
+                writer.create_element("properties").write_inner_content(|writer| {
+                    for (name, value) in settings {
+                        let property = attributes(&[("name", name), ("value", value)]);
+                        writer.create_element("property").with_attributes(property).write_empty()?;
+                    }
+                    Ok(())
+                })?;
+            }
             self.cases.iter().try_for_each(|case| test_case(writer, suite, case, (self.run)(case), self.name))
         })?;
         Ok(())
@@ -175,6 +181,11 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
         format!("\n{}: {}\nother egos: {}", triage.class.label(), triage.class.meaning(), other_egos(triage))
     });
+    let cause = run.cause.map_or_else(String::new, |cause| format!("\ncause: {}", cause.label()));
+    let bracket = run
+        .preventability
+        .as_ref()
+        .map_or_else(String::new, |found| format!("\npreventability: {}", found.bracket().label()));
     let edited = match &case.edited[..] {
         [] => String::new(),
         files => format!("\nedited by hand: {}", files.join(", ")),
@@ -184,7 +195,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         format!("crash type: {}\nincident: {}\nsituation met: {met}\n", account.crash_type.label(), account.incident)
     });
     format!(
-        "{what}template: {}\ntells: {origin}\nleast gap: {gap}{severity}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
+        "{what}template: {}\ntells: {origin}\nleast gap: {gap}{severity}{cause}{bracket}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
         case.template,
         words::name(&run.metrics.termination),
         run.rerun_command

@@ -20,8 +20,10 @@ pub struct PairsView {
     pub criteria: FailureCriteria,
     /// Tables, in order.
     pub tables: Vec<TableView>,
-    /// Pairs to look at, in order.
+    /// Pairs to look at, in order; a list of them leads to each.
     pub pairs: Vec<PairView>,
+    /// What is not played, folded, under the list of what is.
+    pub more: Option<TableView>,
 }
 
 /// A table of texts.

@@ -3,11 +3,12 @@
 use crate::view::{CaseRow, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{Check, PartnerMetrics, Timed};
+use recrash_model::preventability::Preventability;
 use recrash_model::severity::Severity;
 use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 52] = [
+const HEADER: [&str; 54] = [
     "scenario",
     "run",
     "road",
@@ -60,6 +61,8 @@ const HEADER: [&str; 52] = [
     "ego_delta_v_mps",
     "other_delta_v_mps",
     "serious_injury_probability",
+    "cause",
+    "preventability",
 ];
 
 /// The table.
@@ -124,6 +127,9 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(number(severity.map(|severity| severity.first.delta_v_mps)));
     row.push(number(severity.map(|severity| severity.second.delta_v_mps)));
     row.push(number(severity.and_then(Severity::serious_injury)));
+    row.push(run.and_then(|run| run.cause).map_or_else(String::new, |cause| cause.label().to_owned()));
+    let bracket = run.and_then(|run| run.preventability.as_ref()).map(Preventability::bracket);
+    row.push(bracket.map_or_else(String::new, |bracket| bracket.label().to_owned()));
     row
 }
 

@@ -100,7 +100,8 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
             let path = format!("actors[{position}].plan");
             actors::references(&draft, &names, (&actor.id, &actor.plan), &actor.parts, &path, &mut remarks);
             let body = (actor.kind, actor.size, actor.parts.as_slice());
-            planned_actors.push(actors::placement(&network, &control, body, &actor.plan, &path, &mut remarks));
+            let placed = actors::placement(&network, &control, body, &actor.plan, &path, &mut remarks);
+            planned_actors.push(placed.map(|each| ActorPlacement { mass_kg: actor.mass_kg.or(each.mass_kg), ..each }));
         }
         for (position, object) in draft.objects.iter().enumerate() {
             objects.push(obstacles::place_object(object, position, &network, &mut remarks));

@@ -52,6 +52,8 @@ pub struct ActorPlacement {
     pub length_m: f64,
     /// Width of its box. [m]
     pub width_m: f64,
+    /// Mass; `None` for what stands firm. [kg]
+    pub mass_kg: Option<f64>,
     /// Centre of its box at the start.
     pub pose: Pose,
     /// The line of its rear axle.

@@ -12,6 +12,7 @@ use recrash_model::math;
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
 use recrash_plan::constants::SETTLED_HEIGHT_M;
+use wide::f64x2;
 
 /// Physics step. [s]
 pub const PHYSICS_STEP_S: f64 = 0.02;
@@ -163,9 +164,10 @@ pub struct WheelCommand {
     drive: f64,
     /// Greatest braking impulse on each wheel, per mass and physics step. [m/s]
     brake: f64,
-    /// Inverse of the mass a wheel feels across its direction, without the part that depends on height: front left,
-    /// front right, rear.
-    across: [f64; 3],
+    /// Inverse of the mass a wheel feels across its direction, without the part that depends on height: front left and
+    /// right, and rear.
+    across_front: f64x2,
+    across_rear: f64,
     /// The part that depends on height squared: front, rear. [1/m^2]
     across_height: [f64; 2],
     /// Mass all wheels together feel along their direction.
@@ -261,11 +263,11 @@ impl VehicleState {
             cos,
             drive,
             brake,
-            across: [
+            across_front: f64x2::new([
                 1.0 + math::sq(arm(chassis.half_track_m)) * chassis.yaw_per_m2,
                 1.0 + math::sq(arm(-chassis.half_track_m)) * chassis.yaw_per_m2,
-                1.0 + math::sq(chassis.rear_axle_m) * chassis.yaw_per_m2,
-            ],
+            ]),
+            across_rear: 1.0 + math::sq(chassis.rear_axle_m) * chassis.yaw_per_m2,
             across_height: [cos2 * chassis.roll_per_m2 + sin2 * chassis.pitch_per_m2, chassis.roll_per_m2],
             along: 1.0
                 / (1.0
@@ -307,80 +309,76 @@ impl VehicleState {
         self.roll += self.roll_rate * dt;
     }
 
-    /// Springs and dampers: the load of each wheel per mass of the vehicle (front left, front right, rear left, rear
-    /// right), and what the loads do to heave, pitch and roll. [m/s^2]
+    /// Springs and dampers: the load of the front and the rear wheels per mass of the vehicle, left and right, and what the
+    /// loads do to heave, pitch and roll. [m/s^2]
     #[inline]
-    fn spring(&mut self, chassis: &Chassis) -> [f64; 4] {
-        let x = [chassis.front_axle_m, chassis.front_axle_m, -chassis.rear_axle_m, -chassis.rear_axle_m];
-        let y = [chassis.half_track_m, -chassis.half_track_m, chassis.half_track_m, -chassis.half_track_m];
-        let mut loads = [0.0; 4];
-        for wheel in 0..4 {
-            let squeeze = FREE_HEIGHT_M - (self.height_m - x[wheel] * self.pitch + y[wheel] * self.roll);
-            let rising = self.climb_mps - x[wheel] * self.pitch_rate + y[wheel] * self.roll_rate;
-            let damping = if rising < 0.0 { COMPRESSION_PER_S } else { RELAXATION_PER_S };
-            let load = SPRING_PER_S2 * squeeze - damping * rising;
-            loads[wheel] = if squeeze < 0.0 { 0.0 } else { load.clamp(0.0, SPRING_LIMIT_MPS2) };
-        }
-        let [fl, fr, rl, rr] = loads;
+    fn spring(&mut self, chassis: &Chassis) -> [f64x2; 2] {
+        let zero = f64x2::splat(0.0);
+        let to_side = f64x2::new([chassis.half_track_m, -chassis.half_track_m]);
+        let (rolled, rolling) = (to_side * self.roll, to_side * self.roll_rate);
+        let load = |x: f64| {
+            let squeeze = FREE_HEIGHT_M - (self.height_m - x * self.pitch + rolled);
+            let rising = self.climb_mps - x * self.pitch_rate + rolling;
+            let damping = rising.simd_lt(zero).select(f64x2::splat(COMPRESSION_PER_S), f64x2::splat(RELAXATION_PER_S));
+            let load = clamp(SPRING_PER_S2 * squeeze - damping * rising, zero, f64x2::splat(SPRING_LIMIT_MPS2));
+            squeeze.simd_lt(zero).select(zero, load)
+        };
+        let (front, rear) = (load(chassis.front_axle_m), load(-chassis.rear_axle_m));
+        let ([fl, fr], [rl, rr]) = (front.to_array(), rear.to_array());
         let dt = PHYSICS_STEP_S;
         self.climb_mps += (fl + fr + rl + rr) * dt;
         self.pitch_rate -=
             ((fl + fr) * chassis.front_axle_m - (rl + rr) * chassis.rear_axle_m) * chassis.pitch_per_m2 * dt;
         self.roll_rate += (fl + rl - fr - rr) * chassis.half_track_m * chassis.roll_per_m2 * dt;
-        loads
+        [front, rear]
     }
 
     /// Tyres: what the engine or the brake wants along each wheel and what keeps it from slipping sideways, both within
     /// the friction circle, applied as impulses.
     #[inline]
-    fn grip(&mut self, chassis: &Chassis, command: &WheelCommand, loads: [f64; 4]) {
+    fn grip(&mut self, chassis: &Chassis, command: &WheelCommand, loads: [f64x2; 2]) {
         let (sin, cos, height) = (command.sin, command.cos, self.height_m);
         let (front, rear, track) = (chassis.front_axle_m, chassis.rear_axle_m, chassis.half_track_m);
 
         // Velocity of the contact points: along the body left and right, to the left front and rear.
-        let along = self.forward_mps - self.pitch_rate * height;
-        let (along_left, along_right) = (along - track * self.yaw_rate, along + track * self.yaw_rate);
+        let along = self.forward_mps - self.pitch_rate * height - f64x2::new([track, -track]) * self.yaw_rate;
         let sideways = self.leftward_mps + self.roll_rate * height;
         let (sideways_front, sideways_rear) = (sideways + front * self.yaw_rate, sideways - rear * self.yaw_rate);
 
-        // Impulses per mass: front left, front right, rear left, rear right.
+        // Impulses per mass: front and rear, each left and right.
         let height2 = math::sq(height);
-        let mass_front_left = 1.0 / (command.across[0] + height2 * command.across_height[0]);
-        let mass_front_right = 1.0 / (command.across[1] + height2 * command.across_height[0]);
-        let mass_rear = 1.0 / (command.across[2] + height2 * command.across_height[1]);
-        let side_rear = -CONTACT_DAMPING * mass_rear * sideways_rear;
+        let mass_front = 1.0 / (command.across_front + height2 * command.across_height[0]);
+        let mass_rear = 1.0 / (command.across_rear + height2 * command.across_height[1]);
         let mut side = [
-            -CONTACT_DAMPING * mass_front_left * (sideways_front * cos - along_left * sin),
-            -CONTACT_DAMPING * mass_front_right * (sideways_front * cos - along_right * sin),
-            side_rear,
-            side_rear,
+            -CONTACT_DAMPING * mass_front * (sideways_front * cos - along * sin),
+            f64x2::splat(-CONTACT_DAMPING * mass_rear * sideways_rear),
         ];
-        let mut push = [command.drive; 4];
+        let mut push = [f64x2::splat(command.drive); 2];
         if command.drive == 0.0 {
             let stop = -0.25 * command.along;
-            let limit = command.brake;
-            push = [
-                (stop * (along_left * cos + sideways_front * sin)).clamp(-limit, limit),
-                (stop * (along_right * cos + sideways_front * sin)).clamp(-limit, limit),
-                (stop * along_left).clamp(-limit, limit),
-                (stop * along_right).clamp(-limit, limit),
-            ];
+            let limit = f64x2::splat(command.brake);
+            push =
+                [clamp(stop * (along * cos + sideways_front * sin), -limit, limit), clamp(stop * along, -limit, limit)];
         }
-        for wheel in 0..4 {
-            let hold = loads[wheel] * chassis.friction * PHYSICS_STEP_S;
-            let wanted = math::sq(ALONG_WEIGHT * push[wheel]) + math::sq(side[wheel]);
-            if wanted > math::sq(hold) {
-                let share = hold / wanted.sqrt();
-                push[wheel] *= share;
-                side[wheel] *= share;
+        for axle in 0..2 {
+            let hold = loads[axle] * chassis.friction * PHYSICS_STEP_S;
+            let weighted = ALONG_WEIGHT * push[axle];
+            let wanted = weighted * weighted + side[axle] * side[axle];
+            let slips = wanted.simd_gt(hold * hold);
+            if slips.any() {
+                let share = slips.select(hold / wanted.sqrt(), f64x2::splat(1.0));
+                push[axle] *= share;
+                side[axle] *= share;
             }
         }
 
-        let (push_front, side_front) = (push[0] + push[1], side[0] + side[1]);
-        let (push_rear, side_rear) = (push[2] + push[3], side[2] + side[3]);
+        let ([push_fl, push_fr], [side_fl, side_fr]) = (push[0].to_array(), side[0].to_array());
+        let ([push_rl, push_rr], [side_rl, side_rr]) = (push[1].to_array(), side[1].to_array());
+        let (push_front, side_front) = (push_fl + push_fr, side_fl + side_fr);
+        let (push_rear, side_rear) = (push_rl + push_rr, side_rl + side_rr);
         let forward_front = push_front * cos - side_front * sin;
         let leftward_front = push_front * sin + side_front * cos;
-        let forward_left_minus_right = (push[0] - push[1]) * cos - (side[0] - side[1]) * sin + (push[2] - push[3]);
+        let forward_left_minus_right = (push_fl - push_fr) * cos - (side_fl - side_fr) * sin + (push_rl - push_rr);
         self.forward_mps += forward_front + push_rear;
         self.leftward_mps += leftward_front + side_rear;
         self.yaw_rate +=
@@ -391,6 +389,13 @@ impl VehicleState {
         self.roll_rate +=
             (height * push_front * sin + side_height * (side_front * cos + side_rear)) * chassis.roll_per_m2;
     }
+}
+
+/// As `f64::clamp` of both, with the same zeros on every machine.
+#[inline]
+fn clamp(x: f64x2, least: f64x2, most: f64x2) -> f64x2 {
+    let x = x.simd_lt(least).select(least, x);
+    x.simd_gt(most).select(most, x)
 }
 
 /// Sine and cosine of an angle below 0.1 rad, by series; the error is below 1e-13.

@@ -6,8 +6,12 @@ use crate::movement::{Loose, Mover};
 use crate::scene::Seen;
 use crate::world::{Setting, State, Workspace};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, Event, EventKind, STEP_S};
+
+/// A thing lighter than this share of who hits it does not put that one off its way; assumed.
+const LIGHT: f64 = 0.05;
 
 /// Who has touched and drives on has left the other when they are this far apart. [m]
 const APART_M: f64 = 0.05;
@@ -107,6 +111,11 @@ fn goes_on(setting: &Setting, state: &State, actor: usize) -> bool {
     setting.outlasts_a_touch[actor] && state.movers[actor] == Mover::Plan
 }
 
+/// Whether what it has hit is a thing too light to matter.
+fn shrugs_off(setting: &Setting, actor: usize, other: usize) -> bool {
+    setting.cast[other].kind == PartnerKind::FixedObject && setting.masses_kg[other] < LIGHT * setting.masses_kg[actor]
+}
+
 /// The boxes of an actor: its own, then those of its parts.
 fn boxes_of<'a>(setting: &'a Setting, state: &'a State, actor: usize) -> impl Iterator<Item = OrientedBox> + 'a {
     let (member, pose) = (&setting.cast[actor], state.bodies[actor].pose);
@@ -143,8 +152,8 @@ fn push(setting: &Setting, state: &mut State, a: usize, b: usize) {
         mass_kg: setting.masses_kg[actor],
     };
     let (first, second) = impact::collide(&body(a, mine), &body(b, theirs));
-    for (actor, after) in [(a, first), (b, second)] {
-        if goes_on(setting, state, actor) {
+    for (actor, other, after) in [(a, b, first), (b, a, second)] {
+        if goes_on(setting, state, actor) || shrugs_off(setting, actor, other) {
             continue;
         }
         state.loose[actor] = Loose { pose: state.bodies[actor].pose, ..after };

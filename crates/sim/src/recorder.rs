@@ -52,6 +52,12 @@ impl CastMember {
             }
         }
     }
+
+    /// The mass of the actor at this position of the cast, where the scenario gives it one. [kg]
+    fn own_mass_kg(&self, draft: &ScenarioDraft, position: usize) -> Option<f64> {
+        let number = position.checked_sub(1 + draft.partners.len()).filter(|_| self.role == Role::Partner)?;
+        draft.actors.get(number)?.mass_kg
+    }
 }
 
 /// Takes what happens in one run, in order.
@@ -98,6 +104,7 @@ impl Recorder for RolloutRecorder {
             kind: member.kind,
             length_m: member.length_m,
             width_m: member.width_m,
+            mass_kg: member.own_mass_kg(draft, position),
             states: Vec::with_capacity(steps),
         });
         self.rollout = Some(Rollout {

@@ -409,10 +409,13 @@ impl Setting {
         self.stops.clear();
     }
 
-    /// Makes the last actor as large as its placement says.
+    /// Makes the last actor as large and as heavy as its placement says.
     fn resize_last(&mut self, placement: &ActorPlacement) {
         if let Some(member) = self.cast.last_mut() {
             (member.length_m, member.width_m) = (placement.length_m, placement.width_m);
+        }
+        if let Some(mass_kg) = self.masses_kg.last_mut() {
+            *mass_kg = placement.mass_kg.unwrap_or(FIRM_KG);
         }
     }
 }

@@ -164,8 +164,13 @@ fn holes(table: &CoverageTable, most: usize) {
         let count = if hole == Hole::NotSeen { table.unseen() } else { count };
         if count > 0 {
             let named = if named.is_empty() { String::new() } else { format!(": {named}") };
-            let more = if count > most && !named.is_empty() { " and more, told by --json and --csv" } else { "" };
-            println!("  {}, {count} cells{named}{more}", hole.label());
+            let more = if count > most && !named.is_empty() {
+                format!("; and {} more, told by --json and --csv", count - most)
+            } else {
+                String::new()
+            };
+            let cells = if count == 1 { "cell" } else { "cells" };
+            println!("  {}, {count} {cells}{named}{more}", hole.label());
         }
     }
 }

@@ -74,6 +74,12 @@ fn show(check: &DriverCheck, out: &Path) {
         ]);
     }
     println!("{rows}");
+    if check.grids.iter().any(|grid| grid.avoided_by.is_some()) {
+        println!(
+            "all avoid, some avoid: its crashes in scenarios that every reference driver avoids, or some but not every; not run: the \
+             simulator does not go so fast"
+        );
+    }
     output::title("least time to collision in a cut-in that is survived, beside the limits of EU 2022/1426");
     let names: Vec<&str> = check
         .limits
@@ -89,6 +95,15 @@ fn show(check: &DriverCheck, out: &Path) {
         let from = |from_s: Option<f64>| from_s.map_or_else(|| "-".to_owned(), |from_s| format!("{from_s:.2} s"));
         row.extend(limit.survived.iter().map(|each| number(from(each.from_s))));
         rows.add_row(row);
+    }
+    for (at, what) in [(0, "limits kept"), (1, "limits kept, standing")] {
+        let kept = |driver: usize| {
+            let of = check.limits.iter().filter_map(|limit| limit.survived.get(driver));
+            of.filter(|each| [each.keeps_belted, each.keeps_standing][at]).count()
+        };
+        let blank = [Cell::new(what), Cell::new(""), Cell::new("")];
+        let counts = (0..names.len()).map(|driver| number(format!("{} of {}", kept(driver), check.limits.len())));
+        rows.add_row(blank.into_iter().chain(counts));
     }
     println!("{rows}");
     println!("\n{} holds check-driver.json, verdicts.csv and a plot of each grid", out.display());

@@ -150,10 +150,14 @@ fn show_robustness(report: &RobustnessReport) {
         count(|each| each.marginal)
     );
     if let Some(second) = &report.confirmed_by {
-        let robust = count(|each| each.robust && each.confirmed.is_some());
+        let run = count(|each| each.robust && each.confirmed.is_some());
         let confirmed = count(|each| each.robust && each.confirmed == Some(true));
-        let unable = count(|each| each.confirmed.is_none());
-        println!("{second}: {confirmed} of {robust} robust failures fail there too; {unable} could not be run there");
+        let unable = count(|each| each.robust && each.confirmed.is_none());
+        let share = 100.0 * confirmed as f64 / run.max(1) as f64;
+        println!(
+            "{second}: {confirmed} of {run} robust failures fail there too ({share:.1} %); {unable} robust ones could not be run \
+             there"
+        );
     }
 }
 
@@ -174,11 +178,12 @@ pub fn minimise(args: &MinimiseArgs, output: Output) -> Result<(), PipelineError
 
 fn show_minimal(report: &MinimalReport, folder: &Path) {
     output::title(&format!("What failures of {} need", report.ego));
-    let mut rows = table(&["test", "taken", "needed", "nearest that passes"]).without_first(&["taken"]);
+    let mut rows = table(&["test", "fails by", "taken", "needed", "nearest that passes"]).without_first(&["taken"]);
     for each in report.failures.iter().take(SHOWN) {
         let needed: Vec<&str> = each.needed.iter().map(|needed| needed.name.as_str()).collect();
         rows.add_row([
             Cell::new(&each.id),
+            Cell::new(each.findings.iter().map(|kind| kind.label()).collect::<Vec<_>>().join(", ")),
             number(each.taken.len()),
             Cell::new(if needed.is_empty() { "nothing else".to_owned() } else { needed.join(", ") }),
             Cell::new(each.difference.as_deref().unwrap_or("-")),

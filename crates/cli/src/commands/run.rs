@@ -300,6 +300,23 @@ fn ending(summary: &Summary, dir: &Path) {
     for (class, count) in summary.failure_classes() {
         println!("  {count:>4} {}: {}", class.label(), class.meaning());
     }
+    let told = |counts: Vec<(&str, usize)>| {
+        let told: Vec<String> = counts.into_iter().map(|(label, count)| format!("{count} {label}")).collect();
+        told.join(", ")
+    };
+    let causes = summary.causes();
+    if !causes.is_empty() {
+        let word = if causes.len() == 1 { "cause" } else { "causes" };
+        let listed = told(causes.iter().map(|(cause, count)| (cause.label(), *count)).collect());
+        println!("  {} {word}, a finding each: {listed}", causes.len());
+    }
+    let brackets = summary.brackets();
+    if !brackets.is_empty() {
+        println!(
+            "  contacts: {}",
+            told(brackets.into_iter().map(|(bracket, count)| (bracket.label(), count)).collect())
+        );
+    }
     if summary.sample {
         println!("records: the built-in sample, invented; give real crash files with --records FILE");
     }

@@ -5,12 +5,12 @@ use crate::output::{self, Output};
 use crate::screen::{self, println};
 use crate::table::{Cell, number, table};
 use clap::Args;
-use recrash_model::comparison::{Change, Comparison, TypeRow};
+use recrash_model::comparison::{Change, Comparison, TypeRow, shown_p};
 use recrash_model::preventability::Bracket;
 use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict};
 use recrash_pipeline::{
     CiFiles, Outputs, PageRequest, PipelineError, SimulatorKind, TestRequest, by_cause, compare_files, compare_with,
-    comparison_sentence, github_annotations, hold_to, test, write_page,
+    comparison_sentence, github_annotations, hold_to, read_results, test, write_page,
 };
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,15 +22,16 @@ Examples:
   recrash test nightly --ego 'cmd:./my_stack' --baseline main.json --fail-on broken,worse --junit junit.xml
   recrash test nightly --ego 'cmd:./my_stack' --seeds 5  for an ego, or a simulation, that is random
 
-Exit code 5: a change of --fail-on happened; without a baseline and with --fail-on broken, a test failed.";
+Exit code 5: a change of --fail-on happened, or a test could not be run; without a baseline and with --fail-on broken, a test
+failed.";
 
 const COMPARE_EXAMPLES: &str = "\
 Examples:
   recrash compare main.json tonight.json                 fixed, broken, worse, better, same, flaky
   recrash compare main.json tonight.json --fail-on broken,worse --markdown summary.md --github
-  recrash compare main.json tonight.json --suite nightly --page changes.html
+  recrash compare main.json tonight.json --suite nightly --page changes.html --base-ego 'cmd:./old' --new-ego 'cmd:./new'
 
-Exit code 5: a change of --fail-on happened. What each word means: docs/models/comparison.md.";
+Exit code 5: a change of --fail-on happened, or a test of NEW could not be run. What each word means: docs/models/comparison.md.";
 
 /// Failures that the screen tells one by one.
 const SHOWN: usize = 20;
@@ -127,7 +128,8 @@ impl CompareArgs {
             threads: None,
             out: None,
         };
-        PageRequest { test, egos: [self.base_ego.clone(), self.new_ego.clone()] }
+        let egos = [self.base_ego.clone(), self.new_ego.clone()];
+        PageRequest { test, egos, results: [self.base.clone(), self.new.clone()] }
     }
 }
 
@@ -136,9 +138,12 @@ impl CompareArgs {
 /// # Errors
 /// The suite cannot be opened, the ego cannot be started, a file cannot be written, or a change of `--fail-on` happened.
 pub fn run(args: &TestArgs, output: Output) -> Result<(), PipelineError> {
-    if args.ci.markdown.is_some() && args.baseline.is_none() {
-        return Err(PipelineError::Usage("--markdown is of a comparison; name a --baseline".to_owned()));
+    let of_a_comparison = [("--markdown", args.ci.markdown.is_some()), ("--github", args.ci.github)];
+    if let (Some((option, _)), None) = (of_a_comparison.iter().find(|(_, asked)| *asked), &args.baseline) {
+        return Err(PipelineError::Usage(format!("{option} is of a comparison; name a --baseline")));
     }
+    // Before anything is run: a run may take hours.
+    let baseline = args.baseline.as_deref().map(read_results).transpose()?;
     let read = args.baseline.iter().cloned().chain([args.frozen.clone()]);
     let mut outputs = Outputs::of_inputs(read);
     let files = args.ci.files().claim(&mut outputs)?;
@@ -156,7 +161,7 @@ pub fn run(args: &TestArgs, output: Output) -> Result<(), PipelineError> {
         out: args.out.clone(),
     };
     let results = test(&request, &*output.progress())?;
-    let comparison = args.baseline.as_ref().map(|base| compare_with(base, &results)).transpose()?;
+    let comparison = baseline.as_ref().map(|base| compare_with(base, &results)).transpose()?;
     files.write(&results, comparison.as_ref())?;
     match (&comparison, output.json) {
         (None, true) => output::json(&results),
@@ -182,7 +187,7 @@ pub fn compare(args: &CompareArgs, output: Output) -> Result<(), PipelineError> 
     let (results, comparison) = compare_files(&args.base, &args.new)?;
     files.write(&results, Some(&comparison))?;
     if let (Some(page), Some(suite)) = (&page, &args.suite) {
-        write_page(&args.page_request(suite), &comparison, page)?;
+        write_page(&args.page_request(suite), &comparison, page).map_err(named_yourself)?;
     }
     if output.json {
         output::json(&comparison);
@@ -191,6 +196,17 @@ pub fn compare(args: &CompareArgs, output: Output) -> Result<(), PipelineError> 
     }
     annotate(&args.ci, Some(&comparison), output);
     hold_to(&results, Some(&comparison), &args.ci.fail_on)
+}
+
+/// A program that only the results name is not started; here two options name one.
+fn named_yourself(error: PipelineError) -> PipelineError {
+    match error {
+        PipelineError::Untrusted { program } => PipelineError::Usage(format!(
+            "the results have the program `{program}` as their ego; results may be anybody's, so name it yourself: --base-ego is \
+             that of the first results, --new-ego that of the second"
+        )),
+        other => other,
+    }
 }
 
 fn annotate(args: &CiArgs, comparison: Option<&Comparison>, output: Output) {
@@ -327,7 +343,7 @@ fn show_comparison(comparison: &Comparison) {
     let row = |row: &TypeRow| -> Vec<Cell> {
         let head = [Cell::new(row.crash_type), number(row.tests), number(row.base_failed), number(row.new_failed)];
         let counts = used.iter().map(|change| number(row.changes.get(change).unwrap_or(&0)));
-        head.into_iter().chain(counts).chain([number(format!("{:.3}", row.p))]).collect()
+        head.into_iter().chain(counts).chain([number(shown_p(row.p))]).collect()
     };
     for each in comparison.by_type.iter().chain([&comparison.all]) {
         rows.add_row(row(each));
@@ -338,7 +354,7 @@ fn show_comparison(comparison: &Comparison) {
     if !changed.is_empty() {
         let mut rows = table(&["test", "what changed"]);
         for test in changed.iter().take(2 * SHOWN) {
-            let p = test.p.map_or_else(String::new, |p| format!(" (p {p:.3})"));
+            let p = test.p.map_or_else(String::new, |p| format!(" (p {})", shown_p(p)));
             rows.add_row([Cell::new(&test.id), Cell::new(format!("{}: {}{p}", test.change.label(), test.why))]);
         }
         println!("{rows}");

@@ -227,6 +227,9 @@ fn annotations_and_tables_are_as_their_readers_want_them() {
     }
     let (_, shown, _) = place.run(&["compare", "base.json", "new.json", "--github", "--quiet"]);
     assert!(shown.lines().all(|line| line.starts_with("::")), "{shown}");
+    for level in ["::error ", "::warning ", "::notice "] {
+        assert!(shown.lines().filter(|line| line.starts_with(level)).count() <= 10, "GitHub shows ten: {shown}");
+    }
     assert!(
         shown.contains("::error title=broken%3A ") && shown.contains("::notice title=recrash::36 tests"),
         "{shown}"
@@ -377,8 +380,48 @@ fn evidence_is_of_the_runs_that_are_given() {
     assert!(checked.status.success() && shown.contains("numbers come out as they are told"), "{shown}");
     let (code, _, errors) = evidence("metadrive-idm", "other");
     assert!(code == 3 && errors.contains("the results are no evidence"), "{errors}");
+    assert!(!place.path("other").exists(), "no half of a folder is in the way of the next try");
     let (code, _, errors) = evidence("idm", "evidence");
     assert!(code == 3 && errors.contains("it holds something else"), "{errors}");
+    assert_eq!(place.run(&["robustness", "frozen", "--tries", "1", "--out", "of-another.json", "--quiet"]).0, 0);
+    let with = ["evidence", "frozen", "--ego", "idm", "--with", "of-another.json", "--out", "other", "--quiet"];
+    let (code, _, errors) = place.run(&with);
+    assert!(code == 3 && errors.contains("it is of another ego"), "{errors}");
+}
+
+#[test]
+fn a_night_that_could_not_be_run_is_not_green() {
+    let place = frozen();
+    let base = ego(&place, "base.py", ("", ""));
+    assert_eq!(test(&place, &["--ego", &base, "--out", "base.json", "--quiet"]).0, 0);
+    let dies = ego(&place, "dies.py", ("answer = control(world, message)", "sys.exit(3)"));
+    let compared = ["--ego", &dies, "--baseline", "base.json", "--out", "new.json", "--quiet"];
+    let (code, _, errors) = test(&place, &[&compared[..], &["--fail-on", "broken,worse"]].concat());
+    assert!(code == 5 && errors.contains("36 not run of 36 tests"), "{errors}");
+    assert_eq!(test(&place, &compared).0, 0, "nothing is to be failed on");
+    let first_night = |ego: &str| test(&place, &["--ego", ego, "--fail-on", "not_run", "--quiet"]).0;
+    assert_eq!((first_night(&dies), first_night(&base)), (5, 0), "a failure is no news on the first night");
+    let fail_on = ["compare", "base.json", "new.json", "--fail-on", "broken", "--quiet"];
+    assert_eq!(place.run(&fail_on).0, 5);
+    let mended = ["compare", "new.json", "base.json", "--fail-on", "broken", "--quiet"];
+    assert_eq!(place.run(&mended).0, 0, "what could not be run before is no fault of now");
+}
+
+#[test]
+fn a_baseline_that_says_nothing_of_the_suite_is_refused() {
+    let place = frozen();
+    let other = place.run(&["freeze", text(&cases("acts")), "--out", "other", "--quiet"]);
+    assert_eq!(other.0, 0, "{}", other.2);
+    assert_eq!(place.run(&["test", "other", "--ego", "idm", "--out", "other.json", "--quiet"]).0, 0);
+    let compared = ["--ego", "idm", "--baseline", "other.json", "--fail-on", "broken", "--quiet"];
+    let (code, _, errors) = test(&place, &compared);
+    assert!(code == 3 && errors.contains("there is nothing to compare"), "{errors}");
+    let (code, _, errors) = test(&place, &["--ego", "idm", "--baseline", "nowhere.json", "--out", "r.json", "--quiet"]);
+    assert!(code == 3 && errors.contains("nowhere.json") && !place.path("r.json").exists(), "{errors}");
+    let (code, _, errors) = test(&place, &["--ego", "idm", "--github", "--quiet"]);
+    assert!(code == 2 && errors.contains("--github is of a comparison"), "{errors}");
+    let (code, _, errors) = place.run(&["freeze", "frozen", "--out", "again"]);
+    assert!(code == 3 && errors.contains("it is a frozen suite already"), "{errors}");
 }
 
 #[test]
@@ -393,9 +436,11 @@ fn a_page_plays_what_changed_and_starts_no_program_that_only_a_file_names() {
     assert_eq!(code, 0, "{errors}");
     let shown = std::fs::read_to_string(place.path("page.html")).unwrap();
     assert!(shown.contains("metadrive-idm against idm") && shown.contains("Side by side"));
+    assert!(shown.contains("recrash compare base.json new.json --suite frozen --page page.html"));
+    assert!(shown.contains("href=\"#pair-0\"") && shown.contains("id=\"pair-0\""), "the list leads to what is played");
     let stranger = std::fs::read_to_string(place.path("base.json")).unwrap().replace("\"idm\"", "\"cmd:touch owned\"");
     std::fs::write(place.path("stranger.json"), stranger).unwrap();
     let (code, _, errors) = page("stranger.json");
-    assert!(code == 2 && errors.contains("touch owned"), "{errors}");
+    assert!(code == 2 && errors.contains("touch owned") && errors.contains("--base-ego"), "{errors}");
     assert!(!place.path("owned").exists());
 }

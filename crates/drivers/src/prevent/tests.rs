@@ -19,6 +19,7 @@ fn track(id: &str, role: Role, states: Vec<ActorState>) -> ActorTrack {
         kind: PartnerKind::PassengerCar,
         length_m: 4.3,
         width_m: 1.9,
+        mass_kg: None,
         appears_s: 0.0,
         gone_s: None,
         states,

@@ -1,4 +1,4 @@
-//! What led to a failure, told from its rollout. Rules and limits: `docs/models/causes.md`.
+//! What led to a failure, told from its rollout and the road. Rules and limits: `docs/models/causes.md`.
 
 use recrash_model::cause::Cause;
 use recrash_model::geometry::Vec2;
@@ -7,6 +7,7 @@ use recrash_model::metrics::{Finding, FindingKind, Metrics};
 use recrash_model::results::{TestOutcome, TestResult, TestVerdict};
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout, STEP_S};
 use recrash_model::zones::ContactZone;
+use recrash_roads::{RoadNetwork, RoadPart};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -37,6 +38,7 @@ const CLOSE_S: f64 = 1.0;
 
 /// The contact that a failure is, with what came before it.
 struct Encounter<'a> {
+    network: &'a RoadNetwork,
     metrics: &'a Metrics,
     ego: &'a ActorTrack,
     other: &'a ActorTrack,
@@ -51,8 +53,9 @@ struct Encounter<'a> {
 type Rule = fn(&Encounter) -> bool;
 
 /// Rules of contacts, in order: the first that holds tells the cause.
-const RULES: [(Cause, Rule); 11] = [
-    (Cause::StoodInTheWay, |e| e.stood(e.ego)),
+const RULES: [(Cause, Rule); 12] = [
+    (Cause::StoodInTheWay, |e| e.stood(e.ego) && !e.goes_same_way() && e.blocks()),
+    (Cause::StruckStanding, |e| e.stood(e.ego)),
     (Cause::BrakedForNothing, |e| e.is_behind() && e.braked_for_nothing()),
     (Cause::TurnedAcross, |e| {
         e.turned(e.ego) && !e.turned(e.other) && !e.stood(e.other) && !e.is_behind() && !e.goes_same_way_before()
@@ -68,12 +71,12 @@ const RULES: [(Cause, Rule); 11] = [
 ];
 
 /// What led to the first crash of a run, or where there is none, to its first failure; `None` where it has not failed.
-pub fn cause(rollout: &Rollout, metrics: &Metrics, findings: &[Finding]) -> Option<Cause> {
+pub fn cause(network: &RoadNetwork, rollout: &Rollout, metrics: &Metrics, findings: &[Finding]) -> Option<Cause> {
     let crash = findings.iter().find(|finding| finding.kind.is_crash());
     let first = crash.or_else(|| findings.iter().find(|finding| finding.kind.is_failure()))?;
     Some(match first.kind {
         FindingKind::Contact => {
-            let encounter = Encounter::of(rollout, metrics)?;
+            let encounter = Encounter::of(network, rollout, metrics)?;
             RULES.iter().find(|(_, holds)| holds(&encounter))?.0
         }
         FindingKind::ObstacleContact => Cause::HitObject,
@@ -88,13 +91,13 @@ pub fn cause(rollout: &Rollout, metrics: &Metrics, findings: &[Finding]) -> Opti
 }
 
 impl<'a> Encounter<'a> {
-    fn of(rollout: &'a Rollout, metrics: &'a Metrics) -> Option<Self> {
+    fn of(network: &'a RoadNetwork, rollout: &'a Rollout, metrics: &'a Metrics) -> Option<Self> {
         let (actor, time_s, ego_at, other_at) = rollout.first_ego_contact()?;
         let (ego, other) = (rollout.actors.first()?, rollout.actors.get(actor)?);
         let last = ego.states.len().min(other.states.len()).checked_sub(1)?;
         let end = ((time_s / STEP_S + 1e-6).floor() as usize).min(last);
         let zone = metrics.contact.as_ref()?.ego_zone;
-        Some(Self { metrics, ego, other, end, time_s, at: [ego_at, other_at], zone })
+        Some(Self { network, metrics, ego, other, end, time_s, at: [ego_at, other_at], zone })
     }
 
     /// The state so long before the contact.
@@ -109,6 +112,20 @@ impl<'a> Encounter<'a> {
     /// Whether somebody had been standing.
     fn stood(&self, track: &ActorTrack) -> bool {
         self.window(track, STANDS_S).iter().all(|state| state.velocity().length() < STANDS_MPS)
+    }
+
+    /// Whether the ego, somewhere along its middle, is on a lane whose direction is another one than its own.
+    fn blocks(&self) -> bool {
+        let state = &self.ego.states[self.end];
+        let forward = Vec2::from_heading(state.heading);
+        let crosses = |point: Vec2| {
+            self.network.lanes.iter().any(|lane| {
+                let is_driven = !matches!(self.network.road(lane.road).part, RoadPart::Beside(_));
+                let turned = || math::wrap_angle(lane.heading(lane.local(point).0) - state.heading).abs();
+                is_driven && lane.contains(point) && turned() > SAME_WAY_RAD
+            })
+        };
+        [-0.5, 0.0, 0.5].into_iter().any(|share| crosses(state.position() + forward * (share * self.ego.length_m)))
     }
 
     fn is_frontal(&self) -> bool {

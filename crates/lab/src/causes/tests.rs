@@ -3,6 +3,35 @@ use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{CollisionKind, Contact, EgoMetrics, Timed};
 use recrash_model::rollout::{Event, EventKind, ROLLOUT_FORMAT, Role, Termination, TerminationKind};
+use recrash_model::scenario::MapSpec;
+use recrash_roads::{Centreline, Lane, LaneId, Road, RoadId};
+
+/// A road without a lane.
+fn no_road() -> RoadNetwork {
+    RoadNetwork {
+        map: MapSpec::default(),
+        roads: Vec::new(),
+        lanes: Vec::new(),
+        followers: Vec::new(),
+        named: Vec::new(),
+        lines: Vec::new(),
+        areas: Vec::new(),
+    }
+}
+
+/// One lane through the origin.
+fn lane_with_heading(heading: f64) -> RoadNetwork {
+    let road = Road { from: "a".to_owned(), to: "b".to_owned(), part: RoadPart::Open, lanes: vec![LaneId(0)] };
+    let lane = Lane {
+        road: RoadId(0),
+        index: 0,
+        centreline: Centreline::Straight { start: Vec2::from_heading(heading) * -30.0, heading },
+        length_m: 60.0,
+        width_m: 3.5,
+        end_width_m: 3.5,
+    };
+    RoadNetwork { roads: vec![road], lanes: vec![lane], followers: vec![Vec::new()], ..no_road() }
+}
 
 /// Steps before the contact.
 const STEPS: usize = 60;
@@ -22,6 +51,7 @@ fn track(id: &str, role: Role, way: Way) -> ActorTrack {
         kind: PartnerKind::PassengerCar,
         length_m: 4.5,
         width_m: 1.9,
+        mass_kg: None,
         appears_s: 0.0,
         gone_s: None,
         states: (0..STEPS).map(state).collect(),
@@ -34,8 +64,18 @@ fn the_rules_stand_in_the_order_of_the_table() {
     assert_eq!(asked[..], Cause::ALL[..RULES.len()]);
 }
 
-/// The cause of a contact of two ways, with a zone on the ego.
+/// The cause of a contact of two ways, with a zone on the ego; the road says nothing.
 fn told(ego: Way, other: Way, ego_zone: ContactZone, phantom: Option<Timed>) -> Option<Cause> {
+    told_on(&no_road(), ego, other, ego_zone, phantom)
+}
+
+fn told_on(
+    network: &RoadNetwork,
+    ego: Way,
+    other: Way,
+    ego_zone: ContactZone,
+    phantom: Option<Timed>,
+) -> Option<Cause> {
     let actors = vec![track("ego", Role::Ego, ego), track("cp", Role::Partner, other)];
     let time_s = (STEPS - 1) as f64 * STEP_S;
     let (a_state, b_state) = (actors[0].states[STEPS - 1], actors[1].states[STEPS - 1]);
@@ -82,7 +122,7 @@ fn told(ego: Way, other: Way, ego_zone: ContactZone, phantom: Option<Timed>) -> 
     };
     let contact = Finding { kind: FindingKind::Contact, time_s, value: 0.0, threshold: 0.0, sentence: String::new() };
     let near = Finding { kind: FindingKind::NearMiss, time_s: 1.0, ..contact.clone() };
-    cause(&rollout, &metrics, &[near, contact])
+    cause(network, &rollout, &metrics, &[near, contact])
 }
 
 /// Straight on at 10 m/s, to the contact at the origin.
@@ -124,12 +164,22 @@ fn who_braked_braked_late_or_was_too_close() {
 fn who_is_hit_from_behind_stood_braked_for_nothing_or_was_struck() {
     use ContactZone::Rear;
     let behind: Way = |before_s| (-4.5 - 15.0 * before_s, 0.0, 0.0, 15.0);
-    assert_eq!(told(STANDING, behind, Rear, None), Some(Cause::StoodInTheWay));
+    assert_eq!(told(STANDING, behind, Rear, None), Some(Cause::StruckStanding));
     assert_eq!(told(ON, behind, Rear, None), Some(Cause::WasStruck));
     let just_before = Some(Timed { value: 4.0, time_s: 4.5 });
     assert_eq!(told(BRAKING, behind, Rear, just_before), Some(Cause::BrakedForNothing));
     let long_before = Some(Timed { value: 4.0, time_s: 0.5 });
     assert_eq!(told(BRAKING, behind, Rear, long_before), Some(Cause::WasStruck));
+}
+
+#[test]
+fn who_stands_blocks_only_where_others_drive_another_way() {
+    use ContactZone::{Left, Rear};
+    let (across, along) = (lane_with_heading(math::FRAC_PI_2), lane_with_heading(0.0));
+    assert_eq!(told_on(&across, STANDING, CROSSING, Left, None), Some(Cause::StoodInTheWay));
+    assert_eq!(told_on(&along, STANDING, CROSSING, Left, None), Some(Cause::StruckStanding));
+    let behind: Way = |before_s| (-4.5 - 15.0 * before_s, 0.0, 0.0, 15.0);
+    assert_eq!(told_on(&across, STANDING, behind, Rear, None), Some(Cause::StruckStanding));
 }
 
 #[test]

@@ -11,13 +11,14 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout};
 use recrash_model::severity::{Severity, Suffered};
-use recrash_model::vehicle::VehicleSpec;
 
 /// One of the two at the time of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Party {
-    /// Kind, which gives its mass.
+    /// Kind.
     pub kind: PartnerKind,
+    /// Mass; `None` for what stands firm. [kg]
+    pub mass_kg: Option<f64>,
     /// Its box.
     pub outline: OrientedBox,
     /// Velocity of its centre over ground. [m/s]
@@ -27,7 +28,7 @@ pub struct Party {
 impl Party {
     fn of(track: &ActorTrack, state: &ActorState) -> Self {
         let outline = OrientedBox::new(state.pose(), track.length_m, track.width_m);
-        Self { kind: track.kind, outline, velocity: state.velocity() }
+        Self { kind: track.kind, mass_kg: track.mass_kg(), outline, velocity: state.velocity() }
     }
 }
 
@@ -77,12 +78,11 @@ pub fn severity(first: &Party, second: &Party, impact: Impact) -> Severity {
 }
 
 fn suffered(party: &Party, impulse: Vec2, pair: &injury::Pair, side: usize) -> Suffered {
-    let mass_kg = VehicleSpec::mass_kg(party.kind);
-    let delta_v_mps = mass_kg.map_or(0.0, |mass_kg| impulse.length() / mass_kg);
+    let delta_v_mps = party.mass_kg.map_or(0.0, |mass_kg| impulse.length() / mass_kg);
     let force_clock = (impulse.length() > 0.0).then(|| clock(&party.outline, -impulse));
     Suffered {
         impact_speed_mps: party.velocity.length(),
-        mass_kg,
+        mass_kg: party.mass_kg,
         delta_v_mps,
         force_clock,
         risks: injury::risks(pair, side, delta_v_mps, force_clock),
@@ -132,7 +132,7 @@ fn impulse(first: &Party, second: &Party, normal: Vec2, point: Vec2, impact: Imp
     // What a unit impulse across and along changes of the relative velocity at the point, across, along and crosswise. [1/kg]
     let [mut across_across, mut along_along, mut across_along] = [0.0; 3];
     for party in [first, second] {
-        let Some(mass_kg) = VehicleSpec::mass_kg(party.kind) else { continue };
+        let Some(mass_kg) = party.mass_kg else { continue };
         let (length, width) = (2.0 * party.outline.half_length, 2.0 * party.outline.half_width);
         let inertia = mass_kg * (math::sq(length) + math::sq(width)) / 12.0;
         let arm = point - party.outline.centre;

@@ -1,6 +1,7 @@
 use super::*;
 use recrash_model::geometry::Pose;
 use recrash_model::severity::{InjuryOutcome, RiskCurve};
+use recrash_model::vehicle::VehicleSpec;
 
 const SMOOTH: Impact = Impact { restitution: 0.0, friction: 0.0 };
 
@@ -8,7 +9,7 @@ const SMOOTH: Impact = Impact { restitution: 0.0, friction: 0.0 };
 fn party(kind: PartnerKind, [x, y]: [f64; 2], degrees: f64, speed_mps: f64, [length, width]: [f64; 2]) -> Party {
     let outline =
         OrientedBox::new(Pose { position: Vec2::new(x, y), heading: degrees * math::PI / 180.0 }, length, width);
-    Party { kind, outline, velocity: outline.axis * speed_mps }
+    Party { kind, mass_kg: VehicleSpec::mass_kg(kind), outline, velocity: outline.axis * speed_mps }
 }
 
 fn car(place: [f64; 2], degrees: f64, speed_mps: f64) -> Party {

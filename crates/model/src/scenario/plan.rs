@@ -21,6 +21,11 @@ pub struct Actor {
     /// Length and width, where they differ from its kind's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<Size>,
+    /// Mass with who is in or on it, where it differs from its kind's. A `fixed_object` stands firm without one, and is pushed
+    /// aside with one; who weighs twenty times as much goes on as before. [kg]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.1, max = 60000.0))]
+    pub mass_kg: Option<f64>,
     /// What sticks out or follows: mirrors, doors, a trailer; at most 8.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<Part>,

@@ -11,6 +11,7 @@ use crate::simulators::{Simulator, built_in};
 use crate::stages::design::{DesignAttempt, DesignLog};
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite};
+use recrash_drivers::preventability;
 use recrash_lab::{Scoring, is_sound_contact, judge_by, run_scenario, situation, triage};
 use recrash_model::account::{Account, Untold};
 use recrash_model::metrics::{Answer, Verdict};
@@ -144,6 +145,7 @@ fn tested_run(
 ) -> Result<JudgedRun, RunError> {
     let mut run = run_scenario(scenario, simulator, suite.profile(), None)?;
     let from_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
+    run.judgement.preventability = preventability(&run.rollout);
     run.judgement.verdict = Verdict { checks: vec![situation(&run, recorded, from_s)] };
     Ok(run)
 }

@@ -6,6 +6,7 @@ use crate::error::PipelineError;
 use crate::files::store::to_compact_json;
 use crate::suite::names;
 use crate::suite::{Files, Stage};
+use recrash_drivers::preventability;
 use recrash_lab::run_scenario;
 use recrash_model::selection::Cluster;
 
@@ -23,6 +24,7 @@ fn simulate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let id = &cluster.scenario_id;
     let (_, expectation) = bench.cases.expectation(bench.suite, cluster)?;
     let checked = scenario(bench.suite, id, &names::scenario(id))?;
-    let run = run_scenario(&checked, bench.simulator(), bench.suite.profile(), Some(&expectation))?;
+    let mut run = run_scenario(&checked, bench.simulator(), bench.suite.profile(), Some(&expectation))?;
+    run.judgement.preventability = preventability(&run.rollout);
     Ok(vec![(names::first_run(id), to_compact_json(&run))])
 }

@@ -8,9 +8,11 @@ use crate::options::RecordSource;
 use crate::suite::Suite;
 use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
+use recrash_model::cause::Cause;
 use recrash_model::coverage::CorpusCoverage;
 use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
 use recrash_model::narrative::Origin;
+use recrash_model::preventability::{Bracket, Preventability};
 use recrash_model::record::{FunnelStep, RecordRef};
 use recrash_model::run::JudgedRun;
 use recrash_model::selection::{Coverage, EmbeddingInfo, StageTables, Strategy, TemplateCount};
@@ -217,6 +219,12 @@ pub struct RunSummary {
     /// Probability that it injures somebody seriously, where a published curve covers it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serious_injury: Option<f64>,
+    /// What led to the failure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<Cause>,
+    /// What reference drivers make of the contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preventability: Option<Bracket>,
     /// Whether the ego failed, by the profile's criteria.
     pub failed: bool,
     /// Kinds of findings, each once, failures first.
@@ -243,6 +251,8 @@ impl RunSummary {
                 .as_ref()
                 .map(|severity| [severity.first.delta_v_mps, severity.second.delta_v_mps]),
             serious_injury: run.severity.as_ref().and_then(Severity::serious_injury),
+            cause: run.cause,
+            preventability: run.preventability.as_ref().map(Preventability::bracket),
             failed: run.failed(),
             findings: run.finding_kinds().iter().map(|kind| kind.label().to_owned()).collect(),
             faithful: run.faithful(),
@@ -282,6 +292,28 @@ impl Summary {
         let classes: Vec<FailureClass> = classes.collect();
         let count = |class| classes.iter().filter(|&&other| other == class).count();
         FailureClass::ALL.into_iter().map(|class| (class, count(class))).filter(|(_, count)| *count > 0).collect()
+    }
+
+    /// Failures of the last runs by what led to them: one finding each, the most frequent first.
+    pub fn causes(&self) -> Vec<(Cause, usize)> {
+        let count = |cause: Cause| self.last_failures().filter(|run| run.cause == Some(cause)).count();
+        let mut causes: Vec<_> = Cause::ALL.into_iter().map(|cause| (cause, count(cause))).collect();
+        causes.retain(|(_, count)| *count > 0);
+        causes.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        causes
+    }
+
+    /// Failures of the last runs with a contact, by what reference drivers make of it.
+    pub fn brackets(&self) -> BTreeMap<Bracket, usize> {
+        let mut brackets = BTreeMap::new();
+        for bracket in self.last_failures().filter_map(|run| run.preventability) {
+            *brackets.entry(bracket).or_default() += 1;
+        }
+        brackets
+    }
+
+    fn last_failures(&self) -> impl Iterator<Item = &RunSummary> {
+        self.cases.iter().filter_map(|case| case.tuned.as_ref()).filter(|run| run.failed)
     }
 
     /// Scenarios the ego fails, as designed and as tuned.

@@ -7,6 +7,7 @@ use crate::files::store::{to_compact_json, to_json};
 use crate::simulators::built_in;
 use crate::suite::names;
 use crate::suite::{Files, Stage};
+use recrash_drivers::preventability;
 use recrash_lab::{run_scenario, triage};
 use recrash_model::selection::Cluster;
 use recrash_model::triage::TRIAGE_FORMAT;
@@ -25,7 +26,8 @@ fn work(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let (suite, id) = (bench.suite, &cluster.scenario_id);
     let (_, expectation) = bench.cases.expectation(suite, cluster)?;
     let scenario = scenario(suite, id, &names::tuned(id))?;
-    let run = run_scenario(&scenario, bench.simulator(), suite.profile(), Some(&expectation))?;
+    let mut run = run_scenario(&scenario, bench.simulator(), suite.profile(), Some(&expectation))?;
+    run.judgement.preventability = preventability(&run.rollout);
     let mut files = vec![(names::tuned_run(id), to_compact_json(&run))];
     if run.failed() {
         let (triage, reference) = triage(&scenario, suite.ego(), &run.findings, suite.profile(), &built_in())?;

@@ -543,6 +543,9 @@ fn read_saved(store: &Store) -> Result<Saved, PipelineError> {
     };
     let saved: serde_json::Value = store.read_json(SUITE_FILE).map_err(|error| match error {
         PipelineError::Damaged { problem, .. } => unusable(problem),
+        PipelineError::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+            PipelineError::NoSuite { dir: store.dir().to_owned() }
+        }
         other => other,
     })?;
     let format = saved["format"].as_str().unwrap_or_default().to_owned();

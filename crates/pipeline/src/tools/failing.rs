@@ -10,7 +10,6 @@ use crate::simulators::{SimulatorKind, start_simulator};
 use crate::tools::freezing::Opened;
 use crate::tools::testing::{Bench, TestRequest};
 use rayon::prelude::*;
-use recrash_lab::causes::cause;
 use recrash_lab::minimal::{Needed, minimal};
 use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::run_scenario;
@@ -100,6 +99,8 @@ pub struct MinimalOf {
     pub id: String,
     /// File of the stripped scenario, from the folder.
     pub scenario: String,
+    /// What it fails by, stripped; it may be another finding than at first.
+    pub findings: Vec<FindingKind>,
     /// File of the nearest scenario that passes.
     pub twin: Option<String>,
     /// How that differs.
@@ -132,8 +133,7 @@ fn failing<'a>(bench: &'a Bench, only: &[String]) -> Result<Vec<Failing<'a>>, Pi
             Ok(run) => run,
             Err(error) => return Some(Err(PipelineError::not_run(&error))),
         };
-        let cause = cause(&run.rollout, &run.metrics, &run.findings);
-        run.failed().then(|| Ok(Failing { test, scenario, findings: run.finding_kinds(), cause }))
+        run.failed().then(|| Ok(Failing { test, scenario, findings: run.finding_kinds(), cause: run.cause }))
     };
     bench.threads.install(|| bench.tests().filter_map(fails).collect())
 }
@@ -234,6 +234,11 @@ pub fn minimal_failures(
         .flat_map(|suite| &suite.scenarios)
         .map(|scenario| (scenario.draft().id.as_str(), scenario.draft()))
         .collect();
+    if record.is_some() && !bench.opened.suite.tests.iter().any(|test| told.contains_key(test.id.as_str())) {
+        return Err(PipelineError::bad_input(
+            "the frozen suite of the records has none of the tests: it is of another suite",
+        ));
+    }
     must_be_free(folder, Some(MINIMAL_FILE))?;
     let failing = failing(&bench, &request.only)?;
     let store = Store::create(folder, write_suite_file)?;
@@ -251,8 +256,18 @@ pub fn minimal_failures(
             }
             None => None,
         };
+        let findings = match recrash_roads::check(found.draft) {
+            Ok(checked) => run_scenario(&checked.value, &bench.simulator, bench.profile(), None)
+                .map_err(|error| PipelineError::not_run(&error))?
+                .finding_kinds()
+                .into_iter()
+                .filter(|kind| kind.is_failure())
+                .collect(),
+            Err(_) => Vec::new(),
+        };
         let difference = found.twin.map(|twin| twin.difference);
-        Ok(MinimalOf { id: id.clone(), scenario, twin, difference, taken: found.taken, needed: found.needed })
+        let (taken, needed) = (found.taken, found.needed);
+        Ok(MinimalOf { id: id.clone(), scenario, findings, twin, difference, taken, needed })
     };
     let report = MinimalReport {
         format: "recrash.minimal/1",

@@ -35,11 +35,15 @@ impl Contacts {
         if let Some(&(first, partner)) = touching.first() {
             // A headline that tells the contact is told again, in full, by the story.
             let early = story.standing.iter().position(|standing| !standing).unwrap_or(0);
+            // "A van rear-ended it. ... A passenger car rear-ended it": the same one, called otherwise.
+            let names = |frame: &Frame, other: Actor| {
+                [frame.who, frame.object].contains(&Some(other)) && !story.world.actors[other].another
+            };
             let again = touching.iter().find(|(number, other)| {
                 let frame = &frames[*number];
                 frames[first].sentence == early
                     && frame.sentence > early
-                    && (*other == partner || story.world.actors[*other].mentions > 1)
+                    && (*other == partner || story.world.actors[*other].mentions > 1 || names(frame, *other))
                     && alike(story, partner, *other)
             });
             // "... struck it from behind. It then struck the left side": two events, no headline.

@@ -63,7 +63,11 @@ impl Reading<'_> {
         if until && frame.progress != crate::lexicon::Progress::Wished {
             return true;
         }
-        if number <= contact || frame.looks_back || frame.aside && frame.sentence == at.sentence {
+        if number <= contact
+            || self.is_told_back(frame)
+            || frame.looks_back
+            || frame.aside && frame.sentence == at.sentence
+        {
             return false;
         }
         // "made contact while passing": at the same time.
@@ -73,6 +77,24 @@ impl Reading<'_> {
             && frame.clause > at.clause
             && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
         !(simultaneous || frame.described && frame.sentence == at.sentence)
+    }
+
+    /// "Prior to the collision, it came to a stop", told behind the collision.
+    fn is_told_back(&self, frame: &Frame) -> bool {
+        let sentence = self.story.sentences[frame.sentence];
+        let words: Vec<&str> =
+            self.story.tokens[sentence.first..sentence.end].iter().take(5).map(|token| token.text.as_str()).collect();
+        let crash =
+            |word: &&str| matches!(*word, "collision" | "crash" | "contact" | "impact" | "incident" | "accident");
+        match words.as_slice() {
+            ["before" | "preceding", rest @ ..] => rest.iter().take(2).any(crash),
+            [
+                "prior" | "leading" | "just" | "immediately" | "shortly" | "seconds" | "moments",
+                "up" | "to" | "before" | "prior",
+                rest @ ..,
+            ] => rest.iter().take(3).any(crash),
+            _ => false,
+        }
     }
 
     /// Frames of somebody up to the contact.

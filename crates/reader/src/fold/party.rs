@@ -477,12 +477,14 @@ fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
     all
 }
 
-/// "slowed to about 6 mph": the words before the number, where nothing is told of a later speed.
+/// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed.
 fn slowed_to(before: &[crate::token::Token], frame: &Frame) -> bool {
     let to = before.iter().rev().find(|token| {
         !matches!(token.text.as_str(), "about" | "approximately" | "around" | "roughly" | "only" | "just" | "~")
     });
-    frame.act() == Some(Act::Slow) && frame.happened() && to.is_some_and(|token| token.text == "to")
+    matches!(frame.act(), Some(Act::Slow | Act::Accelerate))
+        && frame.happened()
+        && to.is_some_and(|token| token.text == "to")
 }
 
 /// Speeds that the words tell of somebody.

@@ -447,7 +447,12 @@ impl Parser<'_> {
                     return;
                 }
                 // "While stopped at a light, a man began to cross": of somebody new it is not told.
-                let new = self.world.actors[actor].mentions == 1 && actor != SUBJECT && carry.main.is_none();
+                let new = actor != SUBJECT && carry.main.is_none() && {
+                    let known = &self.world.actors[actor];
+                    // Only the headline has named it so far.
+                    let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
+                    known.mentions == 1 || named_only
+                };
                 for pending in std::mem::take(&mut carry.pending) {
                     let waiting = &self.frames[pending];
                     let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
@@ -683,10 +688,19 @@ impl Parser<'_> {
                         Some(Act::Follow | Act::SetOff | Act::Drift | Act::Accelerate | Act::Reverse)
                     )
             });
+            let enters = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|before| {
+                let words = &self.tokens[before.first..placed.first];
+                before.who == frame.who
+                    && before.happened()
+                    && before.act() == Some(Act::Enter)
+                    && words.iter().any(|token| matches!(token.text.as_str(), "intersection" | "junction"))
+            });
             frame.progress =
                 match (carry.pushed, going && matches!(frame.act(), Some(Act::Pass | Act::Park | Act::LaneChange))) {
                     (true, _) => Progress::Real,
                     (_, true) => Progress::Tried,
+                    // "entered the intersection to make a left turn": so it did.
+                    _ if enters && frame.act() == Some(Act::Turn) => Progress::Real,
                     _ => Progress::Wished,
                 };
         }

@@ -4,5 +4,6 @@
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
 mod common;
 mod sabotage;
+mod steps;
 mod stories;
 mod ways;

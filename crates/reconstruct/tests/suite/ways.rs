@@ -4,7 +4,7 @@ use crate::common::account_of;
 use recrash_model::account::{Account, Act, Fact, LeftRight, Origin};
 use recrash_model::math;
 use recrash_model::metrics::{CheckKind, CheckResult};
-use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::rollout::{ActorState, Event, EventKind};
 use recrash_model::template::Movement;
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 
@@ -64,19 +64,19 @@ pub fn shown() -> Vec<(String, Account, Reconstruction)> {
     told.into_iter().map(|(name, account)| (name, account.clone(), made(&account))).collect()
 }
 
-fn story(text: &str) -> Account {
+pub fn story(text: &str) -> Account {
     account_of(text).expect("a story")
 }
 
 /// A staging that shows all that is told.
-fn made(account: &Account) -> Reconstruction {
+pub fn made(account: &Account) -> Reconstruction {
     let made = reconstruct(account).expect("it can be staged");
     assert!(made.is_true(), "{:?}", made.verdict);
     made
 }
 
 /// What of an account is not shown by the staging of the same account without some of its facts.
-fn missed(account: &Account, without: impl Fn(&mut Account)) -> Vec<CheckKind> {
+pub fn missed(account: &Account, without: impl Fn(&mut Account)) -> Vec<CheckKind> {
     let mut less = account.clone();
     without(&mut less);
     assert!(less != *account, "nothing was taken away");
@@ -86,19 +86,29 @@ fn missed(account: &Account, without: impl Fn(&mut Account)) -> Vec<CheckKind> {
     verdict.checks.iter().filter(|check| check.result == CheckResult::NotShown).map(|check| check.kind).collect()
 }
 
-fn without_acts(account: &mut Account, acts: &[Act]) {
+pub fn without_acts(account: &mut Account, acts: &[Act]) {
     account.sv.acts.retain(|fact| !acts.contains(&fact.act));
 }
 
-fn speeds(track: &ActorTrack) -> Vec<f64> {
-    track.states.iter().take(90).map(|state| state.speed()).collect()
+/// The last step before the ego is touched.
+pub fn before_contact(made: &Reconstruction) -> usize {
+    let touches = |event: &Event| {
+        matches!(event.kind, EventKind::Contact { a: 0, .. } | EventKind::ObstacleContact { actor: 0, .. })
+    };
+    let first = made.rollout.events.iter().find(|event| touches(event)).expect("a contact");
+    (first.time_s * 10.0).ceil() as usize - 1
+}
+
+/// The ego's speeds until it is touched.
+pub fn speeds(made: &Reconstruction) -> Vec<f64> {
+    made.rollout.ego_track().states[..=before_contact(made)].iter().map(|state| state.speed()).collect()
 }
 
 #[test]
 fn an_ego_that_moved_up_stands_moves_and_stands_again() {
     let account = story(MOVED_UP);
     let shown = made(&account);
-    let speeds = speeds(shown.rollout.ego_track());
+    let speeds = speeds(&shown);
     let stood = speeds.iter().position(|speed| *speed == 0.0).expect("it stands");
     let moved = stood + speeds[stood..].iter().position(|speed| *speed > 1.0).expect("it moves up");
     assert!(speeds[moved..].contains(&0.0), "{speeds:?}");
@@ -124,11 +134,13 @@ fn who_stood_behind_an_ego_that_moved_up_moves_up_too() {
 fn an_ego_that_reversed_before_it_stood_reverses() {
     let account = story(REVERSED_FIRST);
     let shown = made(&account);
-    assert!(speeds(shown.rollout.ego_track()).iter().any(|speed| *speed < -1.0));
-    assert_eq!(missed(&account, |less| without_acts(less, &[Act::Reverse])), [CheckKind::SvState]);
+    assert!(speeds(&shown).iter().any(|speed| *speed < -1.0));
+    // So is that it did before the truck.
+    let missed = missed(&account, |less| without_acts(less, &[Act::Reverse]));
+    assert_eq!(missed, [CheckKind::SvState, CheckKind::CpState]);
 }
 
-fn partner_without_acts(account: &mut Account, acts: &[Act]) {
+pub fn partner_without_acts(account: &mut Account, acts: &[Act]) {
     account.partner.as_mut().expect("a partner").acts.retain(|fact| !acts.contains(&fact.act));
 }
 
@@ -137,12 +149,13 @@ fn partner_moves(account: &mut Account, movement: Movement) {
 }
 
 /// The partner's states, and the one at the contact.
-fn partner(made: &Reconstruction) -> (&[ActorState], ActorState) {
+pub fn partner(made: &Reconstruction) -> (&[ActorState], ActorState) {
     let track = made.rollout.actors.iter().find(|track| track.id == "cp").expect("a partner");
-    (&track.states, track.states[89])
+    let last = before_contact(made);
+    (&track.states[..=last], track.states[last])
 }
 
-fn degrees_between(one: f64, other: f64) -> f64 {
+pub fn degrees_between(one: f64, other: f64) -> f64 {
     math::wrap_angle(one - other).to_degrees().abs()
 }
 
@@ -150,7 +163,7 @@ fn degrees_between(one: f64, other: f64) -> f64 {
 fn who_pulls_out_and_passes_comes_from_the_kerb_behind() {
     let account = story(FROM_THE_KERB);
     let shown = made(&account);
-    let ((states, _), ego) = (partner(&shown), shown.rollout.ego_track().states[89]);
+    let ((states, _), ego) = (partner(&shown), shown.rollout.ego_track().states[before_contact(&shown)]);
     assert_eq!(states[0].speed(), 0.0);
     assert!(states[0].x < ego.x - 8.0 && states[0].y < -2.0, "{:?}", states[0]);
     let beside = missed(&account, |less| {
@@ -181,7 +194,7 @@ fn who_turns_into_the_egos_road_does_so_in_the_junction() {
     let (states, met) = partner(&shown);
     assert!(degrees_between(met.heading, math::PI) < 20.0, "{met:?}");
     let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
-    assert!(states[..89].iter().all(|state| scenario.network().on_road(state.position())));
+    assert!(states.iter().all(|state| scenario.network().on_road(state.position())));
     let straight = missed(&account, |less| {
         partner_without_acts(less, &[Act::Turn]);
         partner_moves(less, Movement::Straight);
@@ -263,8 +276,9 @@ fn a_thing_that_rolled_into_the_way_rolls() {
 fn a_gate_that_swung_swings_into_the_ego() {
     let account = story(GATE);
     let shown = made(&account);
+    let last = before_contact(&shown);
     let arm = shown.rollout.actors.iter().find(|track| track.part_of.is_some()).expect("an arm");
-    assert!(degrees_between(arm.states[80].heading, arm.states[89].heading) > 20.0);
+    assert!(degrees_between(arm.states[last - 9].heading, arm.states[last].heading) > 20.0);
     let shut = missed(&account, |less| partner_without_acts(less, &[Act::OpenDoor]));
     assert!(shut.contains(&CheckKind::CpState), "{shut:?}");
 }

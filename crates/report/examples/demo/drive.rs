@@ -294,6 +294,7 @@ pub fn run(cluster: &Cluster, plan: &Plan, arrival_gap_s: f64, rerun_command: St
     };
     let track = |id: &str, role, kind, spec: VehicleSpec, states| ActorTrack {
         part_of: None,
+        mass_kg: None,
         appears_s: 0.0,
         gone_s: None,
         id: id.into(),

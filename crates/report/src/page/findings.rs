@@ -34,7 +34,8 @@ pub fn section(context: &Context) -> Markup {
                     " scenarios as designed and " (context.summary.failed_after) " after tuning. The other kinds are odd behaviour worth a look."
                 }
             }
-            .panel { h2 { "What the failures are worth" } (triage::by_class(context)) }
+            .panel { h2 { "Causes: one finding each" } (triage::by_cause(context)) }
+            .panel { h2 { "How other egos fare in the failures" } (triage::by_class(context)) }
             .panel { h2 { "By kind" } (by_kind(context)) }
             .panel { h2 { "Every finding" } (every(context)) }
         }

@@ -27,6 +27,10 @@ pub fn render(view: &PairsView) -> String {
                 (parts::command(&view.command))
             }
             @for table in &view.tables { (table_of(table)) }
+            @if view.pairs.len() > 1 { (index(view)) }
+            @if let Some(more) = &view.more {
+                details { summary { (words::clean(&more.caption, 200)) } (rows_of(more)) }
+            }
             @for (position, pair) in view.pairs.iter().enumerate() { (section(view, position, pair)) }
         }
     };
@@ -36,12 +40,35 @@ pub fn render(view: &PairsView) -> String {
 fn table_of(table: &TableView) -> Markup {
     html! {
         h2 { (words::clean(&table.caption, 200)) }
+        (rows_of(table))
+        @if table.rows.is_empty() { p.empty { "None." } }
+    }
+}
+
+/// What is played below, each with a link.
+fn index(view: &PairsView) -> Markup {
+    html! {
+        h2 { "Played below" }
+        .table-wrap { table.plain {
+            caption.hidden-text { "Scenarios that are played on this page" }
+            thead { tr { th scope="col" { "scenario" } th scope="col" { "what is different" } } }
+            tbody { @for (position, pair) in view.pairs.iter().enumerate() {
+                tr {
+                    td { a href={ "#pair-" (position) } { (words::clean(&pair.title, 120)) } }
+                    td { (words::clean(&pair.remark, 400)) }
+                }
+            } }
+        } }
+    }
+}
+
+fn rows_of(table: &TableView) -> Markup {
+    html! {
         .table-wrap { table.plain {
             caption.hidden-text { (words::clean(&table.caption, 200)) }
             thead { tr { @for name in &table.header { th scope="col" { (words::clean(name, 80)) } } } }
             tbody { @for row in &table.rows { tr { @for cell in row { td { (words::clean(cell, 400)) } } } } }
         } }
-        @if table.rows.is_empty() { p.empty { "None." } }
     }
 }
 
@@ -73,6 +100,7 @@ mod tests {
             criteria: criteria(),
             tables: vec![TableView { caption: bad.clone(), header: vec![bad.clone()], rows: vec![vec![bad.clone()]] }],
             pairs: Vec::new(),
+            more: Some(TableView { caption: bad.clone(), header: vec![bad.clone()], rows: vec![vec![bad.clone()]] }),
         };
         let page = render(&view);
         assert!(!page.contains("<img") && page.contains("&lt;img"), "{page}");

@@ -3,15 +3,68 @@
 use super::case::Case;
 use super::{Context, parts};
 use crate::summary::Result;
-use crate::view::CaseRow;
+use crate::view::{CaseRow, RunRow};
+use crate::words::fixed;
 use crate::{anchor, words};
 use maud::{Markup, html};
+use recrash_model::cause::Cause;
 use recrash_model::metrics::{FindingKind, Timed};
+use recrash_model::preventability::Preventability;
 use recrash_model::rollout::TerminationKind;
+use recrash_model::severity::Severity;
 use recrash_model::triage::FailureClass;
 
 /// Scenarios of a class that are named; the table finds the rest. [count]
 const LONGEST_LIST: usize = 30;
+
+/// Failures by what led to them: one finding with many scenarios, the shortest run first.
+pub fn by_cause(context: &Context) -> Markup {
+    let failed: Vec<(&CaseRow, &RunRow)> = context
+        .suite
+        .cases
+        .iter()
+        .filter_map(|case| Some((case, case.last_run().filter(|run| run.failed())?)))
+        .collect();
+    let mut groups: Vec<(Cause, Vec<(&CaseRow, &RunRow)>)> = Cause::ALL
+        .into_iter()
+        .map(|cause| (cause, failed.iter().copied().filter(|(_, run)| run.cause == Some(cause)).collect()))
+        .filter(|(_, of): &(Cause, Vec<_>)| !of.is_empty())
+        .collect();
+    groups.sort_by_key(|(_, of)| std::cmp::Reverse(of.len()));
+    for (_, of) in &mut groups {
+        of.sort_by(|a, b| a.1.metrics.duration_s.total_cmp(&b.1.metrics.duration_s));
+    }
+    let worst = |of: &[(&CaseRow, &RunRow)]| {
+        of.iter()
+            .filter_map(|(_, run)| run.severity.as_ref())
+            .map(Severity::harm_mps)
+            .fold(None, |most, harm| Some(most.map_or(harm, |most: f64| most.max(harm))))
+    };
+    html! {
+        @if groups.is_empty() { p.empty { "There are no failures." } } @else {
+            .table-wrap { table.plain {
+                caption.hidden-text { "Failures by what led to them" }
+                thead { tr { th scope="col" { "Cause" } th.right scope="col" { "Scenarios" } td {} th.right scope="col" title="the greater change of velocity of the two" { "Worst delta-v" } th scope="col" { "Which, the shortest first" } } }
+                tbody { @for (cause, of) in &groups {
+                    tr {
+                        th scope="row" { (words::capital(cause.label())) }
+                        td.right.number { (of.len()) }
+                        td.bar-cell { (parts::bar(of.len() as f64 / failed.len() as f64, "bad")) }
+                        td.right { (parts::quantity(worst(of), 1, "m/s", "no contact of two road users")) }
+                        td {
+                            @for (i, (case, _)) in of.iter().take(LONGEST_LIST).enumerate() {
+                                @if i > 0 { ", " }
+                                a href={ "#" (anchor::anchor(&case.scenario_id)) } { (words::clean(&case.scenario_id, 80)) }
+                            }
+                            @if of.len() > LONGEST_LIST { " and " (of.len() - LONGEST_LIST) " more; results.csv names the cause of each" }
+                        }
+                    }
+                } }
+            } }
+            p.muted { "Told by rules from the rollout and the road; they say what happened, not who is to blame: docs/models/causes.md." }
+        }
+    }
+}
 
 /// How many failures of each class there are, and which.
 pub fn by_class(context: &Context) -> Markup {
@@ -51,6 +104,8 @@ pub fn of_case(case: Case) -> Markup {
     let kinds = last.finding_kinds();
     html! {
         p { (parts::class_chip(triage.class)) " " (words::capital(triage.class.meaning())) "." }
+        @if let Some(cause) = last.run.cause { p { b { "Cause: " } (cause.label()) ". " span.muted { "Told by rules from the rollout: docs/models/causes.md." } } }
+        @if let Some(found) = &last.run.preventability { (in_their_place(found)) }
         .table-wrap { table.plain {
             caption.hidden-text { "Every ego on this scenario" }
             thead { tr { th scope="col" { "Ego" } th scope="col" { "Avoids it" } th scope="col" { "Result" } th scope="col" { "Least gap" } th scope="col" { "Ended by" } th scope="col" { "Findings" } } }
@@ -61,6 +116,25 @@ pub fn of_case(case: Case) -> Markup {
                 }
             }
         } }
+    }
+}
+
+/// The bracket over the reference drivers whose source covers the contact.
+fn in_their_place(found: &Preventability) -> Markup {
+    let number = |value: f64| fixed(value, 1).unwrap_or_default();
+    html! {
+        p {
+            b { "In the ego's place: " } (found.bracket().label())
+            @for (i, driver) in found.drivers.iter().enumerate() {
+                @if i == 0 { ": " } @else { ", " }
+                (words::clean(&driver.driver, 40))
+                @match driver.closing_speed_mps {
+                    None => " avoids it",
+                    Some(left) => { " touches at " (number(left)) "\u{a0}m/s of closing speed (the ego at " (number(found.closing_speed_mps)) ")" }
+                }
+            }
+            ". " span.muted { "docs/models/reference-drivers.md" }
+        }
     }
 }
 

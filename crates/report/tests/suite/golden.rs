@@ -2,6 +2,8 @@
 //! refused.
 
 use crate::suite;
+use recrash_model::cause::Cause;
+use recrash_model::preventability::Preventability;
 use recrash_report::SuiteView;
 
 fn some_cases() -> SuiteView {
@@ -9,6 +11,9 @@ fn some_cases() -> SuiteView {
     let all = std::mem::take(&mut suite.cases);
     suite.cases =
         all.into_iter().enumerate().filter(|(i, _)| [0, 5, 6, 8, 16, 18].contains(i)).map(|(_, case)| case).collect();
+    let failed = suite.cases[0].before.as_mut().expect("it was run");
+    failed.judgement.cause = Some(Cause::BrakedLate);
+    failed.judgement.preventability = Some(Preventability { closing_speed_mps: 5.0, drivers: Vec::new() });
     suite.cases[1].edited = vec!["4-scenarios/06-intersection-straight-left.json".to_owned()];
     suite
 }

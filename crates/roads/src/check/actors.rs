@@ -50,6 +50,9 @@ pub(super) fn numbers(draft: &ScenarioDraft, remarks: &mut Remarks) -> bool {
             remarks.error("scenario.duplicate-id", format!("{path}.id"), message, "give each road user its own id");
         }
         size(actor.size, &format!("{path}.size"), remarks);
+        if let Some(mass_kg) = actor.mass_kg {
+            remarks.number(&format!("{path}.mass_kg"), mass_kg, 0.1, 60_000.0, "kg");
+        }
         parts(&actor.parts, &path, remarks);
         plan(&actor.plan, actor.kind, &format!("{path}.plan"), remarks);
     }
@@ -435,7 +438,8 @@ pub(super) fn placement(
     course.lines = stop_lines(&course, control, half_length_m);
     let pose =
         course.motion(0, 0.0, course.legs[0].reverse, crate::course::Beside { t_m, ..Default::default() }, 0.0).0;
-    Some(ActorPlacement { kind, length_m, width_m, pose, course, t_m, parts: parts.to_vec() })
+    let mass_kg = VehicleSpec::mass_kg(kind);
+    Some(ActorPlacement { kind, length_m, width_m, mass_kg, pose, course, t_m, parts: parts.to_vec() })
 }
 
 /// From the rear axle forward to the centre; who walks turns about its middle. [m]

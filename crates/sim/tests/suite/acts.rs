@@ -7,7 +7,7 @@ use recrash_model::math;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
 use recrash_model::scenario::{
     Act, Actor, ActorPlan, Aspect, Control, Deed, Device, Doing, Leg, MissionStop, Part, PartKind, Phase, Place,
-    ScenarioDraft, Trigger, Turn,
+    ScenarioDraft, Size, Trigger, Turn,
 };
 use recrash_sim::{Ego, Run, Seat, simulate};
 
@@ -37,6 +37,7 @@ fn actor(id: &str, x: f64, y: f64, speed_mps: f64, course: Vec<Leg>, acts: Vec<A
         id: id.to_owned(),
         kind: PartnerKind::PassengerCar,
         size: None,
+        mass_kg: None,
         parts: Vec::new(),
         plan: ActorPlan { speed_mps, course, acts, ..ActorPlan::standing(Place::at(x, y, 0.0)) },
     }
@@ -172,6 +173,39 @@ fn a_queue_that_is_pushed_from_behind_reaches_the_ego() {
     assert_eq!(ego.vx, 0.0);
     // Equal masses and a restitution of 0.1: 6.6 m/s, less what half a metre of sliding takes.
     assert!(other.vx > 5.5 && other.vx < 6.6, "{}", other.vx);
+}
+
+/// A cone of this mass in the way of a car that holds 10 m/s. [kg]
+fn cone_in_the_way(mass_kg: Option<f64>) -> Rollout {
+    let mut draft = scene();
+    let cone = actor("cone", 60.0, 0.0, 0.0, Vec::new(), Vec::new());
+    let size = Some(Size { length_m: 0.4, width_m: 0.4 });
+    draft.actors.push(Actor { kind: PartnerKind::FixedObject, size, mass_kg, ..cone });
+    draft.actors.push(actor("car", 10.0, 0.0, 10.0, vec![straight_on(250.0, 0.0)], Vec::new()));
+    draft.duration_s = 15.0;
+    recorded(draft)
+}
+
+#[test]
+fn a_cone_is_pushed_aside_and_the_car_goes_on() {
+    let rollout = cone_in_the_way(Some(4.5));
+    let (car, cone) = (track(&rollout, "car"), track(&rollout, "cone"));
+    let last = |track: &recrash_model::rollout::ActorTrack| *track.states.last().unwrap();
+    assert_eq!(last(car).vx, 10.0);
+    // With a restitution of 0.1 it flies off at 1.1 m / (1 + 4.5 / 1500) of the car's speed, and slides for v^2 / 2a.
+    let v = 11.0 / (1.0 + 4.5 / 1500.0);
+    assert!((last(cone).x - 60.0 - v * v / 7.0).abs() < 0.02, "{}", last(cone).x);
+    assert_eq!((last(cone).vx, last(cone).vy), (0.0, 0.0));
+    assert_eq!(cone.mass_kg(), Some(4.5));
+}
+
+#[test]
+fn a_bollard_stands_firm_and_so_does_who_hits_it() {
+    let rollout = cone_in_the_way(None);
+    let (car, bollard) = (track(&rollout, "car"), track(&rollout, "cone"));
+    assert!((bollard.states.last().unwrap().x - 60.0).abs() < 0.02);
+    assert_eq!(car.states.last().unwrap().vx, 0.0);
+    assert_eq!(bollard.mass_kg(), None);
 }
 
 #[test]

@@ -37,6 +37,7 @@ pub fn straight_on(scenario: &Scenario, steps: usize) -> Rollout {
             id: id.to_owned(),
             role,
             part_of: None,
+            mass_kg: None,
             appears_s: 0.0,
             gone_s: None,
             kind: placement.kind,

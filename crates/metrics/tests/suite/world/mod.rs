@@ -111,6 +111,7 @@ pub fn glide(x: f64, y: f64, heading: f64, speed: f64, steps: usize) -> Vec<Acto
 pub fn actor(id: &str, role: Role, states: Vec<ActorState>) -> ActorTrack {
     ActorTrack {
         part_of: None,
+        mass_kg: None,
         appears_s: 0.0,
         gone_s: None,
         id: id.to_owned(),

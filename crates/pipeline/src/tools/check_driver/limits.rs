@@ -40,6 +40,10 @@ pub struct Survived {
     pub driver: String,
     /// From this time to collision on it touches nobody; absent where it crashes at 8 s. [s]
     pub from_s: Option<f64>,
+    /// Whether it touches nobody from the regulation's limit on.
+    pub keeps_belted: bool,
+    /// The same for the limit with standing or unbelted occupants.
+    pub keeps_standing: bool,
 }
 
 /// Every driver at every closing speed.
@@ -48,18 +52,23 @@ pub fn check(simulator: Option<&dyn Simulator>) -> Result<Vec<LimitCheck>, Pipel
 }
 
 fn at(closing_kmh: f64, simulator: Option<&dyn Simulator>) -> Result<LimitCheck, PipelineError> {
+    let limit_s = |occupants| least_time_to_collision_s(closing_kmh / 3.6, occupants);
+    let (belted_s, standing_s) = (limit_s(Occupants::Belted), limit_s(Occupants::Standing));
+    let of = |driver: &str, from_s: Option<f64>| {
+        // The search knows hundredths.
+        let keeps = |limit_s: f64| from_s.is_some_and(|from_s| from_s <= limit_s + 0.5 * FINE_S);
+        Survived { driver: driver.to_owned(), from_s, keeps_belted: keeps(belted_s), keeps_standing: keeps(standing_s) }
+    };
     let mut survived = Vec::new();
     for driver in ReferenceDriver::ALL {
         let from_s = least(|time_s| Ok(drive(&cut_in(closing_kmh, time_s, WIDTH_M), driver).is_none()))?;
-        survived.push(Survived { driver: driver.name().to_owned(), from_s });
+        survived.push(of(driver.name(), from_s));
     }
     if let Some(simulator) = simulator {
         let width_m = scenarios::car().width_m;
         let from_s = least(|time_s| Ok(run(simulator, &cut_in(closing_kmh, time_s, width_m))? == Verdict::Avoided))?;
-        survived.push(Survived { driver: simulator.ego().to_owned(), from_s });
+        survived.push(of(simulator.ego(), from_s));
     }
-    let limit_s = |occupants| least_time_to_collision_s(closing_kmh / 3.6, occupants);
-    let (belted_s, standing_s) = (limit_s(Occupants::Belted), limit_s(Occupants::Standing));
     Ok(LimitCheck { closing_kmh, belted_s, standing_s, survived })
 }
 

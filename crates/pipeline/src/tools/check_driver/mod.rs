@@ -9,6 +9,7 @@ mod scenarios;
 pub use limits::{LimitCheck, Survived};
 
 use crate::error::PipelineError;
+use crate::files::folders::must_be_free;
 use crate::files::output::Outputs;
 use crate::files::store::{io, to_json};
 use crate::progress::{Progress, ProgressEvent};
@@ -20,6 +21,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+
+/// What was found: the file that says that a folder is one of ours.
+const CHECK_FILE: &str = "check-driver.json";
 
 /// What to try, and where to write it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -121,6 +125,7 @@ pub fn check_driver(request: &CheckDriverRequest, progress: &dyn Progress) -> Re
         Some(ego) => Some(start_simulator(SimulatorKind::Native, ego, Path::new(""), 1, request.patience)?),
         None => None,
     };
+    must_be_free(&request.out, Some(CHECK_FILE))?;
     std::fs::create_dir_all(&request.out).map_err(|error| io("create", &request.out, error))?;
     let mut outputs = Outputs::default();
     let mut files = Vec::new();
@@ -145,7 +150,7 @@ pub fn check_driver(request: &CheckDriverRequest, progress: &dyn Progress) -> Re
     progress.event(ProgressEvent::Advanced { stage: STAGE, unit: "limits", skipped: false });
     let check = DriverCheck { format: "recrash.check-driver/1", every: request.every.max(1), grids, limits };
     files.push(("verdicts.csv".to_owned(), csv.into_bytes()));
-    files.push(("check-driver.json".to_owned(), to_json(&check)));
+    files.push((CHECK_FILE.to_owned(), to_json(&check)));
     for (name, content) in files {
         outputs.claim(&request.out.join(name))?.write(&content)?;
     }

@@ -2,13 +2,15 @@
 
 use crate::error::PipelineError;
 use crate::files::output::Output;
+use crate::files::paths::quoted;
 use crate::simulators::SimulatorKind;
 use crate::tools::testing::{Bench, TestRequest};
 use rayon::prelude::*;
 use recrash_lab::run_scenario;
-use recrash_model::comparison::{Change, Compared, Comparison, TypeRow};
+use recrash_model::comparison::{Change, Compared, Comparison, TypeRow, shown_p};
 use recrash_report::{PairView, PairsView, RunTrace, TableView};
 use recrash_roads::{Scenario, Simulator};
+use std::path::{Path, PathBuf};
 
 /// Tests that the page plays, the gravest changes first.
 const PLAYED: usize = 30;
@@ -19,6 +21,24 @@ pub struct PageRequest {
     pub test: TestRequest,
     /// Egos of both sides where they are programs: those that only a results file names are not started.
     pub egos: [Option<String>; 2],
+    /// The results, as they were named.
+    pub results: [PathBuf; 2],
+}
+
+impl PageRequest {
+    /// The command that makes the page again.
+    fn command(&self, page: &Output) -> String {
+        let word = |path: &Path| quoted(&path.to_string_lossy());
+        let [base, new] = self.results.each_ref().map(|path| word(path));
+        let mut command =
+            format!("recrash compare {base} {new} --suite {} --page {}", word(&self.test.frozen), word(page.name()));
+        for (option, ego) in ["--base-ego", "--new-ego"].into_iter().zip(&self.egos) {
+            if let Some(ego) = ego {
+                command.push_str(&format!(" {option} {}", quoted(ego)));
+            }
+        }
+        command
+    }
 }
 
 /// Writes the page.
@@ -51,11 +71,12 @@ pub fn write_page(request: &PageRequest, comparison: &Comparison, output: &Outpu
     let view = PairsView {
         title: format!("{} against {}", comparison.egos[1], comparison.egos[0]),
         generated_by: format!("recrash {}", env!("CARGO_PKG_VERSION")),
-        command: "recrash compare BASE NEW --page FILE --suite FROZEN".to_owned(),
+        command: request.command(output),
         names: comparison.egos.clone(),
         criteria: benches[0].profile().failure.clone(),
-        tables: vec![types(comparison), changes(&changed)],
+        tables: vec![types(comparison)],
         pairs,
+        more: changes(&changed[shown.len()..]),
     };
     output.write(recrash_report::pairs_html(&view).as_bytes())
 }
@@ -83,10 +104,13 @@ fn types(comparison: &Comparison) -> TableView {
         let counts = [row.tests, row.base_failed, row.new_failed];
         let changes = used.iter().map(|change| row.changes.get(change).copied().unwrap_or(0));
         let numbers = counts.into_iter().chain(changes).map(|count| count.to_string());
-        std::iter::once(row.crash_type.to_owned()).chain(numbers).chain([format!("{:.3}", row.p)]).collect()
+        std::iter::once(row.crash_type.to_owned()).chain(numbers).chain([shown_p(row.p)]).collect()
     };
     TableView {
-        caption: "By crash type; p is McNemar's of broken against fixed".to_owned(),
+        caption: format!(
+            "{}. By crash type; p is McNemar's of broken against fixed",
+            recrash_report::comparison::sentence(comparison)
+        ),
         header: fixed
             .into_iter()
             .chain(used.iter().map(|change| change.label().to_owned()))
@@ -96,11 +120,12 @@ fn types(comparison: &Comparison) -> TableView {
     }
 }
 
-fn changes(changed: &[&Compared]) -> TableView {
+/// What changed and is not played.
+fn changes(changed: &[&Compared]) -> Option<TableView> {
     let row = |test: &&Compared| vec![test.id.clone(), test.change.label().to_owned(), test.why.clone()];
-    TableView {
-        caption: format!("What changed; the first {} play below", PLAYED.min(changed.len())),
+    (!changed.is_empty()).then(|| TableView {
+        caption: format!("{} more that changed, not played on this page", changed.len()),
         header: ["test", "change", "what"].map(str::to_owned).to_vec(),
         rows: changed.iter().map(row).collect(),
-    }
+    })
 }

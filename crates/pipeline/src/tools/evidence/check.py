@@ -77,7 +77,7 @@ def area_and_middle(corners):
         return 0.5 * double, (origin[0] + sums[0] / (3.0 * double), origin[1] + sums[1] / (3.0 * double))
     return 0.5 * double, (sum(p[0] for p in corners) / len(corners), sum(p[1] for p in corners) / len(corners))
 
-def impulse(masses, kinds, boxes, speeds, tracks, states):
+def impulse(masses, boxes, speeds, tracks, states):
     """Of the collision on the second one: plane impact without restitution, friction along the plane (docs/models/severity.md)."""
     first, second = boxes
     relative = (speeds[0][0] - speeds[1][0], speeds[0][1] - speeds[1][1])
@@ -95,8 +95,7 @@ def impulse(masses, kinds, boxes, speeds, tracks, states):
     point = area_and_middle(shared(first, moved))[1] or (first.x, first.y)
     along = (-normal[1], normal[0])
     nn = tt = nt = 0.0
-    for kind, box in zip(kinds, boxes):
-        mass = masses[kind]
+    for mass, box in zip(masses, boxes):
         if mass is None:
             continue
         inertia = mass * (4.0 * box.half[0] ** 2 + 4.0 * box.half[1] ** 2) / 12.0
@@ -152,13 +151,14 @@ class Run:
         if touched:
             states, tracks = (touched["a_state"], touched["b_state"]), (ego, actors[touched["b"]])
             boxes = [Box(state, track["length_m"], track["width_m"]) for state, track in zip(states, tracks)]
-            speeds, kinds = [(state["vx"], state["vy"]) for state in states], [track["kind"] for track in tracks]
-            size = math.hypot(*impulse(masses, kinds, boxes, speeds, tracks, states))
+            speeds = [(state["vx"], state["vy"]) for state in states]
+            weights = [track.get("mass_kg") or masses[track["kind"]] for track in tracks]
+            size = math.hypot(*impulse(weights, boxes, speeds, tracks, states))
             self.values["contact_time"] = touched["time_s"]
             self.values["ego_speed"], self.values["other_speed"] = (math.hypot(*speed) for speed in speeds)
             self.values["closing_speed"] = math.hypot(speeds[0][0] - speeds[1][0], speeds[0][1] - speeds[1][1])
-            for name, kind in zip(("ego_delta_v", "other_delta_v"), kinds):
-                self.values[name] = size / masses[kind] if masses[kind] else 0.0
+            for name, mass in zip(("ego_delta_v", "other_delta_v"), weights):
+                self.values[name] = size / mass if mass else 0.0
 
 def holds(item, where):
     """Whether an item has these values; a name may be a path."""

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use recrash_lab::run_scenario;
 use recrash_model::frozen::FrozenTest;
 use recrash_model::kinds::PartnerKind;
-use recrash_model::results::{TestOutcome, TestVerdict};
+use recrash_model::results::{TestOutcome, TestResults, TestVerdict};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Scenario;
 use serde::Serialize;
@@ -106,15 +106,31 @@ struct Manifest {
 /// file cannot be written.
 pub fn evidence(request: &EvidenceRequest, progress: &dyn Progress) -> Result<Evidence, PipelineError> {
     must_be_free(&request.folder, None)?;
+    let reports = read_reports(&request.reports)?;
+    let results = request.results.as_deref().map(read_results).transpose()?;
+    let written = write(request, reports, results.as_ref(), progress);
+    if written.is_err() {
+        // Nothing else was in the folder: half a folder would only be in the way of the next try.
+        let _ = std::fs::remove_dir_all(&request.folder);
+    }
+    written
+}
+
+fn write(
+    request: &EvidenceRequest,
+    reports: Vec<Report>,
+    results: Option<&TestResults>,
+    progress: &dyn Progress,
+) -> Result<Evidence, PipelineError> {
     let store = Store::create(&request.folder, write_suite_file)?;
     let mut files = Files { store: &store, hashes: BTreeMap::new() };
     take_suite(request, &mut files)?;
     let bench = Bench::set_up(&TestRequest { frozen: request.folder.join("suite"), ..request.test.clone() })?;
+    let mut reports = take_reports(reports, &bench, &mut files)?;
     let facts = run(&bench, &mut files, progress)?;
-    if let Some(expected) = &request.results {
-        must_be_given_again(expected, &facts)?;
+    if let (Some(results), Some(path)) = (results, &request.results) {
+        must_be_given_again(results, path, &facts)?;
     }
-    let mut reports = take_reports(&request.reports, &bench, &mut files)?;
     if let Some(covered) = corpus::of(&request.test.frozen)? {
         files.write(corpus::FILE, &to_json(&covered))?;
         reports.insert(corpus::NAME, covered);
@@ -241,8 +257,7 @@ fn run(bench: &Bench, files: &mut Files, progress: &dyn Progress) -> Result<Vec<
 }
 
 /// Whether the runs drove what the results say.
-fn must_be_given_again(expected: &Path, facts: &[TestFacts]) -> Result<(), PipelineError> {
-    let results = read_results(expected)?;
+fn must_be_given_again(results: &TestResults, path: &Path, facts: &[TestFacts]) -> Result<(), PipelineError> {
     let told: BTreeMap<&str, Option<&str>> = results
         .tests
         .iter()
@@ -256,7 +271,7 @@ fn must_be_given_again(expected: &Path, facts: &[TestFacts]) -> Result<(), Pipel
         if told.get(test.id.as_str()) != Some(&now) {
             return Err(PipelineError::bad_input(format!(
                 "{}: the run of {} is another one now; the ego, the suite or recrash changed, so the results are no evidence",
-                expected.display(),
+                path.display(),
                 test.id
             )));
         }
@@ -264,29 +279,48 @@ fn must_be_given_again(expected: &Path, facts: &[TestFacts]) -> Result<(), Pipel
     Ok(())
 }
 
-/// Reports of other commands, by their names.
+/// A report of another command.
+struct Report {
+    name: &'static str,
+    path: PathBuf,
+    content: Vec<u8>,
+    value: Value,
+}
+
+fn read_reports(paths: &[PathBuf]) -> Result<Vec<Report>, PipelineError> {
+    let read = |path: &PathBuf| {
+        let bad = |why: String| PipelineError::bad_input(format!("{}: {why}", path.display()));
+        let content = read_bytes(path, MAX_REPORT)?;
+        let value: Value = serde_json::from_slice(&content).map_err(|error| bad(error.to_string()))?;
+        let format = value["format"].as_str().unwrap_or_default();
+        let known = REPORTS.into_iter().find(|(known, _)| *known == format);
+        let (_, name) = known.ok_or_else(|| {
+            bad("it is neither a report of `recrash robustness` nor one of `recrash parity`".to_owned())
+        })?;
+        Ok(Report { name, path: path.clone(), content, value })
+    };
+    paths.iter().map(read).collect()
+}
+
+/// Puts reports into the folder; gives them by their names.
 fn take_reports(
-    paths: &[PathBuf],
+    reports: Vec<Report>,
     bench: &Bench,
     files: &mut Files,
 ) -> Result<BTreeMap<&'static str, Value>, PipelineError> {
-    let mut reports = BTreeMap::new();
-    for path in paths {
-        let bad = |why: String| PipelineError::bad_input(format!("{}: {why}", path.display()));
-        let content = read_bytes(path, MAX_REPORT)?;
-        let report: Value = serde_json::from_slice(&content).map_err(|error| bad(error.to_string()))?;
-        let format = report["format"].as_str().unwrap_or_default();
-        let known = REPORTS.into_iter().find(|(known, _)| *known == format);
-        let Some((_, name)) = known else {
-            return Err(bad("it is neither a report of `recrash robustness` nor one of `recrash parity`".to_owned()));
-        };
-        if report.get("suite").is_some_and(|suite| *suite != bench.opened.suite.content) {
-            return Err(bad("it is of another frozen suite".to_owned()));
+    let mut taken = BTreeMap::new();
+    for report in reports {
+        let bad = |why: &str| PipelineError::bad_input(format!("{}: {why}", report.path.display()));
+        if report.value.get("suite").is_some_and(|suite| *suite != bench.opened.suite.content) {
+            return Err(bad("it is of another frozen suite"));
         }
-        files.write(&format!("reports/{name}.json"), &content)?;
-        reports.insert(name, report);
+        if report.name == "robustness" && report.value["ego"] != bench.simulator.ego() {
+            return Err(bad("it is of another ego"));
+        }
+        files.write(&format!("reports/{}.json", report.name), &report.content)?;
+        taken.insert(report.name, report.value);
     }
-    Ok(reports)
+    Ok(taken)
 }
 
 /// Mass of every kind, by its name in files. [kg]

@@ -125,7 +125,9 @@ fn of_report(report: &str, value: &Value, numbers: &mut Vec<Number>) {
                 ("robustness: failures", json!({})),
                 ("robustness: robust", json!({ "robust": true })),
                 ("robustness: marginal", json!({ "marginal": true })),
-                ("robustness: robust and run again", json!({ "robust": true, "confirmed": true })),
+                ("robustness: robust, fails on the second", json!({ "robust": true, "confirmed": true })),
+                ("robustness: robust, passes on the second", json!({ "robust": true, "confirmed": false })),
+                ("robustness: robust, not run on a second", json!({ "robust": true, "confirmed": null })),
             ],
         ),
         _ => (

@@ -33,6 +33,10 @@ pub(super) struct Gathered {
 pub(super) fn gather(request: &FreezeRequest) -> Result<Gathered, PipelineError> {
     let mut gathered = Gathered { tests: Vec::new(), profile: "paper".to_owned(), left_out: Vec::new() };
     for source in &request.sources {
+        if source.join(super::FROZEN_FILE).is_file() {
+            let why = "it is a frozen suite already; it is tested as it is, and its folder `scenarios` holds its scenario files";
+            return Err(PipelineError::bad_input(format!("{}: {why}", source.display())));
+        }
         if source.join(crate::suite::SUITE_FILE).is_file() {
             of_suite(source, request.tuned, &mut gathered)?;
         } else {

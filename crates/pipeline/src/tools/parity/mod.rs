@@ -317,6 +317,7 @@ fn page(
         criteria: profile.failure.clone(),
         tables: parity.tables().into_iter().map(Into::into).collect(),
         pairs: pairs.collect(),
+        more: None,
     }
 }
 

@@ -12,7 +12,6 @@ use crate::suite::{refuse_untrusted, thread_pool};
 use crate::tools::freezing::Opened;
 use rayon::prelude::*;
 use recrash_drivers::preventability;
-use recrash_lab::causes::cause;
 use recrash_lab::{run_scenario, situation};
 use recrash_model::Seed;
 use recrash_model::frozen::FrozenTest;
@@ -213,7 +212,7 @@ pub(crate) fn outcome(
         least_gap: run.metrics.min_gap.filter(|gap| gap.value.is_finite()),
         severity: run.severity.clone(),
         preventability: preventability(&run.rollout),
-        cause: cause(&run.rollout, &run.metrics, &run.findings),
+        cause: run.cause,
         faithful: test.expectation.is_some().then(|| run.faithful()),
         met: recorded.map(|recorded| met(run, recorded, scenario)),
     }

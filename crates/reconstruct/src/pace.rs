@@ -1,0 +1,348 @@
+//! How the speed of each of the two comes to what it is at the contact.
+
+use crate::ground::Ground;
+use crate::lateral::{self, PULL_OUT_M};
+use crate::phases::{self, Lead, MOVES_UP_M, Phase};
+use crate::side::{Side, Turning};
+use crate::things;
+use crate::told::Told;
+use crate::touch::{Staging, size_of};
+use recrash_model::account::{ContactState, ControlDevice, Obeyed, Origin, Striker};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::scenario::{Act, Deed, Trigger};
+use recrash_model::template::Movement;
+
+/// Deceleration of who comes to a stop before it is hit. [m/s^2]
+pub(crate) const STOPPING_MPS2: f64 = 2.0;
+
+/// How long others who stopped have stood when they are hit. [s]
+pub(crate) const STOOD_S: f64 = 2.0;
+
+/// Acceleration of who sets off. [m/s^2]
+const SETS_OFF_MPS2: f64 = 1.2;
+
+/// Acceleration of who stood before, and is under way at the contact. [m/s^2]
+const STARTS_MPS2: f64 = 1.6;
+
+/// Speed of others on their way to a stop. [m/s]
+pub(crate) const ROLLING_MPS: f64 = 7.0;
+
+/// Who stood behind the ego before it set off has stood for so long. [s]
+const WAITED_S: f64 = 1.0;
+
+/// How long the ego has stood when somebody who came to a stop behind it sets off. [s]
+const STOOD_LONG_S: f64 = 5.0;
+
+/// Nobody takes longer to set off. [s]
+const LONGEST_START_S: f64 = 6.0;
+
+/// The speeds of one side until the contact: speed at the start, acts, and what is driven until then. [m/s, m]
+pub(crate) struct Pace {
+    pub(crate) speed_mps: f64,
+    pub(crate) acts: Vec<Act>,
+    pub(crate) driven_m: f64,
+}
+
+/// Stands from the start.
+pub(crate) const STANDING: Pace = Pace { speed_mps: 0.0, acts: Vec::new(), driven_m: 0.0 };
+
+pub(crate) fn when(time_s: f64, deed: Deed) -> Act {
+    Act { id: None, when: Some(Trigger::TimeS(time_s)), delay_s: 0.0, deed }
+}
+
+pub(crate) fn next(deed: Deed) -> Act {
+    Act { id: None, when: None, delay_s: 0.0, deed }
+}
+
+/// What the ego did before its last phase where that is told, and its last pace.
+pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Lead>, Pace) {
+    let (sv, contact_s) = (&told.sv, told.contact_s);
+    let stood_s = match told.waits_behind() {
+        true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
+        false => told.choices.stood_s,
+    };
+    let usual =
+        from_line(told, ground, sv_s_m).unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
+    let begins_s = match sv.state.stands() {
+        true => contact_s - told.choices.stood_s,
+        false if usual.speed_mps > 0.0 => return (None, usual),
+        false => first_time(&usual.acts),
+    };
+    let moved_up_m = past_line_m(told, ground, sv_s_m).filter(|_| sv.state.stands()).unwrap_or(MOVES_UP_M);
+    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, moved_up_m.max(MOVES_UP_M), 0.0) {
+        Some(lead) if sv.state.stands() => (Some(lead), STANDING),
+        lead => (lead, usual),
+    }
+}
+
+/// How far behind the stop line of a junction the ego is. [m]
+fn past_line_m(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
+    ground.junction.then(|| sv_s_m - (ground.first_m() - 0.5 * size_of(&told.sv).0 - AT_LINE_M))
+}
+
+impl Told {
+    /// Whether the partner stood behind the ego and set off then.
+    fn waits_behind(&self) -> bool {
+        // Who is told to be this slow when it hits an ego that stands did not come along at that speed.
+        let crept = self.cp.state == ContactState::Moving
+            && self.sv.state.stands()
+            && self.cp.impact_mps.is_some_and(|mps| mps < CREEPS_MPS);
+        self.origin == Origin::Behind && (self.cp.state == ContactState::SettingOff || self.cp.stood_first || crept)
+    }
+}
+
+/// What the partner did before its last phase where that is told, or follows from what the ego did; and its last pace.
+pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pace) {
+    let (cp, contact_s) = (&told.cp, told.contact_s);
+    let (ego_lead, ego) = ego_paces(told, &staging.ground, staging.sv_s_m);
+    let ego_m = ego.driven_m + ego_lead.as_ref().map_or(0.0, Lead::driven_m);
+    let ego_backs_s = ego_lead.as_ref().and_then(|lead| lead.backs_s);
+    let last = things::pace(told)
+        .or_else(|| beside_from_line(told, staging))
+        .or_else(|| lateral::from_kerb(told, staging))
+        .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, ego_backs_s)));
+    let stands = cp.state.stands();
+    if last.speed_mps > 0.0 && !stands {
+        return (None, last);
+    }
+    let begins_s = if stands { contact_s - STOOD_S } else { first_time(&last.acts) };
+    // Who waited behind an ego that came along came along behind it.
+    let ego_came = ego.speed_mps > 0.0 || ego_lead.as_ref().is_some_and(|lead| lead.speed_mps > 0.0);
+    let came_behind = [Phase::Drives, Phase::Stands, Phase::Drives];
+    let phases: &[Phase] = match told.waits_behind() && cp.phases.is_empty() && ego_came && ego_m > last.driven_m {
+        true => &came_behind,
+        false => &cp.phases,
+    };
+    let lead = |longer_s: f64| phases::lead(phases, begins_s, told.choices.rolling_mps, MOVES_UP_M, longer_s);
+    let Some(usual) = lead(0.0) else { return (None, last) };
+    let last = if stands { STANDING } else { last };
+    // Who is ahead came ahead of the ego, and stopped before it did.
+    let driven_m = usual.driven_m() + if cp.state == ContactState::Reversing { -last.driven_m } else { last.driven_m };
+    let past_m = driven_m - ego_m + AHEAD_M;
+    match told.origin == Origin::Ahead && usual.speed_mps > 0.0 && past_m > 0.0 {
+        true => (lead(past_m / usual.speed_mps), last),
+        false => (Some(usual), last),
+    }
+}
+
+/// The partner's last pace, where it does not depend on what the ego does.
+fn last_pace(told: &Told) -> Pace {
+    let (cp, contact_s) = (&told.cp, told.contact_s);
+    let rolling_mps = if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 };
+    let usual = pace(contact_s, cp, rolling_mps, STOOD_S);
+    // Who stood behind an ego that moved up stood behind where that was; who comes round it has room for that.
+    let moved_up = told.sv.state.stands() && told.sv.phases.iter().skip(1).any(|phase| *phase == Phase::Drives);
+    let from_m = match told.waits_behind() {
+        true if cp.movement == Some(Movement::Passing) => COMES_ROUND_M,
+        true if moved_up => MOVES_UP_M + BEHIND_M,
+        true if usual.speed_mps > 0.0 => MOVES_UP_M,
+        _ => return usual,
+    };
+    start_over(contact_s, cp.speed_mps, from_m).unwrap_or(usual)
+}
+
+/// How the partner's speed comes to what it is at the contact, from its last stand where it stood.
+fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pace, f64, Option<f64>)) -> Pace {
+    let (cp, contact_s) = (&told.cp, told.contact_s);
+    let usual = last_pace(told);
+    let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
+    let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
+    let enters = cp.movement == Some(Movement::EnteringTraffic);
+    match cp.state {
+        // It slows with the ego that it follows.
+        ContactState::Moving if told.sv.slowed_from.is_some() && follows && usual.driven_m < ego_m + 5.0 => {
+            let from_mps = (ego.speed_mps + FOLLOWS_BY_MPS).max(cp.speed_mps);
+            let braking_s = contact_s - first_time(&ego.acts);
+            let brake =
+                Deed::Speed { to_mps: cp.speed_mps, rate_mps2: ((from_mps - cp.speed_mps) / braking_s).max(0.05) };
+            let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + cp.speed_mps) * braking_s;
+            Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
+        }
+        // Who is ahead and slower has not come from behind the ego: it has just set off.
+        ContactState::Moving if same_way && told.origin == Origin::Ahead && usual.driven_m > ego_m - 0.3 => {
+            sets_off(contact_s, cp.speed_mps, (0.8 * ego_m).max(0.2))
+        }
+        ContactState::Reversing => {
+            let swings = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > SWINGS_RAD;
+            let way_m = match told.origin {
+                Origin::Stall { .. } | Origin::Driveway { .. } => BACKS_OUT_M,
+                _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M,
+                _ => REVERSES_M,
+            };
+            // Who backed before the ego did backs for longer.
+            let ego_backs_s = ego_backs_s.filter(|_| told.backs_first == Some(Striker::Cp));
+            let backing_s = ego_backs_s.map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
+            start_over(
+                contact_s,
+                cp.speed_mps,
+                way_m.max(cp.speed_mps * (backing_s - 0.5 * cp.speed_mps / SETS_OFF_MPS2)),
+            )
+            .unwrap_or(usual)
+        }
+        // Who comes from the kerb or out of a stall stood there.
+        ContactState::Moving if told.stood_beside() || enters && from_stand(told.origin) => {
+            let moving_s = (2.0 * PULL_OUT_M / cp.speed_mps * 10.0).round() / 10.0;
+            let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
+            Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
+        }
+        // Who stood and turned has room for its turn.
+        ContactState::Moving if cp.stood_first && matches!(cp.turning, Turning::Left | Turning::Right) => {
+            start_over(contact_s, cp.speed_mps, TURNS_M).unwrap_or(usual)
+        }
+        ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego_m - 0.3 => STANDING,
+        // It stood before the story begins.
+        ContactState::Stopped if cp.stands_from_start && told.origin != Origin::Behind => STANDING,
+        _ => usual,
+    }
+}
+
+/// Who stood behind the ego and comes round it has driven so far at the contact. [m]
+const COMES_ROUND_M: f64 = 10.0;
+
+/// How far somebody who stood before it turned has driven at the contact. [m]
+const TURNS_M: f64 = 8.0;
+
+/// Who stands behind the ego stands so far behind it. [m]
+const BEHIND_M: f64 = 2.0;
+
+/// Who is slower than this in traffic has set off, or comes to a stop. [m/s]
+const CREEPS_MPS: f64 = 4.0;
+
+/// How far somebody has reversed at the contact. [m]
+const REVERSES_M: f64 = 2.5;
+
+/// Who came along ahead of the ego was so much farther ahead than it is at the contact, at least. [m]
+const AHEAD_M: f64 = 1.0;
+
+/// Who backed first did so by so long. [s]
+const BACKS_EARLIER_S: f64 = 1.0;
+
+/// Who backs out of a stall or a driveway has done so for so far. [m]
+const BACKS_OUT_M: f64 = 4.5;
+
+/// Who came along the road, and turned by more than this while it reversed, has reversed so far. [rad, m]
+const SWINGS_RAD: f64 = 0.2;
+const SWINGS_BACK_M: f64 = 6.0;
+
+fn from_stand(origin: Origin) -> bool {
+    !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)
+}
+
+pub(crate) fn first_time(acts: &[Act]) -> f64 {
+    acts.iter()
+        .find_map(|act| match act.when {
+            Some(Trigger::TimeS(time_s)) => Some(time_s),
+            _ => None,
+        })
+        .unwrap_or(0.0)
+}
+
+/// From a stand to a speed within a distance, or less.
+fn sets_off(contact_s: f64, speed_mps: f64, within_m: f64) -> Pace {
+    let moving_s =
+        ((2.0 * within_m / speed_mps.max(0.05)).min(speed_mps / SETS_OFF_MPS2) * 10.0).floor().max(2.0) / 10.0;
+    let rate_mps2 = (speed_mps / moving_s).clamp(0.05, 8.0);
+    let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
+    Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m: 0.5 * speed_mps * moving_s }
+}
+
+/// How somebody's speed comes to what it is at the contact.
+fn pace(contact_s: f64, side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
+    match side.state {
+        ContactState::Parked => STANDING,
+        ContactState::Stopped => {
+            let braking_s = rolling_mps / STOPPING_MPS2;
+            let from_s = ((contact_s - stood_s - braking_s) * 10.0).floor() / 10.0;
+            let driven_m = rolling_mps * from_s + 0.5 * rolling_mps * braking_s;
+            let acts = vec![
+                when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }),
+                next(Deed::Hold { for_s: None }),
+            ];
+            Pace { speed_mps: rolling_mps, acts, driven_m }
+        }
+        ContactState::Moving if side.stood_first || !side.phases.is_empty() => {
+            let moving_s = ((side.speed_mps / STARTS_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
+            let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2: side.speed_mps / moving_s };
+            let driven_m = 0.5 * side.speed_mps * moving_s;
+            Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m }
+        }
+        ContactState::SettingOff | ContactState::Reversing => {
+            // So that it sets off at a step: the rate gives way.
+            let moving_s = ((side.speed_mps / SETS_OFF_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
+            let rate_mps2 = (side.speed_mps / moving_s).max(0.05);
+            let driven_m = 0.5 * side.speed_mps * moving_s;
+            let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2 };
+            Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m }
+        }
+        ContactState::Moving if side.slowed_from.is_some() => slows(contact_s, side),
+        ContactState::Moving => {
+            Pace { speed_mps: side.speed_mps, acts: Vec::new(), driven_m: side.speed_mps * contact_s }
+        }
+    }
+}
+
+/// It brakes down to its speed at the contact.
+fn slows(contact_s: f64, side: &Side) -> Pace {
+    let told_mps = side.slowed_from.and_then(|slowed| slowed.0).filter(|from| *from > side.speed_mps + 1.0);
+    let from_mps = told_mps.unwrap_or(side.speed_mps + SLOWS_BY_MPS).min(side.speed_mps + MOST_SLOWED_MPS);
+    let by_mps = from_mps - side.speed_mps;
+    let braking_s = (by_mps / SLOWS_MPS2 * 10.0).ceil() / 10.0;
+    let brake = Deed::Speed { to_mps: side.speed_mps, rate_mps2: by_mps / braking_s };
+    let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + side.speed_mps) * braking_s;
+    Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
+}
+
+/// Who follows an ego that slows is faster than it by so much before. [m/s]
+const FOLLOWS_BY_MPS: f64 = 1.0;
+
+/// Who slowed before the contact came faster by so much where nobody says from which speed, at most so much, and brakes so. [m/s, m/s,
+/// m/s^2]
+const SLOWS_BY_MPS: f64 = 4.0;
+const MOST_SLOWED_MPS: f64 = 12.0;
+const SLOWS_MPS2: f64 = 2.5;
+
+/// Who stood before a junction, and is in it at the contact, sets off from its stop line.
+fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
+    let sv = &told.sv;
+    let stops = match sv.control.filter(|said| said.obeyed != Some(Obeyed::No)) {
+        Some(said) => sv.state == ContactState::SettingOff || sv.stood_first || said.device == ControlDevice::StopSign,
+        None => sv.stood_first,
+    };
+    let stops = stops && matches!(sv.state, ContactState::SettingOff | ContactState::Moving);
+    let driven_m = past_line_m(told, ground, sv_s_m).filter(|_| stops)?;
+    start_over(told.contact_s, sv.speed_mps, driven_m)
+}
+
+/// Who stood beside the ego before a junction sets off from the same line.
+fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
+    let (cp, ground) = (&told.cp, &staging.ground);
+    if !cp.stood_first || !ground.junction || !matches!(told.origin, Origin::Beside { .. }) {
+        return None;
+    }
+    let line_m = ground.first_m() - 0.5 * size_of(cp).0 - AT_LINE_M;
+    start_over(told.contact_s, cp.speed_mps, ground.beside(staging.cp.position).0 - line_m)
+}
+
+/// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.
+pub(crate) fn start_over(contact_s: f64, speed_mps: f64, driven_m: f64) -> Option<Pace> {
+    if driven_m < 0.3 {
+        return None;
+    }
+    let rate_mps2 = (0.5 * speed_mps * speed_mps / driven_m).max(SETS_OFF_MPS2);
+    let gaining_s = speed_mps / rate_mps2;
+    let moving_s = gaining_s + (driven_m - 0.5 * speed_mps * gaining_s) / speed_mps;
+    if moving_s > contact_s - 1.0 || rate_mps2 > STRONGEST_START_MPS2 {
+        return None;
+    }
+    // It sets off at a step.
+    let from_s = ((contact_s - moving_s) * 10.0).round() / 10.0;
+    let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
+    Some(Pace { speed_mps: 0.0, acts: vec![when(from_s, go)], driven_m })
+}
+
+/// Nobody sets off harder. [m/s^2]
+const STRONGEST_START_MPS2: f64 = 5.0;
+
+/// Who stops at a line stops so far before it. [m]
+const AT_LINE_M: f64 = 0.5;

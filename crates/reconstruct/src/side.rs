@@ -1,0 +1,255 @@
+//! One side of a crash: what is told of one vehicle, person or thing, in the terms of a staging.
+
+use crate::phases::{self, Phase};
+use crate::things;
+use recrash_model::account::{
+    Act, ActFact, ContactState, Control, ControlDevice, Kind, KindGroup, LaneWord, LeftRight, Obeyed, Party,
+    SignalState, Source, SpeedMeaning, StandReason, Standing, told,
+};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::scenario::Size;
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// How somebody turns before the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Turning {
+    No,
+    Left,
+    Right,
+    Round,
+}
+
+/// That somebody slowed, and from which speed, where told. [m/s]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Slowed(pub(crate) Option<f64>);
+
+/// How somebody who reverses came to be at an angle to the road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Slant {
+    /// It had turned, to this side where told, before it stood and reversed.
+    Stood(Option<LeftRight>),
+    /// It swung aside while it reversed.
+    Swung,
+}
+
+/// One side of the crash.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Side {
+    pub(crate) kind: PartnerKind,
+    pub(crate) size: Option<Size>,
+    pub(crate) state: ContactState,
+    /// It stood before it moved, where told.
+    pub(crate) stood_first: bool,
+    /// It stood already when the story begins.
+    pub(crate) stands_from_start: bool,
+    /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
+    pub(crate) slowed_from: Option<Slowed>,
+    /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
+    pub(crate) phases: Vec<Phase>,
+    /// Whether the state is told.
+    pub(crate) state_told: bool,
+    pub(crate) movement: Option<Movement>,
+    pub(crate) turning: Turning,
+    /// It goes to turn where the other one it runs into turns or stands: it may have begun to.
+    pub(crate) turns_later: bool,
+    /// It turns all the way into the road that the other is on, to meet it head-on.
+    pub(crate) turns_wide: bool,
+    /// To which side it moves out of its line, where told.
+    pub(crate) aside: Option<LeftRight>,
+    /// By what it left its line, where it did so before it came to a stop.
+    pub(crate) stopped_aside: Option<Act>,
+    /// It is told to have dodged or drifted that way while it drove on.
+    pub(crate) dodges: bool,
+    /// It reverses, and is told to have been at an angle to the road.
+    pub(crate) slants: Option<Slant>,
+    pub(crate) zones: Vec<ContactZone>,
+    /// It was touched on its roof or from below, and nowhere else.
+    pub(crate) only_above_or_below: bool,
+    /// Speed at the contact, where told. [m/s]
+    pub(crate) impact_mps: Option<f64>,
+    /// Speed at the contact that is staged. [m/s]
+    pub(crate) speed_mps: f64,
+    pub(crate) lane: Option<LaneWord>,
+    /// The signal or sign in front of it, where told.
+    pub(crate) control: Option<Control>,
+}
+
+impl Side {
+    /// Whether it parks, or comes from the kerb or out of a stall.
+    pub(crate) fn is_slow(&self) -> bool {
+        matches!(self.movement, Some(Movement::EnteringTraffic | Movement::ParkingManeuver))
+    }
+}
+
+/// What is told of one side.
+pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>, who: &str) -> Side {
+    let kind = kind.or_else(|| told(&party.kind));
+    let partner_kind = kind.and_then(Kind::partner_kind);
+    if partner_kind.is_none() && who == "partner" {
+        assumed.push("the partner is a passenger car".to_owned());
+    }
+    let movement = told(&party.movement);
+    let impact_mps =
+        party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Impact).map(|speed| speed.value.mps);
+    let state = told(&party.state);
+    let slides = state.is_none() && kind.is_some_and(|kind| kind.group() == KindGroup::Object) && things::slides(party);
+    let state = if slides { Some(ContactState::Moving) } else { state };
+    let state_told = state.is_some();
+    let state = state.unwrap_or_else(|| match movement {
+        Some(Movement::Stopped) => ContactState::Stopped,
+        Some(Movement::Parked) => ContactState::Parked,
+        Some(Movement::Backing) => ContactState::Reversing,
+        _ if impact_mps == Some(0.0) => ContactState::Stopped,
+        _ if kind.is_some_and(|kind| kind.group() == KindGroup::Object) => ContactState::Stopped,
+        _ => ContactState::Moving,
+    });
+    // Who moves backwards moves.
+    let backs = state == ContactState::Moving && movement == Some(Movement::Backing);
+    let state = if backs { ContactState::Reversing } else { state };
+    if !state_told {
+        assumed.push(format!("the {who} is {state:?} at the contact"));
+    }
+    let turned = |side: LeftRight| {
+        party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)
+    };
+    let turning = match movement {
+        Some(Movement::LeftTurn) => Turning::Left,
+        Some(Movement::RightTurn) => Turning::Right,
+        Some(Movement::UTurn) => Turning::Round,
+        None if turned(LeftRight::Left) => Turning::Left,
+        None if turned(LeftRight::Right) => Turning::Right,
+        Some(Movement::Stopped) if who == "ego" => turned_before_its_stop(party),
+        _ => Turning::No,
+    };
+    // The last before the contact is the one that led to it.
+    let aside = party
+        .acts
+        .iter()
+        .filter(|fact| leaves_line(fact.act) && !fact.after_contact)
+        .filter_map(|fact| fact.side)
+        .next_back();
+    // It stood where it did something after it, or held its place.
+    let last = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.step).max();
+    let stood_first = state == ContactState::Moving
+        && party.acts.iter().any(|fact| {
+            let stands = match fact.act {
+                Act::Hold | Act::SetOff => true,
+                Act::Stop => Some(fact.step) < last,
+                _ => false,
+            };
+            stands && !fact.after_contact && !fact.begun
+        });
+    let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
+    let slowed_from = (slows && !stood_first && state == ContactState::Moving).then(|| {
+        let approach = party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Approach);
+        Slowed(approach.map(|speed| speed.value.mps))
+    });
+    // Of somebody on foot, an animal or a thing the state says enough.
+    let drives =
+        kind.is_none_or(|kind| !matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Object));
+    let phases = match state_told && state != ContactState::Parked && (drives || who == "ego") {
+        true => phases::told(party, state),
+        false => Vec::new(),
+    };
+    let stopped = last_way(party).filter(|_| state == ContactState::Stopped && turning == Turning::No && who == "ego");
+    let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
+    let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
+    let stopped_aside = stopped_aside.map(|fact| fact.act);
+    Side {
+        aside,
+        stopped_aside,
+        turns_later: false,
+        turns_wide: false,
+        dodges: false,
+        slants: None,
+        slowed_from,
+        stood_first,
+        stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),
+        phases,
+        kind: partner_kind.unwrap_or_default(),
+        size: kind.and_then(size_of),
+        state,
+        state_told,
+        movement,
+        turning,
+        only_above_or_below: !party.zones.is_empty()
+            && party.zone_values().iter().all(|zone| matches!(zone, ContactZone::Top | ContactZone::Bottom)),
+        zones: party
+            .zone_values()
+            .into_iter()
+            .filter(|z| !matches!(z, ContactZone::Top | ContactZone::Bottom))
+            .collect(),
+        impact_mps,
+        speed_mps: 0.0,
+        lane: told(&party.lane),
+        control: control(party),
+    }
+}
+
+/// Whether somebody who does this leaves the line that it drives on, without a turn.
+fn leaves_line(act: Act) -> bool {
+    matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::PullOut | Act::PullOver | Act::Park)
+}
+
+/// What somebody who came to a stop did last before it, of what tells its way.
+fn last_way(party: &Party) -> Option<&ActFact> {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let stood = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).max()?;
+    let goes_on = |fact: &ActFact| match (&fact.source, fact.act) {
+        // "advanced", in its turn.
+        (Source::Words { text, .. }, Act::Follow) => text.to_lowercase().starts_with("travel"),
+        (_, act) => {
+            leaves_line(act)
+                || matches!(act, Act::Pass | Act::Turn | Act::UTurn | Act::Enter | Act::Reverse | Act::Follow)
+        }
+    };
+    let came = told(&party.standing) == Some(Standing::CameToStop);
+    before().filter(|fact| came && fact.step < stood && goes_on(fact)).max_by_key(|fact| fact.step)
+}
+
+/// The turn that somebody had begun or done before it came to a stop. Who stops at a light or a sign has yet to turn.
+fn turned_before_its_stop(party: &Party) -> Turning {
+    let waits = party.reasons.iter().any(|fact| matches!(fact.value, StandReason::RedLight | StandReason::StopSign));
+    match last_way(party).filter(|fact| fact.act == Act::Turn && !waits).and_then(|fact| fact.side) {
+        Some(LeftRight::Left) => Turning::Left,
+        Some(LeftRight::Right) => Turning::Right,
+        None => Turning::No,
+    }
+}
+
+/// The signal or sign in front of somebody; who is told to have run one had one.
+fn control(party: &Party) -> Option<Control> {
+    let ran = |device, state| Some(Control { device, state, obeyed: Some(Obeyed::No) });
+    if party.did(Act::RunRed) {
+        return ran(ControlDevice::Signal, Some(SignalState::Red));
+    }
+    if party.did(Act::RunStop) {
+        return ran(ControlDevice::StopSign, None);
+    }
+    // What is said last is nearest to the contact.
+    party.controls.last().map(|fact| fact.value)
+}
+
+/// Sizes of kinds that are longer or shorter than the group they belong to; usual ones, assumed. [m]
+fn size_of(kind: Kind) -> Option<Size> {
+    let size = |length_m: f64, width_m: f64| Some(Size { length_m, width_m });
+    match kind {
+        Kind::SemiTrailerTruck => size(16.0, 2.6),
+        Kind::BoxTruck | Kind::FoodTruck => size(7.5, 2.4),
+        Kind::PickupWithTrailer => size(11.0, 2.1),
+        Kind::Ambulance => size(6.8, 2.3),
+        Kind::FireTruck => size(10.0, 2.5),
+        Kind::Tram => size(22.0, 2.6),
+        Kind::Forklift => size(3.0, 1.2),
+        Kind::Trailer => size(5.0, 2.2),
+        Kind::DeliveryRobot | Kind::Cart | Kind::Scooter => size(0.8, 0.6),
+        Kind::Wall | Kind::Curb => size(6.0, 0.3),
+        Kind::Gate | Kind::Chain | Kind::Barrier => size(0.2, 4.0),
+        Kind::Pole | Kind::Sign | Kind::Cone => size(0.3, 0.3),
+        Kind::Debris | Kind::LooseWheel | Kind::TreeBranch | Kind::Cargo | Kind::Object | Kind::Pothole => {
+            size(0.6, 0.6)
+        }
+        _ => None,
+    }
+}

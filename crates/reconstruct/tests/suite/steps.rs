@@ -1,0 +1,92 @@
+//! What is told of the steps before the contact, one after the other, is drawn; and a rollout without one does not pass for it.
+
+use crate::ways::{degrees_between, made, missed, partner, partner_without_acts, speeds, story, without_acts};
+use recrash_model::account::{Account, Act, LeftRight};
+use recrash_model::metrics::CheckKind;
+
+const STOPPED_AHEAD: &str = "The AV was traveling north behind a sedan. The sedan came to a stop and the AV came to a stop behind it. The \
+                             sedan then reversed and the rear of the sedan made contact with the front of the stationary AV.";
+
+const WAITED: &str = "The AV was traveling east in the right lane of Oak Street when it came to a stop at a red light at the intersection of \
+                      Elm Street. When the light turned green, the AV proceeded into the intersection. A sedan ran a red light from the \
+                      left, and the front of the sedan made contact with the left side of the AV.";
+
+const TURNED: &str = "The AV was traveling north on Elm Street and made a right turn onto Oak Street, and came to a stop for a queue of \
+                      traffic. A van approached from behind and the front of the van made contact with the rear of the stationary AV.";
+
+const CHANGED: &str = "The AV was traveling in the left lane of Elm Street when it changed lanes to the right lane and came to a stop. A van \
+                       approached from behind and the front of the van made contact with the rear of the stationary AV.";
+
+const BACKED_FIRST: &str = "The AV was traveling north and came to a stop behind a truck. The truck began reversing and the AV reversed until \
+                            it came to a stop. The truck continued reversing and the rear of the truck made contact with the front of \
+                            the stationary AV.";
+
+#[test]
+fn a_partner_that_came_and_stood_before_it_reversed_does() {
+    let account = story(STOPPED_AHEAD);
+    let shown = made(&account);
+    let speeds: Vec<f64> = partner(&shown).0.iter().map(|state| state.speed()).collect();
+    let stood = speeds.iter().position(|speed| *speed == 0.0).expect("it stands");
+    assert!(speeds[0] > 3.0 && speeds[stood..].iter().any(|speed| *speed < -0.5), "{speeds:?}");
+    assert!(
+        missed(&account, |less| partner_without_acts(less, &[Act::Follow, Act::Stop])).contains(&CheckKind::CpState)
+    );
+}
+
+#[test]
+fn an_ego_that_came_to_a_stop_before_it_drove_on_comes_along_first() {
+    let account = story(WAITED);
+    let speeds = speeds(&made(&account));
+    assert!(speeds[0] > 3.0 && speeds.contains(&0.0) && speeds[speeds.len() - 1] > 1.0, "{speeds:?}");
+    assert!(missed(&account, |less| without_acts(less, &[Act::Stop])).contains(&CheckKind::SvState));
+}
+
+#[test]
+fn an_ego_that_turned_before_it_came_to_a_stop_has_turned() {
+    let account = story(TURNED);
+    let shown = made(&account);
+    let ego = shown.rollout.ego_track();
+    assert!(degrees_between(ego.states[0].heading, ego.states[80].heading) > 20.0);
+    // Who comes behind it comes by the same way.
+    assert!(degrees_between(partner(&shown).0[0].heading, ego.states[0].heading) < 1.0);
+    assert!(missed(&account, |less| without_acts(less, &[Act::Turn])).contains(&CheckKind::SvMovement));
+}
+
+#[test]
+fn an_ego_that_left_its_lane_before_it_came_to_a_stop_has_left_it() {
+    let account = story(CHANGED);
+    let ego = &made(&account).rollout.actors[0];
+    assert!(ego.states[0].y - ego.states[80].y > 0.8);
+    assert!(missed(&account, |less| without_acts(less, &[Act::LaneChange])).contains(&CheckKind::SvMovement));
+}
+
+#[test]
+fn who_is_told_to_back_first_does() {
+    let account = story(BACKED_FIRST);
+    let shown = made(&account);
+    let backs = |speeds: &[f64]| speeds.iter().position(|speed| *speed < -0.2).expect("it reverses");
+    let partner: Vec<f64> = partner(&shown).0.iter().map(|state| state.speed()).collect();
+    assert!(backs(&partner) < backs(&speeds(&shown)));
+    let swapped = |less: &mut Account| {
+        let truck = less.partner.as_mut().expect("a partner").acts.iter_mut();
+        truck.filter(|fact| fact.act == Act::Reverse).for_each(|fact| fact.step += 20);
+    };
+    assert_eq!(missed(&account, swapped), [CheckKind::CpState]);
+}
+
+#[test]
+fn who_goes_round_the_ego_stands_behind_it_in_its_lane_first() {
+    let account = story(
+        "The AV was stopped for a queue of traffic. A van that was stopped behind the AV proceeded to pass the AV on the left, and the right \
+         side of the van made contact with the rear left corner of the stationary AV.",
+    );
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    let stood = states.iter().find(|state| state.speed() == 0.0).expect("it stands");
+    let ego = shown.rollout.ego_track().states[80];
+    assert!((stood.y - ego.y).abs() < 0.3 && met.y - ego.y > 0.8, "{stood:?} {met:?}");
+    assert_eq!(
+        account.partner.as_ref().and_then(|party| party.acts.iter().find_map(|fact| fact.side)),
+        Some(LeftRight::Left)
+    );
+}
