@@ -315,6 +315,12 @@ impl Navigator {
         (!self.on_last_road()).then(|| routes[(self.route.0 + self.at + 1) as usize])
     }
 
+    /// The next road that is another: a route that changes lanes names its road more than once.
+    pub(crate) fn next_other_road(&self, routes: &[RoadId]) -> Option<RoadId> {
+        let road = self.road(routes);
+        routes[(self.route.0 + self.at) as usize..self.route.1 as usize].iter().copied().find(|next| *next != road)
+    }
+
     /// Whether it is still where its route begins.
     #[inline]
     pub(crate) fn on_first_road(&self) -> bool {

@@ -28,6 +28,12 @@ const EMPTY_LANE_KMH: f64 = 100.0;
 /// No overtaking while it, or what is in front, is within this of the speed it wants. [km/h]
 const CONTENT_KMH: f64 = 3.0;
 
+/// Where it has to leave its lane, because the next road has fewer, it wants this much room ahead on the one beside. [m]
+const ROOM_AHEAD_M: f64 = 5.0;
+
+/// Its speed while it waits for that room (`CREEP_SPEED`, 5 km/h). [m/s]
+const CREEP_MPS: f64 = 5.0 / KMH_PER_MPS;
+
 /// Steps of plain following between lane changes (`LANE_CHANGE_FREQ`).
 const LANE_CHANGE_PERIOD_STEPS: u32 = 50;
 
@@ -44,6 +50,8 @@ pub(crate) struct MetadriveIdm {
     /// The lane it follows (`routing_target_lane`).
     lane: Option<LaneIndex>,
     overtake_timer: u32,
+    /// It waits for room beside it.
+    creeps: bool,
 }
 
 /// What it sees on one lane.
@@ -57,7 +65,7 @@ struct LaneView {
 impl MetadriveIdm {
     /// `overtake_timer` is how long it has been following already. [steps]
     pub(crate) const fn new(target_mps: f64, overtake_timer: u32) -> Self {
-        Self { target_mps, keeper: LaneKeeper::new(), lane: None, overtake_timer }
+        Self { target_mps, keeper: LaneKeeper::new(), lane: None, overtake_timer, creeps: false }
     }
 
     pub(crate) fn decide(&mut self, scene: &Scene<'_>, me: usize) -> Controls {
@@ -73,7 +81,13 @@ impl MetadriveIdm {
                 if me == 0 { scene.ego_beside_m } else { 0.0 },
                 0.0,
             ),
-            throttle: gap_law(seen.speed, self.target_mps, seen.forward, seen.velocity, lead),
+            throttle: gap_law(
+                seen.speed,
+                if self.creeps { CREEP_MPS } else { self.target_mps },
+                seen.forward,
+                seen.velocity,
+                lead,
+            ),
         }
         .clipped()
     }
@@ -120,13 +134,31 @@ impl MetadriveIdm {
         lane: LaneIndex,
         own: LaneView,
     ) -> (LaneIndex, Option<Lead>) {
+        // Where the next road has fewer lanes, only those that go on are of use: the leftmost ones, if the first goes on.
+        let number = usize::from(scene.lanes.lane(lane).number);
+        let next = scene.lanes_after(me);
+        let useful = match next {
+            Some(next) if next.len() < lanes.len() => {
+                if scene.lanes.lane(lanes[0]).leads_to(scene.lanes.lane(next[0])) {
+                    0..next.len()
+                } else {
+                    lanes.len() - next.len()..lanes.len()
+                }
+            }
+            _ => 0..lanes.len(),
+        };
+        if !useful.contains(&number) {
+            let side = if number >= useful.end { number - 1 } else { number + 1 };
+            let beside = view(scene, me, lanes[side]);
+            self.creeps = beside.back_m < SAFE_LANE_CHANGE_M || beside.front_m < ROOM_AHEAD_M;
+            return if self.creeps { (lane, own.front) } else { (lanes[side], beside.front) };
+        }
         let differs = |speed_mps: f64| ((speed_mps - self.target_mps) * KMH_PER_MPS).abs() > CONTENT_KMH;
         if let Some(front) = own.front
             && self.overtake_timer > LANE_CHANGE_PERIOD_STEPS
             && differs(scene.actors[me].speed)
             && differs(front.speed_mps)
         {
-            let number = usize::from(scene.lanes.lane(lane).number);
             let left = number.checked_sub(1);
             let right = Some(number + 1).filter(|&right| right < lanes.len());
             for side in [left, right].into_iter().flatten() {
@@ -140,11 +172,13 @@ impl MetadriveIdm {
                     }
                     None => None,
                 };
-                if speed_kmh.is_some_and(|speed| speed - front.speed_mps * KMH_PER_MPS > WORTHWHILE_KMH) {
+                let faster = speed_kmh.is_some_and(|speed| speed - front.speed_mps * KMH_PER_MPS > WORTHWHILE_KMH);
+                if faster && useful.contains(&side) {
                     return (lanes[side], beside.front);
                 }
             }
         }
+        self.creeps = false;
         self.overtake_timer += 1;
         (lane, own.front)
     }

@@ -68,6 +68,12 @@ impl Scene<'_> {
         self.lanes.of_road(self.actors[actor].place.road(self.routes))
     }
 
+    /// The lanes of the road after that, leftmost first; `None` on the last.
+    pub(crate) fn lanes_after(&self, actor: usize) -> Option<&[LaneIndex]> {
+        let next = self.actors[actor].place.next_other_road(self.routes)?;
+        Some(self.lanes.of_road(next))
+    }
+
     /// The lane of an actor's path that it is beside.
     #[inline]
     pub(crate) fn path_lane(&self, actor: usize) -> LaneIndex {

@@ -139,6 +139,8 @@ impl Programme {
             }
             if next.reverse != leg.reverse {
                 now.s_m = leg.end_m;
+                // A hair on lies the next leg's line, which leads the other way.
+                now.piece = self.course.piece_at(now.s_m + 1e-6, usize::from(now.piece)) as u16;
             }
             now.leg += 1;
         }

@@ -340,6 +340,21 @@ mod tests {
     }
 
     #[test]
+    fn who_has_stopped_to_reverse_stays_where_it_stands() {
+        let back_and_forth = r#"{ "id": "cp", "plan": { "start": { "x_m": 60, "y_m": 0 }, "speed_mps": 4,
+            "course": [{ "curve": { "to": { "x_m": 64, "y_m": 0 } } }, { "curve": { "to": { "x_m": 60, "y_m": 0 }, "reverse": true } }],
+            "acts": [{ "do": { "stop": { "rate_mps2": 2 } } },
+                     { "when": { "time_s": 2.6 }, "do": { "speed": { "to_mps": 1.5, "rate_mps2": 1.5 } } }] } }"#;
+        let states = &replay(&scenario(back_and_forth), 10).actors[0].states;
+        let stands = states.iter().filter(|state| state[3] == 0.0).count();
+        let backwards = states.iter().filter(|state| state[3] < 0.0).count();
+        assert!(stands > 3 && backwards > 3, "{states:?}");
+        for pair in states.windows(2) {
+            assert!((pair[1][0] - pair[0][0]).abs() < 0.41 && pair[1][2].abs() < 1e-9, "{pair:?}");
+        }
+    }
+
+    #[test]
     fn who_asks_nobody_is_known_to_the_end() {
         let replay = replay(&scenario(&car("cp", 60.0, "")), 10);
         assert_eq!(replay.ends, None);

@@ -515,3 +515,30 @@ mod terminations {
         }
     }
 }
+
+/// MetaDrive's rule for a road that is followed by one with fewer lanes; its driver looks at how many, not at where they lead.
+#[test]
+fn metadrives_driver_leaves_a_lane_where_the_next_road_has_fewer() {
+    let arm = |id: &str, bearing_deg: i32, lanes: usize| {
+        let strips = vec![serde_json::json!({"kind": "driving"}); lanes];
+        serde_json::json!({"id": id, "start": {"arm": {"junction": "j", "bearing_deg": bearing_deg, "from_m": 15}},
+            "line": [{"straight": {"length_m": 120}}], "right": strips, "left": strips})
+    };
+    let drives = |lanes: usize| {
+        let roads = [arm("own", 180, lanes), arm("ahead", 0, lanes), arm("left", 90, lanes), arm("right", 270, lanes)];
+        let draft = serde_json::json!({
+            "format": "recrash.scenario/2", "id": "fewer", "source": {}, "duration_s": 6,
+            "map": {"type": "G", "roads": roads, "junctions": [{"id": "j"}]}, "actors": [],
+            "ego": {"route": ["own-", "ahead+"], "lane": lanes / 2, "s_m": 50, "speed_mps": 7, "target_speed_mps": 7},
+        });
+        let draft = recrash_roads::read_draft(&draft.to_string()).expect("a draft").value;
+        let rollout = simulate(&checked(draft), Ego::MetadriveIdm);
+        let states = &rollout.actors[0].states;
+        (states[0].y - states[40].y, states[0].steer)
+    };
+    // The way through the junction has one lane: of three it leaves the middle for the last, of one it has it.
+    let (moved_m, steer) = drives(3);
+    assert!(moved_m > 3.3 && steer == -1.0, "{moved_m} {steer}");
+    let (moved_m, steer) = drives(1);
+    assert!(moved_m.abs() < 0.01 && steer.abs() < 0.01, "{moved_m} {steer}");
+}
