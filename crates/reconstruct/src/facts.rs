@@ -121,7 +121,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         // Who is pushed moves when it touches.
         let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stood = stood(track, touch.time_s);
-        let slowed = slowed(track, touch.time_s);
+        let (slowed, gained) = changed(track, touch.time_s);
         let (as_told, phases) = phases::check(&side.phases, track, touch.time_s);
         let backs_first = told.backs_first.filter(|_| kind == CheckKind::CpState && !told.sv.phases.is_empty());
         let in_order = backs_first.is_none_or(|first| phases::back_in_order(first, ego_track, track, touch.time_s));
@@ -129,12 +129,14 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             || state(side.state, track, seen, touch.time_s)
                 && (stood || !side.stood_first)
                 && (slowed || side.slowed_from.is_none())
+                && (gained || !side.gains)
                 && as_told
                 && in_order;
-        let before = |stood: bool, slowed: bool| match (stood, slowed) {
-            (true, _) => ", had stood",
-            (false, true) => ", had slowed",
-            (false, false) => "",
+        let before = |stood: bool, slowed: bool, gained: bool| match (stood, slowed, gained) {
+            (true, ..) => ", had stood",
+            (false, true, _) => ", had slowed",
+            (false, false, true) => ", had gained speed",
+            (false, false, false) => "",
         };
         let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
         if let Some(first) = backs_first {
@@ -142,8 +144,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             observed += if in_order { ", so it did" } else { ", so it did not" };
         }
         if side.phases.is_empty() {
-            expected += before(side.stood_first, side.slowed_from.is_some());
-            observed += before(stood, slowed);
+            expected += before(side.stood_first, side.slowed_from.is_some(), side.gains);
+            observed += before(stood, slowed, gained);
         } else {
             expected += &format!(": {}", phases::words(&side.phases));
             observed += &format!(": {phases}");
@@ -432,17 +434,21 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
 /// Who turns back by more than this on its way swings. [deg]
 const MOST_BACK_DEG: f64 = 30.0;
 
+/// Nobody turns faster in a step. [deg]
+const FASTEST_TURN_DEG: f64 = 20.0;
+
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
 const AS_STAGED_S: f64 = 0.15;
 
-/// Who slowed has lost at least this. [m/s]
-const SLOWED_MPS: f64 = 1.0;
+/// Who slowed has lost at least this, who gained speed has gained it, or a quarter. [m/s]
+const CHANGED_MPS: f64 = 1.0;
 
-/// Whether somebody slowed before a time.
-fn slowed(track: &ActorTrack, time_s: f64) -> bool {
+/// Whether somebody slowed before a time, and whether it gained speed.
+fn changed(track: &ActorTrack, time_s: f64) -> (bool, bool) {
     let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
     let now_mps = track.states[until].velocity().length();
-    track.states[..=until].iter().any(|state| state.velocity().length() > now_mps + SLOWED_MPS)
+    let any = |was: &dyn Fn(f64) -> bool| track.states[..=until].iter().any(|state| was(state.velocity().length()));
+    (any(&|mps| mps > now_mps + CHANGED_MPS), any(&|mps| mps < now_mps - CHANGED_MPS.min(0.25 * now_mps)))
 }
 
 /// Whether a partner that drives along or across the road is beside it on its way to the contact, or swings one way and back the other, or
@@ -462,8 +468,11 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
     // Every second.
     let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
-    let turns = track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
-    let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
+    let turns = || track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+    if turns().any(|turn| turn.to_degrees().abs() > FASTEST_TURN_DEG) {
+        return true;
+    }
+    let (all, net) = turns().fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
     beside || (all - net.abs()).to_degrees() > MOST_BACK_DEG
 }
 

@@ -276,6 +276,7 @@ fn pace(contact_s: f64, side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
             Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m }
         }
         ContactState::Moving if side.slowed_from.is_some() => slows(contact_s, side),
+        ContactState::Moving if side.gains => gains(contact_s, side.speed_mps),
         ContactState::Moving => {
             Pace { speed_mps: side.speed_mps, acts: Vec::new(), driven_m: side.speed_mps * contact_s }
         }
@@ -292,6 +293,18 @@ fn slows(contact_s: f64, side: &Side) -> Pace {
     let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + side.speed_mps) * braking_s;
     Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
 }
+
+/// It gains speed until the contact.
+fn gains(contact_s: f64, speed_mps: f64) -> Pace {
+    let by_mps = GAINS_MPS.min(0.5 * speed_mps);
+    let (from_mps, gaining_s) = (speed_mps - by_mps, (by_mps / STARTS_MPS2 * 10.0).ceil() / 10.0);
+    let gain = Deed::Speed { to_mps: speed_mps, rate_mps2: by_mps / gaining_s };
+    let driven_m = from_mps * (contact_s - gaining_s) + 0.5 * (from_mps + speed_mps) * gaining_s;
+    Pace { speed_mps: from_mps, acts: vec![when(contact_s - gaining_s, gain)], driven_m }
+}
+
+/// Who gained speed before the contact gained so much, at most half of it. [m/s]
+pub(crate) const GAINS_MPS: f64 = 3.0;
 
 /// Who follows an ego that slows is faster than it by so much before. [m/s]
 const FOLLOWS_BY_MPS: f64 = 1.0;

@@ -45,6 +45,8 @@ pub(crate) struct Side {
     pub(crate) stands_from_start: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
+    /// It is told to have gained speed while it drove, and to be under way at the contact.
+    pub(crate) gains: bool,
     /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
     pub(crate) phases: Vec<Phase>,
     /// Whether the state is told.
@@ -141,7 +143,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
             stands && !fact.after_contact && !fact.begun
         });
     let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
-    let slowed_from = (slows && !stood_first && state == ContactState::Moving).then(|| {
+    let slowed_from = (slows && !gained_last(party) && !stood_first && state == ContactState::Moving).then(|| {
         let approach = party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Approach);
         Slowed(approach.map(|speed| speed.value.mps))
     });
@@ -156,8 +158,10 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
     let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
     let stopped_aside = stopped_aside.map(|fact| fact.act);
+    let gains = gained_last(party) && state == ContactState::Moving && !stood_first && phases.is_empty();
     Side {
         aside,
+        gains,
         stopped_aside,
         turns_later: false,
         turns_wide: false,
@@ -185,6 +189,14 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         lane: told(&party.lane),
         control: control(party),
     }
+}
+
+/// Whether the last change of speed before the contact that is told is a gain.
+fn gained_last(party: &Party) -> bool {
+    let changes = |fact: &&ActFact| {
+        matches!(fact.act, Act::Accelerate | Act::Slow | Act::Stop) && !fact.after_contact && !fact.begun
+    };
+    party.acts.iter().rfind(changes).is_some_and(|fact| fact.act == Act::Accelerate)
 }
 
 /// Whether somebody who does this leaves the line that it drives on, without a turn.

@@ -4,6 +4,7 @@ use crate::choices::Choices;
 use crate::ground::LANE_M;
 use crate::lateral;
 use crate::others::{self, Extra};
+use crate::pace::GAINS_MPS;
 use crate::side::{Side, Slant, Turning, side};
 use crate::things::{self, SLIDES_MPS};
 use crate::touch::side_of;
@@ -382,6 +383,10 @@ impl Told {
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
                 _ => {}
             }
+        }
+        // Who gained speed came at the usual one.
+        if self.cp.impact_mps.is_none() && self.cp.gains {
+            self.cp.speed_mps += GAINS_MPS;
         }
         if self.cp.impact_mps.is_none() && !self.is_thrown() {
             self.cp.speed_mps *= self.choices.partner_speed;

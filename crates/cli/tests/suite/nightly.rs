@@ -390,6 +390,23 @@ fn evidence_is_of_the_runs_that_are_given() {
 }
 
 #[test]
+fn the_checker_takes_the_mass_that_a_road_user_has_of_its_own() {
+    let place = Place::new();
+    let mut scenario = json(&cases("crashes").join("18-cyclist-from-behind.json"));
+    let cyclist = scenario["actors"].as_array().unwrap().iter().position(|actor| actor["kind"] == "cyclist").unwrap();
+    scenario["actors"][cyclist]["mass_kg"] = 400.0.into();
+    std::fs::write(place.path("heavy.json"), scenario.to_string()).unwrap();
+    let (code, _, errors) = place.run(&["freeze", "heavy.json", "--out", "frozen", "--quiet"]);
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(place.run(&["evidence", "frozen", "--ego", "idm", "--out", "evidence", "--quiet"]).0, 0);
+    let checked = std::process::Command::new("python3").arg(place.path("evidence/check.py")).output().unwrap();
+    let shown = String::from_utf8_lossy(&checked.stdout).into_owned();
+    assert!(checked.status.success() && shown.contains("numbers come out as they are told"), "{shown}");
+    let numbers = std::fs::read_to_string(place.path("evidence/numbers.json")).unwrap();
+    assert!(numbers.contains("other_delta_v"), "somebody is touched: {numbers}");
+}
+
+#[test]
 fn a_night_that_could_not_be_run_is_not_green() {
     let place = frozen();
     let base = ego(&place, "base.py", ("", ""));

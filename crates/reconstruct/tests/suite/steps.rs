@@ -90,3 +90,14 @@ fn who_goes_round_the_ego_stands_behind_it_in_its_lane_first() {
         Some(LeftRight::Left)
     );
 }
+
+#[test]
+fn who_is_told_to_have_gained_speed_does() {
+    let account = story(
+        "The AV was stopped for a queue of traffic. A van approached from behind, accelerated, and the front of the van made contact with the \
+         rear of the stationary AV.",
+    );
+    let speeds: Vec<f64> = partner(&made(&account)).0.iter().map(|state| state.speed()).collect();
+    assert!(speeds[speeds.len() - 1] > speeds[0] + 1.0, "{speeds:?}");
+    assert_eq!(missed(&account, |less| partner_without_acts(less, &[Act::Accelerate])), [CheckKind::CpState]);
+}

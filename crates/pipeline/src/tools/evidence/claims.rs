@@ -109,7 +109,7 @@ pub fn all(
     all.add(
         "C4",
         "context",
-        "Masses by kind in runs.json; plane impact without restitution, friction 0.5 (Brach).",
+        "Masses by kind in runs.json, or as the rollout gives a road user its own; plane impact without restitution, friction 0.5 (Brach).",
         &[],
         &[],
     );
