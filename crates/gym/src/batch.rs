@@ -327,15 +327,16 @@ impl Batch {
                 let threads = pool.current_num_threads() + 1;
                 let grain = (all.slots.len() / (TURNS * threads)).max(GRAIN);
                 let rest = Mutex::new(Some(all));
-                let work = || {
-                    while let Some(part) = next(&rest, grain, &shared) {
+                let work = |end| {
+                    while let Some(part) = next(&rest, end, grain, &shared) {
                         part.step(&shared);
                     }
                 };
-                // The caller's thread does not wait until another is awake.
+                // The caller's thread does not wait until another is awake; and it begins at the other end, so that a slot
+                // mostly stays with the thread that has its memory at hand.
                 pool.in_place_scope(|scope| {
-                    (1..threads).for_each(|_| scope.spawn(|_| work()));
-                    work();
+                    (1..threads).for_each(|_| scope.spawn(|_| work(End::Last)));
+                    work(End::First);
                 });
             }
             _ => all.step(&shared),
@@ -393,18 +394,29 @@ struct Part<'a> {
     outputs: Outputs<'a>,
 }
 
-/// The next slots that nobody has taken; `None` when all are.
-fn next<'a>(rest: &Mutex<Option<Part<'a>>>, slots: usize, shared: &Shared<'_>) -> Option<Part<'a>> {
+/// Where slots are taken from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    First,
+    Last,
+}
+
+/// The next slots at this end that nobody has taken; `None` when all are.
+fn next<'a>(rest: &Mutex<Option<Part<'a>>>, end: End, slots: usize, shared: &Shared<'_>) -> Option<Part<'a>> {
     let mut rest = rest.lock().unwrap_or_else(PoisonError::into_inner);
     let Part { slots: all, actions, outputs } = rest.take()?;
     if all.len() <= slots {
         return Some(Part { slots: all, actions, outputs });
     }
-    let (first, second) = all.split_at_mut(slots);
-    let (first_actions, second_actions) = actions.split_at(slots, shared.settings.handles);
-    let (first_out, second_out) = outputs.split_at(slots, &shared.settings.view);
-    *rest = Some(Part { slots: second, actions: second_actions, outputs: second_out });
-    Some(Part { slots: first, actions: first_actions, outputs: first_out })
+    let at = if end == End::First { slots } else { all.len() - slots };
+    let (first, second) = all.split_at_mut(at);
+    let (first_actions, second_actions) = actions.split_at(at, shared.settings.handles);
+    let (first_out, second_out) = outputs.split_at(at, &shared.settings.view);
+    let first = Part { slots: first, actions: first_actions, outputs: first_out };
+    let second = Part { slots: second, actions: second_actions, outputs: second_out };
+    let (taken, left) = if end == End::First { (first, second) } else { (second, first) };
+    *rest = Some(left);
+    Some(taken)
 }
 
 impl Part<'_> {
