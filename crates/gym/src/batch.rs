@@ -10,13 +10,14 @@ use rayon::ThreadPool;
 use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
 use recrash_model::seed::Seed;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Fewer slots than this are not worth another thread.
 const GRAIN: usize = 16;
 
 /// A thread takes its share in about so many turns, so that none waits long for the last.
-const TURNS: usize = 8;
+const TURNS: usize = 32;
 
 /// What happens when an episode has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -327,6 +328,7 @@ impl Batch {
                 let threads = pool.current_num_threads() + 1;
                 let grain = (all.slots.len() / (TURNS * threads)).max(GRAIN);
                 let rest = Mutex::new(Some(all));
+                let busy = AtomicUsize::new(threads - 1);
                 let work = |end| {
                     while let Some(part) = next(&rest, end, grain, &shared) {
                         part.step(&shared);
@@ -335,8 +337,17 @@ impl Batch {
                 // The caller's thread does not wait until another is awake; and it begins at the other end, so that a slot
                 // mostly stays with the thread that has its memory at hand.
                 pool.in_place_scope(|scope| {
-                    (1..threads).for_each(|_| scope.spawn(|_| work(End::Last)));
+                    (1..threads).for_each(|_| {
+                        scope.spawn(|_| {
+                            work(End::Last);
+                            busy.fetch_sub(1, Ordering::Release);
+                        });
+                    });
                     work(End::First);
+                    // The others are at their last few slots: to sleep and be woken takes longer than those.
+                    while busy.load(Ordering::Acquire) > 0 {
+                        std::thread::yield_now();
+                    }
                 });
             }
             _ => all.step(&shared),
