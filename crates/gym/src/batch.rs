@@ -339,8 +339,8 @@ impl Batch {
                 pool.in_place_scope(|scope| {
                     (1..threads).for_each(|_| {
                         scope.spawn(|_| {
+                            let _until_here = Busy(&busy);
                             work(End::Last);
-                            busy.fetch_sub(1, Ordering::Release);
                         });
                     });
                     work(End::First);
@@ -403,6 +403,15 @@ struct Part<'a> {
     slots: &'a mut [Slot],
     actions: Actions<'a>,
     outputs: Outputs<'a>,
+}
+
+/// A thread that counts as busy until this is dropped, by a panic too.
+struct Busy<'a>(&'a AtomicUsize);
+
+impl Drop for Busy<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Release);
+    }
 }
 
 /// Where slots are taken from.
