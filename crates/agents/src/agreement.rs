@@ -40,12 +40,12 @@ pub fn disagreement(narrative: &Narrative, account: &Account, profile: &SystemPr
     let came_from = account.came_from.as_ref()?;
     let from = came_from.value;
     let rides = partner.and_then(|partner| told(&partner.kind)).map(Kind::group);
-    let on_the_sidewalk = matches!(rides, Some(KindGroup::Cyclist | KindGroup::OnFoot))
-        && matches!(came_from.source, Source::Rule { .. })
-        && facts.approach() == Some(Approach::Same)
-        && side_of(from) == facts.side();
     // Who goes along on the sidewalk and over the crosswalk is beside the road, and crosses it: where that is only inferred, both are
-    // the same.
+    // the same. And who comes from behind on it comes up beside the ego.
+    let inferred = matches!(came_from.source, Source::Rule { .. }) && side_of(from) == facts.side();
+    let on_the_sidewalk = matches!(rides, Some(KindGroup::Cyclist | KindGroup::OnFoot))
+        && facts.approach() == Some(Approach::Same)
+        && (inferred || (from == Origin::Behind && facts.side().is_some()));
     if on_the_sidewalk {
         return None;
     }
