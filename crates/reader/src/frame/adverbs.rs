@@ -141,7 +141,8 @@ fn pulls_out_to_pass(frames: &[Frame], number: usize, words: &[&str]) -> bool {
     if frame.act() != Some(Act::PullOut) || frame.out_of.is_some() {
         return false;
     }
-    let from = words.iter().any(|word| matches!(*word, "from" | "curb" | "kerb"));
+    let from = words.iter().any(|word| matches!(*word, "from" | "curb" | "kerb"))
+        || frames[..number].iter().any(|before| before.who == frame.who && before.sense == Sense::Parked);
     let passes = frames[number + 1..].iter().take(2).any(|next| {
         next.sentence == frame.sentence && next.who == frame.who && next.act() == Some(Act::Pass) && next.happened()
     });
