@@ -1,8 +1,9 @@
 //! What an account states, in the terms that the rules stage.
 
+use super::approach::side_from_zones;
 use super::{Reading, Relation};
 use crate::rules::telling;
-use recrash_model::account::{Account, CrashType, LeftRight, Origin, SpeedMeaning, Striker, told};
+use recrash_model::account::{Account, CrashType, Kind, KindGroup, LeftRight, Origin, SpeedMeaning, Striker, told};
 use recrash_model::metrics::CollisionKind;
 use recrash_model::narrative::{Fact, FactSource, FactValue, Side};
 use recrash_model::record::CrashRecord;
@@ -21,7 +22,12 @@ pub fn reading_of_account<'a>(record: &'a CrashRecord, account: &Account) -> Rea
             Fact { value, source: source(&speed.source) }
         }));
     }
-    let relation = account.came_from.as_ref().and_then(|from| Some((relation(from.value)?, source(&from.source))));
+    let relation = account.came_from.as_ref().and_then(|from| {
+        let beside = from.value == Origin::Behind && rides(account);
+        // Who rides or walks and comes from behind comes up beside the ego, on the side that was touched.
+        let beside = side_from_zones(record).filter(|_| beside).map(|side| Relation::Beside(Some(side)));
+        Some((beside.or_else(|| relation(from.value))?, source(&from.source)))
+    });
     let why = || FactSource::Assumed { why: "it follows from the type of the crash".to_owned() };
     Reading {
         record,
@@ -31,6 +37,11 @@ pub fn reading_of_account<'a>(record: &'a CrashRecord, account: &Account) -> Rea
         relation,
         facts,
     }
+}
+
+fn rides(account: &Account) -> bool {
+    let group = account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group);
+    matches!(group, Some(KindGroup::Cyclist | KindGroup::OnFoot))
 }
 
 fn relation(from: Origin) -> Option<Relation> {
