@@ -19,7 +19,6 @@ use recrash_model::scenario::{
     Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Part,
     Place, SCENARIO_FORMAT, ScenarioDraft, Size, Source,
 };
-use recrash_model::template::Movement;
 use recrash_roads::Course;
 
 /// The system under test takes over this long before the contact, or before the ego began to stop. [s]
@@ -186,13 +185,16 @@ fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
 }
 
 fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
-    let (lead, mut pace) = ego_paces(told, ground, sv_s_m);
+    let (mut lead, mut pace) = ego_paces(told, ground, sv_s_m);
     let aside = told.sv_aside();
     if let Some(aside) = aside {
         let shift = shift(told.contact_s, aside, &pace, told.sv.speed_mps);
         // It leaves its line before it stops for good.
         let at = if told.sv.state.stands() { 0 } else { pace.acts.len() };
-        pace.acts.insert(at, shift);
+        match lead.as_mut().filter(|_| told.sv.state.stands()) {
+            Some(lead) => lead.shifts(aside.to_t_m),
+            None => pace.acts.insert(at, shift),
+        }
     }
     let reverses = told.sv.state == ContactState::Reversing;
     let pace = match lead {
@@ -336,6 +338,8 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
     };
     let on_lanes = with_its_turn(told, staging, &pace, arm_m)
         .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
+        .or_else(|| lateral::comes_by(told, staging, &pace, arm_m))
+        .or_else(|| lateral::changed_behind(told, staging, &pace, arm_m))
         .or_else(|| lateral::turns_in(told, staging, &pace, arm_m));
     if let Some((begin, mut course)) = on_lanes {
         course.push(beyond);
@@ -357,6 +361,10 @@ fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
     if !matches!(told.origin, Origin::Behind | Origin::Beside { .. }) || told.sv.turning == Turning::No || reverses {
         return None;
     }
+    // It goes straight on.
+    if told.origin == Origin::Behind && math::wrap_angle(cp.heading - staging.cp_came).abs() < STRAIGHT_RAD {
+        return None;
+    }
     let (met_m, beside_m) = ground.beside(cp.position);
     // Who comes behind it comes along its lane.
     let beside_m =
@@ -376,6 +384,9 @@ fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
     })
 }
 
+/// Who has turned by no more than this comes straight. [rad]
+const STRAIGHT_RAD: f64 = 0.15;
+
 /// Who follows through a turn is no farther beside the middle of the lane. [m]
 const FOLLOWS_BESIDE_M: f64 = 0.8;
 
@@ -390,9 +401,7 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     let mut position = staging.cp.position - way * back_m;
     let turns = told.cp.turning != Turning::No && turn.abs() > 0.1;
     let line_y_m = lateral::line_y_m(told, staging).filter(|_| aside && !turns);
-    let own_lane = told.cp.lane.is_some() && told.cp.lane != told.sv.lane;
-    let passes = told.origin == Origin::Behind && told.cp.movement == Some(Movement::Passing);
-    let pulls_out = aside && !turns && passes && !own_lane;
+    let pulls_out = aside && !turns && told.passes_from_behind();
     if pulls_out {
         // Out of the ego's lane.
         position.y = staging.sv.position.y;

@@ -1,6 +1,7 @@
 //! Signals and signs: drawn as they are told, and held against who drove past them when.
 
 use crate::ground::Ground;
+use crate::pace::sets_off_behind_s;
 use crate::side::{Side, Turning};
 use crate::told::Told;
 use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState};
@@ -65,6 +66,7 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan) -> Vec<Cont
         let is_ego = std::ptr::eq(*side, &told.sv);
         let changed_s = match sets_off_s(ego).filter(|_| is_ego) {
             Some(sets_off_s) => sets_off_s - GREEN_BEFORE_S,
+            None if let Some(sets_off_s) = sets_off_behind_s(told).filter(|_| is_ego) => sets_off_s - GREEN_BEFORE_S,
             None if side.state.stands() => told.contact_s - CHANGED_S,
             None => told.contact_s - CHANGED_BEFORE_DRIVING_S,
         };

@@ -218,7 +218,11 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     };
     let places = if crossing || told.sv.turning != Turning::No {
         let mut all = inside(at_line);
-        all.extend(if told.sv.turning != Turning::No {
+        let waits = told.sv.state == ContactState::Stopped && told.origin == Origin::Behind;
+        all.extend(if waits && told.sv.turning == Turning::Right {
+            // It has begun to turn.
+            inside(&[6.0, 10.0, 14.0, 3.0, 18.0, 22.0, 28.0])
+        } else if told.sv.turning != Turning::No {
             inside(&[10.0, 14.0, 6.0, 18.0, 3.0, 22.0, 28.0])
         } else {
             inside(&[12.0, 8.0, 16.0, 5.0, 20.0])

@@ -5,7 +5,7 @@ use crate::pace::{Pace, start_over};
 use crate::side::Turning;
 use crate::told::Told;
 use crate::touch::Staging;
-use recrash_model::account::{Act, ContactState, LeftRight, Origin, Party};
+use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, Party};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -52,6 +52,20 @@ pub(crate) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movem
 }
 
 impl Told {
+    /// Whether the partner comes along the ego's lane behind it and passes it.
+    pub(crate) fn passes_from_behind(&self) -> bool {
+        let own_lane = match (self.cp.lane, self.sv.lane) {
+            (Some(LaneWord::Opposing), _) => false,
+            (Some(cp), Some(sv)) => cp != sv,
+            _ => false,
+        };
+        self.origin == Origin::Behind
+            && self.cp.movement == Some(Movement::Passing)
+            && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff)
+            && self.cp.turning == Turning::No
+            && !own_lane
+    }
+
     /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.
     pub(crate) fn stood_beside(&self) -> bool {
         let beside = matches!(self.origin, Origin::Parked { .. } | Origin::Stall { .. } | Origin::Driveway { .. });
@@ -97,7 +111,6 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
 
 /// On which side of the ego's lane the partner comes along.
 fn beside(told: &Told) -> Option<LeftRight> {
-    use recrash_model::account::LaneWord;
     match told.origin {
         // It keeps its lane where the ego changes lanes.
         Origin::Beside { side } => told.sv_aside().is_none().then_some(side),
@@ -127,6 +140,74 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     let begin = Pose { position: leaves.position - came * before_m, ..leaves };
     (before_m > 1.0).then(|| (begin, vec![leaves, cp]))
 }
+
+/// Who passes has come out of the ego's lane so far before the contact, and does so on so much of its way at most. [m]
+const OUT_M: f64 = 6.0;
+const COMES_OUT_M: f64 = 24.0;
+
+/// Who comes from behind the ego and passes it comes out of its lane, goes along beside it, and then comes too near: where it begins, and
+/// the poses that it drives by.
+pub(crate) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    if !told.passes_from_behind() {
+        return None;
+    }
+    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
+    let comes_in = math::wrap_angle(cp.heading - staging.cp_came);
+    let out_y_m = cp.position.y - 0.5 * OUT_M * comes_in;
+    let own_y_m = staging.sv.position.y;
+    let at = |back_m: f64, y_m: f64| Pose {
+        position: Vec2::new(cp.position.x - came.x * back_m, y_m),
+        heading: staging.cp_came,
+    };
+    let back_m = (pace.driven_m - 0.5).min(OUT_M + COMES_OUT_M);
+    let poses = vec![at(back_m, own_y_m), at(OUT_M, out_y_m), cp];
+    let bends_m = (4.0 * LEAST_BY_RADIUS_M * (out_y_m - own_y_m).abs()).sqrt();
+    if back_m - OUT_M < bends_m {
+        return None;
+    }
+    let mut course = Course::begin(arm_m);
+    if !poses.windows(2).all(|pair| course.curve(pair[0], pair[1], false)) {
+        return None;
+    }
+    let before_m = pace.driven_m - course.length_m();
+    let begin = Pose { position: poses[0].position - came * before_m.max(0.0), ..poses[0] };
+    (before_m > 0.02).then_some((begin, poses))
+}
+
+/// Who changed into the ego's lane behind it is back on its line so far before the contact, and took so long for it. [m]
+const CHANGED_M: f64 = 8.0;
+const CHANGES_OVER_M: f64 = 30.0;
+
+/// Who changed lanes behind the ego, and then came straight on: from the lane that it left, the one on its left where there is one.
+pub(crate) fn changed_behind(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
+    let ground = &staging.ground;
+    if !told.cp.changed_lanes || told.origin != Origin::Behind || told.cp.state != ContactState::Moving {
+        return None;
+    }
+    let from = match told.cp.aside {
+        Some(to) => to.other(),
+        None if ground.lane > 0 => LeftRight::Left,
+        None if ground.lanes > 1 => LeftRight::Right,
+        None => return None,
+    };
+    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
+    let line_y_m = staging.sv.position.y + if from == LeftRight::Left { LANE_M } else { -LANE_M };
+    let at = |back_m: f64, y_m: f64| Pose {
+        position: Vec2::new(cp.position.x - came.x * back_m, y_m),
+        heading: staging.cp_came,
+    };
+    let poses = vec![at(CHANGED_M + CHANGES_OVER_M, line_y_m), at(CHANGED_M, cp.position.y), cp];
+    let mut course = Course::begin(arm_m);
+    if !poses.windows(2).all(|pair| course.curve(pair[0], pair[1], false)) {
+        return None;
+    }
+    let before_m = pace.driven_m - course.length_m();
+    let begin = Pose { position: poses[0].position - came * before_m.max(0.0), ..poses[0] };
+    (before_m > 0.02).then_some((begin, poses))
+}
+
+/// No bend of who comes out to pass is tighter. [m]
+const LEAST_BY_RADIUS_M: f64 = 7.0;
 
 /// Radius of a turn: of the line that the rear axle drives on. [m]
 const TURN_M: f64 = 8.0;

@@ -31,8 +31,17 @@ pub(crate) const ROLLING_MPS: f64 = 7.0;
 /// Who stood behind the ego before it set off has stood for so long. [s]
 const WAITED_S: f64 = 1.0;
 
+/// Who leaves its line between two stands drives so far meanwhile. [m]
+const SHIFTS_M: f64 = 6.0;
+
 /// How long the ego has stood when somebody who came to a stop behind it sets off. [s]
 const STOOD_LONG_S: f64 = 5.0;
+
+/// Who stood already when the story begins has stood for so much longer than who came to a stop in it. [s]
+const STOOD_LONGER_S: f64 = 3.0;
+
+/// An ego that comes to a stop is seen rolling for so long. [s]
+const LEAST_ROLL_S: f64 = 0.3;
 
 /// Nobody takes longer to set off. [s]
 const LONGEST_START_S: f64 = 6.0;
@@ -60,20 +69,49 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let (sv, contact_s) = (&told.sv, told.contact_s);
     let stood_s = match told.waits_behind() {
         true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
+        false if told.stood_before => told.choices.stood_s + STOOD_LONGER_S,
         false => told.choices.stood_s,
     };
-    let usual =
-        from_line(told, ground, sv_s_m).unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
+    let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);
+    let usual = from_line(told, ground, sv_s_m)
+        .or_else(|| before_who_waits(told))
+        .unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
     let begins_s = match sv.state.stands() {
         true => contact_s - told.choices.stood_s,
         false if usual.speed_mps > 0.0 => return (None, usual),
         false => first_time(&usual.acts),
     };
     let moved_up_m = past_line_m(told, ground, sv_s_m).filter(|_| sv.state.stands()).unwrap_or(MOVES_UP_M);
-    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, moved_up_m.max(MOVES_UP_M), 0.0) {
+    let least_m = if told.sv_aside().is_some() { SHIFTS_M } else { MOVES_UP_M };
+    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, moved_up_m.max(least_m), 0.0) {
         Some(lead) if sv.state.stands() => (Some(lead), STANDING),
         lead => (lead, usual),
     }
+}
+
+/// How far somebody goes until it touches the one that it waited behind, which set off [`FOLLOWS_S`] earlier, and creeps. [m]
+fn catches_up_m(told: &Told) -> f64 {
+    let (ego_mps, cp_mps) = (told.sv.speed_mps, told.cp.speed_mps);
+    let head_m = ego_mps * (0.5 * (cp_mps - ego_mps) / SETS_OFF_MPS2 + FOLLOWS_S) + BEHIND_M;
+    (head_m / (1.0 - ego_mps / cp_mps).max(0.1)).max(MOVES_UP_M)
+}
+
+/// Who sets off before somebody who waited behind it does so earlier, and creeps.
+fn before_who_waits(told: &Told) -> Option<Pace> {
+    let (sv, contact_s) = (&told.sv, told.contact_s);
+    if sv.state != ContactState::SettingOff || !told.waits_behind() {
+        return None;
+    }
+    let moving_s = contact_s - first_time(&last_pace(told).acts) + FOLLOWS_S;
+    start_over(contact_s, sv.speed_mps, sv.speed_mps * (moving_s - 0.5 * sv.speed_mps / SETS_OFF_MPS2))
+}
+
+/// Who waited behind somebody sets off so long after it. [s]
+const FOLLOWS_S: f64 = 0.5;
+
+/// When a partner that waits behind an ego that stands sets off. [s]
+pub(crate) fn sets_off_behind_s(told: &Told) -> Option<f64> {
+    (told.waits_behind() && told.sv.state.stands()).then(|| first_time(&last_pace(told).acts))
 }
 
 /// How far behind the stop line of a junction the ego is. [m]
@@ -84,11 +122,20 @@ fn past_line_m(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
 impl Told {
     /// Whether the partner stood behind the ego and set off then.
     fn waits_behind(&self) -> bool {
-        // Who is told to be this slow when it hits an ego that stands did not come along at that speed.
-        let crept = self.cp.state == ContactState::Moving
+        self.origin == Origin::Behind && (self.cp.state == ContactState::SettingOff || self.cp.stood_first)
+    }
+
+    /// Whether the partner came up behind an ego that stands and braked, but not enough: it is told to be this slow when they touch, and
+    /// not that it had stood.
+    fn brakes_late(&self) -> bool {
+        let slow = self.cp.impact_mps.is_some_and(|mps| mps < CREEPS_MPS);
+        self.origin == Origin::Behind
+            && self.cp.state == ContactState::Moving
+            && !self.cp.stood_first
+            && !self.cp.gains
+            && self.cp.phases.is_empty()
             && self.sv.state.stands()
-            && self.cp.impact_mps.is_some_and(|mps| mps < CREEPS_MPS);
-        self.origin == Origin::Behind && (self.cp.state == ContactState::SettingOff || self.cp.stood_first || crept)
+            && slow
     }
 }
 
@@ -136,6 +183,7 @@ fn last_pace(told: &Told) -> Pace {
     let from_m = match told.waits_behind() {
         true if cp.movement == Some(Movement::Passing) => COMES_ROUND_M,
         true if moved_up => MOVES_UP_M + BEHIND_M,
+        true if told.sv.state == ContactState::SettingOff => catches_up_m(told),
         true if usual.speed_mps > 0.0 => MOVES_UP_M,
         _ => return usual,
     };
@@ -150,6 +198,7 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
     let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
     let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
+        ContactState::Moving if told.brakes_late() => slows(contact_s, cp),
         // It slows with the ego that it follows.
         ContactState::Moving if told.sv.slowed_from.is_some() && follows && usual.driven_m < ego_m + 5.0 => {
             let from_mps = (ego.speed_mps + FOLLOWS_BY_MPS).max(cp.speed_mps);
@@ -198,7 +247,7 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
 }
 
 /// Who stood behind the ego and comes round it has driven so far at the contact. [m]
-const COMES_ROUND_M: f64 = 10.0;
+const COMES_ROUND_M: f64 = 12.0;
 
 /// How far somebody who stood before it turned has driven at the contact. [m]
 const TURNS_M: f64 = 8.0;

@@ -1,7 +1,7 @@
 //! What somebody did before the last thing that it does: it came and stood, moved up and stood again, or reversed first.
 
 use crate::pace::{Pace, when};
-use recrash_model::account::{Act, ActFact, ContactState, Party, Striker};
+use recrash_model::account::{Act, ActFact, ContactState, Party, Standing, Striker};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::rollout::{ActorState, ActorTrack};
 use recrash_model::scenario::{self, ActorPlan, Deed, Leg, Place};
@@ -72,7 +72,8 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     // The state at the contact decides how it ends: what is told of who stands behind its last stop was a plan, and a stop that is
     // told last of who moves was not reached.
     let last = Phase::of(state);
-    if last == Phase::Stands {
+    let stopping = party.standing.as_ref().is_some_and(|fact| fact.value == Standing::Stopping);
+    if last == Phase::Stands && !stopping {
         let stands = list.iter().rposition(|phase| *phase == last).map_or(list.len(), |at| at + 1);
         list.truncate(stands);
     } else if list.ends_with(&[last, Phase::Stands]) {
@@ -196,6 +197,16 @@ impl Lead {
     /// How far it goes, back and forth. [m]
     pub(crate) fn driven_m(&self) -> f64 {
         self.stretches.iter().map(|(length_m, reverse)| if *reverse { -length_m } else { *length_m }).sum()
+    }
+
+    /// It leaves its line on its last way, of which half is done where that ends.
+    pub(crate) fn shifts(&mut self, to_t_m: f64) {
+        let Some((way_m, _)) = self.stretches.last().copied() else { return };
+        let starts = |act: &scenario::Act| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
+        let at = self.acts.iter().rposition(starts).unwrap_or(0);
+        let over_m = 2.0 * way_m;
+        let shift = scenario::Act { deed: Deed::Shift { to_t_m, over_m }, ..self.acts[at].clone() };
+        self.acts.insert(at, shift);
     }
 
     /// Forward all the way, and then the last pace.

@@ -3,7 +3,7 @@
 use crate::phases::{self, Phase};
 use crate::things;
 use recrash_model::account::{
-    Act, ActFact, ContactState, Control, ControlDevice, Kind, KindGroup, LaneWord, LeftRight, Obeyed, Party,
+    Act, ActFact, ContactState, Control, ControlDevice, Fact, Kind, KindGroup, LaneWord, LeftRight, Obeyed, Party,
     SignalState, Source, SpeedMeaning, StandReason, Standing, told,
 };
 use recrash_model::kinds::PartnerKind;
@@ -61,6 +61,8 @@ pub(crate) struct Side {
     pub(crate) aside: Option<LeftRight>,
     /// By what it left its line, where it did so before it came to a stop.
     pub(crate) stopped_aside: Option<Act>,
+    /// It changed lanes on its way, and goes straight on since.
+    pub(crate) changed_lanes: bool,
     /// It is told to have dodged or drifted that way while it drove on.
     pub(crate) dodges: bool,
     /// It reverses, and is told to have been at an angle to the road.
@@ -159,8 +161,11 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
     let stopped_aside = stopped_aside.map(|fact| fact.act);
     let gains = gained_last(party) && state == ContactState::Moving && !stood_first && phases.is_empty();
+    let changed_lanes = matches!(movement, None | Some(Movement::Straight))
+        && party.acts.iter().any(|fact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun);
     Side {
         aside,
+        changed_lanes,
         gains,
         stopped_aside,
         turns_later: false,
@@ -207,7 +212,9 @@ fn leaves_line(act: Act) -> bool {
 /// What somebody who came to a stop did last before it, of what tells its way.
 fn last_way(party: &Party) -> Option<&ActFact> {
     let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
-    let stood = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).max()?;
+    let last_stop = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).max();
+    let stopping = told(&party.standing) == Some(Standing::Stopping);
+    let stood = if stopping { u32::MAX } else { last_stop? };
     let goes_on = |fact: &ActFact| match (&fact.source, fact.act) {
         // "advanced", in its turn.
         (Source::Words { text, .. }, Act::Follow) => text.to_lowercase().starts_with("travel"),
@@ -216,13 +223,16 @@ fn last_way(party: &Party) -> Option<&ActFact> {
                 || matches!(act, Act::Pass | Act::Turn | Act::UTurn | Act::Enter | Act::Reverse | Act::Follow)
         }
     };
-    let came = told(&party.standing) == Some(Standing::CameToStop);
+    let goes_on = |fact: &ActFact| goes_on(fact) && !(stopping && fact.act == Act::Park);
+    let came = stopping || told(&party.standing) == Some(Standing::CameToStop);
     before().filter(|fact| came && fact.step < stood && goes_on(fact)).max_by_key(|fact| fact.step)
 }
 
 /// The turn that somebody had begun or done before it came to a stop. Who stops at a light or a sign has yet to turn.
 fn turned_before_its_stop(party: &Party) -> Turning {
-    let waits = party.reasons.iter().any(|fact| matches!(fact.value, StandReason::RedLight | StandReason::StopSign));
+    let entered = party.acts.iter().any(|fact| fact.act == Act::Enter && !fact.after_contact && !fact.begun);
+    let at_line = |fact: &Fact<StandReason>| matches!(fact.value, StandReason::RedLight | StandReason::StopSign);
+    let waits = party.reasons.iter().any(at_line) && !entered;
     match last_way(party).filter(|fact| fact.act == Act::Turn && !waits).and_then(|fact| fact.side) {
         Some(LeftRight::Left) => Turning::Left,
         Some(LeftRight::Right) => Turning::Right,

@@ -8,11 +8,11 @@ use crate::pace::GAINS_MPS;
 use crate::side::{Side, Slant, Turning, side};
 use crate::things::{self, SLIDES_MPS};
 use crate::touch::side_of;
-use recrash_model::account::StandReason;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     Striker, Untold, told,
 };
+use recrash_model::account::{StandReason, Standing};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
@@ -83,6 +83,8 @@ pub(crate) struct Told {
     pub(crate) wanted: Vec<Extra>,
     /// Those of them in the scene.
     pub(crate) extras: Vec<Extra>,
+    /// The ego stood already when the partner began what it did.
+    pub(crate) stood_before: bool,
     /// Who of the two backed first, where both did.
     pub(crate) backs_first: Option<Striker>,
     /// When they touch. [s]
@@ -153,6 +155,7 @@ impl Told {
             posted_mps: told(&account.place.posted_mps),
             wanted: Vec::new(),
             extras: Vec::new(),
+            stood_before: stood_before(&account.sv, partner),
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
             contact_s: CONTACT_S,
             choices: Choices::default(),
@@ -375,6 +378,10 @@ impl Told {
         if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.comes_across() {
             let sv = self.sv.speed_mps;
             match self.origin {
+                // Whom the ego passes is slower.
+                Origin::Beside { .. } if self.sv.movement == Some(Movement::Passing) && sv > 0.5 => {
+                    self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.5).max(0.4));
+                }
                 Origin::Behind | Origin::Beside { .. }
                     if self.sv.state != ContactState::Reversing && !self.cp.stood_first =>
                 {
@@ -411,7 +418,8 @@ impl Told {
     /// How the ego leaves its line.
     pub(crate) fn sv_aside(&self) -> Option<Aside> {
         let (left, right) = (LeftRight::Left, LeftRight::Right);
-        let stopped = self.sv.stopped_aside.filter(|_| self.sv.phases.len() < 3);
+        let back = self.sv.phases.contains(&crate::phases::Phase::Reverses);
+        let stopped = self.sv.stopped_aside.filter(|_| !back);
         let stands = self.sv.state.stands() && stopped.is_none();
         if self.sv.turning != Turning::No || stands || self.sv.state == ContactState::Reversing {
             return None;
@@ -423,11 +431,14 @@ impl Told {
             Some(_) => Movement::LaneDeparture,
             None => self.sv.movement?,
         };
+        // Who makes room for another before it stops does so away from it.
+        let makes_room = matches!(stopped, Some(Act::Drift | Act::Swerve)) && self.striker == Some(Striker::Cp);
         let towards = self.sv.aside.or(match self.origin {
-            Origin::Beside { side } | Origin::Cross { side } => Some(side),
+            Origin::Beside { side } | Origin::Cross { side } => Some(if makes_room { side.other() } else { side }),
             _ => None,
         });
-        let towards = towards.or_else(|| side_of(&self.sv.zones).map(|side| if side > 0.0 { left } else { right }));
+        let towards = towards
+            .or_else(|| side_of(&self.sv.zones).map(|side| if (side > 0.0) != makes_room { left } else { right }));
         let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
         let (from_t_m, to_t_m) = match movement {
             Movement::ChangingLanes | Movement::Merging => (0.0, by(left, LANE_M)),
@@ -472,6 +483,20 @@ impl Told {
         });
         Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
     }
+}
+
+/// Whether one that stood at the contact did so before the partner began to do something: nothing is told of it behind that.
+fn stood_before(sv: &Party, partner: &Party) -> bool {
+    let steps = |party: &Party, of: fn(Act) -> bool| -> Vec<u32> {
+        let before = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun && of(fact.act));
+        before.map(|fact| fact.step).collect()
+    };
+    let begins = |act: Act| {
+        matches!(act, Act::Reverse | Act::SetOff | Act::PullOut | Act::Enter | Act::Turn | Act::Pass | Act::LaneChange)
+    };
+    let begun = steps(partner, begins).into_iter().min();
+    let last = steps(sv, |_| true).into_iter().max();
+    told(&sv.standing) == Some(Standing::FromTheStart) || last.is_some() && begun.is_some() && last < begun
 }
 
 /// Who of the two is told to have backed first.

@@ -10,10 +10,11 @@ use crate::side::{Side, Slant, Turning};
 use crate::things;
 use crate::told::Told;
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::{ContactState, LeftRight, Origin};
+use recrash_model::account::{ContactState, CrashType, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 
@@ -95,7 +96,8 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                             continue;
                         };
                         let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
-                        let cost = (off, trial);
+                        let face_on = told.scrapes() && is_face_on(told, sv, cp);
+                        let cost = (off + if face_on { FACE_ON } else { 0 }, trial);
                         let (ground, door) = (ground.clone(), None);
                         found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, door, cost });
                     }
@@ -104,6 +106,27 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
         }
     }
     found
+}
+
+/// Whether two that touch do so with a front on a rear, and not along a flank: seen along the ego they overlap less than across it.
+fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
+    let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
+    let (ahead, way) = (Vec2::from_heading(sv.heading), cp.position - sv.position);
+    let turn = cp.heading - sv.heading;
+    let (cos, sin) = (math::cos(turn).abs(), math::sin(turn).abs());
+    let along_m = 0.5 * (sv_length + cos * cp_length + sin * cp_width) - way.dot(ahead).abs();
+    let across_m = 0.5 * (sv_width + cos * cp_width + sin * cp_length) - ahead.cross(way).abs();
+    along_m < across_m
+}
+
+/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps.
+const FACE_ON: u32 = 2;
+
+impl Told {
+    /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.
+    fn scrapes(&self) -> bool {
+        self.crash_type == CrashType::Lateral && side_of(&self.sv.zones).is_some()
+    }
 }
 
 /// Steps around the box from the nearest told zone; none where none is told.
@@ -206,8 +229,17 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
                 None => {}
             }
             let follows = told.origin == Origin::Behind && told.sv.turning != Turning::No;
+            // Who touches the outer side of who turns ahead of it goes straight on.
+            let outer = match told.sv.turning {
+                Turning::Left => Some(-1.0),
+                Turning::Right => Some(1.0),
+                Turning::No | Turning::Round => None,
+            };
+            let goes_on =
+                told.cp.movement == Some(Movement::Straight) && outer.is_some() && side_of(&told.sv.zones) == outer;
             let bases = match (sv_heading.abs() > 0.02, follows) {
                 (false, _) => vec![0.0],
+                (true, true) if goes_on => vec![0.0, behind, sv_heading],
                 (true, true) => vec![behind, sv_heading, 0.0],
                 (true, false) => vec![0.0, sv_heading],
             };

@@ -1,0 +1,163 @@
+"""Packets for a blind reading of reconstructions: the report, and what its rollout shows. Nothing of the account.
+
+    recrash reconstruct FILES... --to-dir scenes
+    python eval/reading/packets.py --recrash PROGRAM --scenes scenes --half dev --count 60 --word spring --out packets FILES...
+
+Incidents are drawn by SHA-256 of WORD and the report id, from the scenarios of `scenes`; reports that eval/reconstructions.csv
+has are left out. A reader gets packets/N.md, by eval/reading/GUIDE.md, and fills packets/N.csv.
+"""
+
+import argparse
+import csv
+import hashlib
+import json
+import math
+import subprocess
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).parent
+COLUMNS = {
+    "SV movement": "SV Pre-Crash Movement",
+    "CP movement": "CP Pre-Crash Movement",
+    "crash with": "Crash With",
+    "SV speed (mph)": "SV Precrash Speed (MPH)",
+    "roadway": "Roadway Type",
+    "posted (mph)": "Posted Speed Limit (MPH)",
+}
+
+
+def digest(*parts: str) -> bytes:
+    return hashlib.sha256("".join(parts).encode()).digest()
+
+
+def rows(files: list[str]) -> dict[str, dict[str, str]]:
+    """Rows by 'report id/version'; of several the last."""
+    found = {}
+    for file in files:
+        with open(file, encoding="utf-8-sig", errors="replace", newline="") as stream:
+            for row in csv.DictReader(stream):
+                found[f"{row['Report ID']}/{row['Report Version']}"] = row
+    return found
+
+
+def degrees(angle: float) -> int:
+    return round(math.degrees(math.remainder(angle, math.tau)))
+
+
+def way(state: dict) -> str:
+    speed = math.hypot(state["vx"], state["vy"])
+    along = state["vx"] * math.cos(state["heading"]) + state["vy"] * math.sin(state["heading"])
+    return f"{speed:.1f} m/s{' in reverse' if along < -0.1 else ''}"
+
+
+def seen_from(ego: dict, other: dict) -> str:
+    """Where the centre of another is, in the frame of the ego as it stands then, and where it points."""
+    dx, dy = other["x"] - ego["x"], other["y"] - ego["y"]
+    c, s = math.cos(ego["heading"]), math.sin(ego["heading"])
+    ahead, left = dx * c + dy * s, dy * c - dx * s
+    return (
+        f"{abs(ahead):.1f} m {'ahead' if ahead >= 0 else 'behind'}, {abs(left):.1f} m {'left' if left >= 0 else 'right'}, "
+        f"points {degrees(other['heading'] - ego['heading']):+d} deg to the ego's heading, {way(other)}"
+    )
+
+
+def touched(event: dict, actors: list[dict], obstacles: list[dict]) -> str:
+    kind = event["kind"]
+    if kind["event"] == "contact":
+        a, b = actors[kind["a"]], actors[kind["b"]]
+        return f"{event['time_s']:.2f} s: {a['id']} and {b['id']} touch"
+    if kind["event"] == "obstacle_contact":
+        return f"{event['time_s']:.2f} s: {actors[kind['actor']]['id']} touches thing {kind['obstacle']}"
+    return f"{event['time_s']:.2f} s: {kind['event']}"
+
+
+def shown(recrash: str, scene: Path, folder: Path) -> str:
+    """What the rollout with the recorded driver shows, second by second."""
+    target = folder / "rollout.json"
+    done = subprocess.run(
+        [recrash, "simulate", str(scene), "--ego", "recorded", "--rollout", str(target)],
+        capture_output=True, text=True, check=False,
+    )
+    rollout, draft = json.loads(target.read_text()), json.loads(scene.read_text())
+    target.unlink()
+    actors = rollout["actors"]
+    ego = actors[0]["states"]
+    contact = next((e["time_s"] for e in rollout["events"] if "contact" in e["kind"]["event"]), len(ego) / 10)
+    lines = [f"Roads: {json.dumps(draft['map'])}", f"Signals and signs: {json.dumps(draft.get('control', []))}"]
+    if draft.get("objects"):
+        lines.append(f"Things: {json.dumps(draft['objects'])}")
+    lines += ["Road users: " + "; ".join(
+        f"{a['id']} is a {a['kind']} ({a['length_m']} x {a['width_m']} m)"
+        + (f", a part of {actors[a['part_of']]['id']}" if a.get("part_of") is not None else "")
+        for a in actors)]
+    start = ego[0]
+    steps = list(range(0, min(len(ego), int(contact * 10) + 11), 5))
+    for step in steps:
+        state = ego[step]
+        c, s = math.cos(start["heading"]), math.sin(start["heading"])
+        dx, dy = state["x"] - start["x"], state["y"] - start["y"]
+        line = (
+            f"{step / 10:4.1f} s | ego {dx * c + dy * s:.1f} m along, {dy * c - dx * s:+.1f} m to the left of where it began, "
+            f"turned {degrees(state['heading'] - start['heading']):+d} deg, {way(state)}"
+        )
+        for other in actors[1:]:
+            if other["role"] == "part" and other["kind"] == actors[other.get("part_of") or 0]["kind"]:
+                continue
+            gone = other.get("gone_s")
+            if step / 10 < other.get("appears_s", 0) or (gone is not None and step / 10 >= gone):
+                continue
+            line += f" | {other['id']} {seen_from(state, other['states'][min(step, len(other['states']) - 1)])}"
+        lines.append(line)
+    lines += ["Events: " + "; ".join(touched(e, actors, rollout["obstacles"]) for e in rollout["events"])]
+    said = [line.strip() for line in done.stdout.splitlines() if line.startswith("contact at")]
+    return "\n".join(lines + said)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--recrash", default="recrash")
+    parser.add_argument("--scenes", type=Path, required=True)
+    parser.add_argument("--half", choices=["dev", "held-out"], required=True)
+    parser.add_argument("--count", type=int, default=60)
+    parser.add_argument("--parts", type=int, default=2, help="packets, one a reader")
+    parser.add_argument("--word", required=True)
+    parser.add_argument("--skip", type=Path, action="append", default=[], help="further files with a column `report`")
+    parser.add_argument("--out", type=Path, required=True)
+    args = parser.parse_args()
+    read_before = set()
+    for file in [HERE.parent / "reconstructions.csv", *args.skip]:
+        with open(file, newline="") as stream:
+            read_before |= {row["report"] for row in csv.DictReader(stream)}
+    drawn = []
+    for scene in sorted(args.scenes.glob("incident-*.json")):
+        report = json.loads(scene.read_text())["source"]["records"][0]
+        half = "dev" if digest(report.split("/")[0])[31] % 2 == 0 else "held-out"
+        if half == args.half and report not in read_before:
+            drawn.append((digest(args.word, report), report, scene))
+    drawn = sorted(drawn)[: args.count]
+    by_report = rows(args.files)
+    args.out.mkdir(parents=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for part in range(args.parts):
+            chosen = drawn[part :: args.parts]
+            with open(args.out / f"{part + 1}.md", "w") as stream:
+                for _, report, scene in chosen:
+                    row = by_report[report]
+                    told = "; ".join(f"{name}: {row.get(column, '')}" for name, column in COLUMNS.items())
+                    zones = {
+                        side: [c.split(":")[-1].strip() for c, v in row.items()
+                               if c and c.startswith(f"{side} Contact Area") and v == "Y"]
+                        for side in ("SV", "CP")
+                    }
+                    stream.write(
+                        f"## {report} ({scene.stem})\n\n{row['Narrative']}\n\n{told}; SV zones: {', '.join(zones['SV'])}; "
+                        f"CP zones: {', '.join(zones['CP'])}\n\n```\n{shown(args.recrash, scene, Path(folder))}\n```\n\n"
+                    )
+            with open(args.out / f"{part + 1}.csv", "w", newline="") as stream:
+                stream.write("reading,report,incident,who,side,movements,order,standstill,striker,zones,right,note\n")
+
+
+if __name__ == "__main__":
+    main()
