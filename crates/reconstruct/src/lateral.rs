@@ -127,7 +127,7 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
             Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane | Movement::LaneDeparture
         )
     );
-    if !(leaves || told.cp.dodges || told.comes_over) || told.cp.state != ContactState::Moving || !pace.acts.is_empty()
+    if !(leaves || told.cp.dodges || told.comes_over) || told.cp.state != ContactState::Moving || pace.speed_mps == 0.0
     {
         return None;
     }
