@@ -83,6 +83,8 @@ pub(crate) struct Told {
     pub(crate) wanted: Vec<Extra>,
     /// Those of them in the scene.
     pub(crate) extras: Vec<Extra>,
+    /// A partner from beside was ahead of the ego at first, or behind it, where told.
+    pub(crate) ahead: Option<bool>,
     /// The ego stood already when the partner began what it did.
     pub(crate) stood_before: bool,
     /// Who of the two backed first, where both did.
@@ -155,6 +157,7 @@ impl Told {
             posted_mps: told(&account.place.posted_mps),
             wanted: Vec::new(),
             extras: Vec::new(),
+            ahead: told(&account.ahead),
             stood_before: stood_before(&account.sv, partner),
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
             contact_s: CONTACT_S,
@@ -378,8 +381,10 @@ impl Told {
         if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.comes_across() {
             let sv = self.sv.speed_mps;
             match self.origin {
-                // Whom the ego passes is slower.
-                Origin::Beside { .. } if self.sv.movement == Some(Movement::Passing) && sv > 0.5 => {
+                // Whom the ego passes, and who was ahead of it, is slower.
+                Origin::Beside { .. }
+                    if sv > 0.5 && (self.sv.movement == Some(Movement::Passing) || self.ahead == Some(true)) =>
+                {
                     self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.5).max(0.4));
                 }
                 Origin::Behind | Origin::Beside { .. }

@@ -72,6 +72,7 @@ fn nothing(record: &CrashRecord) -> Account {
         sv: Party::default(),
         partner: None,
         came_from: None,
+        ahead: None,
         order: None,
         driver: None,
         others: Vec::new(),

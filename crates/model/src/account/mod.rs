@@ -124,6 +124,9 @@ pub struct Account {
     pub partner: Option<Party>,
     /// From where the partner came, seen from the subject vehicle before any turn.
     pub came_from: Option<Fact<Origin>>,
+    /// Whether a partner from beside was ahead of the subject vehicle before it left its line, or behind it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ahead: Option<Fact<bool>>,
     /// Who was at the place of the conflict first.
     pub order: Option<Fact<FirstMover>>,
     /// Who drove the subject vehicle at the contact.

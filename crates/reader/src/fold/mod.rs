@@ -157,6 +157,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         sv: party::party(&reading, SUBJECT),
         partner: reading.contacts.partner.map(|actor| party::party(&reading, actor)),
         came_from: None,
+        ahead: None,
         order: None,
         driver: driver(&reading),
         others: others(&reading),
@@ -185,6 +186,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         account.came_from = Some(origin);
         movement::movements(&reading, &mut account);
     }
+    account.ahead = origin::ahead(&reading, &account);
     account.striker = blame::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
     account.role = blame::role(&reading, &account);

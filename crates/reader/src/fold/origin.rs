@@ -61,6 +61,20 @@ impl Clues<'_> {
     }
 }
 
+/// Whether a partner from beside was ahead at first, or behind: as told before it left its line, or passed.
+pub(crate) fn ahead(reading: &Reading<'_>, account: &Account) -> Option<Fact<bool>> {
+    let Some(Origin::Beside { .. }) = told(&account.came_from) else { return None };
+    let actor = reading.contacts.partner?;
+    let leaves = |act: Act| matches!(act, Act::LaneChange | Act::Swerve | Act::Drift | Act::Pass | Act::Turn);
+    let on_its_line = reading.before(actor).take_while(|(_, frame)| !frame.act().is_some_and(leaves));
+    let seen =
+        on_its_line.flat_map(|(number, frame)| frame.relations.iter().map(move |(relation, _)| (number, relation)));
+    let (number, relation) =
+        seen.filter(|(_, relation)| matches!(relation, Relation::Ahead | Relation::Behind)).next()?;
+    let (first, end) = reading.window(number);
+    Some(Fact { value: *relation == Relation::Ahead, source: reading.words(first, end) })
+}
+
 /// From where the partner came.
 pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> {
     let partner = account.partner.as_ref()?;
