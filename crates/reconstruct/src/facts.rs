@@ -11,7 +11,7 @@ use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
-    ContactState, Control as Said, ControlDevice, LaneWord, LeftRight, Obeyed, Origin, StandReason, Striker,
+    ContactState, Control as Said, ControlDevice, Kind, LaneWord, LeftRight, Obeyed, Origin, StandReason, Striker,
 };
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -64,17 +64,18 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         return list;
     };
     let by_partner = touch.track.is_none_or(|track| track.id == "cp");
-    let undisturbed = told.pushed || !touched_before(rollout, &touch);
+    let undisturbed = told.pushed || toucher(rollout, &touch).is_none();
     let who = match (by_partner, undisturbed) {
         (true, true) => "the partner",
         (true, false) => "the partner, after another",
         (false, _) => "somebody else",
     };
+    let crash = others::crash(told, rollout);
     fact(
         CheckKind::Contact,
-        by_partner && undisturbed,
-        "a contact with the partner".to_owned(),
-        format!("with {who} at {:.2} s", touch.time_s),
+        by_partner && undisturbed && crash.is_none(),
+        "a contact with the partner, and none of others".to_owned(),
+        format!("with {who} at {:.2} s{}", touch.time_s, crash.map_or(String::new(), |crash| format!("; {crash}"))),
     );
     fact(
         CheckKind::Partner,
@@ -162,16 +163,20 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         }
     }
     if told.pushed {
-        let before = touched_before(rollout, &touch);
-        let observed = if before { "touched by another before" } else { "touched by nobody before" };
+        let before = toucher(rollout, &touch);
+        let kind = told.pusher.and_then(Kind::partner_kind);
+        let observed = before.map_or("touched by nobody before".to_owned(), |track| {
+            format!("touched by another before: {}", track.kind.label().to_lowercase())
+        });
         let result = match before {
-            true => CheckResult::Shown,
+            Some(track) if kind.is_none_or(|kind| kind == track.kind) => CheckResult::Shown,
             // Who pushed a thing is not drawn.
-            false if told.is_sliding() => CheckResult::CannotBeShown,
-            false => CheckResult::NotShown,
+            None if told.is_sliding() => CheckResult::CannotBeShown,
+            _ => CheckResult::NotShown,
         };
-        let (kind, expected) = (CheckKind::PassedOn, "another touched the partner first".to_owned());
-        list.push(Check { kind, expected, observed: observed.to_owned(), result });
+        let whose = kind.map_or(String::new(), |kind| format!(": {}", kind.label().to_lowercase()));
+        let expected = format!("another touched the partner first{whose}");
+        list.push(Check { kind: CheckKind::PassedOn, expected, observed, result });
     }
     let mut ways = vec![(CheckKind::SvMovement, &told.sv, ego_track, touch.track, touch.other)];
     ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
@@ -394,12 +399,14 @@ fn outline_at(track: &ActorTrack, time_s: f64) -> OrientedBox {
     OrientedBox::new(Pose { position, heading }, track.length_m, track.width_m)
 }
 
-/// Whether the partner touched somebody else before.
-fn touched_before(rollout: &Rollout, touch: &Touch<'_>) -> bool {
-    let number = rollout.actors.iter().position(|track| track.id == "cp");
-    rollout.events.iter().take_while(|event| event.time_s < touch.time_s).any(|event| match event.kind {
-        EventKind::Contact { a, b, .. } => a != 0 && (Some(a) == number || Some(b) == number),
-        _ => false,
+/// Whom else the partner touched before.
+fn toucher<'a>(rollout: &'a Rollout, touch: &Touch<'_>) -> Option<&'a ActorTrack> {
+    let number = rollout.actors.iter().position(|track| track.id == "cp")?;
+    rollout.events.iter().take_while(|event| event.time_s < touch.time_s).find_map(|event| match event.kind {
+        EventKind::Contact { a, b, .. } if a != 0 && (a == number || b == number) => {
+            rollout.actors.get(if a == number { b } else { a })
+        }
+        _ => None,
     })
 }
 

@@ -2,7 +2,9 @@
 
 use crate::others::Extra;
 use crate::side::Turning;
+use crate::things::Lies;
 use crate::told::Told;
+use crate::touch::size_of;
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
@@ -59,6 +61,16 @@ impl Ground {
         self.way.pose(s_m, t_m)
     }
 
+    /// The same, with the ego's front where the road begins that it turns into.
+    fn at_entry(self, ego_m: f64) -> Self {
+        let centre_y_m = (self.lanes as f64 - 0.5) * LANE_M;
+        let entry_m = (0..1000)
+            .map(|step| APPROACH_M + 0.05 * f64::from(step))
+            .find(|s_m| (self.sv_pose(*s_m).position.y - centre_y_m).abs() >= corner_m(self.lanes))
+            .unwrap_or(APPROACH_M);
+        Self { places: vec![entry_m - 0.5 * ego_m], ..self }
+    }
+
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
         self.pose(s_m, 0.0)
     }
@@ -94,7 +106,9 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         && !matches!(told.sv.turning, Turning::Left | Turning::Right);
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
     if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
-        return junction(told, crossing);
+        let ground = junction(told, crossing);
+        let at_entry = told.lies == Some(Lies::Edge) && told.sv.turning != Turning::No;
+        return if at_entry { ground.at_entry(size_of(&told.sv).0) } else { ground };
     }
     let one_way = is_one_way(told);
     let oncoming = if one_way || told.place == PlaceKind::Highway { 0 } else { 1 };
@@ -176,10 +190,15 @@ fn passes_right(told: &Told) -> bool {
             })
 }
 
+/// From a junction's centre to where its arms begin, wider with more lanes. [m]
+fn corner_m(lanes: usize) -> f64 {
+    CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M
+}
+
 /// Four arms; the ego comes along the one that lies behind it.
 fn junction(told: &Told, crossing: bool) -> Ground {
     let lanes = lanes_for(told, 2);
-    let corner_m = CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M;
+    let corner_m = corner_m(lanes);
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
         straight(id, start, length_m, strips(lanes, &[StripKind::Sidewalk]), strips(lanes, &[StripKind::Sidewalk]))

@@ -244,7 +244,7 @@ fn control(party: &Party) -> Option<Control> {
 }
 
 /// Sizes of kinds that are longer or shorter than the group they belong to; usual ones, assumed. [m]
-fn size_of(kind: Kind) -> Option<Size> {
+pub(crate) fn size_of(kind: Kind) -> Option<Size> {
     let size = |length_m: f64, width_m: f64| Some(Size { length_m, width_m });
     match kind {
         Kind::SemiTrailerTruck => size(16.0, 2.6),

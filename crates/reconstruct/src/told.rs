@@ -6,7 +6,7 @@ use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::GAINS_MPS;
 use crate::side::{Side, Slant, Turning, side};
-use crate::things::{self, SLIDES_MPS};
+use crate::things::{self, Lies, SLIDES_MPS};
 use crate::touch::side_of;
 use recrash_model::account::StandReason;
 use recrash_model::account::{
@@ -55,6 +55,10 @@ pub(crate) struct Told {
     pub(crate) thing: Option<Kind>,
     /// The partner is a gate that swung as they met.
     pub(crate) gate_swings: bool,
+    /// How the partner lies that the ego drives over, where told.
+    pub(crate) lies: Option<Lies>,
+    /// The ego had changed lanes, and driven on, before it came to a thing.
+    pub(crate) lane_changed: bool,
     /// The partner is on foot, or an animal, and is told to have come across.
     pub(crate) walks_across: bool,
     /// The partner is told to have rolled, slid or been pushed.
@@ -66,8 +70,9 @@ pub(crate) struct Told {
     /// An oncoming partner left its own side.
     pub(crate) comes_over: bool,
     pub(crate) order: Option<FirstMover>,
-    /// Somebody threw the partner at the subject vehicle.
+    /// Somebody threw the partner at the subject vehicle; and who, where told.
     pub(crate) pushed: bool,
+    pub(crate) pusher: Option<Kind>,
     pub(crate) striker: Option<Striker>,
     /// Lanes in the ego's direction.
     pub(crate) lanes: Option<u8>,
@@ -108,7 +113,7 @@ impl Told {
 
     /// Whether or not it can be staged; nothing where no partner or no kind of crash is told.
     pub(crate) fn read(account: &Account) -> Option<Self> {
-        let partner = account.partner.as_ref()?;
+        let partner = &things::partner(account)?;
         let crash_type = told(&account.crash_type)?;
         let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
         let mut assumed = Vec::new();
@@ -116,6 +121,8 @@ impl Told {
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
         let sv = side(&account.sv, None, &mut assumed, "ego");
         let mut cp = side(partner, kind, &mut assumed, "partner");
+        let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
+        cp.size = lies.and_then(Lies::size).or(cp.size);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
         if gate_swings {
             // Its post stands.
@@ -136,6 +143,8 @@ impl Told {
             thing,
             slides: things::slides(partner),
             gate_swings,
+            lies,
+            lane_changed: things::changed_lanes_before(account),
             walks_across: things::walks_across(origin, partner),
             origin,
             origin_told,
@@ -145,9 +154,10 @@ impl Told {
             pushed: partner.did(Act::Pushed)
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
+            pusher: others::pusher(account),
             striker,
             lanes: told(&account.place.lanes),
-            reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
+            reasons: others::reasons(account),
             others: account.others.len(),
             door: told(&account.door),
             posted_mps: told(&account.place.posted_mps),
@@ -270,12 +280,13 @@ impl Told {
         self.sv.control.is_some() || self.cp.control.is_some()
     }
 
-    /// Everything to try: with those whom the ego stood for, then without them.
+    /// Everything to try: with those whom the ego stood for, with one of them, then without them.
     pub(crate) fn variants(self) -> Vec<Self> {
         let with_extras = |told: Self| {
-            let extras = told.wanted.clone();
-            let with = (!extras.is_empty()).then(|| Self { extras, ..told.clone() });
-            with.into_iter().chain([told])
+            let wanted = told.wanted.clone();
+            let one = wanted.iter().filter(|_| wanted.len() > 1).map(|extra| vec![*extra]).collect::<Vec<_>>();
+            let all = [wanted].into_iter().filter(|extras| !extras.is_empty()).chain(one).chain([Vec::new()]);
+            all.map(|extras| Self { extras, ..told.clone() }).collect::<Vec<_>>()
         };
         self.by_origin().into_iter().flat_map(with_extras).collect()
     }
@@ -405,6 +416,8 @@ impl Told {
 pub(crate) struct Aside {
     pub(crate) from_t_m: f64,
     pub(crate) to_t_m: f64,
+    /// It is over before the contact.
+    pub(crate) done: bool,
 }
 
 impl Told {
@@ -440,7 +453,7 @@ impl Told {
             Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, DEPARTS_M)),
             _ => return None,
         };
-        Some(Aside { from_t_m, to_t_m })
+        Some(Aside { from_t_m, to_t_m, done: self.lane_changed && stopped.is_none() })
     }
 
     /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]

@@ -88,7 +88,7 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
         let behind = ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
         for (came, heading) in headings(told, sv.heading, behind) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
-                for &sv_point in points(sv_zone) {
+                for &sv_point in things::sv_points(told, sv_zone) {
                     for &cp_point in points(cp_zone) {
                         trial += 1;
                         let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
@@ -124,6 +124,9 @@ pub(crate) fn side_of(zones: &[ContactZone]) -> Option<f64> {
 
 /// Zones to try: the told ones, or all where none is told; then the neighbours of told ones, since a zone is told to a step.
 fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
+    if let Some(pair) = things::across(told) {
+        return vec![pair];
+    }
     let all = || ContactZone::ALL[..8].to_vec();
     let of = |zones: &[ContactZone]| if zones.is_empty() { all() } else { zones.to_vec() };
     let near = |zones: &[ContactZone]| -> Vec<ContactZone> {
@@ -186,6 +189,9 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             }
         }
     };
+    if things::across(told).is_some() {
+        return vec![(sv_heading, sv_heading)];
+    }
     if told.comes_across() {
         return things::headings(told).into_iter().map(math::wrap_angle).map(|heading| (heading, heading)).collect();
     }
