@@ -3,6 +3,7 @@
 use crate::control;
 use crate::door::Opening;
 use crate::ground::Ground;
+use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::{Pace, ROLLING_MPS, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, when};
@@ -65,6 +66,9 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         }
     }
     actors.extend(others::actors(told, staging));
+    let mut map = ground.map.clone();
+    let begins = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan.start);
+    map.roads[0].driveways.extend(begins.and_then(|begins| kerb::driveway(told, ground, begins)));
     let control = control::devices(told, ground, &recorded);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
@@ -88,7 +92,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             author: Author::Rules,
             ..Source::default()
         },
-        map: MapSpec::G(ground.map.clone()),
+        map: MapSpec::G(map),
         ego: EgoSpec {
             kind: told.sv.kind,
             size: told.sv.size,
@@ -142,7 +146,7 @@ pub(crate) fn straight_plan(start: Vec2, way: Vec2, (speed_mps, contact_s): (f64
 pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pose> {
     let on_way = ground.sv_pose(sv_s_m);
     if told.sv_aside().is_none() {
-        return Some(on_way);
+        return Some(ground.pose(sv_s_m, ground.stands_m));
     }
     let alone = ScenarioDraft {
         format: SCENARIO_FORMAT.to_owned(),
@@ -214,7 +218,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         road: ground.route[0].clone(),
         lane: ground.lane,
         along: Along::FromStart(s_m),
-        t_m: aside.map_or(0.0, |aside| aside.from_t_m),
+        t_m: aside.map_or(ground.stands_m, |aside| aside.from_t_m),
         heading_deg: 0.0,
     };
     if reverses {

@@ -192,7 +192,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         list.push(Check { kind, expected, observed, result });
     };
     if let Some(track) = touch.track.filter(|_| told.origin_told) {
-        let (shown, observed) = origin(told, ego_track, track);
+        let (shown, observed) = origin(told, ego_track, track, touch.time_s);
         fact(CheckKind::Approach, shown, origin_words(told), observed);
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
@@ -531,15 +531,22 @@ fn origin_words(told: &Told) -> String {
 }
 
 /// Whether the partner comes from where it is told, seen from the ego when it sets out.
-fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
+fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bool, String) {
     let state = told.cp.state;
     let on_foot = is_on_foot(other.kind);
     // Seen when it sets out.
     let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
     let stands_then = sets_out > 0;
+    // Of who backs into a space: when it begins to.
+    let backs = other.states.iter().position(|state| state.speed() < -STANDS_MPS);
+    let sets_out = backs.filter(|_| told.cp.backs_in).unwrap_or(sets_out);
     let turned_off = matches!(told.cp.slants, Some(Slant::Stood(_)));
     let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
+    let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
     let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
+    // Who comes out of a driveway is behind the place where an ego stands then.
+    let stands = told.sv.state.stands() && matches!(told.origin, Origin::Driveway { .. });
+    let behind_met = (other.position() - met.position()).dot(Vec2::from_heading(met.heading)) < 0.0;
     let forward = Vec2::from_heading(ego.heading);
     let way = other.position() - ego.position();
     let (ahead, left) = (way.dot(forward), forward.cross(way));
@@ -566,8 +573,13 @@ fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
         Origin::Beside { side } => (facing.abs() < 60.0 || told.comes_across()) && same_way && beside(side),
         Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
-            let from_there =
-                !told.stood_beside() || stands_then && left.abs() > OVER_M && (!told.comes_round || ahead < 0.0);
+            let crosswise = (30.0..150.0).contains(&facing.abs());
+            let out = crosswise || !matches!(told.origin, Origin::Stall { .. } | Origin::Driveway { .. });
+            let from_there = !(told.stood_beside() || told.backs_out())
+                || stands_then
+                    && left.abs() > OVER_M
+                    && out
+                    && (!told.comes_round || ahead < 0.0 || stands && behind_met);
             side.is_none_or(beside) && from_there || state.stands()
         }
         Origin::Above => false,

@@ -36,6 +36,8 @@ pub(crate) struct Ground {
     pub(crate) lanes: usize,
     /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
     pub(crate) kerbs_m: [f64; 2],
+    /// From the ego's line to where it stands, to the right: it is parked at the kerb. [m]
+    pub(crate) stands_m: f64,
     /// From the ego's line to the middle of the nearest lane of those who come towards it. [m]
     pub(crate) opposing_m: f64,
 }
@@ -59,6 +61,11 @@ impl Ground {
     /// A pose along the ego's way, or beside it.
     pub(crate) fn pose(&self, s_m: f64, t_m: f64) -> Pose {
         self.way.pose(s_m, t_m)
+    }
+
+    /// Along the road where the ego's line is 0, of a street. [m]
+    pub(crate) const fn begins_m(&self) -> f64 {
+        APPROACH_M
     }
 
     /// The same, with the ego's front where the road begins that it turns into.
@@ -115,10 +122,11 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let (right, left) = match told.place {
         PlaceKind::Highway => (strips(lanes_for(told, 3), &[StripKind::Shoulder]), Vec::new()),
         _ if lot => (strips(1, &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
-        _ => (
-            strips(lanes_for(told, 2), &[StripKind::Parking, StripKind::Sidewalk]),
-            strips(oncoming, &[StripKind::Parking, StripKind::Sidewalk]),
-        ),
+        _ => {
+            let stalls = matches!(told.origin, Origin::Stall { .. });
+            let beside = [if stalls { StripKind::Stalls } else { StripKind::Parking }, StripKind::Sidewalk];
+            (strips(lanes_for(told, 2), &beside), strips(oncoming, &beside))
+        }
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     // The rightmost lane, but for a partner that comes by on the right.
@@ -136,7 +144,10 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         areas: Vec::new(),
     };
     let across = Across { lanes, lane, oncoming };
-    with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false)
+    let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
+    let at_kerb = told.is_at_kerb() && !lot && told.place != PlaceKind::Highway && !one_way;
+    let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
+    Ground { stands_m, ..ground }
 }
 
 /// Who is parked on the left, facing as the ego does, is so on a one-way street.
@@ -149,6 +160,12 @@ fn lanes_for(told: &Told, usual: usize) -> usize {
     // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
     let usual =
         if (told.cp.lane == Some(LaneWord::Opposing) || told.comes_over) && told.sv.lane.is_none() { 1 } else { usual };
+    // A street with driveways, or stalls, on both sides.
+    let from_left = matches!(
+        told.origin,
+        Origin::Stall { side: Some(LeftRight::Left) } | Origin::Driveway { side: Some(LeftRight::Left) }
+    );
+    let usual = if from_left && told.backs_out() { 1 } else { usual };
     let needed = [told.sv.lane, told.cp.lane].into_iter().flatten().map(|word| match word {
         LaneWord::Center => 3,
         LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn => 2,
@@ -272,5 +289,5 @@ fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>,
     let lane = across.lane as u8;
     let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
     let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
-    Ground { map, route, lane, way, places, junction, lanes: across.lanes, kerbs_m, opposing_m }
+    Ground { map, route, lane, way, places, junction, lanes: across.lanes, kerbs_m, stands_m: 0.0, opposing_m }
 }

@@ -12,6 +12,7 @@ mod control;
 mod door;
 mod facts;
 mod ground;
+mod kerb;
 mod lateral;
 mod movement;
 mod others;

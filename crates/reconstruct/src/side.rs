@@ -63,6 +63,8 @@ pub(crate) struct Side {
     pub(crate) stopped_aside: Option<Act>,
     /// It is told to have dodged or drifted that way while it drove on.
     pub(crate) dodges: bool,
+    /// It backs into a space at the kerb.
+    pub(crate) backs_in: bool,
     /// It reverses, and is told to have been at an angle to the road.
     pub(crate) slants: Option<Slant>,
     pub(crate) zones: Vec<ContactZone>,
@@ -167,6 +169,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         turns_wide: false,
         dodges: false,
         slants: None,
+        backs_in: false,
         slowed_from,
         stood_first,
         stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),

@@ -2,6 +2,7 @@
 
 use crate::choices::Choices;
 use crate::ground::LANE_M;
+use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::GAINS_MPS;
@@ -130,9 +131,17 @@ impl Told {
         }
         let origin = told(&account.came_from);
         let origin_told = origin.is_some();
-        let origin = origin.or_else(|| assumed_origin(crash_type, &sv, &cp)).unwrap_or(Origin::Behind);
+        let assumed_from =
+            kerb::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
+        let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
         let comes_round = origin_told && lateral::comes_round(origin, partner, cp.state, cp.movement);
-        let origin = if comes_round { Origin::Parked { side: Some(LeftRight::Right) } } else { origin };
+        let right = Some(LeftRight::Right);
+        let origin = match comes_round {
+            true if kerb::leaves_driveway(partner) => Origin::Driveway { side: right },
+            true => Origin::Parked { side: right },
+            false => origin,
+        };
+        cp.backs_in = kerb::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
         let sv_reverses = sv.state == ContactState::Reversing;
         let mut this = Self {
@@ -232,7 +241,10 @@ impl Told {
         if !along || matches!(self.cp.slants, Some(Slant::Stood(_))) {
             self.cp.phases.clear();
         }
-        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty();
+        if self.cp.backs_in && self.cp.phases.is_empty() {
+            self.cp.phases = kerb::BACKED_IN.to_vec();
+        }
+        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty() || self.backs_out();
         self.contact_s = if more { LATE_CONTACT_S } else { CONTACT_S };
     }
 

@@ -5,6 +5,7 @@
 use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
+use crate::kerb;
 use crate::lateral::is_on_foot;
 use crate::side::{Side, Slant, Turning};
 use crate::things;
@@ -192,6 +193,9 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
     if things::across(told).is_some() {
         return vec![(sv_heading, sv_heading)];
     }
+    if told.cp.backs_in {
+        return kerb::headings().collect();
+    }
     if told.comes_across() {
         return things::headings(told).into_iter().map(math::wrap_angle).map(|heading| (heading, heading)).collect();
     }
@@ -253,7 +257,7 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
                     turned(moves, &mut list);
                     continue;
                 }
-                for off in [0.0, 20.0, 40.0, 60.0, -20.0, -40.0] {
+                for off in [0.0, 20.0, 40.0, 60.0, -20.0, -40.0, 75.0] {
                     let toward = moves + from * degrees(off);
                     list.push((
                         if reverses { toward + math::PI } else { moves },
