@@ -143,6 +143,10 @@ impl Told {
         };
         cp.backs_in = kerb::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
+        // What rolls into the ego's flank comes there after its front; that a thing is there first is only a rule.
+        let on_flank = !sv.zones.is_empty() && !sv.zones.iter().any(|zone| zone.is_front());
+        let into_flank = thing.is_some() && cp.state == ContactState::Moving && on_flank;
+        let order = told(&account.order).filter(|_| !into_flank);
         let sv_reverses = sv.state == ContactState::Reversing;
         let mut this = Self {
             crash_type,
@@ -159,7 +163,7 @@ impl Told {
             origin_told,
             comes_round,
             comes_over: lateral::comes_over(origin, partner, told(&partner.movement)),
-            order: told(&account.order),
+            order,
             pushed: partner.did(Act::Pushed)
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
