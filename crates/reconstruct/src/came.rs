@@ -12,6 +12,7 @@ use crate::side::{Turning, size_of as size_of_kind};
 use crate::things;
 use crate::told::{Aside, Told};
 use crate::touch::{Staging, size_of};
+use crate::trailer::Rig;
 use recrash_model::account::{Account, ContactState, Kind, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -279,7 +280,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         kind: cp.kind,
         size: cp.size,
         mass_kg: None,
-        parts: Vec::new(),
+        parts: told.rig.iter().map(Rig::part).collect(),
         plan,
     };
     let (plan, begin) = match pace.driven_m {

@@ -9,6 +9,7 @@ use crate::phases;
 use crate::side::Slant;
 use crate::told::Told;
 use crate::touch::{side_of, zones_off};
+use crate::trailer::{self, Rig};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
     ContactState, Control as Said, ControlDevice, Kind, LaneWord, LeftRight, Obeyed, Origin, StandReason, Striker,
@@ -95,8 +96,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     if let Some(part) = &ego_part {
         geometry.ego_zone = door::zone_of(&ego_box, part);
     }
+    let trailer = told.trailer_of.and_then(Rig::of).filter(|_| trailer::is_drawn(rollout));
     if let Some(part) = &other_part {
-        geometry.other_zone = door::zone_of(&touch.other_box, part);
+        geometry.other_zone = match trailer {
+            Some(rig) => rig.zone(part, &geometry),
+            None => door::zone_of(&touch.other_box, part),
+        };
     }
     if !told.sv.zones.is_empty() {
         let near = is_near(&told.sv.zones, geometry.ego_zone, &ego_box, geometry.point);
@@ -104,7 +109,17 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     }
     if !told.cp.zones.is_empty() && told.thing.is_none() {
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
-        fact(CheckKind::CpZones, near, zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
+        // Of one box, the part of it behind who draws it.
+        let on_trailer = match trailer {
+            Some(_) => other_part.is_some(),
+            None => told.trailer_of.is_none() || trailer::is_on_trailer(told, &touch.other_box, geometry.point),
+        };
+        let (mut expected, mut observed) = (zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
+        if told.trailer_of.is_some() {
+            expected += ", on the trailer";
+            observed += if on_trailer { ", on the trailer" } else { ", ahead of the trailer" };
+        }
+        fact(CheckKind::CpZones, near && on_trailer, expected, observed);
     }
     let swung =
         other_part.as_ref().zip(touch.track).is_some_and(|(part, track)| swung(rollout, track, part, touch.time_s));

@@ -22,6 +22,7 @@ mod side;
 mod things;
 mod told;
 mod touch;
+mod trailer;
 
 pub use choices::open_choices;
 

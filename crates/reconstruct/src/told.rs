@@ -9,6 +9,7 @@ use crate::pace::GAINS_MPS;
 use crate::side::{Side, Slant, Turning, side};
 use crate::things::{self, Lies, SLIDES_MPS};
 use crate::touch::side_of;
+use crate::trailer::{self, Rig};
 use recrash_model::account::StandReason;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
@@ -71,6 +72,11 @@ pub(crate) struct Told {
     /// An oncoming partner left its own side.
     pub(crate) comes_over: bool,
     pub(crate) order: Option<FirstMover>,
+    /// The kind of the partner whose trailer is told to have touched.
+    pub(crate) trailer_of: Option<Kind>,
+    /// Who comes by with a trailer that touches is drawn as two, where that shows what is told; and what is drawn.
+    wanted_rig: Option<Rig>,
+    pub(crate) rig: Option<Rig>,
     /// Somebody threw the partner at the subject vehicle; and who, where told.
     pub(crate) pushed: bool,
     pub(crate) pusher: Option<Kind>,
@@ -147,6 +153,7 @@ impl Told {
         let on_flank = !sv.zones.is_empty() && !sv.zones.iter().any(|zone| zone.is_front());
         let into_flank = thing.is_some() && cp.state == ContactState::Moving && on_flank;
         let order = told(&account.order).filter(|_| !into_flank);
+        let wanted_rig = trailer::rig(partner, &cp, origin);
         let sv_reverses = sv.state == ContactState::Reversing;
         let mut this = Self {
             crash_type,
@@ -168,6 +175,9 @@ impl Told {
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),
+            trailer_of: kind.filter(|_| trailer::touches(partner)),
+            wanted_rig,
+            rig: None,
             striker,
             lanes: told(&account.place.lanes),
             reasons: others::reasons(account),
@@ -304,7 +314,14 @@ impl Told {
             let all = [wanted].into_iter().filter(|extras| !extras.is_empty()).chain(one).chain([Vec::new()]);
             all.map(|extras| Self { extras, ..told.clone() }).collect::<Vec<_>>()
         };
-        self.by_origin().into_iter().flat_map(with_extras).collect()
+        let with_rig = |told: Self| {
+            let drawn = told.wanted_rig.map(|rig| {
+                let cp = Side { size: Some(rig.tractor), ..told.cp.clone() };
+                Self { rig: Some(rig), cp, ..told.clone() }
+            });
+            drawn.into_iter().chain([told])
+        };
+        self.by_origin().into_iter().flat_map(with_rig).flat_map(with_extras).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.

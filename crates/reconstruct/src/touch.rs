@@ -10,6 +10,7 @@ use crate::lateral::is_on_foot;
 use crate::side::{Side, Slant, Turning};
 use crate::things;
 use crate::told::Told;
+use crate::trailer::{self, Rig};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{ContactState, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -302,7 +303,8 @@ fn touch(
     cp_point: (f64, f64),
 ) -> Option<(Pose, ContactZone, ContactZone)> {
     let (sv_length, sv_width) = size_of(&told.sv);
-    let (cp_length, cp_width) = size_of(&told.cp);
+    let (cp_length, cp_width) =
+        told.rig.map_or_else(|| size_of(&told.cp), |rig| (rig.trailer.length_m, rig.trailer.width_m));
     let own = OrientedBox::new(sv, sv_length, sv_width);
     let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
     let axis = Vec2::from_heading(heading);
@@ -336,8 +338,14 @@ fn touch(
     if (1..=12).any(|step| at(outside + 0.25 * f64::from(step)).overlaps(&own)) {
         return None;
     }
+    // Who draws a trailer gets by.
+    let gets_by = |rig: Rig| (0..=60).all(|step| !rig.tractor(&at(inside + 0.25 * f64::from(step))).overlaps(&own));
+    if !told.rig.is_none_or(gets_by) {
+        return None;
+    }
     let touching = at(inside - 0.01);
     let geometry = contact_geometry(&own, velocity(&told.sv, sv.heading), &touching, velocity(&told.cp, heading));
-    let cp = Pose { position: at(inside).centre, heading };
-    Some((cp, geometry.ego_zone, geometry.other_zone))
+    let cp = trailer::pose(told.rig, Pose { position: at(inside).centre, heading });
+    let cp_zone = told.rig.map_or(geometry.other_zone, |rig| rig.zone(&touching, &geometry));
+    Some((cp, geometry.ego_zone, cp_zone))
 }

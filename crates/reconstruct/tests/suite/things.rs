@@ -42,9 +42,14 @@ const DRIVEWAY: &str = "The AV was stopped at the curb when a sedan exiting a dr
 const CHAIN: &str = "The AV was stopped in traffic. A sedan behind the AV was rear-ended by a pickup truck, causing the front of the sedan to \
                      make contact with the rear of the stationary AV.";
 
+const TRAILER: &str = "The AV was traveling north on a narrow street when it came to a stop to yield to an oncoming heavy truck. As the heavy \
+                       truck passed the stationary AV, the left side of the heavy truck's trailer made contact with the rear left side \
+                       of the AV.";
+
 /// The stories of this file, as they are shown.
 pub fn shown() -> Vec<(String, Account, Reconstruction)> {
-    let texts = [BEHIND_TWO, BUMP, TRIMMER, EDGE, HOLE, ROLLED_IN, BACKED_IN, BACKED_OUT, STALL, DRIVEWAY, CHAIN];
+    let texts =
+        [BEHIND_TWO, BUMP, TRIMMER, EDGE, HOLE, ROLLED_IN, BACKED_IN, BACKED_OUT, STALL, DRIVEWAY, CHAIN, TRAILER];
     texts.into_iter().map(|text| (text[..40].to_owned(), story(text), made(&story(text)))).collect()
 }
 
@@ -221,4 +226,22 @@ fn who_threw_the_partner_is_of_the_told_kind() {
     });
     assert_eq!(car, [CheckKind::PassedOn]);
     assert!(speeds(&shown).len() > 50);
+}
+
+#[test]
+fn a_trailer_that_touched_touches_and_who_draws_it_gets_by() {
+    let account = story(TRAILER);
+    let shown = made(&account);
+    let (step, actors) = (before_contact(&shown) + 1, &shown.rollout.actors);
+    let trailer = actors.iter().find(|track| track.id == "cp.trailer").expect("a trailer");
+    let tractor = actors.iter().find(|track| track.id == "cp").expect("who draws it");
+    let ego = shown.rollout.ego_track();
+    assert!(trailer.outline(step).overlaps(&ego.outline(step)));
+    assert!((0..=step).all(|step| !tractor.outline(step).overlaps(&ego.outline(step))));
+    // In one box its front would touch.
+    let missed = missed(&account, |less| {
+        let kind = &mut less.partner.as_mut().expect("a truck").kind;
+        *kind = Some(Fact::by_rule(Kind::SemiTrailerTruck, "made for this test"));
+    });
+    assert_eq!(missed, [CheckKind::CpZones]);
 }
