@@ -40,6 +40,7 @@ impl Lies {
             || matches!(place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
         match told(&thing.kind)? {
             Kind::Curb | Kind::Pothole if any(&["speed bump", "speed hump", "speed table"]) => Some(Self::Bump),
+            Kind::Debris if any(&["spikes"]) => Some(Self::Bump),
             Kind::Pothole if any(&["water", "wet cement"]) => None,
             Kind::Pothole if sv.only_above_or_below && turns_in && !any(&["hole", "removed"]) => Some(Self::Edge),
             Kind::Pothole => Some(Self::Hole),
@@ -55,6 +56,28 @@ impl Lies {
             Self::Hole => None,
         }
     }
+}
+
+/// Lengths and widths of things that are longer or shorter than others of their kind, by the words for them; usual ones, assumed. [m]
+const SIZES_M: [(&str, f64, f64); 10] = [
+    ("bicycle", 1.7, 0.6),
+    ("mattress", 1.9, 1.4),
+    ("ladder", 2.5, 0.5),
+    ("pallet", 1.2, 1.0),
+    ("couch", 2.0, 0.9),
+    ("sofa", 2.0, 0.9),
+    ("dumpster", 1.8, 1.2),
+    ("plywood", 2.4, 1.2),
+    ("portable basketball", 1.2, 1.0),
+    ("ball", 0.3, 0.3),
+];
+
+/// The size of a small thing, where the words for it tell more than its kind.
+pub(crate) fn size(thing: &Party) -> Option<Size> {
+    let small = matches!(told(&thing.kind)?, Kind::Debris | Kind::Object | Kind::Scooter | Kind::Cargo);
+    let text = words_of(&thing.kind).filter(|_| small)?;
+    let found = SIZES_M.iter().find(|(word, ..)| text.contains(word));
+    found.map(|(_, length_m, width_m)| Size { length_m: *length_m, width_m: *width_m })
 }
 
 /// The words in which a fact stands.
@@ -172,7 +195,7 @@ pub(crate) fn headings(told: &Told) -> Vec<f64> {
 /// How a thing is drawn.
 pub(crate) fn obstacle_kind(kind: Kind, lies: Option<Lies>) -> ObstacleKind {
     match kind {
-        _ if matches!(lies, Some(Lies::Bump | Lies::Edge)) => ObstacleKind::Kerb,
+        Kind::Pothole if matches!(lies, Some(Lies::Bump | Lies::Edge)) => ObstacleKind::Kerb,
         Kind::Wall => ObstacleKind::Wall,
         Kind::Pole => ObstacleKind::Pole,
         Kind::Curb => ObstacleKind::Kerb,

@@ -129,7 +129,7 @@ impl Told {
         let sv = side(&account.sv, None, &mut assumed, "ego");
         let mut cp = side(partner, kind, &mut assumed, "partner");
         let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
-        cp.size = lies.and_then(Lies::size).or(cp.size);
+        cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
         if gate_swings {
             // Its post stands.
