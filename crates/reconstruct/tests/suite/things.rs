@@ -25,7 +25,7 @@ const HOLE: &str = "The AV was traveling south in the right lane. The AV changed
                     the front left of the AV made contact with a pothole.";
 
 const ROLLED_IN: &str = "The AV was traveling east when the left side of the AV made contact with an object that was rolling into the AV's lane \
-                         from the left side of the road.";
+                         from the left side of the road. The AV moved to the right but was not able to avoid contact.";
 
 const BACKED_IN: &str = "The AV was parked at the curb facing south when an SUV attempting to parallel park in front of the AV reversed, and \
                          the rear of the SUV made contact with the front of the stationary AV.";
@@ -155,6 +155,9 @@ fn a_thing_that_is_told_to_roll_in_with_its_way_rolls() {
     let shown = made(&account);
     let (states, met) = partner(&shown);
     assert!(states[0].y > 3.0 && met.speed() > 1.0 && met.y < 2.0, "{met:?}");
+    // The ego moved away from it before.
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    assert!(ego.y < -0.5, "{ego:?}");
     let lies = missed(&account, |less| {
         less.came_from = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Left }, "made for this test"));
     });
