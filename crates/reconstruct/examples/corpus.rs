@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use recrash_model::account::{Account, told};
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::profile::SystemProfile;
-use recrash_model::rollout::ActorTrack;
+use recrash_model::rollout::{ActorTrack, EventKind};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_reconstruct::{Reconstruction, reconstruct};
 use recrash_records::{SourceText, ingest};
@@ -22,6 +22,20 @@ fn drives_beside(made: &Reconstruction) -> bool {
     let vehicle = |track: &&ActorTrack| track.id == "cp" && VehicleSpec::of(track.kind).length_m > 2.5;
     let Some(track) = made.rollout.actors.iter().find(vehicle) else { return false };
     track.states.iter().take(90).step_by(10).any(|state| !scenario.network().on_road(state.position()))
+}
+
+/// Whether two others than the ego touch whom nobody had touched before, but for who throws the partner.
+fn others_crash(made: &Reconstruction) -> bool {
+    let mut touched = vec![false; made.rollout.actors.len()];
+    let pushes = |a: usize, b: usize| [a, b].iter().any(|of| made.rollout.actors[*of].id == "pusher");
+    made.rollout.events.iter().any(|event| match event.kind {
+        EventKind::Contact { a, b, .. } => {
+            let crash = a > 0 && !touched[a] && !touched[b] && !pushes(a, b);
+            (touched[a], touched[b]) = (a > 0, true);
+            crash
+        }
+        _ => false,
+    })
 }
 
 fn main() {
@@ -129,6 +143,19 @@ fn main() {
         .par_iter()
         .filter(|(_, result)| result.as_ref().is_ok_and(|made| made.is_true() && drives_beside(made)));
     println!("partners of told ones that are beside the road at some second before the contact: {}", beside.count());
+    let crash = results
+        .iter()
+        .filter_map(|(account, result)| Some((account, result.as_ref().ok().filter(|made| others_crash(made))?)));
+    let crash: Vec<bool> = crash
+        .map(|(account, made)| {
+            if list && is_developed(account) {
+                println!("{}: others crash", account.report);
+            }
+            made.is_true()
+        })
+        .collect();
+    let told_ones = crash.iter().filter(|is_true| **is_true).count();
+    println!("staged ones in which two others touch: {}, {told_ones} of them told", crash.len());
     for (kind, [told, shown]) in &facts {
         println!("  {:<20} told {told:>5}, shown {shown:>5}", kind.label());
     }

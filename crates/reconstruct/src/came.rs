@@ -3,22 +3,26 @@
 use crate::control;
 use crate::door::Opening;
 use crate::ground::Ground;
+use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::{Pace, ROLLING_MPS, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, when};
 use crate::phases;
-use crate::side::Turning;
+use crate::side::{Turning, size_of as size_of_kind};
+use crate::things;
 use crate::told::{Aside, Told};
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{Account, ContactState, Origin};
+use crate::trailer::Rig;
+use recrash_model::account::{Account, ContactState, Kind, Origin};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, STEP_S};
 use recrash_model::scenario::{
-    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, ObstacleKind, Part,
-    Place, SCENARIO_FORMAT, ScenarioDraft, Size, Source,
+    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, Part, Place,
+    SCENARIO_FORMAT, ScenarioDraft, Size, Source,
 };
+use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Course;
 
 /// The system under test takes over this long before the contact, or before the ego began to stop. [s]
@@ -62,6 +66,9 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         }
     }
     actors.extend(others::actors(told, staging));
+    let mut map = ground.map.clone();
+    let begins = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan.start);
+    map.roads[0].driveways.extend(begins.and_then(|begins| kerb::driveway(told, ground, begins)));
     let control = control::devices(told, ground, &recorded);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
@@ -85,7 +92,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             author: Author::Rules,
             ..Source::default()
         },
-        map: MapSpec::G(ground.map.clone()),
+        map: MapSpec::G(map),
         ego: EgoSpec {
             kind: told.sv.kind,
             size: told.sv.size,
@@ -139,7 +146,7 @@ pub(crate) fn straight_plan(start: Vec2, way: Vec2, (speed_mps, contact_s): (f64
 pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pose> {
     let on_way = ground.sv_pose(sv_s_m);
     if told.sv_aside().is_none() {
-        return Some(on_way);
+        return Some(ground.pose(sv_s_m, ground.stands_m));
     }
     let alone = ScenarioDraft {
         format: SCENARIO_FORMAT.to_owned(),
@@ -166,11 +173,16 @@ pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option
 const ASIDE_S: f64 = 4.0;
 const ASIDE_M: (f64, f64) = (14.0, 60.0);
 
-/// The move out of the ego's line, half done at the contact.
+/// Who drove on after it had changed lanes has done so for so long. [s]
+const DRIVES_ON_S: f64 = 1.5;
+
+/// The move out of the ego's line, half done at the contact, or done before it.
 fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
     let half_m = (0.5 * ASIDE_S * speed_mps).clamp(0.5 * ASIDE_M.0, 0.5 * ASIDE_M.1);
     let drives = pace.speed_mps > 0.0;
-    let (half_m, from_s) = if drives && speed_mps == 0.0 {
+    let (half_m, from_s) = if aside.done {
+        (half_m, (contact_s - DRIVES_ON_S - 2.0 * half_m / speed_mps.max(0.1)).max(0.0))
+    } else if drives && speed_mps == 0.0 {
         // It has done half of it where it comes to stand.
         let brakes_s = first_time(&pace.acts);
         let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
@@ -209,7 +221,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         road: ground.route[0].clone(),
         lane: ground.lane,
         along: Along::FromStart(s_m),
-        t_m: aside.map_or(0.0, |aside| aside.from_t_m),
+        t_m: aside.map_or(ground.stands_m, |aside| aside.from_t_m),
         heading_deg: 0.0,
     };
     if reverses {
@@ -256,7 +268,10 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         && staging.door.is_none()
     {
         let size = Some(Size { length_m, width_m });
-        return (Vec::new(), vec![ObjectSpec { kind: obstacle_kind(thing), at: at(staging.cp), size }]);
+        return (
+            Vec::new(),
+            vec![ObjectSpec { kind: things::obstacle_kind(thing, told.lies), at: at(staging.cp), size }],
+        );
     }
     if told.is_thrown() {
         return (thrown(told, staging), Vec::new());
@@ -267,7 +282,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         kind: cp.kind,
         size: cp.size,
         mass_kg: None,
-        parts: Vec::new(),
+        parts: told.rig.iter().map(Rig::part).collect(),
         plan,
     };
     let (plan, begin) = match pace.driven_m {
@@ -292,9 +307,9 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
 fn nudger(told: &Told, staging: &Staging) -> Actor {
     let (cp, gear) = (&told.cp, if told.cp.state == ContactState::Reversing { -1.0 } else { 1.0 });
     let way = Vec2::from_heading(staging.cp.heading) * gear;
-    let car_m = recrash_model::vehicle::VehicleSpec::of(PartnerKind::PassengerCar).length_m;
+    let (kind, size, length_m) = pusher(told);
     let speed_mps = cp.speed_mps + NUDGE_MPS;
-    let touches = staging.cp.position - way * (cp.speed_mps * THROW_S + 0.5 * (size_of(cp).0 + car_m));
+    let touches = staging.cp.position - way * (cp.speed_mps * THROW_S + 0.5 * (size_of(cp).0 + length_m));
     let start = touches - way * (speed_mps * (told.contact_s - THROW_S));
     let degrees = staging.cp.heading.to_degrees() + if gear < 0.0 { 180.0 } else { 0.0 };
     let place = |point: Vec2| Place::at(point.x, point.y, degrees);
@@ -303,14 +318,14 @@ fn nudger(told: &Told, staging: &Staging) -> Actor {
         course: vec![Leg::Curve { to: place(touches + way * beyond_m(speed_mps)), reverse: false }],
         ..ActorPlan::standing(place(start))
     };
-    Actor {
-        id: "pusher".to_owned(),
-        kind: PartnerKind::PassengerCar,
-        size: None,
-        mass_kg: None,
-        parts: Vec::new(),
-        plan,
-    }
+    Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan }
+}
+
+/// Kind, size and length of who touches the partner: as told, else of a car.
+fn pusher(told: &Told) -> (PartnerKind, Option<Size>, f64) {
+    let kind = told.pusher.and_then(Kind::partner_kind).unwrap_or(PartnerKind::PassengerCar);
+    let size = told.pusher.and_then(size_of_kind);
+    (kind, size, size.map_or(VehicleSpec::of(kind).length_m, |size| size.length_m))
 }
 
 /// The line by which the partner comes to the contact, as long as its pace needs.
@@ -446,28 +461,8 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
             vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }), next(Deed::Hold { for_s: None })];
         (on(ROLLING_MPS, at(THROW_M + driven_m), stop), PUSH_MPS)
     };
-    let (length_m, car_m) =
-        (size_of(cp).0, recrash_model::vehicle::VehicleSpec::of(PartnerKind::PassengerCar).length_m);
-    let until_m = THROW_M + 0.5 * (length_m + car_m) + pusher_mps * (told.contact_s - THROW_S);
+    let (kind, size, pusher_m) = pusher(told);
+    let until_m = THROW_M + 0.5 * (size_of(cp).0 + pusher_m) + pusher_mps * (told.contact_s - THROW_S);
     let behind_m = until_m + ego_drives_mps * THROW_S;
-    vec![
-        actor("cp", cp.kind, cp.size, partner),
-        actor("pusher", PartnerKind::PassengerCar, None, on(pusher_mps, at(behind_m), Vec::new())),
-    ]
-}
-
-fn obstacle_kind(kind: recrash_model::account::Kind) -> ObstacleKind {
-    use recrash_model::account::Kind;
-    match kind {
-        Kind::Wall => ObstacleKind::Wall,
-        Kind::Pole => ObstacleKind::Pole,
-        Kind::Curb => ObstacleKind::Kerb,
-        Kind::Gate => ObstacleKind::Gate,
-        Kind::Chain => ObstacleKind::Chain,
-        Kind::Barrier => ObstacleKind::Barrier,
-        Kind::Cone => ObstacleKind::Cone,
-        Kind::Sign => ObstacleKind::Warning,
-        Kind::Pothole => ObstacleKind::Pothole,
-        _ => ObstacleKind::Debris,
-    }
+    vec![actor("cp", cp.kind, cp.size, partner), actor("pusher", kind, size, on(pusher_mps, at(behind_m), Vec::new()))]
 }

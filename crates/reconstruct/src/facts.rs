@@ -9,9 +9,10 @@ use crate::phases;
 use crate::side::Slant;
 use crate::told::Told;
 use crate::touch::{side_of, zones_off};
+use crate::trailer::{self, Rig};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{
-    ContactState, Control as Said, ControlDevice, LaneWord, LeftRight, Obeyed, Origin, StandReason, Striker,
+    ContactState, Control as Said, ControlDevice, Kind, LaneWord, LeftRight, Obeyed, Origin, StandReason, Striker,
 };
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -64,17 +65,18 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         return list;
     };
     let by_partner = touch.track.is_none_or(|track| track.id == "cp");
-    let undisturbed = told.pushed || !touched_before(rollout, &touch);
+    let undisturbed = told.pushed || toucher(rollout, &touch).is_none();
     let who = match (by_partner, undisturbed) {
         (true, true) => "the partner",
         (true, false) => "the partner, after another",
         (false, _) => "somebody else",
     };
+    let crash = others::crash(told, rollout);
     fact(
         CheckKind::Contact,
-        by_partner && undisturbed,
-        "a contact with the partner".to_owned(),
-        format!("with {who} at {:.2} s", touch.time_s),
+        by_partner && undisturbed && crash.is_none(),
+        "a contact with the partner, and none of others".to_owned(),
+        format!("with {who} at {:.2} s{}", touch.time_s, crash.map_or(String::new(), |crash| format!("; {crash}"))),
     );
     fact(
         CheckKind::Partner,
@@ -94,8 +96,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     if let Some(part) = &ego_part {
         geometry.ego_zone = door::zone_of(&ego_box, part);
     }
+    let trailer = told.trailer_of.and_then(Rig::of).filter(|_| trailer::is_drawn(rollout));
     if let Some(part) = &other_part {
-        geometry.other_zone = door::zone_of(&touch.other_box, part);
+        geometry.other_zone = match trailer {
+            Some(rig) => rig.zone(part, &geometry),
+            None => door::zone_of(&touch.other_box, part),
+        };
     }
     if !told.sv.zones.is_empty() {
         let near = is_near(&told.sv.zones, geometry.ego_zone, &ego_box, geometry.point);
@@ -103,7 +109,17 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     }
     if !told.cp.zones.is_empty() && told.thing.is_none() {
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
-        fact(CheckKind::CpZones, near, zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
+        // Of one box, the part of it behind who draws it.
+        let on_trailer = match trailer {
+            Some(_) => other_part.is_some(),
+            None => told.trailer_of.is_none() || trailer::is_on_trailer(told, &touch.other_box, geometry.point),
+        };
+        let (mut expected, mut observed) = (zone_words(&told.cp.zones), geometry.other_zone.label().to_owned());
+        if told.trailer_of.is_some() {
+            expected += ", on the trailer";
+            observed += if on_trailer { ", on the trailer" } else { ", ahead of the trailer" };
+        }
+        fact(CheckKind::CpZones, near && on_trailer, expected, observed);
     }
     let swung =
         other_part.as_ref().zip(touch.track).is_some_and(|(part, track)| swung(rollout, track, part, touch.time_s));
@@ -162,16 +178,20 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         }
     }
     if told.pushed {
-        let before = touched_before(rollout, &touch);
-        let observed = if before { "touched by another before" } else { "touched by nobody before" };
+        let before = toucher(rollout, &touch);
+        let kind = told.pusher.and_then(Kind::partner_kind);
+        let observed = before.map_or("touched by nobody before".to_owned(), |track| {
+            format!("touched by another before: {}", track.kind.label().to_lowercase())
+        });
         let result = match before {
-            true => CheckResult::Shown,
+            Some(track) if kind.is_none_or(|kind| kind == track.kind) => CheckResult::Shown,
             // Who pushed a thing is not drawn.
-            false if told.is_sliding() => CheckResult::CannotBeShown,
-            false => CheckResult::NotShown,
+            None if told.is_sliding() => CheckResult::CannotBeShown,
+            _ => CheckResult::NotShown,
         };
-        let (kind, expected) = (CheckKind::PassedOn, "another touched the partner first".to_owned());
-        list.push(Check { kind, expected, observed: observed.to_owned(), result });
+        let whose = kind.map_or(String::new(), |kind| format!(": {}", kind.label().to_lowercase()));
+        let expected = format!("another touched the partner first{whose}");
+        list.push(Check { kind: CheckKind::PassedOn, expected, observed, result });
     }
     let mut ways = vec![(CheckKind::SvMovement, &told.sv, ego_track, touch.track, touch.other)];
     ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
@@ -187,7 +207,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         list.push(Check { kind, expected, observed, result });
     };
     if let Some(track) = touch.track.filter(|_| told.origin_told) {
-        let (shown, observed) = origin(told, ego_track, track);
+        let (shown, observed) = origin(told, ego_track, track, touch.time_s);
         fact(CheckKind::Approach, shown, origin_words(told), observed);
     }
     if let (Some(first), Some(track)) = (told.order, touch.track) {
@@ -394,12 +414,14 @@ fn outline_at(track: &ActorTrack, time_s: f64) -> OrientedBox {
     OrientedBox::new(Pose { position, heading }, track.length_m, track.width_m)
 }
 
-/// Whether the partner touched somebody else before.
-fn touched_before(rollout: &Rollout, touch: &Touch<'_>) -> bool {
-    let number = rollout.actors.iter().position(|track| track.id == "cp");
-    rollout.events.iter().take_while(|event| event.time_s < touch.time_s).any(|event| match event.kind {
-        EventKind::Contact { a, b, .. } => a != 0 && (Some(a) == number || Some(b) == number),
-        _ => false,
+/// Whom else the partner touched before.
+fn toucher<'a>(rollout: &'a Rollout, touch: &Touch<'_>) -> Option<&'a ActorTrack> {
+    let number = rollout.actors.iter().position(|track| track.id == "cp")?;
+    rollout.events.iter().take_while(|event| event.time_s < touch.time_s).find_map(|event| match event.kind {
+        EventKind::Contact { a, b, .. } if a != 0 && (a == number || b == number) => {
+            rollout.actors.get(if a == number { b } else { a })
+        }
+        _ => None,
     })
 }
 
@@ -524,15 +546,22 @@ fn origin_words(told: &Told) -> String {
 }
 
 /// Whether the partner comes from where it is told, seen from the ego when it sets out.
-fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
+fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bool, String) {
     let state = told.cp.state;
     let on_foot = is_on_foot(other.kind);
     // Seen when it sets out.
     let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
     let stands_then = sets_out > 0;
+    // Of who backs into a space: when it begins to.
+    let backs = other.states.iter().position(|state| state.speed() < -STANDS_MPS);
+    let sets_out = backs.filter(|_| told.cp.backs_in).unwrap_or(sets_out);
     let turned_off = matches!(told.cp.slants, Some(Slant::Stood(_)));
     let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
+    let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
     let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);
+    // Who comes out of a driveway is behind the place where an ego stands then.
+    let stands = told.sv.state.stands() && matches!(told.origin, Origin::Driveway { .. });
+    let behind_met = (other.position() - met.position()).dot(Vec2::from_heading(met.heading)) < 0.0;
     let forward = Vec2::from_heading(ego.heading);
     let way = other.position() - ego.position();
     let (ahead, left) = (way.dot(forward), forward.cross(way));
@@ -559,8 +588,13 @@ fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack) -> (bool, String) {
         Origin::Beside { side } => (facing.abs() < 60.0 || told.comes_across()) && same_way && beside(side),
         Origin::Cross { side } => (30.0..150.0).contains(&moves.abs()) && on(side, moves),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
-            let from_there =
-                !told.stood_beside() || stands_then && left.abs() > OVER_M && (!told.comes_round || ahead < 0.0);
+            let crosswise = (30.0..150.0).contains(&facing.abs());
+            let out = crosswise || !matches!(told.origin, Origin::Stall { .. } | Origin::Driveway { .. });
+            let from_there = !(told.stood_beside() || told.backs_out())
+                || stands_then
+                    && left.abs() > OVER_M
+                    && out
+                    && (!told.comes_round || ahead < 0.0 || stands && behind_met);
             side.is_none_or(beside) && from_there || state.stands()
         }
         Origin::Above => false,

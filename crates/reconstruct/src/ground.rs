@@ -2,7 +2,9 @@
 
 use crate::others::Extra;
 use crate::side::Turning;
+use crate::things::Lies;
 use crate::told::Told;
+use crate::touch::size_of;
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
@@ -34,6 +36,8 @@ pub(crate) struct Ground {
     pub(crate) lanes: usize,
     /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
     pub(crate) kerbs_m: [f64; 2],
+    /// From the ego's line to where it stands, to the right: it is parked at the kerb. [m]
+    pub(crate) stands_m: f64,
     /// From the ego's line to the middle of the nearest lane of those who come towards it. [m]
     pub(crate) opposing_m: f64,
 }
@@ -57,6 +61,21 @@ impl Ground {
     /// A pose along the ego's way, or beside it.
     pub(crate) fn pose(&self, s_m: f64, t_m: f64) -> Pose {
         self.way.pose(s_m, t_m)
+    }
+
+    /// Along the road where the ego's line is 0, of a street. [m]
+    pub(crate) const fn begins_m(&self) -> f64 {
+        APPROACH_M
+    }
+
+    /// The same, with the ego's front where the road begins that it turns into.
+    fn at_entry(self, ego_m: f64) -> Self {
+        let centre_y_m = (self.lanes as f64 - 0.5) * LANE_M;
+        let entry_m = (0..1000)
+            .map(|step| APPROACH_M + 0.05 * f64::from(step))
+            .find(|s_m| (self.sv_pose(*s_m).position.y - centre_y_m).abs() >= corner_m(self.lanes))
+            .unwrap_or(APPROACH_M);
+        Self { places: vec![entry_m - 0.5 * ego_m], ..self }
     }
 
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
@@ -94,17 +113,20 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         && !matches!(told.sv.turning, Turning::Left | Turning::Right);
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
     if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
-        return junction(told, crossing);
+        let ground = junction(told, crossing);
+        let at_entry = told.lies == Some(Lies::Edge) && told.sv.turning != Turning::No;
+        return if at_entry { ground.at_entry(size_of(&told.sv).0) } else { ground };
     }
     let one_way = is_one_way(told);
     let oncoming = if one_way || told.place == PlaceKind::Highway { 0 } else { 1 };
     let (right, left) = match told.place {
         PlaceKind::Highway => (strips(lanes_for(told, 3), &[StripKind::Shoulder]), Vec::new()),
         _ if lot => (strips(1, &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
-        _ => (
-            strips(lanes_for(told, 2), &[StripKind::Parking, StripKind::Sidewalk]),
-            strips(oncoming, &[StripKind::Parking, StripKind::Sidewalk]),
-        ),
+        _ => {
+            let stalls = matches!(told.origin, Origin::Stall { .. });
+            let beside = [if stalls { StripKind::Stalls } else { StripKind::Parking }, StripKind::Sidewalk];
+            (strips(lanes_for(told, 2), &beside), strips(oncoming, &beside))
+        }
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     // The rightmost lane, but for a partner that comes by on the right.
@@ -122,7 +144,10 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         areas: Vec::new(),
     };
     let across = Across { lanes, lane, oncoming };
-    with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false)
+    let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
+    let at_kerb = told.is_at_kerb() && !lot && told.place != PlaceKind::Highway && !one_way;
+    let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
+    Ground { stands_m, ..ground }
 }
 
 /// Who is parked on the left, facing as the ego does, is so on a one-way street.
@@ -135,6 +160,12 @@ fn lanes_for(told: &Told, usual: usize) -> usize {
     // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
     let usual =
         if (told.cp.lane == Some(LaneWord::Opposing) || told.comes_over) && told.sv.lane.is_none() { 1 } else { usual };
+    // A street with driveways, or stalls, on both sides.
+    let from_left = matches!(
+        told.origin,
+        Origin::Stall { side: Some(LeftRight::Left) } | Origin::Driveway { side: Some(LeftRight::Left) }
+    );
+    let usual = if from_left && told.backs_out() { 1 } else { usual };
     let needed = [told.sv.lane, told.cp.lane].into_iter().flatten().map(|word| match word {
         LaneWord::Center => 3,
         LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn => 2,
@@ -176,10 +207,15 @@ fn passes_right(told: &Told) -> bool {
             })
 }
 
+/// From a junction's centre to where its arms begin, wider with more lanes. [m]
+fn corner_m(lanes: usize) -> f64 {
+    CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M
+}
+
 /// Four arms; the ego comes along the one that lies behind it.
 fn junction(told: &Told, crossing: bool) -> Ground {
     let lanes = lanes_for(told, 2);
-    let corner_m = CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M;
+    let corner_m = corner_m(lanes);
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
         straight(id, start, length_m, strips(lanes, &[StripKind::Sidewalk]), strips(lanes, &[StripKind::Sidewalk]))
@@ -257,5 +293,5 @@ fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>,
     let lane = across.lane as u8;
     let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
     let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
-    Ground { map, route, lane, way, places, junction, lanes: across.lanes, kerbs_m, opposing_m }
+    Ground { map, route, lane, way, places, junction, lanes: across.lanes, kerbs_m, stands_m: 0.0, opposing_m }
 }

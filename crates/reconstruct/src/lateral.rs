@@ -99,6 +99,10 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     if told.comes_across() {
         return None;
     }
+    // Who backs into a space at the kerb stood beside it, in the lane.
+    if told.cp.backs_in {
+        return Some(0.0);
+    }
     if told.comes_over {
         return Some(staging.ground.opposing_m.max(staging.cp.position.y));
     }

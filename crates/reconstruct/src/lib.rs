@@ -12,6 +12,7 @@ mod control;
 mod door;
 mod facts;
 mod ground;
+mod kerb;
 mod lateral;
 mod movement;
 mod others;
@@ -21,6 +22,7 @@ mod side;
 mod things;
 mod told;
 mod touch;
+mod trailer;
 
 pub use choices::open_choices;
 

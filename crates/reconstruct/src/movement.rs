@@ -143,6 +143,9 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         }
         Movement::Backing => {
             let (reversed, slant) = (way.reversed(), way.slant_deg());
+            if side.backs_in {
+                return Some(backs_in(side, way));
+            }
             let words = if reversed { "it went backwards" } else { "it did not go backwards" };
             (
                 reversed && (side.slants.is_none() || slant >= SLANTS_DEG),
@@ -158,6 +161,9 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
             )
         }
         Movement::ParkingManeuver => {
+            if side.backs_in {
+                return Some(backs_in(side, way));
+            }
             let (words, degrees) = bent();
             let slow = way.until()[way.until().len() - 1].velocity().length() < PARKS_MPS;
             let turns = way.reversed() || beside_m.abs() >= LEFT_LINE_M || degrees >= BENDS_DEG;
@@ -195,6 +201,23 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
     let shown = shown && turns && (dodges || !side.dodges);
     let observed = if side.dodges { format!("{observed}, {dodged}") } else { observed };
     Some((word(side), if shown { CheckResult::Shown } else { CheckResult::NotShown }, observed))
+}
+
+/// Who backs into a space at the kerb has come out of its line by so much while it reversed, and was at an angle to it. [m, deg]
+const BACKED_IN_M: f64 = 0.8;
+const BACKED_IN_DEG: f64 = 10.0;
+
+/// Whether somebody backed into a space at the kerb.
+fn backs_in(side: &Side, way: &Way<'_>) -> (String, CheckResult, String) {
+    let until = way.until();
+    let backs = until.iter().rposition(|state| state.speed() > -STANDS_MPS).unwrap_or(0);
+    let (first, last) = (&until[backs], &until[until.len() - 1]);
+    let aside_m = Vec2::from_heading(first.heading).cross(last.position() - first.position()).abs();
+    let angle = |state: &ActorState| math::wrap_angle(state.heading - first.heading).to_degrees().abs();
+    let most_deg = until[backs..].iter().map(angle).fold(0.0, f64::max);
+    let shown = aside_m >= BACKED_IN_M && most_deg >= BACKED_IN_DEG;
+    let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
+    (word(side) + ", towards the kerb", result, format!("{aside_m:.1} m aside in reverse, by {most_deg:.0} degrees"))
 }
 
 fn word(side: &Side) -> String {

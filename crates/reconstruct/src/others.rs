@@ -3,11 +3,11 @@
 use crate::came::straight_plan;
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{ContactState, Kind, KindGroup, Origin, Other as InStory, StandReason};
+use recrash_model::account::{Account, ContactState, Kind, KindGroup, Origin, Other as InStory, StandReason};
 use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::{ActorTrack, Rollout};
+use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
 use recrash_model::scenario::{Actor, ActorPlan, Place};
 use recrash_model::vehicle::VehicleSpec;
 
@@ -36,9 +36,10 @@ impl Extra {
     }
 }
 
-/// From the ego's front to who stands ahead, and to who crosses on foot. [m]
+/// From the ego's front to who stands ahead, and to who crosses on foot, also between the two. [m]
 const LEAD_GAP_M: f64 = 2.5;
 const WALKER_GAP_M: f64 = 3.0;
+const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
 
 /// From the stop line to the lane of who crosses from the left. [m]
 const CROSSING_LANE_M: f64 = 11.0;
@@ -54,6 +55,38 @@ const CROSSES_MPS: f64 = 7.0;
 /// Whoever stands ahead of an ego stands no farther ahead, and who crosses on foot, and in a vehicle. [m]
 const AHEAD_M: f64 = 8.0;
 const CROSSING_M: f64 = 30.0;
+
+/// Why the ego stood. A crossing where nobody else is told of is nobody that it stood for, and the partner is not one of the others.
+pub(crate) fn reasons(account: &Account) -> Vec<StandReason> {
+    let any = |of: fn(Kind) -> bool| account.others.iter().any(|other| of(other.kind.value));
+    let told = account.sv.reasons.iter().map(|fact| fact.value);
+    told.filter(|reason| match reason {
+        StandReason::Pedestrian => any(is_on_foot),
+        StandReason::Animal => any(|kind| kind.group() == KindGroup::Animal),
+        _ => true,
+    })
+    .collect()
+}
+
+/// Who threw the partner at the ego, where told.
+pub(crate) fn pusher(account: &Account) -> Option<Kind> {
+    account.others.iter().find(|other| other.touched_partner).map(|other| other.kind.value)
+}
+
+/// Two others than the ego who touch, whom nobody had touched before and of whom it is not told. Who throws the partner does so.
+pub(crate) fn crash(told: &Told, rollout: &Rollout) -> Option<String> {
+    let mut touched = vec![false; rollout.actors.len()];
+    let id = |number: usize| rollout.actors[number].id.as_str();
+    rollout.events.iter().find_map(|event| match event.kind {
+        EventKind::Contact { a, b, .. } => {
+            let throws = told.pushed && [id(a), id(b)].iter().all(|id| matches!(*id, "cp" | "pusher"));
+            let untold = a > 0 && !touched[a] && !touched[b] && !throws;
+            (touched[a], touched[b]) = (a > 0, true);
+            untold.then(|| format!("{} and {} touch at {:.2} s", id(a), id(b), event.time_s))
+        }
+        _ => None,
+    })
+}
 
 /// Whom the ego stood for, by the told reasons and the others of the story.
 pub(crate) fn wanted(told: &Told, others: &[InStory]) -> Vec<Extra> {
@@ -148,6 +181,7 @@ fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
         let met = sv.position + ahead * ahead_m;
         straight_plan(met - way * (speed_mps * (told.contact_s - CROSSES_BEFORE_S)), way, (speed_mps, told.contact_s))
     };
+    let gap_m = if told.extras.contains(&Extra::Lead) { WALKER_BETWEEN_M } else { WALKER_GAP_M };
     let (kind, plan) = match extra {
         Extra::Lead => {
             let car_m = VehicleSpec::of(PartnerKind::PassengerCar).length_m;
@@ -156,8 +190,8 @@ fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
             (PartnerKind::PassengerCar, plan)
         }
         // From the kerb on the right.
-        Extra::Walker => (PartnerKind::Pedestrian, crossing(front_m + WALKER_GAP_M, ahead.left(), WALKS_MPS)),
-        Extra::Animal => (PartnerKind::Animal, crossing(front_m + WALKER_GAP_M, ahead.left(), RUNS_MPS)),
+        Extra::Walker => (PartnerKind::Pedestrian, crossing(front_m + gap_m, ahead.left(), WALKS_MPS)),
+        Extra::Animal => (PartnerKind::Animal, crossing(front_m + gap_m, ahead.left(), RUNS_MPS)),
         Extra::Crosser => {
             let way = Vec2::from_heading(sv.heading - math::FRAC_PI_2);
             (PartnerKind::PassengerCar, crossing(crossing_m(staging), way, CROSSES_MPS))

@@ -1,6 +1,7 @@
 //! How the speed of each of the two comes to what it is at the contact.
 
 use crate::ground::Ground;
+use crate::kerb;
 use crate::lateral::{self, PULL_OUT_M};
 use crate::phases::{self, Lead, MOVES_UP_M, Phase};
 use crate::side::{Side, Turning};
@@ -215,7 +216,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
         ContactState::Reversing => {
             let swings = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > SWINGS_RAD;
             let way_m = match told.origin {
-                Origin::Stall { .. } | Origin::Driveway { .. } => BACKS_OUT_M,
+                _ if cp.backs_in => kerb::BACKS_IN_M,
+                Origin::Stall { .. } | Origin::Driveway { .. } => kerb::out_m(told, staging).max(BACKS_OUT_M),
                 _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M,
                 _ => REVERSES_M,
             };
@@ -231,7 +233,11 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
         }
         // Who comes from the kerb or out of a stall stood there.
         ContactState::Moving if told.stood_beside() || enters && from_stand(told.origin) => {
-            let moving_s = (2.0 * PULL_OUT_M / cp.speed_mps * 10.0).round() / 10.0;
+            let way_m = match told.origin {
+                Origin::Driveway { .. } => kerb::out_m(told, staging).max(PULL_OUT_M),
+                _ => PULL_OUT_M,
+            };
+            let moving_s = (2.0 * way_m / cp.speed_mps * 10.0).round() / 10.0;
             let go = Deed::Speed { to_mps: cp.speed_mps, rate_mps2: cp.speed_mps / moving_s };
             Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m: 0.5 * cp.speed_mps * moving_s }
         }

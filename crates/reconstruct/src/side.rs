@@ -65,6 +65,8 @@ pub(crate) struct Side {
     pub(crate) changed_lanes: bool,
     /// It is told to have dodged or drifted that way while it drove on.
     pub(crate) dodges: bool,
+    /// It backs into a space at the kerb.
+    pub(crate) backs_in: bool,
     /// It reverses, and is told to have been at an angle to the road.
     pub(crate) slants: Option<Slant>,
     pub(crate) zones: Vec<ContactZone>,
@@ -172,6 +174,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         turns_wide: false,
         dodges: false,
         slants: None,
+        backs_in: false,
         slowed_from,
         stood_first,
         stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),
@@ -254,7 +257,7 @@ fn control(party: &Party) -> Option<Control> {
 }
 
 /// Sizes of kinds that are longer or shorter than the group they belong to; usual ones, assumed. [m]
-fn size_of(kind: Kind) -> Option<Size> {
+pub(crate) fn size_of(kind: Kind) -> Option<Size> {
     let size = |length_m: f64, width_m: f64| Some(Size { length_m, width_m });
     match kind {
         Kind::SemiTrailerTruck => size(16.0, 2.6),

@@ -1,13 +1,140 @@
-//! Things that move by themselves: what rolls, slides or is pushed into the way, and gates; and who walks or
+//! Things: how they lie; those that move by themselves, as what rolls, slides or is pushed into the way, and gates; and who walks or
 //! runs into it.
 
+use crate::ground::LANE_M;
 use crate::lateral::is_on_foot;
 use crate::pace::{Pace, start_over};
+use crate::side::{Side, Turning};
 use crate::told::Told;
-use recrash_model::account::{Act, ContactState, Kind, LeftRight, Origin, Party, Striker, told};
+use crate::touch;
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind, Source, Striker,
+    told,
+};
 use recrash_model::math;
-use recrash_model::scenario::Size;
+use recrash_model::scenario::{ObstacleKind, Size};
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
+
+/// How something lies that the ego drives over, where its words say more than its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lies {
+    /// A speed bump: across the lane.
+    Bump,
+    /// The edge of a raised pavement that the ego's underside scrapes: across the way where it turns in.
+    Edge,
+    /// A hole: under a wheel.
+    Hole,
+}
+
+/// Along the way, of a speed bump and of an edge. [m]
+const BUMP_M: f64 = 0.4;
+const EDGE_M: f64 = 0.3;
+
+impl Lies {
+    /// What the words for it tell.
+    pub(crate) fn of(thing: &Party, sv: &Side, place: PlaceKind) -> Option<Self> {
+        let any =
+            |words: &[&str]| words_of(&thing.kind).is_some_and(|text| words.iter().any(|word| text.contains(word)));
+        let turns_in = matches!(sv.turning, Turning::Left | Turning::Right)
+            || matches!(place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
+        match told(&thing.kind)? {
+            Kind::Curb | Kind::Pothole if any(&["speed bump", "speed hump", "speed table"]) => Some(Self::Bump),
+            Kind::Debris if any(&["spikes"]) => Some(Self::Bump),
+            Kind::Pothole if any(&["water", "wet cement"]) => None,
+            Kind::Pothole if sv.only_above_or_below && turns_in && !any(&["hole", "removed"]) => Some(Self::Edge),
+            Kind::Pothole => Some(Self::Hole),
+            _ => None,
+        }
+    }
+
+    /// Its size where it lies across the way.
+    pub(crate) fn size(self) -> Option<Size> {
+        match self {
+            Self::Bump => Some(Size { length_m: BUMP_M, width_m: LANE_M }),
+            Self::Edge => Some(Size { length_m: EDGE_M, width_m: LANE_M }),
+            Self::Hole => None,
+        }
+    }
+}
+
+/// Lengths and widths of things that are longer or shorter than others of their kind, by the words for them; usual ones, assumed. [m]
+const SIZES_M: [(&str, f64, f64); 10] = [
+    ("bicycle", 1.7, 0.6),
+    ("mattress", 1.9, 1.4),
+    ("ladder", 2.5, 0.5),
+    ("pallet", 1.2, 1.0),
+    ("couch", 2.0, 0.9),
+    ("sofa", 2.0, 0.9),
+    ("dumpster", 1.8, 1.2),
+    ("plywood", 2.4, 1.2),
+    ("portable basketball", 1.2, 1.0),
+    ("ball", 0.3, 0.3),
+];
+
+/// The size of a small thing, where the words for it tell more than its kind.
+pub(crate) fn size(thing: &Party) -> Option<Size> {
+    let small = matches!(told(&thing.kind)?, Kind::Debris | Kind::Object | Kind::Scooter | Kind::Cargo);
+    let text = words_of(&thing.kind).filter(|_| small)?;
+    let found = SIZES_M.iter().find(|(word, ..)| text.contains(word));
+    found.map(|(_, length_m, width_m)| Size { length_m: *length_m, width_m: *width_m })
+}
+
+/// The words in which a fact stands.
+fn words_of<T>(fact: &Option<Fact<T>>) -> Option<String> {
+    match &fact.as_ref()?.source {
+        Source::Words { text, .. } => Some(text.to_lowercase()),
+        _ => None,
+    }
+}
+
+/// The partner, with what is told of a thing beside its own acts: "rolling into its lane" stands with from where it came.
+pub(crate) fn partner(account: &Account) -> Option<Party> {
+    let mut partner = account.partner.clone()?;
+    let moves = ["roll", "slid", "blow", "blew", "tumbl", "drift"];
+    let came = words_of(&account.came_from).is_some_and(|text| moves.iter().any(|stem| text.contains(stem)));
+    let thing = told(&partner.kind).is_some_and(is_thing);
+    if thing && came && partner.state.is_none() && !slides(&partner) {
+        let source = account.came_from.as_ref()?.source.clone();
+        let rolls = ActFact { act: Act::Roll, side: None, step: 0, after_contact: false, begun: false, source };
+        partner.acts.push(rolls);
+    }
+    Some(partner)
+}
+
+fn is_thing(kind: Kind) -> bool {
+    kind.group() == KindGroup::Object
+}
+
+/// Whether the ego is told to have changed lanes and driven on before it came to a thing.
+pub(crate) fn changed_lanes_before(account: &Account) -> bool {
+    let before = || account.sv.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let last = |act: Act| before().filter(|fact| fact.act == act).map(|fact| fact.step).max();
+    let thing = account.partner.as_ref().and_then(|partner| told(&partner.kind)).is_some_and(is_thing);
+    let changed =
+        last(Act::LaneChange).filter(|_| thing && told(&account.sv.movement) == Some(Movement::ChangingLanes));
+    changed.is_some_and(|changed| last(Act::Follow) > Some(changed))
+}
+
+/// The zones that meet where something lies across the ego's way.
+pub(crate) fn across(told: &Told) -> Option<(ContactZone, ContactZone)> {
+    told.lies.and_then(Lies::size)?;
+    Some(match told.sv.state {
+        ContactState::Reversing => (ContactZone::Rear, ContactZone::Front),
+        _ => (ContactZone::Front, ContactZone::Rear),
+    })
+}
+
+/// Points of the ego's outline that are touched: by a hole where its wheels are.
+pub(crate) fn sv_points(told: &Told, zone: ContactZone) -> &'static [(f64, f64)] {
+    match (told.lies, zone) {
+        (Some(Lies::Hole), ContactZone::Front) => &[(1.0, 0.75), (1.0, -0.75)],
+        (Some(Lies::Hole), ContactZone::FrontLeft) => &[(1.0, 0.75)],
+        (Some(Lies::Hole), ContactZone::FrontRight) => &[(1.0, -0.75)],
+        (Some(Lies::Bump | Lies::Edge), _) => &touch::points(zone)[..1],
+        _ => touch::points(zone),
+    }
+}
 
 /// How fast a thing is that rolls or slides, from how far away. [m/s, m]
 pub(crate) const SLIDES_MPS: f64 = 2.0;
@@ -63,4 +190,21 @@ pub(crate) fn headings(told: &Told) -> Vec<f64> {
     };
     let across = |side: LeftRight| if side == LeftRight::Left { -math::FRAC_PI_2 } else { math::FRAC_PI_2 };
     from.into_iter().flat_map(|side| [0.0, 0.5, -0.5].map(|off| across(side) + off)).collect()
+}
+
+/// How a thing is drawn.
+pub(crate) fn obstacle_kind(kind: Kind, lies: Option<Lies>) -> ObstacleKind {
+    match kind {
+        Kind::Pothole if matches!(lies, Some(Lies::Bump | Lies::Edge)) => ObstacleKind::Kerb,
+        Kind::Wall => ObstacleKind::Wall,
+        Kind::Pole => ObstacleKind::Pole,
+        Kind::Curb => ObstacleKind::Kerb,
+        Kind::Gate => ObstacleKind::Gate,
+        Kind::Chain => ObstacleKind::Chain,
+        Kind::Barrier => ObstacleKind::Barrier,
+        Kind::Cone => ObstacleKind::Cone,
+        Kind::Sign => ObstacleKind::Warning,
+        Kind::Pothole => ObstacleKind::Pothole,
+        _ => ObstacleKind::Debris,
+    }
 }

@@ -2,12 +2,14 @@
 
 use crate::choices::Choices;
 use crate::ground::LANE_M;
+use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::GAINS_MPS;
 use crate::side::{Side, Slant, Turning, side};
-use crate::things::{self, SLIDES_MPS};
+use crate::things::{self, Lies, SLIDES_MPS};
 use crate::touch::side_of;
+use crate::trailer::{self, Rig};
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
     Striker, Untold, told,
@@ -55,6 +57,10 @@ pub(crate) struct Told {
     pub(crate) thing: Option<Kind>,
     /// The partner is a gate that swung as they met.
     pub(crate) gate_swings: bool,
+    /// How the partner lies that the ego drives over, where told.
+    pub(crate) lies: Option<Lies>,
+    /// The ego had changed lanes, and driven on, before it came to a thing.
+    pub(crate) lane_changed: bool,
     /// The partner is on foot, or an animal, and is told to have come across.
     pub(crate) walks_across: bool,
     /// The partner is told to have rolled, slid or been pushed.
@@ -66,8 +72,14 @@ pub(crate) struct Told {
     /// An oncoming partner left its own side.
     pub(crate) comes_over: bool,
     pub(crate) order: Option<FirstMover>,
-    /// Somebody threw the partner at the subject vehicle.
+    /// The kind of the partner whose trailer is told to have touched.
+    pub(crate) trailer_of: Option<Kind>,
+    /// Who comes by with a trailer that touches is drawn as two, where that shows what is told; and what is drawn.
+    wanted_rig: Option<Rig>,
+    pub(crate) rig: Option<Rig>,
+    /// Somebody threw the partner at the subject vehicle; and who, where told.
     pub(crate) pushed: bool,
+    pub(crate) pusher: Option<Kind>,
     pub(crate) striker: Option<Striker>,
     /// Lanes in the ego's direction.
     pub(crate) lanes: Option<u8>,
@@ -112,7 +124,7 @@ impl Told {
 
     /// Whether or not it can be staged; nothing where no partner or no kind of crash is told.
     pub(crate) fn read(account: &Account) -> Option<Self> {
-        let partner = account.partner.as_ref()?;
+        let partner = &things::partner(account)?;
         let crash_type = told(&account.crash_type)?;
         let place = told(&account.place.kind).unwrap_or(PlaceKind::Street);
         let mut assumed = Vec::new();
@@ -120,6 +132,8 @@ impl Told {
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
         let sv = side(&account.sv, None, &mut assumed, "ego");
         let mut cp = side(partner, kind, &mut assumed, "partner");
+        let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
+        cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
         if gate_swings {
             // Its post stands.
@@ -127,10 +141,23 @@ impl Told {
         }
         let origin = told(&account.came_from);
         let origin_told = origin.is_some();
-        let origin = origin.or_else(|| assumed_origin(crash_type, &sv, &cp)).unwrap_or(Origin::Behind);
+        let assumed_from =
+            kerb::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
+        let origin = origin.or(assumed_from).unwrap_or(Origin::Behind);
         let comes_round = origin_told && lateral::comes_round(origin, partner, cp.state, cp.movement);
-        let origin = if comes_round { Origin::Parked { side: Some(LeftRight::Right) } } else { origin };
+        let right = Some(LeftRight::Right);
+        let origin = match comes_round {
+            true if kerb::leaves_driveway(partner) => Origin::Driveway { side: right },
+            true => Origin::Parked { side: right },
+            false => origin,
+        };
+        cp.backs_in = kerb::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
+        // What rolls into the ego's flank comes there after its front; that a thing is there first is only a rule.
+        let on_flank = !sv.zones.is_empty() && !sv.zones.iter().any(|zone| zone.is_front());
+        let into_flank = thing.is_some() && cp.state == ContactState::Moving && on_flank;
+        let order = told(&account.order).filter(|_| !into_flank);
+        let wanted_rig = trailer::rig(partner, &cp, origin);
         let sv_reverses = sv.state == ContactState::Reversing;
         let mut this = Self {
             crash_type,
@@ -140,18 +167,24 @@ impl Told {
             thing,
             slides: things::slides(partner),
             gate_swings,
+            lies,
+            lane_changed: things::changed_lanes_before(account),
             walks_across: things::walks_across(origin, partner),
             origin,
             origin_told,
             comes_round,
             comes_over: lateral::comes_over(origin, partner, told(&partner.movement)),
-            order: told(&account.order),
+            order,
             pushed: partner.did(Act::Pushed)
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
+            pusher: others::pusher(account),
+            trailer_of: kind.filter(|_| trailer::touches(partner)),
+            wanted_rig,
+            rig: None,
             striker,
             lanes: told(&account.place.lanes),
-            reasons: account.sv.reasons.iter().map(|fact| fact.value).collect(),
+            reasons: others::reasons(account),
             others: account.others.len(),
             door: told(&account.door),
             posted_mps: told(&account.place.posted_mps),
@@ -228,7 +261,10 @@ impl Told {
         if !along || matches!(self.cp.slants, Some(Slant::Stood(_))) {
             self.cp.phases.clear();
         }
-        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty();
+        if self.cp.backs_in && self.cp.phases.is_empty() {
+            self.cp.phases = kerb::BACKED_IN.to_vec();
+        }
+        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty() || self.backs_out();
         self.contact_s = if more { LATE_CONTACT_S } else { CONTACT_S };
     }
 
@@ -276,14 +312,22 @@ impl Told {
         self.sv.control.is_some() || self.cp.control.is_some()
     }
 
-    /// Everything to try: with those whom the ego stood for, then without them.
+    /// Everything to try: with those whom the ego stood for, with one of them, then without them.
     pub(crate) fn variants(self) -> Vec<Self> {
         let with_extras = |told: Self| {
-            let extras = told.wanted.clone();
-            let with = (!extras.is_empty()).then(|| Self { extras, ..told.clone() });
-            with.into_iter().chain([told])
+            let wanted = told.wanted.clone();
+            let one = wanted.iter().filter(|_| wanted.len() > 1).map(|extra| vec![*extra]).collect::<Vec<_>>();
+            let all = [wanted].into_iter().filter(|extras| !extras.is_empty()).chain(one).chain([Vec::new()]);
+            all.map(|extras| Self { extras, ..told.clone() }).collect::<Vec<_>>()
         };
-        self.by_origin().into_iter().flat_map(with_extras).collect()
+        let with_rig = |told: Self| {
+            let drawn = told.wanted_rig.map(|rig| {
+                let cp = Side { size: Some(rig.tractor), ..told.cp.clone() };
+                Self { rig: Some(rig), cp, ..told.clone() }
+            });
+            drawn.into_iter().chain([told])
+        };
+        self.by_origin().into_iter().flat_map(with_rig).flat_map(with_extras).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
@@ -417,6 +461,8 @@ impl Told {
 pub(crate) struct Aside {
     pub(crate) from_t_m: f64,
     pub(crate) to_t_m: f64,
+    /// It is over before the contact.
+    pub(crate) done: bool,
 }
 
 impl Told {
@@ -456,7 +502,7 @@ impl Told {
             Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, DEPARTS_M)),
             _ => return None,
         };
-        Some(Aside { from_t_m, to_t_m })
+        Some(Aside { from_t_m, to_t_m, done: self.lane_changed && stopped.is_none() })
     }
 
     /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]

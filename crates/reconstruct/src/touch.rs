@@ -5,10 +5,12 @@
 use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
+use crate::kerb;
 use crate::lateral::is_on_foot;
 use crate::side::{Side, Slant, Turning};
 use crate::things;
 use crate::told::Told;
+use crate::trailer::{self, Rig};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::{ContactState, CrashType, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -89,7 +91,7 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
         let behind = ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
         for (came, heading) in headings(told, sv.heading, behind) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
-                for &sv_point in points(sv_zone) {
+                for &sv_point in things::sv_points(told, sv_zone) {
                     for &cp_point in points(cp_zone) {
                         trial += 1;
                         let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
@@ -147,6 +149,9 @@ pub(crate) fn side_of(zones: &[ContactZone]) -> Option<f64> {
 
 /// Zones to try: the told ones, or all where none is told; then the neighbours of told ones, since a zone is told to a step.
 fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
+    if let Some(pair) = things::across(told) {
+        return vec![pair];
+    }
     let all = || ContactZone::ALL[..8].to_vec();
     let of = |zones: &[ContactZone]| if zones.is_empty() { all() } else { zones.to_vec() };
     let near = |zones: &[ContactZone]| -> Vec<ContactZone> {
@@ -209,6 +214,12 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             }
         }
     };
+    if things::across(told).is_some() {
+        return vec![(sv_heading, sv_heading)];
+    }
+    if told.cp.backs_in {
+        return kerb::headings().collect();
+    }
     if told.comes_across() {
         return things::headings(told).into_iter().map(math::wrap_angle).map(|heading| (heading, heading)).collect();
     }
@@ -279,7 +290,7 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
                     turned(moves, &mut list);
                     continue;
                 }
-                for off in [0.0, 20.0, 40.0, 60.0, -20.0, -40.0] {
+                for off in [0.0, 20.0, 40.0, 60.0, -20.0, -40.0, 75.0] {
                     let toward = moves + from * degrees(off);
                     list.push((
                         if reverses { toward + math::PI } else { moves },
@@ -324,7 +335,8 @@ fn touch(
     cp_point: (f64, f64),
 ) -> Option<(Pose, ContactZone, ContactZone)> {
     let (sv_length, sv_width) = size_of(&told.sv);
-    let (cp_length, cp_width) = size_of(&told.cp);
+    let (cp_length, cp_width) =
+        told.rig.map_or_else(|| size_of(&told.cp), |rig| (rig.trailer.length_m, rig.trailer.width_m));
     let own = OrientedBox::new(sv, sv_length, sv_width);
     let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
     let axis = Vec2::from_heading(heading);
@@ -358,8 +370,14 @@ fn touch(
     if (1..=12).any(|step| at(outside + 0.25 * f64::from(step)).overlaps(&own)) {
         return None;
     }
+    // Who draws a trailer gets by.
+    let gets_by = |rig: Rig| (0..=60).all(|step| !rig.tractor(&at(inside + 0.25 * f64::from(step))).overlaps(&own));
+    if !told.rig.is_none_or(gets_by) {
+        return None;
+    }
     let touching = at(inside - 0.01);
     let geometry = contact_geometry(&own, velocity(&told.sv, sv.heading), &touching, velocity(&told.cp, heading));
-    let cp = Pose { position: at(inside).centre, heading };
-    Some((cp, geometry.ego_zone, geometry.other_zone))
+    let cp = trailer::pose(told.rig, Pose { position: at(inside).centre, heading });
+    let cp_zone = told.rig.map_or(geometry.other_zone, |rig| rig.zone(&touching, &geometry));
+    Some((cp, geometry.ego_zone, cp_zone))
 }

@@ -154,7 +154,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             continue;
         }
         (parser.sentence, parser.world.sentence) = (number, number);
-        parser.looks_back = looks_back(words);
+        parser.looks_back = looks_back(words) || could_not_avoid(words);
         parser.read(*sentence);
     }
     let (mut frames, world) = (parser.frames, parser.world);
@@ -203,6 +203,13 @@ fn looks_back(words: &[Token]) -> bool {
         ["prior" | "before" | "immediately" | "just" | "leading" | "moments" | "shortly" | "seconds", ..]
     ) && of_crash
         && text.iter().any(|word| matches!(*word, "prior" | "before" | "up"))
+}
+
+/// "It moved to the right but was not able to avoid contact", told behind the contact.
+fn could_not_avoid(words: &[Token]) -> bool {
+    let text: Vec<&str> = words.iter().map(|token| token.text.as_str()).collect();
+    let avoid = text.iter().position(|word| *word == "avoid").unwrap_or(0);
+    text[..avoid].ends_with(&["unable", "to"]) || text[..avoid].ends_with(&["not", "able", "to"])
 }
 
 /// Whether an act goes to a side.

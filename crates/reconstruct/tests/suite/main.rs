@@ -6,4 +6,5 @@ mod common;
 mod sabotage;
 mod steps;
 mod stories;
+mod things;
 mod ways;

@@ -2,6 +2,7 @@
 
 use crate::common::record;
 use crate::stories::shown;
+use crate::things;
 use crate::ways;
 use recrash_model::account::{
     Account, ContactState, ControlDevice, Fact, Kind, KindGroup, Obeyed, Origin, SignalState, SpeedMeaning, Striker,
@@ -15,7 +16,7 @@ use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::record::CrashRecord;
 use recrash_model::rollout::EventKind;
 use recrash_model::scenario::{
-    Act, ActorPlan, Aspect, Deed, Device, Leg, ObjectSpec, ObstacleKind, PartKind, Place, ScenarioDraft,
+    Act, Actor, ActorPlan, Aspect, Deed, Device, Leg, ObjectSpec, ObstacleKind, PartKind, Place, ScenarioDraft,
 };
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -28,7 +29,7 @@ use sha2::{Digest, Sha256};
 type Sabotage = fn(&Account, &mut ScenarioDraft) -> bool;
 
 /// Each with how many of our own stories it must at least be tried on.
-const SABOTAGES: [(&str, usize, Sabotage); 21] = [
+const SABOTAGES: [(&str, usize, Sabotage); 23] = [
     ("a turning partner that goes straight", 2, turn_undone),
     ("a partner from the other direction", 20, other_direction),
     ("a partner mirrored to the other side", 3, other_side),
@@ -49,6 +50,8 @@ const SABOTAGES: [(&str, usize, Sabotage); 21] = [
     ("a partner that did not stand at the kerb, in a stall or in a driveway", 2, never_at_the_kerb),
     ("a thing that rolled in and lies there", 1, thing_lies),
     ("a gate that does not swing", 1, gate_stays),
+    ("two others who crash of whom nothing is told", 30, others_crash),
+    ("another who threw the partner", 1, other_pusher),
     ("an ego that moved up or back and stands from the start", 2, moved_nowhere),
 ];
 
@@ -82,6 +85,7 @@ fn tried(made: &[(String, Account, Reconstruction)]) -> Vec<(&'static str, usize
 fn every_sabotage_of_our_own_stories_is_caught() {
     let mut made = shown();
     made.extend(ways::shown());
+    made.extend(things::shown());
     // One whose column tells the speed at the impact.
     let text = "The AV was traveling straight when a car pulled out of a driveway on its right, and the front of the AV made \
                 contact with the left side of the car.";
@@ -363,6 +367,35 @@ fn nobody_throws(_: &Account, draft: &mut ScenarioDraft) -> bool {
     let all = draft.actors.len();
     draft.actors.retain(|actor| actor.id != "pusher");
     draft.actors.len() < all
+}
+
+fn others_crash(_: &Account, draft: &mut ScenarioDraft) -> bool {
+    let Some(like) = draft.actors.first() else { return false };
+    let other = |id: &str, x_m: f64, speed_mps: f64| {
+        let mut plan = ActorPlan::standing(Place::at(x_m, 60.0, 0.0));
+        plan.speed_mps = speed_mps;
+        plan.course = vec![Leg::Curve { to: Place::at(x_m + 100.0, 60.0, 0.0), reverse: false }];
+        Actor {
+            id: id.to_owned(),
+            kind: PartnerKind::PassengerCar,
+            size: None,
+            parts: Vec::new(),
+            plan,
+            ..like.clone()
+        }
+    };
+    let (slow, fast) = (other("slow", 0.0, 1.0), other("fast", -20.0, 8.0));
+    draft.actors.extend([slow, fast]);
+    true
+}
+
+fn other_pusher(account: &Account, draft: &mut ScenarioDraft) -> bool {
+    let told =
+        account.others.iter().find(|other| other.touched_partner).and_then(|other| other.kind.value.partner_kind());
+    let pusher = draft.actors.iter_mut().find(|actor| actor.id == "pusher");
+    let Some((told, pusher)) = told.zip(pusher) else { return false };
+    pusher.kind = if told == PartnerKind::Bus { PartnerKind::Van } else { PartnerKind::Bus };
+    true
 }
 
 fn moved_nowhere(account: &Account, draft: &mut ScenarioDraft) -> bool {

@@ -268,6 +268,8 @@ fn a_thing_that_rolled_into_the_way_rolls() {
     let lies = missed(&account, |less| {
         partner_without_acts(less, &[Act::Roll]);
         less.partner.as_mut().expect("a partner").state = None;
+        // Its words tell it too.
+        less.came_from = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Right }, "made for this test"));
     });
     assert!(lies.contains(&CheckKind::CpState), "{lies:?}");
 }

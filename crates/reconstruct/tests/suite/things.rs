@@ -1,0 +1,250 @@
+//! Things lie as they are told, others do not crash by themselves, and who parks or comes out from beside the road does so.
+
+use crate::ways::{before_contact, degrees_between, made, missed, partner, partner_without_acts, speeds, story};
+use recrash_model::account::{Account, Act, Fact, Kind, LeftRight, Origin, Source, StandReason};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::metrics::CheckKind;
+use recrash_model::profile::{Dedupe, SystemProfile};
+use recrash_model::rollout::EventKind;
+use recrash_model::scenario::{MapSpec, ObjectSpec, ObstacleKind, Place, StripKind};
+use recrash_reconstruct::{Reconstruction, reconstruct};
+use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText, ingest};
+
+const BEHIND_TWO: &str = "The AV was traveling north when it came to a stop behind a sedan and yielded to a pedestrian crossing the street. A \
+                          van approached from behind and the front of the van made contact with the rear of the stationary AV.";
+
+const BUMP: &str = "The AV was traveling east when the underside of the AV made contact with a speed bump.";
+
+const TRIMMER: &str =
+    "The AV was traveling east in a parking lot when the front left of the AV made contact with a string trimmer.";
+
+const EDGE: &str = "The AV was traveling north on Elm Street. As the AV turned left into a parking lot, the underside of the AV made contact \
+                    with the driveway pavement.";
+
+const HOLE: &str = "The AV was traveling south in the right lane. The AV changed lanes to the left lane and continued traveling south when \
+                    the front left of the AV made contact with a pothole.";
+
+const ROLLED_IN: &str = "The AV was traveling east when the left side of the AV made contact with an object that was rolling into the AV's lane \
+                         from the left side of the road. The AV moved to the right but was not able to avoid contact.";
+
+const BACKED_IN: &str = "The AV was parked at the curb facing south when an SUV attempting to parallel park in front of the AV reversed, and \
+                         the rear of the SUV made contact with the front of the stationary AV.";
+
+const BACKED_OUT: &str = "The AV was parked at the curb when an SUV reversed out of a driveway on the left side of the street, and the rear \
+                          right of the SUV made contact with the left side of the stationary AV.";
+
+const STALL: &str = "The AV was traveling north, passing a sedan that was stopped in a perpendicular parking space. The sedan began reversing \
+                     and the rear right corner of the sedan made contact with the left side of the AV.";
+
+const DRIVEWAY: &str = "The AV was stopped at the curb when a sedan exiting a driveway behind the AV passed the AV on the left, and the right \
+                        side of the sedan made contact with the rear left of the stationary AV.";
+
+const CHAIN: &str = "The AV was stopped in traffic. A sedan behind the AV was rear-ended by a pickup truck, causing the front of the sedan to \
+                     make contact with the rear of the stationary AV.";
+
+const TRAILER: &str = "The AV was traveling north on a narrow street when it came to a stop to yield to an oncoming heavy truck. As the heavy \
+                       truck passed the stationary AV, the left side of the heavy truck's trailer made contact with the rear left side \
+                       of the AV.";
+
+/// The stories of this file, as they are shown.
+pub fn shown() -> Vec<(String, Account, Reconstruction)> {
+    let texts =
+        [BEHIND_TWO, BUMP, TRIMMER, EDGE, HOLE, ROLLED_IN, BACKED_IN, BACKED_OUT, STALL, DRIVEWAY, CHAIN, TRAILER];
+    texts.into_iter().map(|text| (text[..40].to_owned(), story(text), made(&story(text)))).collect()
+}
+
+/// Whether two others touch whom nobody had touched before; who throws the partner does so.
+fn others_crash(made: &Reconstruction) -> bool {
+    let actors = &made.rollout.actors;
+    let mut touched = vec![false; actors.len()];
+    made.rollout.events.iter().any(|event| match event.kind {
+        EventKind::Contact { a, b, .. } => {
+            let throws = [a, b].iter().any(|number| actors[*number].id == "pusher");
+            let crash = a > 0 && !touched[a] && !touched[b] && !throws;
+            (touched[a], touched[b]) = (a > 0, true);
+            crash
+        }
+        _ => false,
+    })
+}
+
+/// The thing that lies on the road.
+fn thing(made: &Reconstruction) -> (&ObjectSpec, f64, f64) {
+    let object = made.draft.objects.first().expect("a thing");
+    let Place::Plane { x_m, y_m, .. } = object.at else { panic!("{:?}", object.at) };
+    (object, x_m, y_m)
+}
+
+#[test]
+fn nobody_crashes_of_whom_it_is_not_told() {
+    let sources = [SourceText { name: SAMPLE_NAME, bytes: SAMPLE_CSV.as_bytes() }];
+    let mut profile: SystemProfile =
+        toml::from_str(include_str!("../../../../profiles/paper.toml")).expect("a profile");
+    profile.records.dedupe = Dedupe::None;
+    let records = ingest(&sources, &profile).expect("the sample").value.records;
+    let accounts: Vec<_> = recrash_reader::incidents(&records).iter().filter_map(recrash_reader::account).collect();
+    assert!(accounts.len() > 20, "{}", accounts.len());
+    for account in &accounts {
+        let Ok(made) = reconstruct(account) else { continue };
+        assert!(!made.is_true() || !others_crash(&made), "{}", account.report);
+    }
+}
+
+#[test]
+fn who_crosses_between_the_ego_and_the_one_ahead_runs_into_nobody() {
+    let account = story(BEHIND_TWO);
+    let shown = made(&account);
+    let ids: Vec<&str> = shown.rollout.actors.iter().map(|track| track.id.as_str()).collect();
+    assert!(ids.contains(&"lead") && ids.contains(&"walker"), "{ids:?}");
+    assert!(!others_crash(&shown));
+}
+
+#[test]
+fn a_crosswalk_and_the_partner_are_nobody_that_the_ego_stood_for() {
+    let mut account = story(CHAIN);
+    account.sv.reasons.push(Fact::by_rule(StandReason::Pedestrian, "made for this test"));
+    assert!(made(&account).rollout.actors.iter().all(|track| track.id != "walker"));
+}
+
+#[test]
+fn a_speed_bump_lies_across_the_lane() {
+    let account = story(BUMP);
+    let shown = made(&account);
+    let (object, _, y_m) = thing(&shown);
+    let size = object.size.expect("its size");
+    assert!(size.width_m > 3.0 && size.length_m < 1.0 && y_m.abs() < 0.1, "{object:?}");
+}
+
+#[test]
+fn a_tool_is_small() {
+    let account = story(TRIMMER);
+    let shown = made(&account);
+    let (object, ..) = thing(&shown);
+    assert!(object.kind == ObstacleKind::Debris && object.size.is_some_and(|size| size.width_m < 1.0), "{object:?}");
+}
+
+#[test]
+fn a_raised_pavement_lies_across_the_entry() {
+    let shown = made(&story(EDGE));
+    let (object, x_m, y_m) = thing(&shown);
+    assert!(object.kind == ObstacleKind::Kerb && object.size.is_some_and(|size| size.width_m > 3.0), "{object:?}");
+    // The arm to the left begins 13 m from the junction's centre, which is 5.1 m to the left of the ego's line.
+    assert!((17.0..20.0).contains(&y_m) && x_m.abs() < 5.0, "{object:?}");
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    assert!(degrees_between(ego.heading, 90.0_f64.to_radians()) < 35.0, "{ego:?}");
+}
+
+#[test]
+fn a_hole_lies_under_the_told_wheel_where_the_lane_change_is_over() {
+    let shown = made(&story(HOLE));
+    let (object, _, y_m) = thing(&shown);
+    let last = before_contact(&shown);
+    let (ego, before) = (shown.rollout.ego_track().states[last], shown.rollout.ego_track().states[last - 10]);
+    assert!((y_m - ego.y - 0.7).abs() < 0.2, "{object:?} {ego:?}");
+    assert!(ego.heading.abs() < 0.01 && (ego.y - before.y).abs() < 0.05 && ego.y > 3.0, "{ego:?}");
+}
+
+#[test]
+fn a_thing_that_is_told_to_roll_in_with_its_way_rolls() {
+    let mut account = story(ROLLED_IN);
+    // As the reader has it where the words stand with the way alone.
+    partner_without_acts(&mut account, &[Act::Roll]);
+    account.partner.as_mut().expect("a thing").state = None;
+    let source = Source::Words { start: 0, end: 0, text: "rolling into the AV's lane".to_owned() };
+    account.came_from = Some(Fact { value: Origin::Beside { side: LeftRight::Left }, source });
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(states[0].y > 3.0 && met.speed() > 1.0 && met.y < 2.0, "{met:?}");
+    // The ego moved away from it before.
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    assert!(ego.y < -0.5, "{ego:?}");
+    let lies = missed(&account, |less| {
+        less.came_from = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Left }, "made for this test"));
+    });
+    assert!(lies.contains(&CheckKind::CpState), "{lies:?}");
+}
+
+#[test]
+fn who_parks_in_reverse_swings_towards_the_kerb() {
+    let account = story(BACKED_IN);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    let ego = shown.rollout.ego_track().states[0];
+    let MapSpec::G(map) = &shown.draft.map else { panic!("{:?}", shown.draft.map) };
+    assert!(map.roads[0].right.iter().any(|strip| strip.kind == StripKind::Parking));
+    // The ego stands in the parking strip; the SUV came along the lane, stood, and backs in.
+    assert!(ego.y < -2.5, "{ego:?}");
+    let stood = states.iter().position(|state| state.speed() == 0.0).expect("it stands");
+    assert!(states[0].speed() > 1.0 && states[stood].y.abs() < 0.1 && states[stood].x > met.x + 5.0);
+    assert!(met.y < -0.8 && (15.0..40.0).contains(&met.heading.to_degrees()), "{met:?}");
+    let straight = missed(&account, |less| partner_without_acts(less, &[Act::Park]));
+    assert!(straight.contains(&CheckKind::CpMovement), "{straight:?}");
+}
+
+#[test]
+fn who_backs_out_of_a_driveway_begins_behind_the_kerb() {
+    let account = story(BACKED_OUT);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
+    assert!(states[0].y > met.y + 6.0 && degrees_between(states[0].heading, 0.0) > 30.0, "{:?}", states[0]);
+    assert!(scenario.network().area("main.driveways[0]").is_some());
+    assert!(states.iter().all(|state| scenario.network().on_road(state.position())));
+    let along = missed(&account, |less| {
+        less.came_from = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Left }, "made for this test"));
+    });
+    assert!(along.contains(&CheckKind::Approach), "{along:?}");
+}
+
+#[test]
+fn who_backs_out_of_a_stall_beside_the_road_stands_crosswise_in_it() {
+    let account = story(STALL);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    assert!(degrees_between(states[0].heading, 0.0) > 30.0 && states[0].y > met.y + 3.0, "{:?}", states[0]);
+    let MapSpec::G(map) = &shown.draft.map else { panic!("{:?}", shown.draft.map) };
+    assert!(map.roads[0].left.iter().any(|strip| strip.kind == StripKind::Stalls));
+}
+
+#[test]
+fn who_comes_out_of_a_driveway_behind_the_ego_turns_from_there() {
+    let account = story(DRIVEWAY);
+    let shown = made(&account);
+    let (states, met) = partner(&shown);
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    assert!(states[0].x < ego.x && states[0].y < -5.0 && degrees_between(states[0].heading, 0.0) > 60.0);
+    assert!(met.heading < states[0].heading - 0.3, "{met:?}");
+}
+
+#[test]
+fn who_threw_the_partner_is_of_the_told_kind() {
+    let account = story(CHAIN);
+    let shown = made(&account);
+    let pusher = shown.rollout.actors.iter().find(|track| track.id == "pusher").expect("who threw it");
+    assert_eq!(pusher.kind, PartnerKind::PickupTruck);
+    let car = missed(&account, |less| {
+        for other in less.others.iter_mut().filter(|other| other.touched_partner) {
+            other.kind = Fact::by_rule(Kind::PassengerCar, "made for this test");
+        }
+    });
+    assert_eq!(car, [CheckKind::PassedOn]);
+    assert!(speeds(&shown).len() > 50);
+}
+
+#[test]
+fn a_trailer_that_touched_touches_and_who_draws_it_gets_by() {
+    let account = story(TRAILER);
+    let shown = made(&account);
+    let (step, actors) = (before_contact(&shown) + 1, &shown.rollout.actors);
+    let trailer = actors.iter().find(|track| track.id == "cp.trailer").expect("a trailer");
+    let tractor = actors.iter().find(|track| track.id == "cp").expect("who draws it");
+    let ego = shown.rollout.ego_track();
+    assert!(trailer.outline(step).overlaps(&ego.outline(step)));
+    assert!((0..=step).all(|step| !tractor.outline(step).overlaps(&ego.outline(step))));
+    // In one box its front would touch.
+    let missed = missed(&account, |less| {
+        let kind = &mut less.partner.as_mut().expect("a truck").kind;
+        *kind = Some(Fact::by_rule(Kind::SemiTrailerTruck, "made for this test"));
+    });
+    assert_eq!(missed, [CheckKind::CpZones]);
+}
