@@ -70,7 +70,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let (sv, contact_s) = (&told.sv, told.contact_s);
     let stood_s = match told.waits_behind() {
         true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
-        false if told.stood_before => told.choices.stood_s + STOOD_LONGER_S,
+        false if told.stood_before && told.origin != Origin::Ahead => told.choices.stood_s + STOOD_LONGER_S,
         false => told.choices.stood_s,
     };
     let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);

@@ -427,7 +427,9 @@ impl Told {
             match self.origin {
                 // Whom the ego passes, and who was ahead of it, is slower.
                 Origin::Beside { .. }
-                    if sv > 0.5 && (self.sv.movement == Some(Movement::Passing) || self.ahead == Some(true)) =>
+                    if sv > 0.5
+                        && (self.sv.movement == Some(Movement::Passing)
+                            || self.ahead == Some(true) && self.cp.turning == Turning::No) =>
                 {
                     self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.5).max(0.4));
                 }
