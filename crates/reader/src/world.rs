@@ -152,15 +152,19 @@ impl World {
         }
     }
 
-    /// Somebody who is not named, such as who touched the subject vehicle in "contact was made".
-    pub fn unnamed(&mut self) -> Actor {
-        match self.latest(|known| known.kind.is_some_and(acts)) {
-            Some(actor) => actor,
-            None => {
-                self.actors.push(Known { announced: true, ..Known::default() });
-                self.actors.len() - 1
-            }
-        }
+    /// Who struck the subject vehicle where nobody is named: who is known to be behind it, or acted last; else somebody who is
+    /// named later.
+    pub fn striker(&mut self, behind: bool) -> Actor {
+        let there = |known: &Known| known.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
+        let known = self.latest(|known| {
+            known.kind.is_some_and(|kind| kind.is_vehicle() || kind.group() == KindGroup::Motorcycle)
+                && !known.several
+                && if behind { there(known) } else { known.acted }
+        });
+        known.unwrap_or_else(|| {
+            self.actors.push(Known { kind: Some(Kind::Vehicle), announced: true, ..Known::default() });
+            self.actors.len() - 1
+        })
     }
 
     /// One tows the other: from here on they are one.

@@ -367,7 +367,9 @@ impl Chunker<'_> {
     /// "on the right front of the van" is a part, "from the right lane" a lane.
     fn is_no_relation(&self, at: usize, length: usize) -> bool {
         let (last, behind) = (self.text(at + length - 1), at + length);
-        let side = matches!(last, "left" | "right");
+        // "on its left side mirror".
+        let mirror = last == "side" && matches!(self.text(behind), "mirror" | "mirrors" | "door" | "doors" | "window");
+        let side = matches!(last, "left" | "right") || mirror;
         let part = self
             .part(behind)
             .is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));
@@ -502,6 +504,10 @@ impl Chunker<'_> {
             return None;
         }
         if self.text(at) == "cross" && matches!(self.text(at + 1), "traffic" | "street" | "road" | "walk") {
+            return None;
+        }
+        // "the sliding door".
+        if self.text(at) == "sliding" && matches!(self.text(at + 1), "door" | "doors" | "gate") {
             return None;
         }
         if self.text(at) == "contacts" || (self.text(at) == "stop" && self.text(at + 1) == "sign") {

@@ -43,6 +43,7 @@ impl Contacts {
                 let frame = &frames[*number];
                 frames[first].sentence == early
                     && frame.sentence > early
+                    && !shoved(story, frame)
                     && (*other == partner || story.world.actors[*other].mentions > 1 || names(frame, *other))
                     && alike(story, partner, *other)
             });
@@ -162,6 +163,13 @@ fn goes_on(story: &Story, number: usize) -> bool {
         || story.tokens[sentence.first..sentence.end]
             .iter()
             .any(|token| matches!(token.text.as_str(), "third" | "times"))
+}
+
+/// Whether the subject vehicle was pushed into somebody: what came of the crash.
+fn shoved(story: &Story, contact: &Frame) -> bool {
+    let pushes = |frame: &Frame| frame.sense == Sense::Push && frame.object == Some(SUBJECT) && frame.happened();
+    contact.who == Some(SUBJECT)
+        && story.frames.iter().any(|frame| frame.sentence == contact.sentence && pushes(frame))
 }
 
 fn alike(story: &Story, one: Actor, other: Actor) -> bool {

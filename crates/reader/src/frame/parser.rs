@@ -2,7 +2,7 @@
 
 use super::Frame;
 use super::adverbs::goes_about;
-use super::row::{acts, another_finite, next_is_verb, next_preposition, relation_behind, transitive};
+use super::row::{acts, another_finite, names_doer, next_is_verb, next_preposition, relation_behind, transitive};
 use super::sided;
 use crate::chunk::{Article, Chunk, Joint, Piece, Placed, Spot, chunks, is_determiner};
 use crate::lexicon::{Form, Lexicon, Occupant, Progress, Relation, Sense};
@@ -165,6 +165,10 @@ impl Parser<'_> {
                         self.attribute(owner, actor, placed, carry);
                         Some(actor)
                     }
+                    None if at > 0 && self.tokens[all[at - 1].first].text == "whose" && carry.last.is_some() => {
+                        carry.frame = None;
+                        carry.last.as_ref().map(|last| last.actor)
+                    }
                     None if piece.its => Some(self.its(carry)),
                     // "The edge of the open door touched": of whom it was opened.
                     None if piece.door && carry.fresh && self.door_of().is_some() => self.door_of(),
@@ -198,6 +202,13 @@ impl Parser<'_> {
             Chunk::Relative => {
                 // "at which time the operator ...": the operator is not behind "at".
                 (carry.preposition, carry.relation) = (None, None);
+                // "the bracket that holds the sensor": of a thing without a name.
+                if self.of_a_word(all, at) {
+                    (carry.outer, carry.subject) = (carry.subject.take(), None);
+                    (carry.frame, carry.has_verb, carry.stranger) = (None, false, true);
+                    carry.relative = true;
+                    return;
+                }
                 if let Some(last) = carry.last.clone() {
                     if !carry.relative {
                         carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
@@ -479,7 +490,11 @@ impl Parser<'_> {
         // "between the van and a parked car": the second of a pair, and no new clause.
         let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
         let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
-            Chunk::Comma => true,
+            // "and the van, coming from the left, hit it".
+            Chunk::Comma => !matches!(
+                behind.get(2).map(|placed| &placed.chunk),
+                Some(Chunk::Verb(_, Form::Ing) | Chunk::Not | Chunk::Relative)
+            ),
             // "and the van then reversed" is a clause of its own.
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
@@ -552,7 +567,10 @@ impl Parser<'_> {
         let sense = if backed && word == "backed" { Sense::Other } else { sense };
         // "holding a phone", "held on to the rail".
         let carried = word.starts_with("hold") || word == "held";
-        let on = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Word | Chunk::Preposition("on")));
+        let on = matches!(
+            all.get(at + 1).map(|placed| &placed.chunk),
+            Some(Chunk::Word | Chunk::Preposition("on") | Chunk::Piece(_) | Chunk::Noun(_))
+        );
         // "a bicycle ridden by a courier" passes nobody.
         let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
         let next = all.get(at + 1).map(|placed| &placed.chunk);
@@ -696,8 +714,12 @@ impl Parser<'_> {
         }
         // "Struck by a coupe, a parked van ...": who is named next.
         let leading = carry.fresh && !be && carry.subject.is_none() && form == Form::Past && done_to;
-        let leading = leading && matches!(next, Some(Chunk::Preposition("by")));
+        let leading = leading && (matches!(next, Some(Chunk::Preposition("by"))) || sense == Sense::RearEnd);
         frame.passive |= leading;
+        let of_subject = frame.object == Some(SUBJECT) || leading && frame.object.is_none();
+        if frame.passive && of_subject && frame.who.is_none() && !names_doer(all, at) {
+            frame.who = self.struck_by(sense, &word);
+        }
         if matches!(sense, Sense::Push) && carry.pushed {
             carry.pushed = false;
         }

@@ -3,7 +3,8 @@
 use super::parser::{Carry, Mention, Parser};
 use super::row::acts;
 use crate::chunk::{Placed, Spot};
-use crate::lexicon::{Form, Sense};
+use crate::lexicon::{Form, Relation, Sense};
+use crate::world::Actor;
 use recrash_model::account::{Act, LeftRight};
 
 impl Parser<'_> {
@@ -46,6 +47,20 @@ impl Parser<'_> {
             "curb" => Some(Spot::Curb),
             _ => None,
         })
+    }
+
+    /// Who struck the subject vehicle where nobody is named: "was rear-ended", "was broadsided".
+    pub(super) fn struck_by(&mut self, sense: Sense, word: &str) -> Option<Actor> {
+        let rear = sense == Sense::RearEnd;
+        let by_vehicle = rear || ["broadside", "sideswipe"].iter().any(|stem| word.starts_with(stem));
+        if !by_vehicle {
+            return None;
+        }
+        let actor = self.world.striker(rear);
+        if rear {
+            self.world.actors[actor].place(Relation::Behind, self.sentence);
+        }
+        Some(actor)
     }
 
     /// Of whom a verb is told.
