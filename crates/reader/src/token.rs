@@ -115,6 +115,8 @@ pub fn tokens(text: &str) -> Vec<Token> {
                     all.push(Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false });
                 }
             }
+            // A line that breaks within a sentence.
+            '\n' if runs_on(&all, text, end) => {}
             '.' | ',' | ';' | ':' | '(' | ')' | '!' | '?' | '\n' => {
                 let text = if c == '\n' { "\u{b6}".to_owned() } else { c.to_string() };
                 all.push(Token { start, end, text, kind: TokenKind::Mark, capital: false });
@@ -123,6 +125,12 @@ pub fn tokens(text: &str) -> Vec<Token> {
         }
     }
     all
+}
+
+/// Whether a line goes on with a small letter on the next one.
+fn runs_on(before: &[Token], text: &str, end: usize) -> bool {
+    let word = before.last().is_some_and(|last| last.kind == TokenKind::Word);
+    word && text[end..].trim_start_matches([' ', '\r']).starts_with(|c: char| c.is_lowercase())
 }
 
 /// Whether the full stop at this byte stands between digits, or inside a name such as `Pony.ai`.

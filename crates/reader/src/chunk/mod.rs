@@ -5,7 +5,7 @@ mod places;
 
 use crate::lexicon::{Adjective, Form, Lexicon, Meaning, Occupant, Part, Relation, Sense};
 use crate::token::{Token, TokenKind};
-use recrash_model::account::{Compass, Kind, KindGroup, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 /// How a noun is introduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -317,7 +317,7 @@ impl Chunker<'_> {
             // "it got sideswiped by a bus".
             "got" | "gets" if matches!(self.verb(at + 1, &[]), Some((_, Form::Past, _))) => Chunk::Be,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
-            "no" if at == self.first => Chunk::Not,
+            "no" | "nothing" | "nobody" if at == self.first => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
             | "avoiding" | "avoided" => Chunk::Not,
             "fail" | "failed" | "failing" | "fails" | "refused" => Chunk::Not,
@@ -396,6 +396,11 @@ impl Chunker<'_> {
 
     fn verb(&self, at: usize, before: &[Placed]) -> Option<(Sense, Form, usize)> {
         let token = &self.tokens[at];
+        // "AV stationary at a red light", in the style of telegrams.
+        let named = matches!(before, [Placed { chunk: Chunk::Noun(noun), end, .. }] if noun.subject && *end == at);
+        if named && matches!(token.text.as_str(), "stationary" | "motionless" | "idle" | "static") {
+            return Some((Sense::Act(Act::Hold), Form::Past, 1));
+        }
         if token.capital && at > self.first {
             return None;
         }
@@ -439,6 +444,9 @@ impl Chunker<'_> {
                 | "u"
         );
         let single = found.length == 1;
+        // "was run into".
+        let done = self.text(at) == "run" && matches!(before.last().map(|placed| &placed.chunk), Some(Chunk::Be));
+        let form = if done && sense == Sense::Contact { Form::Past } else { form };
         if form == Form::Base && !self.takes_base(at, before) {
             return None;
         }

@@ -135,7 +135,10 @@ fn as_column(
     }
     let acting = |actor: &Actor| is(*actor) && !story.world.actors[*actor].several;
     let named = story.frames[..=first].iter().rev().filter_map(|frame| frame.who).find(acting);
-    let any = || (1..story.world.actors.len()).find(|&actor| is(actor));
+    // "refused an ambulance", told after the crash.
+    let end = story.sentences[story.frames[first].sentence].end;
+    let before = |actor: usize| story.world.actors[actor].kind_tokens.is_none_or(|(at, _)| at < end);
+    let any = || (1..story.world.actors.len()).find(|&actor| is(actor) && before(actor));
     named.or_else(any).map_or(unchanged, |actor| (first, actor))
 }
 

@@ -273,6 +273,7 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
             return Some(reading.told(Driver::HumanTookOver, sentence.first + at, sentence.first + at + 3));
         }
         let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
+        let said_human = said_human.filter(|(_, at, _)| !of_another(story, *at));
         let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
         if at_impact && let Some((value, at, length)) = said_human.or(said_system) {
             let value = if value == Driver::Human && took_over.is_some() { Driver::HumanTookOver } else { value };
@@ -307,6 +308,17 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// Whether the words at this token tell of another vehicle: "a second one, operating in manual mode, struck it".
+fn of_another(story: &Story, at: usize) -> bool {
+    let last = story.frames.iter().rev().find(|frame| frame.first <= at && !frame.aside && frame.who.is_some());
+    last.is_some_and(|frame| {
+        let sentence = story.sentences[frame.sentence];
+        (sentence.first..sentence.end).contains(&at)
+            && frame.who.is_some_and(|who| who != SUBJECT && story.world.actors[who].another)
+            && matches!(frame.act(), Some(Act::Follow))
+    })
 }
 
 /// "It struck the van, which at that time had disengaged": told behind the contact, and done before it.

@@ -196,7 +196,10 @@ impl Parser<'_> {
                         Some(Chunk::Preposition("at" | "within") | Chunk::Relative)
                     ) => {}
             Chunk::Pronoun => {
-                let actor = self.not_itself(self.its(carry), carry);
+                let actor = match self.waits_struck(all, at, carry) {
+                    Some(struck) => struck,
+                    None => self.not_itself(self.its(carry), carry),
+                };
                 self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             }
             Chunk::Relative => {
@@ -228,7 +231,7 @@ impl Parser<'_> {
                 carry.negated = true;
                 // "Neither car made contact": said before who it is.
                 let word = self.tokens[placed.first].text.as_str();
-                carry.nobody |= matches!(word, "neither" | "nor") || carry.fresh && word == "no";
+                carry.nobody |= matches!(word, "neither" | "nor") || carry.fresh && matches!(word, "no" | "nothing" | "nobody");
             }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
@@ -277,6 +280,8 @@ impl Parser<'_> {
             Chunk::Word if self.touches_by_parts(&self.tokens[placed.first].text, all, at, carry) => {
                 self.verb(Sense::Contact, Form::Past, all, at, carry);
             }
+            // "The AV misjudged a van's speed and turned": what it did to the van.
+            Chunk::Word if self.does_something(all, at, carry) => self.verb(Sense::Other, Form::Past, all, at, carry),
             Chunk::Word => {
                 let word = self.tokens[placed.first].text.as_str();
                 // "time to turn" is no turn; "at which time it turned" is one.
@@ -425,7 +430,12 @@ impl Parser<'_> {
                     let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
                     known.mentions == 1 || named_only
                 };
-                for pending in std::mem::take(&mut carry.pending) {
+                // "Stopped because traffic had not cleared, the AV was hit": the AV.
+                let inner = carry.joint.is_some_and(|joint| matches!(joint, Joint::Because))
+                    && !carry.after_comma
+                    && carry.pending.iter().all(|number| self.frames[*number].clause < carry.clause);
+                let ready = if inner { Vec::new() } else { std::mem::take(&mut carry.pending) };
+                for pending in ready {
                     let waiting = &self.frames[pending];
                     let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
                     // "It began to cross. While crossing, a van ...": who did so before.
@@ -620,6 +630,11 @@ impl Parser<'_> {
                 return;
             }
         }
+        // "The van slid back as the light changed, tapping its bumper": who the sentence is about.
+        let goes_back = carry.after_comma && form == Form::Ing && !carry.be && carry.stranger && carry.joint.is_some();
+        if goes_back && matches!(sense, Sense::Contact | Sense::Push | Sense::RearEnd) && carry.main.is_some() {
+            (carry.subject, carry.stranger, carry.frame) = (carry.main.clone(), false, None);
+        }
         let both = self.of_both(sense, all, at, carry);
         let sense = if both { Sense::ContactMade } else { sense };
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
@@ -768,7 +783,7 @@ impl Parser<'_> {
         // "fell from a truck": the truck is behind "from".
         let last = self.tokens[placed.end - 1].text.as_str();
         if matches!(sense, Sense::Act(Act::Fall | Act::Roll | Act::Enter)) && placed.end > placed.first + 1 {
-            carry.preposition = ["from", "off", "onto", "into", "over"].into_iter().find(|known| *known == last);
+            carry.preposition = ["from", "off", "onto", "into", "over", "between", "behind"].into_iter().find(|known| *known == last);
         }
         // "contact by a cyclist was made".
         if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "by" {

@@ -19,6 +19,22 @@ impl Parser<'_> {
         at > 0 && name(all.get(at - 1)) && name(all.get(at + 1))
     }
 
+    /// Whether a verb that nobody knows stands between who the clause is about and an object.
+    pub(super) fn does_something(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let token = &self.tokens[all[at].first];
+        let subject = carry.subject.as_ref().filter(|subject| subject.end == all[at].first && subject.piece.is_none());
+        let object = matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Noun(noun)) if noun.article != Article::None);
+        token.kind == TokenKind::Word
+            && !token.capital
+            && token.text.len() > 4
+            && token.text.ends_with("ed")
+            && subject.is_some()
+            && object
+            && !carry.has_verb
+            && !carry.be
+            && carry.preposition.is_none()
+    }
+
     /// Whether a relative clause tells of a thing that the lexicon does not know: "the bracket that holds it".
     pub(super) fn of_a_word(&self, all: &[Placed], at: usize) -> bool {
         let Some(before) = at.checked_sub(2) else { return false };

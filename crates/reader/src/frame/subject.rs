@@ -28,6 +28,11 @@ impl Parser<'_> {
         })
     }
 
+    /// "the slowly moving AV".
+    pub(super) fn rolls(&self, placed: &Placed) -> bool {
+        self.tokens[placed.first..placed.end].iter().any(|token| matches!(token.text.as_str(), "moving" | "rolling"))
+    }
+
     /// The side that the words of a verb name: "moved into the left lane".
     pub(super) fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
         // "left its stall" is no side.
