@@ -521,6 +521,13 @@ impl Chunker<'_> {
         if self.text(at) == "contacts" || (self.text(at) == "stop" && self.text(at + 1) == "sign") {
             return None;
         }
+        // "coming from the left": where it comes from stands behind.
+        let behind = at + found.length;
+        let side =
+            self.text(behind) == "the" && matches!(self.text(behind + 1), "left" | "right" | "opposite" | "rear");
+        if sense == Sense::Approach && found.length > 1 && self.text(behind - 1) == "from" && side {
+            return Some((sense, form, found.length - 1));
+        }
         Some((sense, form, found.length))
     }
 

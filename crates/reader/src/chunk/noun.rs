@@ -41,7 +41,11 @@ impl Chunker<'_> {
             }
             // "its front, passenger side bumper".
             let side = |at: usize| matches!(self.part(at), Some((Part::Left | Part::Right, length)) if self.part(at + length).is_some());
-            if word == "," && parts.iter().all(|part| matches!(part, Part::Front | Part::Rear)) && !parts.is_empty() && side(at + 1) {
+            if word == ","
+                && parts.iter().all(|part| matches!(part, Part::Front | Part::Rear))
+                && !parts.is_empty()
+                && side(at + 1)
+            {
                 at += 1;
                 continue;
             }

@@ -171,8 +171,7 @@ fn goes_on(story: &Story, number: usize) -> bool {
 /// Whether the subject vehicle was pushed into somebody: what came of the crash.
 fn shoved(story: &Story, contact: &Frame) -> bool {
     let pushes = |frame: &Frame| frame.sense == Sense::Push && frame.object == Some(SUBJECT) && frame.happened();
-    contact.who == Some(SUBJECT)
-        && story.frames.iter().any(|frame| frame.sentence == contact.sentence && pushes(frame))
+    contact.who == Some(SUBJECT) && story.frames.iter().any(|frame| frame.sentence == contact.sentence && pushes(frame))
 }
 
 fn alike(story: &Story, one: Actor, other: Actor) -> bool {

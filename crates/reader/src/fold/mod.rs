@@ -316,8 +316,8 @@ fn of_another(story: &Story, at: usize) -> bool {
     last.is_some_and(|frame| {
         let sentence = story.sentences[frame.sentence];
         (sentence.first..sentence.end).contains(&at)
-            && frame.who.is_some_and(|who| who != SUBJECT && story.world.actors[who].another)
-            && matches!(frame.act(), Some(Act::Follow))
+            && frame.who.is_some_and(|who| who != SUBJECT)
+            && ["operat", "driv"].iter().any(|stem| story.tokens[frame.first].text.starts_with(stem))
     })
 }
 

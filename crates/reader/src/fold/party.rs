@@ -416,13 +416,15 @@ fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
         }
     }
     if all.is_empty() {
-        all.extend(told_besides(reading, actor, first));
+        let column = if actor == SUBJECT { &reading.record.sv_zones } else { &reading.record.cp_zones };
+        all.extend(told_besides(reading, actor, first, column.is_empty()));
     }
     all
 }
 
 /// Where somebody was touched by what the sentence of the crash says of the damage, or the headline of a rear-end crash.
-fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize) -> Option<Fact<ContactZone>> {
+/// `alone`: no column tells more than the damage does.
+fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) -> Option<Fact<ContactZone>> {
     let frames = &reading.story.frames;
     let crash = &frames[first];
     let damage = frames[first..].iter().find(|frame| {
@@ -430,12 +432,14 @@ fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize) -> Option<Fac
             Some(owner) => owner,
             None => SUBJECT,
         };
-        frame.sense == Sense::Damage && frame.sentence == crash.sentence && whose == actor && !frame.negated
+        alone && frame.sense == Sense::Damage && frame.sentence == crash.sentence && whose == actor && !frame.negated
     });
     if let Some((frame, zone)) = damage.and_then(|frame| Some((frame, frame.on.as_ref().and_then(zone_of)?))) {
         return Some(Fact { value: zone, source: reading.of(frame) });
     }
-    let headline = frames[..first].iter().rev().find(|frame| frame.sense == Sense::RearEnd && frame.is_contact())?;
+    let headline = frames[..first].iter().rev().find(|frame| {
+        frame.sense == Sense::RearEnd && frame.is_contact() && [frame.who, frame.object].contains(&Some(SUBJECT))
+    })?;
     let zone = match (headline.object == Some(actor), headline.who == Some(actor)) {
         (true, false) => ContactZone::Rear,
         (false, true) => ContactZone::Front,

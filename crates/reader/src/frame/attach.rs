@@ -254,7 +254,12 @@ impl Parser<'_> {
                     | Act::Roll
             )
         );
-        if relation == Relation::Ahead && ends_there {
+        // "passed it and cut back in ahead of it".
+        let passed = across == Some(Act::LaneChange)
+            && self.frames.iter().any(|before| {
+                before.sentence == self.sentence && before.who == Some(who) && before.act() == Some(Act::Pass)
+            });
+        if relation == Relation::Ahead && (ends_there || passed) {
             return;
         }
         match to {

@@ -231,7 +231,8 @@ impl Parser<'_> {
                 carry.negated = true;
                 // "Neither car made contact": said before who it is.
                 let word = self.tokens[placed.first].text.as_str();
-                carry.nobody |= matches!(word, "neither" | "nor") || carry.fresh && matches!(word, "no" | "nothing" | "nobody");
+                carry.nobody |=
+                    matches!(word, "neither" | "nor") || carry.fresh && matches!(word, "no" | "nothing" | "nobody");
             }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
@@ -314,8 +315,11 @@ impl Parser<'_> {
                 }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
                 // "at about 6 mph its bumper touched".
-                carry.filled |=
-                    waits && matches!(word, "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm");
+                carry.filled |= waits
+                    && matches!(
+                        word,
+                        "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm" | "mode" | "time"
+                    );
                 let clause = carry.fresh || carry.after_comma && carry.has_verb && carry.joint.is_some();
                 let begins =
                     clause && !waits && matches!(word, "a" | "an" | "the" | "several" | "some" | "two" | "one");
@@ -783,7 +787,8 @@ impl Parser<'_> {
         // "fell from a truck": the truck is behind "from".
         let last = self.tokens[placed.end - 1].text.as_str();
         if matches!(sense, Sense::Act(Act::Fall | Act::Roll | Act::Enter)) && placed.end > placed.first + 1 {
-            carry.preposition = ["from", "off", "onto", "into", "over", "between", "behind"].into_iter().find(|known| *known == last);
+            carry.preposition =
+                ["from", "off", "onto", "into", "over", "between", "behind"].into_iter().find(|known| *known == last);
         }
         // "contact by a cyclist was made".
         if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "by" {

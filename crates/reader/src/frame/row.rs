@@ -22,15 +22,24 @@ impl Parser<'_> {
     /// Whether a verb that nobody knows stands between who the clause is about and an object.
     pub(super) fn does_something(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
         let token = &self.tokens[all[at].first];
-        let subject = carry.subject.as_ref().filter(|subject| subject.end == all[at].first && subject.piece.is_none());
-        let object = matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Noun(noun)) if noun.article != Article::None);
+        // "A wheel came off, hopped the barrier and hit it": the second verb of a row.
+        let row = carry.after_comma
+            && carry.has_verb
+            && carry.joint.is_none()
+            && at > 0
+            && matches!(all[at - 1].chunk, Chunk::Comma);
+        let subject = carry
+            .subject
+            .as_ref()
+            .filter(|subject| row || subject.end == all[at].first && subject.piece.is_none() && !carry.has_verb);
+        let object =
+            matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Noun(noun)) if noun.article != Article::None);
         token.kind == TokenKind::Word
             && !token.capital
             && token.text.len() > 4
             && token.text.ends_with("ed")
             && subject.is_some()
             && object
-            && !carry.has_verb
             && !carry.be
             && carry.preposition.is_none()
     }
