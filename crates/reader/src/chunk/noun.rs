@@ -232,6 +232,14 @@ impl Chunker<'_> {
                 noun.article = Article::Indefinite;
                 at += 1;
             }
+            // "another of our test cars".
+            "another" if self.text(at + 1) == "of" && matches!(self.text(at + 2), "our" | "its" | "their" | "the") => {
+                let (inner, length) = self.noun(at + 2)?;
+                let vehicle = inner.kind.filter(|_| !inner.subject).unwrap_or(Kind::Vehicle);
+                let adjectives = vec![Adjective::Another];
+                let another = Noun { article: Article::Indefinite, kind: Some(vehicle), adjectives, ..Noun::unnamed() };
+                return Some((another, 2 + length));
+            }
             "another" => noun.article = Article::Indefinite,
             _ => {}
         }

@@ -145,7 +145,8 @@ fn converge(account: &Account) -> Option<Fact<Striker>> {
     let crossing = matches!(told(&account.came_from), Some(Origin::Cross { .. } | Origin::Opposite));
     let turns = turning(&account.sv) || turning(partner);
     let straight = !over(&account.sv) && !over(partner);
-    if crossing && straight && told_as(&account.sv, corner) && told_as(partner, corner) {
+    let halts = !partner.did(Act::RunStop);
+    if crossing && straight && halts && told_as(&account.sv, corner) && told_as(partner, corner) {
         return Some(Fact::by_rule(Striker::Both, "corner on corner where paths cross"));
     }
     (turns && straight && told_as(&account.sv, side) && told_as(partner, side))
@@ -378,7 +379,8 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
             rule(Role::Both, "it turned across another's way")
         };
     }
-    let walks = matches!(group(account), Some(KindGroup::OnFoot | KindGroup::Cyclist));
+    let rides = group(account) == Some(KindGroup::Motorcycle) && told(&account.came_from) == Some(Origin::Opposite);
+    let walks = rides || matches!(group(account), Some(KindGroup::OnFoot | KindGroup::Cyclist));
     let goes_straight = matches!(told(&partner.movement), Some(Movement::NmCrossing | Movement::Straight));
     let by_column = match told(&account.sv.movement) {
         Some(Movement::LeftTurn) => Some(LeftRight::Left),

@@ -65,6 +65,7 @@ impl Reading<'_> {
         }
         if number <= contact
             || self.is_told_back(frame)
+            || frame.sentence > at.sentence && frame.who != Some(SUBJECT) && self.had_before(frame.sentence)
             || frame.looks_back
             || frame.aside && frame.sentence == at.sentence
         {
@@ -77,6 +78,19 @@ impl Reading<'_> {
             && frame.clause > at.clause
             && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
         !(simultaneous || frame.described && frame.sentence == at.sentence)
+    }
+
+    /// Whether a sentence behind the crash tells what had been before it: "The other car had run the light".
+    pub fn had_before(&self, sentence: usize) -> bool {
+        let tokens = &self.story.tokens;
+        self.story.frames.iter().find(|frame| frame.sentence == sentence && !frame.aside).is_some_and(|frame| {
+            let had = frame.first > 0 && tokens[frame.first - 1].text == "had";
+            let goes_on = matches!(
+                frame.act(),
+                Some(Act::Leave | Act::Pushed | Act::Hold | Act::Stop | Act::PullOver | Act::Park)
+            );
+            had && frame.act().is_some() && !goes_on
+        })
     }
 
     /// "Prior to the collision, it came to a stop", told behind the collision.

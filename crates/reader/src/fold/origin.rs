@@ -23,7 +23,9 @@ impl Clues<'_> {
         let contact =
             self.reading.contacts.first.map_or(usize::MAX, |number| self.reading.story.frames[number].sentence);
         let known = &self.reading.story.world.actors[self.actor];
-        known.relations.iter().filter(move |(_, sentence)| *sentence <= contact).map(|(relation, _)| *relation)
+        let early = known.relations.iter().any(|(_, sentence)| *sentence <= contact);
+        let told = move |sentence: usize| sentence <= contact || !early && self.reading.had_before(sentence);
+        known.relations.iter().filter(move |(_, sentence)| told(*sentence)).map(|(relation, _)| *relation)
     }
 
     fn any(&self, relation: Relation) -> bool {

@@ -736,7 +736,10 @@ fn stops_at_contact(reading: &Reading<'_>) -> bool {
     let Some(contact) = reading.contacts.first else { return false };
     let sentence = reading.story.frames[contact].sentence;
     let last = reading.before(SUBJECT).filter(|(_, frame)| frame.happened()).last();
-    last.is_some_and(|(_, frame)| frame.sentence == sentence && frame.act() == Some(Act::Stop))
+    last.is_some_and(|(number, frame)| {
+        let while_it = number > contact && frame.joint == Some(crate::chunk::Joint::While);
+        frame.sentence == sentence && while_it && frame.act() == Some(Act::Stop)
+    })
 }
 
 /// Whether the sentence of the contact says that the subject vehicle sets off.
