@@ -429,6 +429,8 @@ fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) 
     let crash = &frames[first];
     let damage = frames[first..].iter().find(|frame| {
         let whose = match frame.object.or(frame.who.filter(|who| *who == SUBJECT)) {
+            // "collided with it, damaging its bumper": of the one that was struck.
+            Some(owner) if frame.who == Some(owner) && owner != SUBJECT => SUBJECT,
             Some(owner) => owner,
             None => SUBJECT,
         };
