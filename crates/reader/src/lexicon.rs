@@ -12,8 +12,8 @@ const TEXT: &str = include_str!("../data/lexicon.toml");
 const GAP: usize = 3;
 
 /// Words that a `*` never stands for.
-const NO_GAP: [&str; 12] =
-    ["with", "contact", "and", "by", "when", "as", "while", "before", "after", "but", "then", "from"];
+const NO_GAP: [&str; 13] =
+    ["with", "contact", "and", "by", "when", "as", "while", "before", "after", "but", "then", "from", "u"];
 
 /// What a verb says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -43,6 +43,28 @@ const ABBREVIATIONS: [&str; 26] = [
     "sr", "e.g", "i.e", "al", "pony", "apt", "ft", "mt", "pkwy",
 ];
 
+/// British spellings of words that the lexicon knows in American.
+const SPELLINGS: [(&str, &str); 14] = [
+    ("kerb", "curb"),
+    ("kerbs", "curbs"),
+    ("kerbside", "curbside"),
+    ("tyre", "tire"),
+    ("tyres", "tires"),
+    ("lorry", "truck"),
+    ("lorries", "trucks"),
+    ("bonnet", "hood"),
+    ("windscreen", "windshield"),
+    ("centre", "center"),
+    ("centreline", "centerline"),
+    ("manoeuvring", "maneuvering"),
+    ("pavements", "sidewalks"),
+    ("carriageway", "roadway"),
+];
+
+fn american(word: String) -> String {
+    SPELLINGS.iter().find(|(british, _)| *british == word).map_or(word, |(_, american)| (*american).to_owned())
+}
+
 /// Splits a narrative into tokens. Hyphens part words; `'s` is a token of its own.
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut all = Vec::new();
@@ -77,7 +99,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
             let word = &text[start..end];
             let number = word.trim_start_matches('#').chars().all(|c| c.is_ascii_digit() || c == '.');
             let kind = if number && word != "#" { TokenKind::Number } else { TokenKind::Word };
-            all.push(Token { start, end, text: word.to_lowercase(), kind, capital: c.is_uppercase() });
+            all.push(Token { start, end, text: american(word.to_lowercase()), kind, capital: c.is_uppercase() });
             continue;
         }
         let end = start + c.len_utf8();
@@ -93,6 +115,8 @@ pub fn tokens(text: &str) -> Vec<Token> {
                     all.push(Token { start, end, text: "'s".to_owned(), kind: TokenKind::Word, capital: false });
                 }
             }
+            // A line that breaks within a sentence.
+            '\n' if runs_on(&all, text, end) => {}
             '.' | ',' | ';' | ':' | '(' | ')' | '!' | '?' | '\n' => {
                 let text = if c == '\n' { "\u{b6}".to_owned() } else { c.to_string() };
                 all.push(Token { start, end, text, kind: TokenKind::Mark, capital: false });
@@ -101,6 +125,12 @@ pub fn tokens(text: &str) -> Vec<Token> {
         }
     }
     all
+}
+
+/// Whether a line goes on with a small letter on the next one.
+fn runs_on(before: &[Token], text: &str, end: usize) -> bool {
+    let word = before.last().is_some_and(|last| last.kind == TokenKind::Word);
+    word && text[end..].trim_start_matches([' ', '\r']).starts_with(|c: char| c.is_lowercase())
 }
 
 /// Whether the full stop at this byte stands between digits, or inside a name such as `Pony.ai`.

@@ -68,6 +68,8 @@ pub struct World {
     vehicle: Vec<String>,
     /// "The driver" drives the subject vehicle.
     pub own_driver: bool,
+    /// The subject vehicle was first called "the vehicle".
+    pub plain: bool,
     /// Number of the sentence that is read.
     pub sentence: usize,
     /// Who the sentence, or the one before, is about.
@@ -81,7 +83,7 @@ impl World {
         let words = own.vehicle.split(|c: char| !c.is_alphanumeric());
         let vehicle = words.filter(|word| word.len() > 2).map(str::to_lowercase).collect();
         let subject = Known { kind: own.kind, names, ..Known::default() };
-        Self { actors: vec![subject], clock: 0, vehicle, own_driver: false, sentence: 0, topic: SUBJECT }
+        Self { actors: vec![subject], clock: 0, vehicle, own_driver: false, plain: false, sentence: 0, topic: SUBJECT }
     }
 
     /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
@@ -152,15 +154,19 @@ impl World {
         }
     }
 
-    /// Somebody who is not named, such as who touched the subject vehicle in "contact was made".
-    pub fn unnamed(&mut self) -> Actor {
-        match self.latest(|known| known.kind.is_some_and(acts)) {
-            Some(actor) => actor,
-            None => {
-                self.actors.push(Known { announced: true, ..Known::default() });
-                self.actors.len() - 1
-            }
-        }
+    /// Who struck the subject vehicle where nobody is named: who is known to be behind it, or acted last; else somebody who is
+    /// named later.
+    pub fn striker(&mut self, behind: bool) -> Actor {
+        let there = |known: &Known| known.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
+        let known = self.latest(|known| {
+            known.kind.is_some_and(|kind| kind.is_vehicle() || kind.group() == KindGroup::Motorcycle)
+                && !known.several
+                && if behind { there(known) } else { known.acted }
+        });
+        known.unwrap_or_else(|| {
+            self.actors.push(Known { kind: Some(Kind::Vehicle), announced: true, ..Known::default() });
+            self.actors.len() - 1
+        })
     }
 
     /// One tows the other: from here on they are one.
@@ -221,6 +227,8 @@ impl World {
         let kind = noun.kind?;
         // "The shuttle was in its lane": the first whom a story names as known is whom it is told of.
         let known = noun.article == Article::Definite && noun.adjectives.is_empty() && !noun.several;
+        let things = self.actors[1..].iter().all(|known| known.kind.is_some_and(|kind| !acts(kind)));
+        let unnamed = things && self.actors[SUBJECT].mentions == 0;
         if unnamed && known && hint.is_none() && matches!(kind.group(), KindGroup::Truck) {
             self.actors[SUBJECT].kind.get_or_insert(kind);
             return Some(SUBJECT);
@@ -319,11 +327,12 @@ impl World {
         // "The vehicle" of a story that knows no other one.
         if found.is_none()
             && hint.is_none()
-            && kind == Kind::Vehicle
+            && (kind == Kind::Vehicle || kind == Kind::PassengerCar && self.plain && self.actors.len() == 1)
             && noun.names.is_empty()
             && !has(Adjective::Other)
             && noun.article == Article::Definite
         {
+            self.plain |= self.actors[SUBJECT].mentions == 0;
             return Some(SUBJECT);
         }
         if found.is_none()

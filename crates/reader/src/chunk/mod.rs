@@ -5,7 +5,7 @@ mod places;
 
 use crate::lexicon::{Adjective, Form, Lexicon, Meaning, Occupant, Part, Relation, Sense};
 use crate::token::{Token, TokenKind};
-use recrash_model::account::{Compass, Kind, KindGroup, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 /// How a noun is introduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -317,7 +317,7 @@ impl Chunker<'_> {
             // "it got sideswiped by a bus".
             "got" | "gets" if matches!(self.verb(at + 1, &[]), Some((_, Form::Past, _))) => Chunk::Be,
             "is" | "are" | "was" | "were" | "be" | "been" | "being" => Chunk::Be,
-            "no" if at == self.first => Chunk::Not,
+            "no" | "nothing" | "nobody" if at == self.first => Chunk::Not,
             "not" | "never" | "didn" | "wasn" | "couldn" | "without" | "unable" | "nor" | "neither" | "avoid"
             | "avoiding" | "avoided" => Chunk::Not,
             "fail" | "failed" | "failing" | "fails" | "refused" => Chunk::Not,
@@ -367,7 +367,9 @@ impl Chunker<'_> {
     /// "on the right front of the van" is a part, "from the right lane" a lane.
     fn is_no_relation(&self, at: usize, length: usize) -> bool {
         let (last, behind) = (self.text(at + length - 1), at + length);
-        let side = matches!(last, "left" | "right");
+        // "on its left side mirror".
+        let mirror = last == "side" && matches!(self.text(behind), "mirror" | "mirrors" | "door" | "doors" | "window");
+        let side = matches!(last, "left" | "right") || mirror;
         let part = self
             .part(behind)
             .is_some_and(|(part, _)| part != Part::Noun || !matches!(self.text(behind), "side" | "half"));
@@ -394,6 +396,11 @@ impl Chunker<'_> {
 
     fn verb(&self, at: usize, before: &[Placed]) -> Option<(Sense, Form, usize)> {
         let token = &self.tokens[at];
+        // "AV stationary at a red light", in the style of telegrams.
+        let named = matches!(before, [Placed { chunk: Chunk::Noun(noun), end, .. }] if noun.subject && *end == at);
+        if named && matches!(token.text.as_str(), "stationary" | "motionless" | "idle" | "static") {
+            return Some((Sense::Act(Act::Hold), Form::Past, 1));
+        }
         if token.capital && at > self.first {
             return None;
         }
@@ -437,6 +444,9 @@ impl Chunker<'_> {
                 | "u"
         );
         let single = found.length == 1;
+        // "was run into".
+        let done = self.text(at) == "run" && matches!(before.last().map(|placed| &placed.chunk), Some(Chunk::Be));
+        let form = if done && sense == Sense::Contact { Form::Past } else { form };
         if form == Form::Base && !self.takes_base(at, before) {
             return None;
         }
@@ -504,8 +514,19 @@ impl Chunker<'_> {
         if self.text(at) == "cross" && matches!(self.text(at + 1), "traffic" | "street" | "road" | "walk") {
             return None;
         }
+        // "the sliding door".
+        if self.text(at) == "sliding" && matches!(self.text(at + 1), "door" | "doors" | "gate") {
+            return None;
+        }
         if self.text(at) == "contacts" || (self.text(at) == "stop" && self.text(at + 1) == "sign") {
             return None;
+        }
+        // "coming from the left": where it comes from stands behind.
+        let behind = at + found.length;
+        let side =
+            self.text(behind) == "the" && matches!(self.text(behind + 1), "left" | "right" | "opposite" | "rear");
+        if sense == Sense::Approach && found.length > 1 && self.text(behind - 1) == "from" && side {
+            return Some((sense, form, found.length - 1));
         }
         Some((sense, form, found.length))
     }

@@ -17,6 +17,11 @@ impl Chunker<'_> {
             its = matches!(self.text(at), "its" | "their" | "his" | "her");
             at += 1;
         }
+        // "a van, left of it, turned": where it was.
+        let aside = matches!(self.text(at), "left" | "right") && self.text(at + 1) == "of";
+        if aside && at == first && at > self.first && self.tokens[at - 1].kind == TokenKind::Mark {
+            return None;
+        }
         let (mut parts, mut door, mut mirror, mut open, mut nouns) = (Vec::new(), false, false, false, 0);
         let mut last_joined = at;
         while at < self.tokens.len().min(first + LONGEST_PIECE) {
@@ -31,6 +36,16 @@ impl Chunker<'_> {
                 continue;
             }
             if word == "and" && !parts.is_empty() && self.part(at + 1).is_some() && self.noun(at + 1).is_none() {
+                at += 1;
+                continue;
+            }
+            // "its front, passenger side bumper".
+            let side = |at: usize| matches!(self.part(at), Some((Part::Left | Part::Right, length)) if self.part(at + length).is_some());
+            if word == ","
+                && parts.iter().all(|part| matches!(part, Part::Front | Part::Rear))
+                && !parts.is_empty()
+                && side(at + 1)
+            {
                 at += 1;
                 continue;
             }
@@ -217,6 +232,14 @@ impl Chunker<'_> {
                 noun.article = Article::Indefinite;
                 at += 1;
             }
+            // "another of our test cars".
+            "another" if self.text(at + 1) == "of" && matches!(self.text(at + 2), "our" | "its" | "their" | "the") => {
+                let (inner, length) = self.noun(at + 2)?;
+                let vehicle = inner.kind.filter(|_| !inner.subject).unwrap_or(Kind::Vehicle);
+                let adjectives = vec![Adjective::Another];
+                let another = Noun { article: Article::Indefinite, kind: Some(vehicle), adjectives, ..Noun::unnamed() };
+                return Some((another, 2 + length));
+            }
             "another" => noun.article = Article::Indefinite,
             _ => {}
         }
@@ -240,6 +263,11 @@ impl Chunker<'_> {
                 self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Adjective(_))).is_some()
             };
             if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) {
+                at += 1;
+                continue;
+            }
+            // "the slowly moving van".
+            if self.text(at).ends_with("ly") && noun.article != Article::None && adjective(at + 1) {
                 at += 1;
                 continue;
             }

@@ -108,8 +108,12 @@ fn came_down(reading: &Reading<'_>) -> bool {
     let comes = !(word.starts_with("com") || word.starts_with("came"))
         || reading.story.tokens[frame.first..frame.end].iter().any(|token| token.text == "down");
     let partner = reading.contacts.partner;
-    let wheel = partner.is_some_and(|partner| reading.story.world.actors[partner].kind == Some(Kind::LooseWheel));
-    frame.who.is_some() && frame.who == partner && (wheel || moves && comes)
+    let kind = partner.and_then(|partner| reading.story.world.actors[partner].kind);
+    let wheel = kind == Some(Kind::LooseWheel);
+    // "was struck by a ball".
+    let struck = (word.starts_with("str") || word.starts_with("hit")) && frame.passive && frame.object == Some(SUBJECT);
+    let hurled = struck && kind == Some(Kind::Debris);
+    frame.who.is_some() && frame.who == partner && (wheel || hurled || moves && comes)
 }
 
 /// Whether the words have the subject vehicle, or a part of it, make contact with the thing.
@@ -141,7 +145,8 @@ fn converge(account: &Account) -> Option<Fact<Striker>> {
     let crossing = matches!(told(&account.came_from), Some(Origin::Cross { .. } | Origin::Opposite));
     let turns = turning(&account.sv) || turning(partner);
     let straight = !over(&account.sv) && !over(partner);
-    if crossing && straight && told_as(&account.sv, corner) && told_as(partner, corner) {
+    let halts = !partner.did(Act::RunStop);
+    if crossing && straight && halts && told_as(&account.sv, corner) && told_as(partner, corner) {
         return Some(Fact::by_rule(Striker::Both, "corner on corner where paths cross"));
     }
     (turns && straight && told_as(&account.sv, side) && told_as(partner, side))
@@ -225,11 +230,35 @@ fn comes(reading: &Reading<'_>, partner: &Party) -> bool {
     !is_fixed(partner) && (moved || thrown())
 }
 
+/// Where nobody tells whether the subject vehicle moved: what the other did may be enough.
+fn role_of_other(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role>> {
+    let partner = account.partner.as_ref()?;
+    let rule = |name: &str| Some(Fact::by_rule(Role::Responder, name));
+    let broke = [Act::RunRed, Act::RunStop, Act::FailToYield, Act::WrongWay].into_iter().any(|act| partner.did(act));
+    let over = [Act::LaneChange, Act::Drift, Act::Reverse, Act::Turn].into_iter().any(|act| partner.did(act))
+        || told(&partner.movement) == Some(Movement::CrossingIntoOpposingLane);
+    if told(&account.crash_type) == Some(CrashType::Secondary) {
+        rule("a crash ahead or behind came to it")
+    } else if group(account) == Some(KindGroup::Object) {
+        if comes(reading, partner) { rule("something came into its way") } else { None }
+    } else if told(&account.striker) != Some(Striker::Cp) || !account.sv.acts.is_empty() {
+        None
+    } else if told(&account.came_from) == Some(Origin::Behind)
+        && told(&account.crash_type) == Some(CrashType::FrontToRear)
+    {
+        rule("it came from behind")
+    } else if broke || over {
+        rule("the other moved before it")
+    } else {
+        None
+    }
+}
+
 /// Whose move brought it about.
 pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role>> {
     let partner = account.partner.as_ref()?;
     let rule = |value, name: &str| Some(Fact::by_rule(value, name));
-    let sv = sv_state(account)?;
+    let Some(sv) = sv_state(account) else { return role_of_other(reading, account) };
     if told(&account.door) == Some(Striker::Sv) {
         // A door that stood open, or that somebody backed into, brought nothing about.
         let opened = account.sv.did(Act::OpenDoor) && told(&account.crash_type) != Some(CrashType::Backing);
@@ -350,7 +379,8 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
             rule(Role::Both, "it turned across another's way")
         };
     }
-    let walks = matches!(group(account), Some(KindGroup::OnFoot | KindGroup::Cyclist));
+    let rides = group(account) == Some(KindGroup::Motorcycle) && told(&account.came_from) == Some(Origin::Opposite);
+    let walks = rides || matches!(group(account), Some(KindGroup::OnFoot | KindGroup::Cyclist));
     let goes_straight = matches!(told(&partner.movement), Some(Movement::NmCrossing | Movement::Straight));
     let by_column = match told(&account.sv.movement) {
         Some(Movement::LeftTurn) => Some(LeftRight::Left),

@@ -43,6 +43,7 @@ impl Contacts {
                 let frame = &frames[*number];
                 frames[first].sentence == early
                     && frame.sentence > early
+                    && !shoved(story, frame)
                     && (*other == partner || story.world.actors[*other].mentions > 1 || names(frame, *other))
                     && alike(story, partner, *other)
             });
@@ -134,7 +135,10 @@ fn as_column(
     }
     let acting = |actor: &Actor| is(*actor) && !story.world.actors[*actor].several;
     let named = story.frames[..=first].iter().rev().filter_map(|frame| frame.who).find(acting);
-    let any = || (1..story.world.actors.len()).find(|&actor| is(actor));
+    // "refused an ambulance", told after the crash.
+    let end = story.sentences[story.frames[first].sentence].end;
+    let before = |actor: usize| story.world.actors[actor].kind_tokens.is_none_or(|(at, _)| at < end);
+    let any = || (1..story.world.actors.len()).find(|&actor| is(actor) && before(actor));
     named.or_else(any).map_or(unchanged, |actor| (first, actor))
 }
 
@@ -162,6 +166,12 @@ fn goes_on(story: &Story, number: usize) -> bool {
         || story.tokens[sentence.first..sentence.end]
             .iter()
             .any(|token| matches!(token.text.as_str(), "third" | "times"))
+}
+
+/// Whether the subject vehicle was pushed into somebody: what came of the crash.
+fn shoved(story: &Story, contact: &Frame) -> bool {
+    let pushes = |frame: &Frame| frame.sense == Sense::Push && frame.object == Some(SUBJECT) && frame.happened();
+    contact.who == Some(SUBJECT) && story.frames.iter().any(|frame| frame.sentence == contact.sentence && pushes(frame))
 }
 
 fn alike(story: &Story, one: Actor, other: Actor) -> bool {

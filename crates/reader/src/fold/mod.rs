@@ -65,6 +65,7 @@ impl Reading<'_> {
         }
         if number <= contact
             || self.is_told_back(frame)
+            || frame.sentence > at.sentence && frame.who != Some(SUBJECT) && self.had_before(frame.sentence)
             || frame.looks_back
             || frame.aside && frame.sentence == at.sentence
         {
@@ -77,6 +78,19 @@ impl Reading<'_> {
             && frame.clause > at.clause
             && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
         !(simultaneous || frame.described && frame.sentence == at.sentence)
+    }
+
+    /// Whether a sentence behind the crash tells what had been before it: "The other car had run the light".
+    pub fn had_before(&self, sentence: usize) -> bool {
+        let tokens = &self.story.tokens;
+        self.story.frames.iter().find(|frame| frame.sentence == sentence && !frame.aside).is_some_and(|frame| {
+            let had = frame.first > 0 && tokens[frame.first - 1].text == "had";
+            let goes_on = matches!(
+                frame.act(),
+                Some(Act::Leave | Act::Pushed | Act::Hold | Act::Stop | Act::PullOver | Act::Park)
+            );
+            had && frame.act().is_some() && !goes_on
+        })
     }
 
     /// "Prior to the collision, it came to a stop", told behind the collision.
@@ -275,6 +289,7 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
             return Some(reading.told(Driver::HumanTookOver, sentence.first + at, sentence.first + at + 3));
         }
         let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
+        let said_human = said_human.filter(|(_, at, _)| !of_another(story, *at));
         let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
         if at_impact && let Some((value, at, length)) = said_human.or(said_system) {
             let value = if value == Driver::Human && took_over.is_some() { Driver::HumanTookOver } else { value };
@@ -309,6 +324,17 @@ fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// Whether the words at this token tell of another vehicle: "a second one, operating in manual mode, struck it".
+fn of_another(story: &Story, at: usize) -> bool {
+    let last = story.frames.iter().rev().find(|frame| frame.first <= at && !frame.aside && frame.who.is_some());
+    last.is_some_and(|frame| {
+        let sentence = story.sentences[frame.sentence];
+        (sentence.first..sentence.end).contains(&at)
+            && frame.who.is_some_and(|who| who != SUBJECT)
+            && ["operat", "driv"].iter().any(|stem| story.tokens[frame.first].text.starts_with(stem))
+    })
 }
 
 /// "It struck the van, which at that time had disengaged": told behind the contact, and done before it.

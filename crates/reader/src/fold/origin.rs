@@ -23,7 +23,9 @@ impl Clues<'_> {
         let contact =
             self.reading.contacts.first.map_or(usize::MAX, |number| self.reading.story.frames[number].sentence);
         let known = &self.reading.story.world.actors[self.actor];
-        known.relations.iter().filter(move |(_, sentence)| *sentence <= contact).map(|(relation, _)| *relation)
+        let early = known.relations.iter().any(|(_, sentence)| *sentence <= contact);
+        let told = move |sentence: usize| sentence <= contact || !early && self.reading.had_before(sentence);
+        known.relations.iter().filter(move |(_, sentence)| told(*sentence)).map(|(relation, _)| *relation)
     }
 
     fn any(&self, relation: Relation) -> bool {
@@ -310,6 +312,13 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
                 && !did(Act::Pass)
         })
         || on_side_street(reading, actor);
+    // "entered the circle without giving way".
+    let gave_no_way = frames().any(|(_, frame)| frame.act() == Some(Act::Enter))
+        && account.partner.as_ref().is_some_and(|partner| partner.did(Act::FailToYield))
+        && !sv_stands;
+    if let (true, None, Some(side), None) = (gave_no_way, side, zone_side(account), turn) {
+        return Some(Fact::by_rule(Origin::Cross { side }, "the side that was touched by one who came in"));
+    }
     if let Some(eighths) = turn {
         let source = Source::Rule { name: "directions of both".to_owned() };
         let opposite_side = clues.any(Relation::Opposite) || account.partner.as_ref()?.did(Act::WrongWay);
@@ -552,7 +561,12 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let moved_over =
         [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass, Act::Pushed].into_iter().any(|act| partner.did(act));
     let parked = told(&partner.state) == Some(ContactState::Parked);
-    if let (true, Some(side)) = (moved_over || parked || clues.any(Relation::Beside), zone_side(account)) {
+    let swiped = clues.reading.contacts.first.is_some_and(|number| {
+        let frame = &clues.reading.story.frames[number];
+        clues.reading.story.tokens[frame.first].text.starts_with("sideswip")
+    });
+    let beside = moved_over || parked || swiped || clues.any(Relation::Beside);
+    if let (true, Some(side)) = (beside, zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
     let walks = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal));

@@ -203,6 +203,7 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
     let sentence = contact.map(|contact| reading.story.frames[contact].sentence);
     let mut moved = false;
     let mut since = (usize::MAX, 0);
+    let mut spoken = 0;
     for (number, frame) in reading.story.frames.iter().enumerate() {
         if frame.who != Some(actor) || !frame.happened() || reading.is_after(number) {
             continue;
@@ -240,7 +241,17 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
             Act::Pushed | Act::Fall => continue,
             _ => ContactState::Moving,
         };
+        // "was traveling at 1 mph, waiting for a gap".
+        let words = &reading.story.tokens[spoken.min(frame.first)..frame.first];
+        let rolls = act == Act::Hold
+            && frame.form == crate::lexicon::Form::Ing
+            && since.0 == frame.sentence
+            && words.iter().any(|token| token.text == "mph");
+        if rolls && state.as_ref().is_some_and(|(state, _)| !state.stands()) {
+            continue;
+        }
         since = (frame.sentence, frame.clause);
+        spoken = frame.end;
         if next.stands() {
             let stopping = text.starts_with("slowing")
                 || text.starts_with("stopping")
@@ -404,7 +415,39 @@ fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
             all.push(Fact { value: zone, source: reading.of(frame) });
         }
     }
+    if all.is_empty() {
+        let column = if actor == SUBJECT { &reading.record.sv_zones } else { &reading.record.cp_zones };
+        all.extend(told_besides(reading, actor, first, column.is_empty()));
+    }
     all
+}
+
+/// Where somebody was touched by what the sentence of the crash says of the damage, or the headline of a rear-end crash.
+/// `alone`: no column tells more than the damage does.
+fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) -> Option<Fact<ContactZone>> {
+    let frames = &reading.story.frames;
+    let crash = &frames[first];
+    let damage = frames[first..].iter().find(|frame| {
+        let whose = match frame.object.or(frame.who.filter(|who| *who == SUBJECT)) {
+            // "collided with it, damaging its bumper": of the one that was struck.
+            Some(owner) if frame.who == Some(owner) && owner != SUBJECT => SUBJECT,
+            Some(owner) => owner,
+            None => SUBJECT,
+        };
+        alone && frame.sense == Sense::Damage && frame.sentence == crash.sentence && whose == actor && !frame.negated
+    });
+    if let Some((frame, zone)) = damage.and_then(|frame| Some((frame, frame.on.as_ref().and_then(zone_of)?))) {
+        return Some(Fact { value: zone, source: reading.of(frame) });
+    }
+    let headline = frames[..first].iter().rev().find(|frame| {
+        frame.sense == Sense::RearEnd && frame.is_contact() && [frame.who, frame.object].contains(&Some(SUBJECT))
+    })?;
+    let zone = match (headline.object == Some(actor), headline.who == Some(actor)) {
+        (true, false) => ContactZone::Rear,
+        (false, true) => ContactZone::Front,
+        _ => return None,
+    };
+    Some(Fact { value: zone, source: reading.of(headline) })
 }
 
 /// Signals and signs in front of somebody.
@@ -638,6 +681,12 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         (None, _) if zero => Some(ContactState::Stopped),
         (None, Some(_)) => Some(ContactState::Moving),
         (None, None) if rolls || moves_at_contact(reading) => Some(ContactState::Moving),
+        // "was struck while stopping for a light", and no number says more.
+        (Some(ContactState::Stopped), None | Some(Movement::Straight))
+            if stopping && record.sv_speed_mps.is_none() && stops_at_contact(reading) =>
+        {
+            Some(ContactState::Moving)
+        }
         // Slowing in words, standing in numbers: it had come to stand.
         // Told to come to a stop, and still rolling in numbers.
         (Some(ContactState::Stopped), _)
@@ -682,6 +731,17 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
         account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
     }
+}
+
+/// Whether the sentence of the contact says last of the subject vehicle that it was about to stop.
+fn stops_at_contact(reading: &Reading<'_>) -> bool {
+    let Some(contact) = reading.contacts.first else { return false };
+    let sentence = reading.story.frames[contact].sentence;
+    let last = reading.before(SUBJECT).filter(|(_, frame)| frame.happened()).last();
+    last.is_some_and(|(number, frame)| {
+        let while_it = number > contact && frame.joint == Some(crate::chunk::Joint::While);
+        frame.sentence == sentence && while_it && frame.act() == Some(Act::Stop)
+    })
 }
 
 /// Whether the sentence of the contact says that the subject vehicle sets off.

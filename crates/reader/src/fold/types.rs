@@ -165,6 +165,10 @@ fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'sta
                     && turn_side(partner) == Some(LeftRight::Left)
                     && !(sv_turns && turn_side(&account.sv) == Some(LeftRight::Left)))
                 || told(&partner.movement) == Some(Movement::UTurn)
+                || cp_turns
+                    && turn_side(partner).is_none()
+                    && !sv_turns
+                    && told(&partner.movement).is_none_or(|movement| movement == Movement::Straight)
                 || told(&partner.movement) == Some(Movement::LeftTurn) && !partner.did(Act::Turn) && !sv_turns;
             // Left side on left side they passed each other, and only then it turned, or began to.
             let left = |party: &Party, corner: bool| {

@@ -47,6 +47,8 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
             frames[number].sense = Sense::Act(Act::Reverse);
         } else if out_from_behind(frame, &words) {
             frames[number].sense = Sense::Act(Act::Enter);
+        } else if turns_back_in(frames, number, &words) {
+            frames[number].sense = Sense::Act(Act::LaneChange);
         } else if passes_nobody(frame, &words) {
             frames[number].sense = Sense::Act(Act::Follow);
         } else if pulls_out_to_pass(frames, number, &words) {
@@ -109,6 +111,17 @@ fn still_backwards(frames: &[Frame], number: usize, words: &[&str]) -> bool {
             .get(1)
             .is_some_and(|word| matches!(*word, "back" | "until" | "into" | "toward" | "towards" | "coming"));
     matches!(frame.act(), Some(Act::Follow | Act::Roll | Act::Drift)) && reverses && back
+}
+
+/// "changed lanes to pass it and turned back into its lane": no turn.
+fn turns_back_in(frames: &[Frame], number: usize, words: &[&str]) -> bool {
+    let frame = &frames[number];
+    let back = words.windows(2).any(|pair| pair[0] == "back" && matches!(pair[1], "in" | "into"));
+    frame.sense == Sense::Act(Act::Turn)
+        && back
+        && frames[..number].iter().any(|before| {
+            before.who == frame.who && matches!(before.act(), Some(Act::Pass | Act::LaneChange)) && !before.negated
+        })
 }
 
 /// "emerged on the right from behind a stopped bus": into view, and from no kerb.

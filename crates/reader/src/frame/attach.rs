@@ -42,6 +42,7 @@ impl Parser<'_> {
                 }
             }
             "by" => {
+                let frame = self.done_by(frame);
                 let taken = &mut self.frames[frame];
                 let passive = taken.form == Form::Past
                     && matches!(
@@ -158,6 +159,19 @@ impl Parser<'_> {
         }
     }
 
+    /// "was struck while it stood there by a van": the passive verb that still waits for who did it.
+    fn done_by(&self, frame: usize) -> usize {
+        let passive = |number: &usize| {
+            let frame = &self.frames[*number];
+            frame.sentence == self.sentence && frame.passive && frame.is_contact()
+        };
+        if passive(&frame) {
+            return frame;
+        }
+        let waits = |number: &usize| self.frames[*number].who.is_none();
+        (0..frame).rev().take(3).find(passive).filter(waits).unwrap_or(frame)
+    }
+
     /// Who is pushed, or drives on, into somebody touches them.
     fn touch(&mut self, frame: usize, who: Option<Actor>, mention: &Mention, placed: &Placed, carry: &Carry) {
         let before = &self.frames[frame];
@@ -240,7 +254,12 @@ impl Parser<'_> {
                     | Act::Roll
             )
         );
-        if relation == Relation::Ahead && ends_there {
+        // "passed it and cut back in ahead of it".
+        let passed = across == Some(Act::LaneChange)
+            && self.frames.iter().any(|before| {
+                before.sentence == self.sentence && before.who == Some(who) && before.act() == Some(Act::Pass)
+            });
+        if relation == Relation::Ahead && (ends_there || passed) {
             return;
         }
         match to {
@@ -334,7 +353,7 @@ impl Parser<'_> {
             governs,
         ) && struck(&self.frames[frame])
             && self.tokens[placed.first].text == "on"
-            && self.tokens[placed.end - 1].text == "side"
+            && (self.tokens[placed.end - 1].text == "side" || possessed && self.frames[frame].passive)
         {
             self.frames[frame].on = Some(Piece::of(part));
             self.frames[frame].end = placed.end;

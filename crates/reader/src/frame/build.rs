@@ -18,6 +18,7 @@ impl Parser<'_> {
                     Some((act, side)) => (Sense::Act(act), side),
                     None => continue,
                 },
+                Adjective::Doing if actor == SUBJECT && self.rolls(placed) => (Sense::Act(Act::Follow), None),
                 _ => continue,
             };
             let mut frame = self.frame(Some(actor), sense, Form::Past, placed, carry);

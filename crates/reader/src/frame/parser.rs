@@ -2,7 +2,7 @@
 
 use super::Frame;
 use super::adverbs::goes_about;
-use super::row::{acts, another_finite, next_is_verb, next_preposition, relation_behind, transitive};
+use super::row::{acts, another_finite, names_doer, next_is_verb, next_preposition, relation_behind, transitive};
 use super::sided;
 use crate::chunk::{Article, Chunk, Joint, Piece, Placed, Spot, chunks, is_determiner};
 use crate::lexicon::{Form, Lexicon, Occupant, Progress, Relation, Sense};
@@ -165,6 +165,10 @@ impl Parser<'_> {
                         self.attribute(owner, actor, placed, carry);
                         Some(actor)
                     }
+                    None if at > 0 && self.tokens[all[at - 1].first].text == "whose" && carry.last.is_some() => {
+                        carry.frame = None;
+                        carry.last.as_ref().map(|last| last.actor)
+                    }
                     None if piece.its => Some(self.its(carry)),
                     // "The edge of the open door touched": of whom it was opened.
                     None if piece.door && carry.fresh && self.door_of().is_some() => self.door_of(),
@@ -192,12 +196,22 @@ impl Parser<'_> {
                         Some(Chunk::Preposition("at" | "within") | Chunk::Relative)
                     ) => {}
             Chunk::Pronoun => {
-                let actor = self.not_itself(self.its(carry), carry);
+                let actor = match self.waits_struck(all, at, carry) {
+                    Some(struck) => struck,
+                    None => self.not_itself(self.its(carry), carry),
+                };
                 self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             }
             Chunk::Relative => {
                 // "at which time the operator ...": the operator is not behind "at".
                 (carry.preposition, carry.relation) = (None, None);
+                // "the bracket that holds the sensor": of a thing without a name.
+                if self.of_a_word(all, at) {
+                    (carry.outer, carry.subject) = (carry.subject.take(), None);
+                    (carry.frame, carry.has_verb, carry.stranger) = (None, false, true);
+                    carry.relative = true;
+                    return;
+                }
                 if let Some(last) = carry.last.clone() {
                     if !carry.relative {
                         carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
@@ -217,7 +231,8 @@ impl Parser<'_> {
                 carry.negated = true;
                 // "Neither car made contact": said before who it is.
                 let word = self.tokens[placed.first].text.as_str();
-                carry.nobody |= matches!(word, "neither" | "nor") || carry.fresh && word == "no";
+                carry.nobody |=
+                    matches!(word, "neither" | "nor") || carry.fresh && matches!(word, "no" | "nothing" | "nobody");
             }
             Chunk::Relation(relation) => self.relation(*relation, placed, carry, next),
             Chunk::Compass(compass) => self.compass(*compass, placed, carry),
@@ -266,6 +281,8 @@ impl Parser<'_> {
             Chunk::Word if self.touches_by_parts(&self.tokens[placed.first].text, all, at, carry) => {
                 self.verb(Sense::Contact, Form::Past, all, at, carry);
             }
+            // "The AV misjudged a van's speed and turned": what it did to the van.
+            Chunk::Word if self.does_something(all, at, carry) => self.verb(Sense::Other, Form::Past, all, at, carry),
             Chunk::Word => {
                 let word = self.tokens[placed.first].text.as_str();
                 // "time to turn" is no turn; "at which time it turned" is one.
@@ -298,8 +315,11 @@ impl Parser<'_> {
                 }
                 let waits = carry.preposition.is_some() || carry.relation.is_some();
                 // "at about 6 mph its bumper touched".
-                carry.filled |=
-                    waits && matches!(word, "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm");
+                carry.filled |= waits
+                    && matches!(
+                        word,
+                        "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm" | "mode" | "time"
+                    );
                 let clause = carry.fresh || carry.after_comma && carry.has_verb && carry.joint.is_some();
                 let begins =
                     clause && !waits && matches!(word, "a" | "an" | "the" | "several" | "some" | "two" | "one");
@@ -407,44 +427,7 @@ impl Parser<'_> {
                     carry.governed = true;
                     return;
                 }
-                // "While stopped at a light, a man began to cross": of somebody new it is not told.
-                let new = actor != SUBJECT && carry.main.is_none() && {
-                    let known = &self.world.actors[actor];
-                    // Only the headline has named it so far.
-                    let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
-                    known.mentions == 1 || named_only
-                };
-                for pending in std::mem::take(&mut carry.pending) {
-                    let waiting = &self.frames[pending];
-                    let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
-                    // "It began to cross. While crossing, a van ...": who did so before.
-                    let goes_on = waiting.form == Form::Ing
-                        && waiting.act().is_some()
-                        && self.frames.iter().any(|before| {
-                            before.sentence < waiting.sentence
-                                && before.who == Some(self.world.topic)
-                                && before.happened()
-                                && before.act() == waiting.act()
-                                && !matches!(before.act(), Some(Act::Follow))
-                        });
-                    // "While passing the driveway, a van ...": who passes it is told before.
-                    let passes = waiting.form == Form::Ing
-                        && self.world.topic == SUBJECT
-                        && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
-                        && waiting.object != Some(SUBJECT)
-                        && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
-                    let dangles = new && (stands || goes_on || passes);
-                    if self.frames[pending].passive {
-                        self.frames[pending].object = Some(actor);
-                        continue;
-                    }
-                    let who = if dangles { self.world.topic } else { actor };
-                    self.frames[pending].who = Some(who);
-                    // "While turning left from southbound Oak Street, it ...".
-                    if let (Some(heading), false) = (self.frames[pending].heading, self.frames[pending].onto) {
-                        self.world.actors[who].heading.get_or_insert(heading);
-                    }
-                }
+                self.settle(actor, carry);
                 if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
                     carry.main = Some(mention.clone());
                     carry.mains.push(actor);
@@ -479,7 +462,11 @@ impl Parser<'_> {
         // "between the van and a parked car": the second of a pair, and no new clause.
         let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
         let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
-            Chunk::Comma => true,
+            // "and the van, coming from the left, hit it".
+            Chunk::Comma => !matches!(
+                behind.get(2).map(|placed| &placed.chunk),
+                Some(Chunk::Verb(_, Form::Ing) | Chunk::Not | Chunk::Relative)
+            ),
             // "and the van then reversed" is a clause of its own.
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
@@ -552,7 +539,10 @@ impl Parser<'_> {
         let sense = if backed && word == "backed" { Sense::Other } else { sense };
         // "holding a phone", "held on to the rail".
         let carried = word.starts_with("hold") || word == "held";
-        let on = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Word | Chunk::Preposition("on")));
+        let on = matches!(
+            all.get(at + 1).map(|placed| &placed.chunk),
+            Some(Chunk::Word | Chunk::Preposition("on") | Chunk::Piece(_) | Chunk::Noun(_))
+        );
         // "a bicycle ridden by a courier" passes nobody.
         let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
         let next = all.get(at + 1).map(|placed| &placed.chunk);
@@ -601,6 +591,11 @@ impl Parser<'_> {
                 carry.has_verb |= form != Form::Ing || carry.be;
                 return;
             }
+        }
+        // "The van slid back as the light changed, tapping its bumper": who the sentence is about.
+        let goes_back = carry.after_comma && form == Form::Ing && !carry.be && carry.stranger && carry.joint.is_some();
+        if goes_back && matches!(sense, Sense::Contact | Sense::Push | Sense::RearEnd) && carry.main.is_some() {
+            (carry.subject, carry.stranger, carry.frame) = (carry.main.clone(), false, None);
         }
         let both = self.of_both(sense, all, at, carry);
         let sense = if both { Sense::ContactMade } else { sense };
@@ -696,8 +691,12 @@ impl Parser<'_> {
         }
         // "Struck by a coupe, a parked van ...": who is named next.
         let leading = carry.fresh && !be && carry.subject.is_none() && form == Form::Past && done_to;
-        let leading = leading && matches!(next, Some(Chunk::Preposition("by")));
+        let leading = leading && (matches!(next, Some(Chunk::Preposition("by"))) || sense == Sense::RearEnd);
         frame.passive |= leading;
+        let of_subject = frame.object == Some(SUBJECT) || leading && frame.object.is_none();
+        if frame.passive && of_subject && frame.who.is_none() && !names_doer(all, at) {
+            frame.who = self.struck_by(sense, &word);
+        }
         if matches!(sense, Sense::Push) && carry.pushed {
             carry.pushed = false;
         }
@@ -746,7 +745,8 @@ impl Parser<'_> {
         // "fell from a truck": the truck is behind "from".
         let last = self.tokens[placed.end - 1].text.as_str();
         if matches!(sense, Sense::Act(Act::Fall | Act::Roll | Act::Enter)) && placed.end > placed.first + 1 {
-            carry.preposition = ["from", "off", "onto", "into", "over"].into_iter().find(|known| *known == last);
+            carry.preposition =
+                ["from", "off", "onto", "into", "over", "between", "behind"].into_iter().find(|known| *known == last);
         }
         // "contact by a cyclist was made".
         if sense == Sense::ContactMade && self.tokens[placed.end - 1].text == "by" {

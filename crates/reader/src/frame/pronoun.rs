@@ -2,6 +2,7 @@
 
 use super::parser::{Carry, Parser};
 use super::row::{acts, transitive};
+use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::Act;
@@ -43,6 +44,16 @@ impl Parser<'_> {
             true => self.world.other().or(self.world.thing()).unwrap_or(actor),
             false => actor,
         }
+    }
+
+    /// "A van struck the AV while it waited": who stands is the one that was struck.
+    pub(super) fn waits_struck(&self, all: &[Placed], at: usize, carry: &Carry) -> Option<Actor> {
+        let stands = all[at + 1..].iter().take(2).any(|placed| {
+            matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Hold | Act::Stop | Act::Park) | Sense::Parked, _))
+        });
+        let last = self.frames.last().filter(|frame| frame.sentence == self.sentence && frame.is_contact())?;
+        let struck = !last.passive && last.object == Some(SUBJECT) && last.who != Some(SUBJECT);
+        (carry.fresh && carry.joint == Some(Joint::While) && stands && struck).then_some(SUBJECT)
     }
 
     /// Whose door was opened last.

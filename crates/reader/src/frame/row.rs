@@ -3,6 +3,7 @@
 use super::parser::{Carry, Parser};
 use crate::chunk::{Article, Chunk, Noun, Placed};
 use crate::lexicon::{Form, Relation, Sense};
+use crate::token::TokenKind;
 use crate::world::{Actor, SUBJECT, World, same_kind};
 use recrash_model::account::{Act, Kind, KindGroup};
 
@@ -16,6 +17,44 @@ impl Parser<'_> {
             })
         };
         at > 0 && name(all.get(at - 1)) && name(all.get(at + 1))
+    }
+
+    /// Whether a verb that nobody knows stands between who the clause is about and an object.
+    pub(super) fn does_something(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let token = &self.tokens[all[at].first];
+        // "A wheel came off, hopped the barrier and hit it": the second verb of a row.
+        let row = carry.after_comma
+            && carry.has_verb
+            && carry.joint.is_none()
+            && at > 0
+            && matches!(all[at - 1].chunk, Chunk::Comma);
+        let subject = carry
+            .subject
+            .as_ref()
+            .filter(|subject| row || subject.end == all[at].first && subject.piece.is_none() && !carry.has_verb);
+        let object =
+            matches!(all.get(at + 1).map(|next| &next.chunk), Some(Chunk::Noun(noun)) if noun.article != Article::None);
+        token.kind == TokenKind::Word
+            && !token.capital
+            && token.text.len() > 4
+            && token.text.ends_with("ed")
+            && subject.is_some()
+            && object
+            && !carry.be
+            && carry.preposition.is_none()
+    }
+
+    /// Whether a relative clause tells of a thing that the lexicon does not know: "the bracket that holds it".
+    pub(super) fn of_a_word(&self, all: &[Placed], at: usize) -> bool {
+        let Some(before) = at.checked_sub(2) else { return false };
+        let word = |placed: &Placed| {
+            let token = &self.tokens[placed.first];
+            matches!(placed.chunk, Chunk::Word) && token.kind == TokenKind::Word && !token.capital
+        };
+        matches!(self.tokens[all[at].first].text.as_str(), "that" | "which")
+            && word(&all[at - 1])
+            && all[at - 1].end == all[at].first
+            && matches!(self.tokens[all[before].first].text.as_str(), "a" | "an" | "the" | "its")
     }
 
     /// Whether the clause is about two vehicles at once: "the vehicles met", "the mirrors of the two vehicles touched each other".
@@ -215,6 +254,15 @@ pub(super) fn next_preposition(all: &[Placed], at: usize) -> Option<&'static str
     all[at + 1..].iter().take(4).find_map(|placed| match placed.chunk {
         Chunk::Preposition(word) => Some(word),
         _ => None,
+    })
+}
+
+/// Whether the sentence goes on to say by whom: "was rear-ended, while it stood there, by a van".
+pub(super) fn names_doer(all: &[Placed], at: usize) -> bool {
+    (at + 1..all.len()).any(|by| {
+        let next = all[by + 1..].iter().find(|placed| !matches!(placed.chunk, Chunk::Word));
+        matches!(all[by].chunk, Chunk::Preposition("by"))
+            && next.is_some_and(|placed| matches!(placed.chunk, Chunk::Noun(_) | Chunk::Piece(_)))
     })
 }
 

@@ -2,8 +2,9 @@
 
 use super::parser::{Carry, Mention, Parser};
 use super::row::acts;
-use crate::chunk::{Placed, Spot};
-use crate::lexicon::{Form, Sense};
+use crate::chunk::{Joint, Placed, Spot};
+use crate::lexicon::{Form, Relation, Sense};
+use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, LeftRight};
 
 impl Parser<'_> {
@@ -27,6 +28,11 @@ impl Parser<'_> {
         })
     }
 
+    /// "the slowly moving AV".
+    pub(super) fn rolls(&self, placed: &Placed) -> bool {
+        self.tokens[placed.first..placed.end].iter().any(|token| matches!(token.text.as_str(), "moving" | "rolling"))
+    }
+
     /// The side that the words of a verb name: "moved into the left lane".
     pub(super) fn side_in(&self, placed: &Placed) -> Option<LeftRight> {
         // "left its stall" is no side.
@@ -46,6 +52,67 @@ impl Parser<'_> {
             "curb" => Some(Spot::Curb),
             _ => None,
         })
+    }
+
+    /// Who struck the subject vehicle where nobody is named: "was rear-ended", "was broadsided".
+    pub(super) fn struck_by(&mut self, sense: Sense, word: &str) -> Option<Actor> {
+        let rear = sense == Sense::RearEnd;
+        let by_vehicle = rear || ["broadside", "sideswipe"].iter().any(|stem| word.starts_with(stem));
+        if !by_vehicle {
+            return None;
+        }
+        let actor = self.world.striker(rear);
+        if rear {
+            self.world.actors[actor].place(Relation::Behind, self.sentence);
+        }
+        Some(actor)
+    }
+
+    /// Verbs whose subject is named only now: "While stopped, the van ...".
+    pub(super) fn settle(&mut self, actor: Actor, carry: &mut Carry) {
+        // "While stopped at a light, a man began to cross": of somebody new it is not told.
+        let new = actor != SUBJECT && carry.main.is_none() && {
+            let known = &self.world.actors[actor];
+            // Only the headline has named it so far.
+            let named_only = !known.acted && self.world.topic == SUBJECT && known.mentions == 2;
+            known.mentions == 1 || named_only
+        };
+        // "Stopped because traffic had not cleared, the AV was hit": the AV.
+        let inner = carry.joint.is_some_and(|joint| matches!(joint, Joint::Because))
+            && !carry.after_comma
+            && carry.pending.iter().all(|number| self.frames[*number].clause < carry.clause);
+        let ready = if inner { Vec::new() } else { std::mem::take(&mut carry.pending) };
+        for pending in ready {
+            let waiting = &self.frames[pending];
+            let stands = waiting.state && matches!(waiting.sense, Sense::Act(Act::Hold) | Sense::Parked);
+            // "It began to cross. While crossing, a van ...": who did so before.
+            let goes_on = waiting.form == Form::Ing
+                && waiting.act().is_some()
+                && self.frames.iter().any(|before| {
+                    before.sentence < waiting.sentence
+                        && before.who == Some(self.world.topic)
+                        && before.happened()
+                        && before.act() == waiting.act()
+                        && !matches!(before.act(), Some(Act::Follow))
+                });
+            // "While passing the driveway, a van ...": who passes it is told before.
+            let passes = waiting.form == Form::Ing
+                && self.world.topic == SUBJECT
+                && matches!(waiting.sense, Sense::Act(Act::Pass | Act::Enter) | Sense::Approach)
+                && waiting.object != Some(SUBJECT)
+                && !waiting.relations.iter().any(|(_, to)| *to == Some(SUBJECT));
+            let dangles = new && (stands || goes_on || passes);
+            if self.frames[pending].passive {
+                self.frames[pending].object = Some(actor);
+                continue;
+            }
+            let who = if dangles { self.world.topic } else { actor };
+            self.frames[pending].who = Some(who);
+            // "While turning left from southbound Oak Street, it ...".
+            if let (Some(heading), false) = (self.frames[pending].heading, self.frames[pending].onto) {
+                self.world.actors[who].heading.get_or_insert(heading);
+            }
+        }
     }
 
     /// Of whom a verb is told.
