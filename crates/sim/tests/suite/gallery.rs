@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 /// Who drives in the golden.
 const EGOS: [Ego; 2] = [Ego::Recorded, Ego::Idm];
 
+/// A snapshot is taken at so many steps: at each where the compiler optimises, and there are minutes to be saved elsewhere.
+const SNAPSHOT_EVERY: usize = if cfg!(debug_assertions) { 7 } else { 1 };
+
 /// The enums of the format of which every variant has a case.
 const ENUMS: [&str; 14] = [
     "StripKind",
@@ -217,7 +220,7 @@ fn every_case_goes_on_from_a_snapshot_with_the_same_bytes() {
             let mut run = Run::new(&case.scenario, Seat::BuiltIn(ego));
             let (mut states, mut snapshots) = (Vec::new(), Vec::new());
             while run.termination().is_none() {
-                if states.len() % 7 == 0 {
+                if states.len() % SNAPSHOT_EVERY == 0 {
                     snapshots.push((states.len(), run.snapshot()));
                 }
                 run.step(None);
