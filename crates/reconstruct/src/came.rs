@@ -69,7 +69,8 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     let mut map = ground.map.clone();
     let begins = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan.start);
     map.roads[0].driveways.extend(begins.and_then(|begins| kerb::driveway(told, ground, begins)));
-    let control = control::devices(told, ground, &recorded);
+    let cp = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan);
+    let control = control::devices(told, ground, &recorded, cp);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
         _ if let Some(lead) = &lead => Some(lead.handover_s(told.contact_s - HANDOVER_BEFORE_S)),

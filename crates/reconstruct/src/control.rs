@@ -1,7 +1,6 @@
 //! Signals and signs: drawn as they are told, and held against who drove past them when.
 
 use crate::ground::Ground;
-use crate::pace::sets_off_behind_s;
 use crate::side::{Side, Turning};
 use crate::told::Told;
 use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState};
@@ -34,7 +33,7 @@ const STANDS_MPS: f64 = 0.1;
 const BESIDE_M: f64 = 1.5;
 
 /// The devices that are told, and on the other arms what goes with them.
-pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan) -> Vec<Control> {
+pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, partner: Option<&ActorPlan>) -> Vec<Control> {
     if !ground.junction {
         return Vec::new();
     }
@@ -64,9 +63,11 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan) -> Vec<Cont
     let signal = |said: &Option<(&'static str, &Side, Said)>| {
         let (_, side, said) = said.as_ref().filter(|(_, _, said)| said.device == ControlDevice::Signal)?;
         let is_ego = std::ptr::eq(*side, &told.sv);
-        let changed_s = match sets_off_s(ego).filter(|_| is_ego) {
+        // Who waits in the ego's lane, ahead of it or behind it, waits for the same light.
+        let in_lane = matches!(told.origin, Origin::Ahead | Origin::Behind);
+        let of_queue = [Some(ego), partner.filter(|_| in_lane)].into_iter().flatten().filter_map(sets_off_s);
+        let changed_s = match of_queue.filter(|_| is_ego).reduce(f64::min) {
             Some(sets_off_s) => sets_off_s - GREEN_BEFORE_S,
-            None if let Some(sets_off_s) = sets_off_behind_s(told).filter(|_| is_ego) => sets_off_s - GREEN_BEFORE_S,
             None if side.state.stands() => told.contact_s - CHANGED_S,
             None => told.contact_s - CHANGED_BEFORE_DRIVING_S,
         };

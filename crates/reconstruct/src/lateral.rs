@@ -147,7 +147,7 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
 
 /// Who passes has come out of the ego's lane so far before the contact, and does so on so much of its way at most. [m]
 const OUT_M: f64 = 6.0;
-const COMES_OUT_M: f64 = 24.0;
+const COMES_OUT_M: f64 = 16.0;
 
 /// Who comes from behind the ego and passes it comes out of its lane, goes along beside it, and then comes too near: where it begins, and
 /// the poses that it drives by.

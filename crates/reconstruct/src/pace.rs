@@ -41,6 +41,9 @@ const STOOD_LONG_S: f64 = 5.0;
 /// Who stood already when the story begins has stood for so much longer than who came to a stop in it. [s]
 const STOOD_LONGER_S: f64 = 3.0;
 
+/// An ego that has come to a stop behind who then reverses has stood for so much longer: it stands before that. [s]
+const STOOD_A_LITTLE_S: f64 = 1.0;
+
 /// An ego that comes to a stop is seen rolling for so long. [s]
 const LEAST_ROLL_S: f64 = 0.3;
 
@@ -70,7 +73,11 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let (sv, contact_s) = (&told.sv, told.contact_s);
     let stood_s = match told.waits_behind() {
         true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
-        false if told.stood_before && told.origin != Origin::Ahead => told.choices.stood_s + STOOD_LONGER_S,
+        false if told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing => {
+            told.choices.stood_s + STOOD_A_LITTLE_S
+        }
+        false if told.origin == Origin::Ahead => told.choices.stood_s,
+        false if told.stood_before || told.passes_from_behind() => told.choices.stood_s + STOOD_LONGER_S,
         false => told.choices.stood_s,
     };
     let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);
@@ -109,11 +116,6 @@ fn before_who_waits(told: &Told) -> Option<Pace> {
 
 /// Who waited behind somebody sets off so long after it. [s]
 const FOLLOWS_S: f64 = 0.5;
-
-/// When a partner that waits behind an ego that stands sets off. [s]
-pub(crate) fn sets_off_behind_s(told: &Told) -> Option<f64> {
-    (told.waits_behind() && told.sv.state.stands()).then(|| first_time(&last_pace(told).acts))
-}
 
 /// How far behind the stop line of a junction the ego is. [m]
 fn past_line_m(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
