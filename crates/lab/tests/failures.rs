@@ -6,11 +6,12 @@ use recrash_lab::perturb::{Nudge, Who, nudged};
 use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::{Scoring, run_scenario, run_scenario_in};
 use recrash_model::Seed;
+use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::profile::{
     Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
 };
-use recrash_model::rollout::Substeps;
+use recrash_model::rollout::{ActorState, Substeps};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Aim;
 use recrash_sim::{Ego, Native};
@@ -158,6 +159,14 @@ fn a_contact_of_millimetres_that_one_physics_step_shows_is_marked_and_a_robust_o
         let between_s = 0.5 * (fails_s + passes_s);
         *(if run(between_s).failed() { &mut fails_s } else { &mut passes_s }) = between_s;
     }
+    // They touch by less than 5 mm: with sides that much shorter they do not.
+    let grazed = run(fails_s);
+    let (other, _, ego_state, other_state) = grazed.rollout.first_ego_contact().expect("they touch");
+    let shorter = |actor: usize, state: &ActorState| {
+        let track = &grazed.rollout.actors[actor];
+        OrientedBox::new(state.pose(), track.length_m - 0.005, track.width_m - 0.005)
+    };
+    assert!(!shorter(0, &ego_state).overlaps(&shorter(other, &other_state)));
     let find = |by_s: f64| robustness(&later(by_s), &simulator, &profile, 40, Seed(1)).expect("it never fails");
     let artefact: Robustness = find(fails_s);
     let scenario = recrash_roads::check(later(fails_s)).expect("it may be run").value;
