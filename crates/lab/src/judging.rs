@@ -4,7 +4,7 @@ use crate::causes::cause;
 use recrash_metrics::{faithfulness, findings, measure, severity_of};
 use recrash_model::metrics::{Check, CheckKind, CheckResult, Expectation, Timed, Verdict};
 use recrash_model::profile::SystemProfile;
-use recrash_model::rollout::Rollout;
+use recrash_model::rollout::{Rollout, Substeps};
 use recrash_model::run::JudgedRun;
 use recrash_roads::{RunError, Scenario, Simulator};
 
@@ -19,6 +19,20 @@ pub fn run_scenario(
     expectation: Option<&Expectation>,
 ) -> Result<JudgedRun, RunError> {
     Ok(judge(scenario, simulator.run(scenario)?, profile, expectation))
+}
+
+/// The same with another physics step; `None` where the simulator has one only.
+///
+/// # Errors
+/// As [`run_scenario`].
+pub fn run_scenario_in(
+    scenario: &Scenario,
+    simulator: &dyn Simulator,
+    profile: &SystemProfile,
+    substeps: Substeps,
+) -> Result<Option<JudgedRun>, RunError> {
+    let rollout = simulator.run_in(scenario, substeps).transpose()?;
+    Ok(rollout.map(|rollout| judge(scenario, rollout, profile, None)))
 }
 
 /// Computes everything from a rollout of a scenario, whichever simulator it comes from.

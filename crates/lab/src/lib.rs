@@ -20,6 +20,6 @@ mod scoring;
 mod triage;
 
 pub use harm::{HarmCase, severity_agreement};
-pub use judging::{judge, judge_by, run_scenario, situation};
+pub use judging::{judge, judge_by, run_scenario, run_scenario_in, situation};
 pub use scoring::{Scoring, is_sound, is_sound_contact};
 pub use triage::triage;

@@ -2,13 +2,16 @@
 
 use recrash_lab::minimal::{minimal, without_each};
 use recrash_lab::parity::random_scenario;
-use recrash_lab::robustness::robustness;
-use recrash_lab::{Scoring, run_scenario};
+use recrash_lab::perturb::{Nudge, Who, nudged};
+use recrash_lab::robustness::{Robustness, robustness};
+use recrash_lab::{Scoring, run_scenario, run_scenario_in};
 use recrash_model::Seed;
+use recrash_model::geometry::OrientedBox;
 use recrash_model::metrics::CollisionKind;
 use recrash_model::profile::{
     Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
 };
+use recrash_model::rollout::{ActorState, Substeps};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Aim;
 use recrash_sim::{Ego, Native};
@@ -120,6 +123,67 @@ fn robustness_repeats_and_finds_what_lives_on_little() {
     assert!(marginal > 0 && share(true) < share(false) - 0.2);
     // The ego in the way of somebody far deeper than any change: nothing undoes it.
     assert!(all.iter().any(|found| found.share() == 1.0));
+}
+
+/// A car crosses in front of an ego that does not look to the side. Only a contact is a failure.
+fn crossing() -> (ScenarioDraft, SystemProfile) {
+    let json = r#"{
+        "format": "recrash.scenario/1", "id": "crossing", "source": {}, "duration_s": 12.0,
+        "map": { "type": "X", "lanes": 1, "lane_width_m": 3.5, "approach_m": 60.0, "arm_m": 100.0 },
+        "environment": { "lighting": "daylight", "weather": "clear", "surface": "dry" },
+        "ego": { "lane": 0, "turn": "straight", "s_m": 5.0, "speed_mps": 8.0, "target_speed_mps": 8.0 },
+        "partners": [{
+            "id": "cp1", "kind": "passenger_car", "approach": "left", "turn": "straight", "lane_offset": 0,
+            "start": { "arrival_gap_s": 0.0 }, "speed_mps": 8.0,
+            "policy": { "type": "sudden_brake", "target_speed": 8.0, "brake_step": 0, "brake_steps": 0 }
+        }]
+    }"#;
+    let mut profile = profile();
+    profile.failure.min_gap_m = 0.0;
+    (recrash_roads::read_draft(json).expect("a draft").value, profile)
+}
+
+#[test]
+fn a_contact_of_millimetres_that_one_physics_step_shows_is_marked_and_a_robust_one_is_not() {
+    let (middle, profile) = crossing();
+    let simulator = Native::new(Ego::MetadriveIdm);
+    let later = |by_s: f64| nudged(&middle, Who::Partner(0), Nudge::Later(by_s));
+    let run = |by_s: f64| {
+        let scenario = recrash_roads::check(later(by_s)).expect("it may be run").value;
+        run_scenario(&scenario, &simulator, &profile, None).expect("it never fails")
+    };
+    // Up to where the other comes just late enough, to a nanosecond.
+    let (mut fails_s, mut passes_s) = (0.0, 3.0);
+    assert!(run(fails_s).failed() && !run(passes_s).failed());
+    for _ in 0..32 {
+        let between_s = 0.5 * (fails_s + passes_s);
+        *(if run(between_s).failed() { &mut fails_s } else { &mut passes_s }) = between_s;
+    }
+    // They touch by less than 5 mm: with sides that much shorter they do not.
+    let grazed = run(fails_s);
+    let (other, _, ego_state, other_state) = grazed.rollout.first_ego_contact().expect("they touch");
+    let shorter = |actor: usize, state: &ActorState| {
+        let track = &grazed.rollout.actors[actor];
+        OrientedBox::new(state.pose(), track.length_m - 0.005, track.width_m - 0.005)
+    };
+    assert!(!shorter(0, &ego_state).overlaps(&shorter(other, &other_state)));
+    let find = |by_s: f64| robustness(&later(by_s), &simulator, &profile, 40, Seed(1)).expect("it never fails");
+    let artefact: Robustness = find(fails_s);
+    let scenario = recrash_roads::check(later(fails_s)).expect("it may be run").value;
+    let gaps: Vec<f64> = artefact
+        .lives_on_step
+        .iter()
+        .map(|&substeps| run_scenario_in(&scenario, &simulator, &profile, substeps).expect("it never fails"))
+        .map(|run| run.expect("it can").metrics.partners[0].min_gap.value)
+        .collect();
+    println!("{artefact:?}, gaps {gaps:?} m");
+    assert!(artefact.is_step_artefact() && !artefact.is_robust());
+    assert!(!artefact.lives_on_step.contains(&Substeps::default()));
+    assert!(gaps.iter().all(|gap| *gap > 0.0), "it passes there");
+    let robust = find(0.0);
+    println!("{robust:?}");
+    assert!(!robust.is_step_artefact() && !robust.is_marginal() && robust.is_robust());
+    assert!(robust.other_steps > robust.tries / 2 && robust.other_steps < robust.tries);
 }
 
 #[test]

@@ -15,8 +15,48 @@ const ROLLOUT_FORMAT_1: &str = "recrash.rollout/1";
 /// Time between two recorded states, and between two decisions. [s]
 pub const STEP_S: f64 = 0.1;
 
-/// Physics steps in one step.
+/// Physics steps in one step, as MetaDrive has them.
 pub const SUBSTEPS: usize = 5;
+
+/// Physics steps in one step of a run: [`SUBSTEPS`], unless somebody asks whether the result hangs on that.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(from = "u8", into = "u8")]
+pub struct Substeps(u8);
+
+impl Substeps {
+    /// So many; one at least.
+    pub const fn new(count: u8) -> Self {
+        Self(if count == 0 { 1 } else { count })
+    }
+
+    /// How many.
+    pub const fn count(self) -> u8 {
+        self.0
+    }
+
+    /// How long one is. [s]
+    pub fn step_s(self) -> f64 {
+        STEP_S / f64::from(self.0)
+    }
+}
+
+impl Default for Substeps {
+    fn default() -> Self {
+        Self::new(SUBSTEPS as u8)
+    }
+}
+
+impl From<u8> for Substeps {
+    fn from(count: u8) -> Self {
+        Self::new(count)
+    }
+}
+
+impl From<Substeps> for u8 {
+    fn from(substeps: Substeps) -> Self {
+        substeps.count()
+    }
+}
 
 /// Where who is not in the world is taken for. [m]
 const NOWHERE_M: f64 = 1e6;

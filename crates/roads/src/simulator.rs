@@ -1,7 +1,7 @@
 //! What a simulator is to everybody else: scenarios in, rollouts out, with the system under test inside.
 
 use crate::scenario::Scenario;
-use recrash_model::rollout::Rollout;
+use recrash_model::rollout::{Rollout, Substeps};
 use std::error::Error;
 use std::fmt;
 
@@ -24,6 +24,11 @@ pub trait Simulator: Send + Sync {
     /// # Errors
     /// There is no rollout, and why. Whatever happens inside a run (a contact, a road left) is no error but data.
     fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError>;
+
+    /// Runs a scenario with another physics step; decisions stay at every 0.1 s. `None` where the simulator has one only.
+    fn run_in(&self, _scenario: &Scenario, _substeps: Substeps) -> Option<Result<Rollout, RunError>> {
+        None
+    }
 }
 
 impl<S: Simulator + ?Sized> Simulator for Box<S> {
@@ -41,6 +46,10 @@ impl<S: Simulator + ?Sized> Simulator for Box<S> {
 
     fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError> {
         (**self).run(scenario)
+    }
+
+    fn run_in(&self, scenario: &Scenario, substeps: Substeps) -> Option<Result<Rollout, RunError>> {
+        (**self).run_in(scenario, substeps)
     }
 }
 

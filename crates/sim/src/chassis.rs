@@ -9,18 +9,20 @@
 
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
+use recrash_model::rollout::Substeps;
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::{DRY_TYRE_FRICTION, VehicleSpec};
 use recrash_plan::constants::SETTLED_HEIGHT_M;
 use wide::f64x2;
 
-/// Physics step. [s]
+/// The usual physics step. [s]
 pub const PHYSICS_STEP_S: f64 = 0.02;
 
 /// Standard gravity as MetaDrive sets it. [m/s^2]
 const GRAVITY_MPS2: f64 = 9.81;
 
-/// Share of the sideways velocity at a wheel that one physics step takes away (Bullet, `resolveSingleBilateral`).
+/// Share of the sideways velocity at a wheel that one usual physics step takes away (Bullet, `resolveSingleBilateral`); another
+/// step takes as much in the same time.
 const CONTACT_DAMPING: f64 = 0.2;
 
 /// Weight of the driving or braking impulse in the friction circle (Bullet, `btRaycastVehicle::updateFriction`): tyres
@@ -106,11 +108,20 @@ pub struct Chassis {
     max_speed_mps: f64,
     /// Wheel angle at full steering. [rad]
     max_wheel_angle_rad: f64,
+    /// Physics step. [s]
+    step_s: f64,
+    /// Share of the sideways velocity at a wheel that a physics step takes away.
+    damping: f64,
 }
 
 impl Chassis {
-    /// The constants of a vehicle on a surface.
+    /// The constants of a vehicle on a surface, in the usual physics steps.
     pub fn new(spec: &VehicleSpec, surface: Surface) -> Self {
+        Self::in_steps(spec, surface, Substeps::default())
+    }
+
+    /// The same in other physics steps.
+    pub fn in_steps(spec: &VehicleSpec, surface: Surface, substeps: Substeps) -> Self {
         let inverse_inertia = |a: f64, b: f64| 12.0 / (math::sq(a) + math::sq(b));
         let (length, width, height) = (spec.chassis_length_m, spec.chassis_width_m, spec.chassis_height_m);
         Self {
@@ -125,6 +136,8 @@ impl Chassis {
             brake_mps2: spec.brake_demand_mps2,
             max_speed_mps: spec.max_speed_mps,
             max_wheel_angle_rad: spec.max_wheel_angle_rad,
+            step_s: substeps.step_s(),
+            damping: CONTACT_DAMPING * (substeps.step_s() / PHYSICS_STEP_S),
         }
     }
 }
@@ -194,13 +207,10 @@ impl VehicleState {
     }
 
     /// A vehicle that has been on the road for a while: its springs carry it.
-    pub(crate) fn rolling(pose: Pose, velocity: Vec2, yaw_rate: f64) -> Self {
+    pub(crate) fn rolling(pose: Pose, velocity: Vec2, yaw_rate: f64, step_s: f64) -> Self {
         let axis = Vec2::from_heading(pose.heading);
         // What others see lags by a physics step; so that it goes on without a break, the body is ahead by one.
-        let body = Pose {
-            position: pose.position + velocity * PHYSICS_STEP_S,
-            heading: pose.heading + yaw_rate * PHYSICS_STEP_S,
-        };
+        let body = Pose { position: pose.position + velocity * step_s, heading: pose.heading + yaw_rate * step_s };
         Self {
             body,
             forward_mps: velocity.dot(axis).max(0.0),
@@ -247,7 +257,7 @@ impl VehicleState {
         // Rotating the axis by small angles gathers rounding; once per step it is made exact again.
         self.axis = Vec2::from_heading(self.body.heading);
         let (sin, cos) = math::sincos(controls.steer * chassis.max_wheel_angle_rad);
-        let per_wheel = 0.25 * PHYSICS_STEP_S;
+        let per_wheel = 0.25 * chassis.step_s;
         let (drive, brake) = if controls.throttle < 0.0 {
             (0.0, -controls.throttle * chassis.brake_mps2 * per_wheel)
         } else if self.speed() > chassis.max_speed_mps {
@@ -280,7 +290,7 @@ impl VehicleState {
     #[inline]
     pub fn advance(&mut self, chassis: &Chassis, command: &WheelCommand) {
         self.pose = self.body;
-        self.integrate();
+        self.integrate(chassis.step_s);
         let loads = self.spring(chassis);
         self.grip(chassis, command, loads);
         if command.drive == 0.0 && self.forward_mps <= STANDSTILL_MPS {
@@ -292,8 +302,7 @@ impl VehicleState {
 
     /// Positions from velocities (symplectic Euler, as Bullet's).
     #[inline]
-    fn integrate(&mut self) {
-        let dt = PHYSICS_STEP_S;
+    fn integrate(&mut self, dt: f64) {
         self.body.position = self.body.position + self.velocity() * dt;
         let turned = self.yaw_rate * dt;
         self.body.heading += turned;
@@ -325,7 +334,7 @@ impl VehicleState {
         };
         let (front, rear) = (load(chassis.front_axle_m), load(-chassis.rear_axle_m));
         let ([fl, fr], [rl, rr]) = (front.to_array(), rear.to_array());
-        let dt = PHYSICS_STEP_S;
+        let dt = chassis.step_s;
         self.climb_mps += (fl + fr + rl + rr) * dt;
         self.pitch_rate -=
             ((fl + fr) * chassis.front_axle_m - (rl + rr) * chassis.rear_axle_m) * chassis.pitch_per_m2 * dt;
@@ -350,8 +359,8 @@ impl VehicleState {
         let mass_front = 1.0 / (command.across_front + height2 * command.across_height[0]);
         let mass_rear = 1.0 / (command.across_rear + height2 * command.across_height[1]);
         let mut side = [
-            -CONTACT_DAMPING * mass_front * (sideways_front * cos - along * sin),
-            f64x2::splat(-CONTACT_DAMPING * mass_rear * sideways_rear),
+            -chassis.damping * mass_front * (sideways_front * cos - along * sin),
+            f64x2::splat(-chassis.damping * mass_rear * sideways_rear),
         ];
         let mut push = [f64x2::splat(command.drive); 2];
         if command.drive == 0.0 {
@@ -361,7 +370,7 @@ impl VehicleState {
                 [clamp(stop * (along * cos + sideways_front * sin), -limit, limit), clamp(stop * along, -limit, limit)];
         }
         for axle in 0..2 {
-            let hold = loads[axle] * chassis.friction * PHYSICS_STEP_S;
+            let hold = loads[axle] * chassis.friction * chassis.step_s;
             let weighted = ALONG_WEIGHT * push[axle];
             let wanted = weighted * weighted + side[axle] * side[axle];
             let slips = wanted.simd_gt(hold * hold);

@@ -3,7 +3,7 @@
 use crate::ego::Ego;
 use crate::recorder::RolloutRecorder;
 use crate::runner::Runner;
-use recrash_model::rollout::Rollout;
+use recrash_model::rollout::{Rollout, Substeps};
 use recrash_roads::{RunError, Scenario, Simulator};
 use std::sync::{Mutex, PoisonError};
 
@@ -26,6 +26,15 @@ impl Native {
     pub const fn new(ego: Ego) -> Self {
         Self { ego, idle: Mutex::new(Vec::new()) }
     }
+
+    fn rollout(&self, scenario: &Scenario, substeps: Substeps) -> Rollout {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut runner = idle.unwrap_or_default().stepping(substeps);
+        let mut recorder = RolloutRecorder::new();
+        runner.run(scenario, self.ego, &mut recorder);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(runner);
+        recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends"))
+    }
 }
 
 impl Simulator for Native {
@@ -42,11 +51,10 @@ impl Simulator for Native {
     }
 
     fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError> {
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut runner = idle.unwrap_or_default();
-        let mut recorder = RolloutRecorder::new();
-        runner.run(scenario, self.ego, &mut recorder);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(runner);
-        Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
+        Ok(self.rollout(scenario, Substeps::default()))
+    }
+
+    fn run_in(&self, scenario: &Scenario, substeps: Substeps) -> Option<Result<Rollout, RunError>> {
+        Some(Ok(self.rollout(scenario, substeps)))
     }
 }

@@ -32,7 +32,7 @@ use crate::recorder::CastMember;
 use crate::scene::Scene;
 use crate::world::{Driver, Setting, State, Workspace, prepare};
 use recrash_model::geometry::Vec2;
-use recrash_model::rollout::{ActorState, Event, EventKind, Role, STEP_S, SUBSTEPS, Termination, TerminationKind};
+use recrash_model::rollout::{ActorState, Event, EventKind, Role, STEP_S, Substeps, Termination, TerminationKind};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_plan::acts::{Glimpse, Sight};
 use recrash_plan::constants::{STANDING_MPS, STUCK_STEPS};
@@ -43,10 +43,9 @@ use std::sync::Arc;
 /// MetaDrive's rule for having arrived: this near to the end of the route. [m]
 const ARRIVAL_RANGE_M: f64 = 5.0;
 
-/// Steps and physics steps in a second. A time is a count divided by these, which gives the nearest number to the
-/// decimal that people read.
+/// Steps in a second. A time is a count divided by this (or by physics steps in a second), which gives the nearest number to
+/// the decimal that people read.
 const STEPS_PER_S: f64 = 10.0;
-const PHYSICS_STEPS_PER_S: f64 = 50.0;
 
 /// Who sits in the ego's seat.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,18 +77,28 @@ pub struct Snapshot {
 impl Run {
     /// A run at time 0.
     pub fn new(scenario: &Scenario, seat: Seat) -> Self {
-        let mut run = Self { setting: Arc::default(), state: State::default(), workspace: Workspace::default() };
+        let mut run = Self::empty();
         run.reset(scenario, seat);
         run
     }
 
+    /// One without anybody in it, to be reset.
+    pub(crate) fn empty() -> Self {
+        Self { setting: Arc::default(), state: State::default(), workspace: Workspace::default() }
+    }
+
     /// Starts over at time 0, with this scenario or another; the memory is used again.
     pub fn reset(&mut self, scenario: &Scenario, seat: Seat) {
+        self.reset_in(scenario, seat, Substeps::default());
+    }
+
+    /// The same with another physics step; decisions stay at every 0.1 s.
+    pub fn reset_in(&mut self, scenario: &Scenario, seat: Seat, substeps: Substeps) {
         if Arc::get_mut(&mut self.setting).is_none() {
             self.setting = Arc::default();
         }
         if let Some(setting) = Arc::get_mut(&mut self.setting) {
-            prepare(setting, &mut self.state, scenario, seat);
+            prepare(setting, &mut self.state, scenario, seat, substeps);
         }
         self.workspace.prepare(&self.setting);
         self.sense();
@@ -293,7 +302,7 @@ impl Run {
                 progress.be_driven(state.seen[actor].speed, STEP_S);
             } else if actor == 0 && state.step >= setting.handover {
                 let (pose, velocity, yaw_rate) = programme.motion(progress);
-                state.bodies[0] = VehicleState::rolling(pose, velocity, yaw_rate);
+                state.bodies[0] = VehicleState::rolling(pose, velocity, yaw_rate, setting.substeps.step_s());
                 state.movers[0] = Mover::Wheels;
                 continue;
             }
@@ -321,7 +330,8 @@ impl Run {
         }
         let all_on_wheels = setting.programmes.is_empty();
         find_near(setting, state, &mut workspace.near);
-        for substep in 1..=SUBSTEPS {
+        let substeps = setting.substeps.count();
+        for substep in 1..=substeps {
             if all_on_wheels {
                 for ((body, chassis), command) in state.bodies.iter_mut().zip(&setting.chassis).zip(&workspace.commands)
                 {
@@ -336,7 +346,8 @@ impl Run {
             if workspace.near.is_empty() {
                 continue;
             }
-            let time_s = (f64::from(state.step) * SUBSTEPS as f64 + substep as f64) / PHYSICS_STEPS_PER_S;
+            let physics_step = f64::from(state.step) * f64::from(substeps) + f64::from(substep);
+            let time_s = physics_step / (STEPS_PER_S * f64::from(substeps));
             collide(setting, state, workspace, time_s);
         }
     }

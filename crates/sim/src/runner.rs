@@ -5,7 +5,7 @@ use crate::driver::{EgoDriver, Observation};
 use crate::ego::Ego;
 use crate::recorder::Recorder;
 use crate::run::{Run, Seat};
-use recrash_model::rollout::Termination;
+use recrash_model::rollout::{Substeps, Termination};
 use recrash_roads::Scenario;
 use std::convert::Infallible;
 
@@ -13,12 +13,19 @@ use std::convert::Infallible;
 #[derive(Debug, Clone, Default)]
 pub struct Runner {
     run: Option<Run>,
+    substeps: Substeps,
 }
 
 impl Runner {
     /// One without anything prepared.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// The same, with another physics step from the next run on.
+    #[must_use]
+    pub fn stepping(self, substeps: Substeps) -> Self {
+        Self { substeps, ..self }
     }
 
     /// Runs a scenario. It cannot fail: however a run goes, it ends with a [`Termination`].
@@ -48,11 +55,9 @@ impl Runner {
     }
 
     fn begin(&mut self, scenario: &Scenario, seat: Seat) -> &mut Run {
-        match &mut self.run {
-            Some(run) => run.reset(scenario, seat),
-            none => *none = Some(Run::new(scenario, seat)),
-        }
-        self.run.as_mut().unwrap_or_else(|| unreachable!("there is a run by now"))
+        let run = self.run.get_or_insert_with(Run::empty);
+        run.reset_in(scenario, seat, self.substeps);
+        run
     }
 }
 

@@ -1,6 +1,6 @@
 //! The parts of a run: what is fixed in it, what is true at a time, and scratch; and how they are put together.
 
-use crate::chassis::{Chassis, Controls, PHYSICS_STEP_S, VehicleState, WheelCommand};
+use crate::chassis::{Chassis, Controls, VehicleState, WheelCommand};
 use crate::contacts::actor_state;
 use crate::ego::Ego;
 use crate::idm::Idm;
@@ -14,7 +14,7 @@ use crate::scene::{Seen, SeenObstacle};
 use crate::script::Script;
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::rollout::{ActorState, Event, Role, SUBSTEPS, Termination};
+use recrash_model::rollout::{ActorState, Event, Role, Substeps, Termination};
 use recrash_model::scenario::{Aspect, Device, MissionStop, Part, Policy};
 use recrash_model::surroundings::Surface;
 use recrash_model::vehicle::VehicleSpec;
@@ -46,6 +46,7 @@ pub(crate) struct Setting {
     pub(crate) ways: Vec<Way>,
     pub(crate) crossings: Vec<Crossing>,
     pub(crate) duration_s: f64,
+    pub(crate) substeps: Substeps,
     /// Plans of acts, and for each actor which is its own.
     pub(crate) programmes: Vec<Programme>,
     pub(crate) programme_of: Vec<Option<u16>>,
@@ -217,13 +218,14 @@ impl Workspace {
 }
 
 /// Puts everything where it starts.
-pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scenario, seat: Seat) {
+pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scenario, seat: Seat, substeps: Substeps) {
     setting.clear();
     state.clear();
     setting.lanes.prepare(scenario.network());
     let draft = scenario.draft();
     let surface = draft.environment.surface;
     setting.duration_s = draft.duration_s;
+    setting.substeps = substeps;
     for obstacle in scenario.obstacles() {
         let outline = obstacle.placed.outline();
         let lane = obstacle.lane.0;
@@ -316,7 +318,7 @@ fn enter(setting: &mut Setting, state: &mut State, surface: Surface, actor: Entr
     let at = path.segment_at(s_m);
     let route = (first, setting.routes.len() as u32);
     let place = Navigator::new(route, at as u32, path.segments[at].lane.0);
-    setting.chassis.push(Chassis::new(&spec, surface));
+    setting.chassis.push(Chassis::in_steps(&spec, surface, setting.substeps));
     let (length_m, width_m) = (spec.length_m, spec.width_m);
     setting.cast.push(CastMember { role, kind, length_m, width_m, owner: None, part: 0, appears: 0 });
     setting.masses_kg.push(VehicleSpec::mass_kg(kind).unwrap_or(FIRM_KG));
@@ -508,6 +510,7 @@ impl State {
 
     /// One physics step of everybody, each by what moves it.
     pub(crate) fn move_all(&mut self, setting: &Setting, workspace: &mut Workspace) {
+        let step_s = setting.substeps.step_s();
         for actor in 0..self.bodies.len() {
             let before = self.bodies[actor].pose;
             workspace.before[actor] = before;
@@ -519,13 +522,13 @@ impl State {
                     if !progress.present || progress.stands() {
                         continue;
                     }
-                    programme.advance(progress, PHYSICS_STEP_S);
+                    programme.advance(progress, step_s);
                     let (pose, velocity, yaw_rate) = programme.motion(progress);
                     self.bodies[actor].carry(pose, velocity, yaw_rate);
                 }
                 Mover::Momentum => {
                     let loose = &mut self.loose[actor];
-                    loose.advance(setting.friction, PHYSICS_STEP_S);
+                    loose.advance(setting.friction, step_s);
                     self.bodies[actor].carry(loose.pose, loose.velocity, loose.yaw_rate);
                 }
             }
@@ -533,8 +536,8 @@ impl State {
     }
 
     /// Turns doors and arms, and draws trailers on.
-    pub(crate) fn move_parts(&mut self, setting: &Setting, workspace: &Workspace, substep: usize) {
-        let step = f64::from(self.step) + substep as f64 / SUBSTEPS as f64;
+    pub(crate) fn move_parts(&mut self, setting: &Setting, workspace: &Workspace, substep: u8) {
+        let step = f64::from(self.step) + f64::from(substep) / f64::from(setting.substeps.count());
         for (attached, part) in setting.parts.iter().zip(&mut self.parts) {
             part.swing(step);
             let owner = usize::from(attached.owner);

@@ -123,11 +123,14 @@ fn show_robustness(report: &RobustnessReport) {
     for each in failures.iter().take(SHOWN) {
         let found = &each.robustness;
         let lives = [("5 cm of", &found.lives_on_centimetres), ("0.1 s of", &found.lives_on_tenths)];
-        let lives: Vec<String> = lives
+        let mut lives: Vec<String> = lives
             .into_iter()
             .filter(|(_, who)| !who.is_empty())
             .map(|(what, who)| format!("{what} {}", who.join(", ")))
             .collect();
+        if each.step_artefact {
+            lives.push("the physics step".to_owned());
+        }
         let confirmed = each.confirmed.map_or("-", |confirmed| if confirmed { "fails" } else { "passes" });
         rows.add_row([
             Cell::new(&each.id),
@@ -143,11 +146,13 @@ fn show_robustness(report: &RobustnessReport) {
     }
     let count = |of: fn(&RobustnessOf) -> bool| report.failures.iter().filter(|each| of(each)).count();
     println!(
-        "{} of {} tests fail; {} are robust (more than 80 % still fail), {} live on less than 5 cm or 0.1 s",
+        "{} of {} tests fail; {} are robust (more than 80 % still fail), {} live on less than 5 cm or 0.1 s, {} on the physics \
+         step",
         report.failures.len(),
         report.tests,
         count(|each| each.robust),
-        count(|each| each.marginal)
+        count(|each| each.marginal),
+        count(|each| each.step_artefact)
     );
     if let Some(second) = &report.confirmed_by {
         let run = count(|each| each.robust && each.confirmed.is_some());

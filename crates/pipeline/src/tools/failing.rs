@@ -71,6 +71,8 @@ pub struct RobustnessOf {
     pub share: f64,
     /// Whether it lives on less than 5 cm or 0.1 s.
     pub marginal: bool,
+    /// Whether another physics step undoes it.
+    pub step_artefact: bool,
     /// Whether more than 80 % of the changes still fail.
     pub robust: bool,
     /// The counts.
@@ -186,6 +188,7 @@ pub fn robustness_of_failures(
             cause: each.cause,
             share: found.share(),
             marginal: found.is_marginal(),
+            step_artefact: found.is_step_artefact(),
             robust: found.is_robust(),
             robustness: found,
             confirmed: second.as_deref().and_then(again).map(|run| run.failed()),

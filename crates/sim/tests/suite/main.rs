@@ -11,4 +11,5 @@ mod parity;
 mod partners;
 mod reference;
 mod runs;
+mod steps;
 mod vehicle;

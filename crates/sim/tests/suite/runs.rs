@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use recrash_model::kinds::PartnerKind;
-use recrash_model::rollout::{ActorState, Rollout, Termination, TerminationKind};
+use recrash_model::rollout::{ActorState, Rollout, Substeps, Termination, TerminationKind};
 use recrash_model::scenario::{Approach, ScenarioDraft, Start, Turn};
 use recrash_model::surroundings::Surface;
 use recrash_roads::Scenario;
@@ -235,10 +235,23 @@ fn golden_scenarios() -> Vec<Scenario> {
     drafts.into_iter().filter_map(|draft| recrash_roads::check(draft).ok()).map(|checked| checked.value).collect()
 }
 
-/// A line per scenario and ego: name, steps and state hash, from this many threads that share the work.
-fn golden_lines(scenarios: &[Scenario], threads: usize) -> Vec<String> {
-    let runs: Vec<(&Scenario, Ego)> =
-        scenarios.iter().flat_map(|scenario| Ego::DRIVERS.map(|ego| (scenario, ego))).collect();
+/// Every scenario with every ego.
+fn usual(scenarios: &[Scenario]) -> Vec<(&Scenario, Ego, Substeps)> {
+    let usual = Substeps::default();
+    scenarios.iter().flat_map(|scenario| Ego::DRIVERS.map(|ego| (scenario, ego, usual))).collect()
+}
+
+/// Every scenario with one ego and one other physics step, each in turn.
+fn in_other_steps(scenarios: &[Scenario]) -> Vec<(&Scenario, Ego, Substeps)> {
+    let each = |(number, scenario)| {
+        let substeps = Substeps::new([4, 8, 10][number / Ego::DRIVERS.len() % 3]);
+        (scenario, Ego::DRIVERS[number % Ego::DRIVERS.len()], substeps)
+    };
+    scenarios.iter().enumerate().map(each).collect()
+}
+
+/// A line per run: name, ego, steps and state hash, from this many threads that share the work.
+fn golden_lines(runs: &[(&Scenario, Ego, Substeps)], threads: usize) -> Vec<String> {
     let next = AtomicUsize::new(0);
     let lines: Mutex<Vec<(usize, String)>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
@@ -247,11 +260,16 @@ fn golden_lines(scenarios: &[Scenario], threads: usize) -> Vec<String> {
                 let mut runner = Runner::new();
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(&(scenario, ego)) = runs.get(number) else { return };
+                    let Some(&(scenario, ego, substeps)) = runs.get(number) else { return };
                     let mut recorder = RolloutRecorder::new();
+                    runner = runner.stepping(substeps);
                     runner.run(scenario, ego, &mut recorder);
                     let rollout = recorder.finish().expect("a rollout");
-                    let line = format!("{} {ego} {} {}", rollout.scenario_id, rollout.steps(), rollout.state_hash);
+                    let (id, steps, hash) = (&rollout.scenario_id, rollout.steps(), &rollout.state_hash);
+                    let line = match substeps.count() {
+                        5 => format!("{id} {ego} {steps} {hash}"),
+                        count => format!("{id} {ego}, {count} physics steps, {steps} {hash}"),
+                    };
                     lines.lock().expect("no thread has failed").push((number, line));
                 }
             });
@@ -262,14 +280,15 @@ fn golden_lines(scenarios: &[Scenario], threads: usize) -> Vec<String> {
     lines.into_iter().map(|(_, line)| line).collect()
 }
 
-/// State hashes of all those scenarios with every ego: equal on every machine, in debug and release builds, for any
+/// State hashes of all those scenarios with every ego, and with other physics steps: equal on every machine, in debug and release builds, for any
 /// number of threads and any history of the runners. To renew them after a change of the model run with
 /// `RECRASH_RENEW_GOLDENS=1`; that run fails.
 #[test]
 fn state_hashes_are_those_on_file_for_1_2_and_8_threads() {
     let scenarios = golden_scenarios();
     assert!(scenarios.len() >= 70, "only {} scenarios can still be run", scenarios.len());
-    let hashes = golden_lines(&scenarios, 1);
+    let runs = [usual(&scenarios), in_other_steps(&scenarios)].concat();
+    let hashes = golden_lines(&runs, 1);
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/state_hashes.txt");
     if std::env::var_os("RECRASH_RENEW_GOLDENS").is_some() {
         std::fs::write(file, hashes.join("\n") + "\n").expect("the golden can be written");
@@ -280,6 +299,6 @@ fn state_hashes_are_those_on_file_for_1_2_and_8_threads() {
     let unknown: Vec<&String> = hashes.iter().filter(|hash| !golden.contains(&hash.as_str())).collect();
     assert!(unknown.is_empty(), "{} of {} are not on file: {unknown:#?}", unknown.len(), hashes.len());
     for threads in [2, 8] {
-        assert_eq!(golden_lines(&scenarios, threads), hashes, "{threads} threads");
+        assert_eq!(golden_lines(&runs, threads), hashes, "{threads} threads");
     }
 }

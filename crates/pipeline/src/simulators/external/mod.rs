@@ -15,7 +15,7 @@ pub use protocol::{told_at_reset, told_at_step};
 
 use crate::error::PipelineError;
 use process::EgoProcess;
-use recrash_model::rollout::Rollout;
+use recrash_model::rollout::{Rollout, Substeps};
 use recrash_roads::{RunError, Scenario, Simulator};
 use recrash_sim::{Native, RolloutRecorder, Runner};
 use std::sync::{Mutex, PoisonError};
@@ -46,6 +46,20 @@ impl ExternalEgo {
             .map_err(|fault| PipelineError::bad_input(format!("the ego {command}: {fault}")))?;
         Ok(Self { command, patience, idle: Mutex::new(vec![first]) })
     }
+
+    fn rollout(&self, scenario: &Scenario, substeps: Substeps) -> Result<Rollout, RunError> {
+        let failed = |fault: EgoFault| RunError::new(scenario, format!("the ego {fault}"));
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut process = match idle {
+            Some(process) => process,
+            None => EgoProcess::start(&self.command, self.patience).map_err(failed)?,
+        };
+        let mut recorder = RolloutRecorder::new();
+        // A process with a fault is dropped, which ends it: what it has in its memory is not known.
+        Runner::new().stepping(substeps).run_with(scenario, &mut process, &mut recorder).map_err(failed)?;
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(process);
+        Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
+    }
 }
 
 impl Simulator for ExternalEgo {
@@ -63,16 +77,10 @@ impl Simulator for ExternalEgo {
 
     /// It fails where the program does: what that did, and at which step.
     fn run(&self, scenario: &Scenario) -> Result<Rollout, RunError> {
-        let failed = |fault: EgoFault| RunError::new(scenario, format!("the ego {fault}"));
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut process = match idle {
-            Some(process) => process,
-            None => EgoProcess::start(&self.command, self.patience).map_err(failed)?,
-        };
-        let mut recorder = RolloutRecorder::new();
-        // A process with a fault is dropped, which ends it: what it has in its memory is not known.
-        Runner::new().run_with(scenario, &mut process, &mut recorder).map_err(failed)?;
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(process);
-        Ok(recorder.finish().unwrap_or_else(|| unreachable!("a run begins and ends")))
+        self.rollout(scenario, Substeps::default())
+    }
+
+    fn run_in(&self, scenario: &Scenario, substeps: Substeps) -> Option<Result<Rollout, RunError>> {
+        Some(self.rollout(scenario, substeps))
     }
 }

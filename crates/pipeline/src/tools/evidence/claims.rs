@@ -176,7 +176,7 @@ fn tools(all: &mut Structure, reports: &BTreeMap<&'static str, Value>) {
         all.add(
             "T1",
             "goal",
-            "Of {robustness: failures} failures {robustness: robust} are robust ({robustness: robust share}); {robustness: marginal} live on less than 5 cm or 0.1 s; of the robust ones {robustness: robust, fails on the second} fail on a second simulator too, {robustness: robust, passes on the second} pass there, and {robustness: robust, not run on a second} were not run there.",
+            "Of {robustness: failures} failures {robustness: robust} are robust ({robustness: robust share}); {robustness: marginal} live on less than 5 cm or 0.1 s, {robustness: step artefacts} on the physics step; of the robust ones {robustness: robust, fails on the second} fail on a second simulator too, {robustness: robust, passes on the second} pass there, and {robustness: robust, not run on a second} were not run there.",
             &["Sn3"],
             &[],
         );

@@ -125,6 +125,7 @@ fn of_report(report: &str, value: &Value, numbers: &mut Vec<Number>) {
                 ("robustness: failures", json!({})),
                 ("robustness: robust", json!({ "robust": true })),
                 ("robustness: marginal", json!({ "marginal": true })),
+                ("robustness: step artefacts", json!({ "step_artefact": true })),
                 ("robustness: robust, fails on the second", json!({ "robust": true, "confirmed": true })),
                 ("robustness: robust, passes on the second", json!({ "robust": true, "confirmed": false })),
                 ("robustness: robust, not run on a second", json!({ "robust": true, "confirmed": null })),
