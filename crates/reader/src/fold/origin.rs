@@ -69,10 +69,9 @@ pub(crate) fn ahead(reading: &Reading<'_>, account: &Account) -> Option<Fact<boo
     let actor = reading.contacts.partner?;
     let leaves = |act: Act| matches!(act, Act::LaneChange | Act::Swerve | Act::Drift | Act::Pass | Act::Turn);
     let on_its_line = reading.before(actor).take_while(|(_, frame)| !frame.act().is_some_and(leaves));
-    let seen =
+    let mut seen =
         on_its_line.flat_map(|(number, frame)| frame.relations.iter().map(move |(relation, _)| (number, relation)));
-    let (number, relation) =
-        seen.filter(|(_, relation)| matches!(relation, Relation::Ahead | Relation::Behind)).next()?;
+    let (number, relation) = seen.find(|(_, relation)| matches!(relation, Relation::Ahead | Relation::Behind))?;
     let (first, end) = reading.window(number);
     Some(Fact { value: *relation == Relation::Ahead, source: reading.words(first, end) })
 }
