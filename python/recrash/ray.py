@@ -175,6 +175,8 @@ def corpus(
     profile: str | None = None,
     where: str | None = None,
     mapping: Location | None = None,
+    simulator: str | None = None,
+    python: Location | None = None,
     batch: int = 32,
     actors: int | None = None,
     out: Location | None = None,
@@ -183,8 +185,10 @@ def corpus(
 ) -> pyarrow.Table:
     """Reconstruct every incident of crash files, and test an ego in each that is told. A row an incident.
 
-    The files are read here; ``batch`` accounts are a task, which reconstructs and tests them.
+    The files are read here; ``batch`` accounts are a task, which reconstructs and tests them. ``simulator`` and ``python`` are
+    those of :func:`recrash.test`.
     """
+    config = (profile, simulator, None if python is None else str(python))
     accounts = read(files, where=where, mapping=mapping, profile=profile)
     incidents = accounts.table.to_dict()["incident"]
     parts = [accounts.part(begin, begin + batch) for begin in range(0, len(accounts), batch)]
@@ -197,9 +201,11 @@ def corpus(
     for number, part in enumerate(parts):
         begin = number * batch
         name = f"{incidents[begin]} to {incidents[begin + len(part) - 1]}"
-        batches.append(Batch(_id("corpus", ego, profile, part.__reduce__()[1][0]), (part,), name, lost(begin)))
-    seat = None if ego is None or isinstance(ego, str) else _Seat
-    return _done(_Work(_corpus, (ego, (profile, None, None)), seat), batches, "corpus", CORPUS, out, progress, cluster, actors)
+        batches.append(Batch(_id("corpus", ego, config, part.__reduce__()[1][0]), (part,), name, lost(begin)))
+    by_name = (ego is None or isinstance(ego, str)) and simulator != "metadrive"
+    return _done(
+        _Work(_corpus, (ego, config), None if by_name else _Seat), batches, "corpus", CORPUS, out, progress, cluster, actors
+    )
 
 
 def _cut(items: Sequence[Any], size: int) -> list[Sequence[Any]]:

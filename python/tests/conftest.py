@@ -16,6 +16,8 @@ os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
 os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
 
 CASES = Path(__file__).parents[2] / "cases"
+#: An interpreter that has MetaDrive, where one is named.
+METADRIVE = os.environ.get("RECRASH_METADRIVE_PYTHON")
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import case
+from conftest import METADRIVE, case
 
 import recrash
 from recrash import EgoError, InputError, RecrashError, Scenario, Suite
@@ -86,9 +86,6 @@ def test_what_metadrive_needs_is_told_where_it_is_not(scenario):
         scenario.run(lambda _: (0.0, 0.0), simulator="metadrive")
     with pytest.raises(InputError, match='no simulator "carla"; there are: native, metadrive'):
         scenario.run("idm", simulator="carla")
-
-
-METADRIVE = os.environ.get("RECRASH_METADRIVE_PYTHON")
 
 
 @pytest.mark.skipif(METADRIVE is None, reason="RECRASH_METADRIVE_PYTHON names no interpreter with MetaDrive")

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import sys
 import time
+from pathlib import Path
 
 import pytest
-from conftest import case
+from conftest import METADRIVE, case
 
 import recrash
 from recrash import RecrashError, Scenario
@@ -96,6 +97,31 @@ def scenarios(crashes):
     return recrash.load_scenarios(crashes)
 
 
+@pytest.fixture(scope="module")
+def designed(tmp_path_factory):
+    """Scenarios that MetaDrive can hold."""
+    folder = tmp_path_factory.mktemp("suite") / "s"
+    options = {"profile": "paper", "budget": 3, "tune_budget": 1, "seed": 5}
+    return recrash.run(folder, progress=False, until="design", **options).scenarios()
+
+
+@pytest.fixture
+def noted(tmp_path):
+    """An interpreter with MetaDrive, and a function that gives the processes that it was started as."""
+    notes, program = tmp_path / "pids", tmp_path / "python"
+    program.write_text(f"#!/bin/sh\necho $$ >> '{notes}'\nexec '{METADRIVE}' \"$@\"\n")
+    program.chmod(0o755)
+    return program, lambda: [int(line) for line in notes.read_text().split()]
+
+
+def wait_until_gone(pids):
+    """Wait until none of these processes is there: they are ended with the actor that started them."""
+    until = time.monotonic() + 20
+    while any(Path(f"/proc/{pid}").exists() for pid in pids):
+        assert time.monotonic() < until, pids
+        time.sleep(0.1)
+
+
 def test_tests_and_sweeps_are_those_of_one_process(second_node, scenarios, tmp_path):
     import recrash.ray
 
@@ -122,6 +148,53 @@ def test_a_node_killed_in_the_middle_changes_no_byte(killed_after_two, scenarios
     assert rows["error"].null_count == len(rows), rows["error"].drop_null()
     recrash.ray.test(scenarios, ego, batch=2, out=tmp_path / "here.parquet", cluster=False)
     assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+
+
+needs_metadrive = pytest.mark.skipif(METADRIVE is None, reason="RECRASH_METADRIVE_PYTHON names no interpreter with MetaDrive")
+PAPER = {"profile": "paper", "simulator": "metadrive"}
+
+
+@needs_metadrive
+def test_metadrive_workers_are_actors_that_give_what_one_machine_gives(second_node, designed, noted, tmp_path):
+    import recrash.ray
+
+    program, started = noted
+    twice = [*designed, *designed[::-1]]
+    options = {**PAPER, "python": program}
+    table = recrash.ray.test(twice, "metadrive-idm", batch=1, out=tmp_path / "on.parquet", **options)
+    workers = started()
+    # One for each processor of the cluster, for all that it runs; none is left when it is done.
+    assert len(workers) == 2
+    wait_until_gone(workers)
+    rows = table.to_pylist()
+    assert not any(row["error"] for row in rows), rows
+    assert rows == recrash.test(twice, "metadrive-idm", threads=1, **options).to_dicts()
+    assert len(started()) == 3
+    recrash.ray.test(twice, "metadrive-idm", batch=1, out=tmp_path / "here.parquet", cluster=False, **options)
+    assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+
+
+@needs_metadrive
+def test_metadrive_workers_of_a_killed_node_are_done_without(killed_after_two, designed, noted, tmp_path):
+    import recrash.ray
+
+    program, started = noted
+    options = {**PAPER, "python": program}
+    many = designed * 4
+    rows = recrash.ray.test(many, "metadrive-idm", batch=1, out=tmp_path / "on.parquet", **options)
+    assert killed_after_two == ["test"]
+    assert rows["error"].null_count == len(rows), rows["error"].drop_null()
+    wait_until_gone(started())
+    recrash.ray.test(many, "metadrive-idm", batch=1, out=tmp_path / "here.parquet", cluster=False, **options)
+    assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+
+
+def test_where_a_worker_has_no_metadrive_it_is_told(cluster, scenarios, tmp_path):
+    import recrash.ray
+
+    with pytest.raises(RecrashError, match="no-such-python"):
+        recrash.ray.test(scenarios[:2], "metadrive-idm", python="no-such-python", out=tmp_path / "t.parquet", **PAPER)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_corpus_is_reconstructed_and_tested_in_parts(cluster):
