@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The largest wheel that is given to anybody: of a `dist` build, where there is one. [bytes]
+/// The largest wheel that is given to anybody: of a release build with the highest zip level, where there is one. [bytes]
 const MAX_WHEEL_BYTES: u64 = 12_000_000;
 
 /// What a source distribution needs beside the crates: they read it when they are compiled.
