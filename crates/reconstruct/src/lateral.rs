@@ -155,27 +155,16 @@ pub(crate) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     if !told.passes_from_behind() {
         return None;
     }
-    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
+    let cp = staging.cp;
     let comes_in = math::wrap_angle(cp.heading - staging.cp_came);
     let out_y_m = cp.position.y - 0.5 * OUT_M * comes_in;
     let own_y_m = staging.sv.position.y;
-    let at = |back_m: f64, y_m: f64| Pose {
-        position: Vec2::new(cp.position.x - came.x * back_m, y_m),
-        heading: staging.cp_came,
-    };
     let back_m = (pace.driven_m - 0.5).min(OUT_M + COMES_OUT_M);
-    let poses = vec![at(back_m, own_y_m), at(OUT_M, out_y_m), cp];
     let bends_m = (4.0 * LEAST_BY_RADIUS_M * (out_y_m - own_y_m).abs()).sqrt();
     if back_m - OUT_M < bends_m {
         return None;
     }
-    let mut course = Course::begin(arm_m);
-    if !poses.windows(2).all(|pair| course.curve(pair[0], pair[1], false)) {
-        return None;
-    }
-    let before_m = pace.driven_m - course.length_m();
-    let begin = Pose { position: poses[0].position - came * before_m.max(0.0), ..poses[0] };
-    (before_m > 0.02).then_some((begin, poses))
+    between_lines(staging, pace, arm_m, [(back_m, own_y_m), (OUT_M, out_y_m)])
 }
 
 /// Who changed into the ego's lane behind it is back on its line so far before the contact, and took so long for it. [m]
@@ -194,20 +183,25 @@ pub(crate) fn changed_behind(told: &Told, staging: &Staging, pace: &Pace, arm_m:
         None if ground.lanes > 1 => LeftRight::Right,
         None => return None,
     };
-    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
     let line_y_m = staging.sv.position.y + if from == LeftRight::Left { LANE_M } else { -LANE_M };
-    let at = |back_m: f64, y_m: f64| Pose {
+    between_lines(staging, pace, arm_m, [(CHANGED_M + CHANGES_OVER_M, line_y_m), (CHANGED_M, staging.cp.position.y)])
+}
+
+/// Along one line until so far before the contact, over to another by so far, and on to the contact: where it begins, and the poses that it
+/// drives by. Of each line how far before the contact and where beside the road's axis. [m]
+fn between_lines(staging: &Staging, pace: &Pace, arm_m: f64, lines: [(f64, f64); 2]) -> Option<(Pose, Vec<Pose>)> {
+    let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
+    let [leaves, joins] = lines.map(|(back_m, y_m)| Pose {
         position: Vec2::new(cp.position.x - came.x * back_m, y_m),
         heading: staging.cp_came,
-    };
-    let poses = vec![at(CHANGED_M + CHANGES_OVER_M, line_y_m), at(CHANGED_M, cp.position.y), cp];
+    });
     let mut course = Course::begin(arm_m);
-    if !poses.windows(2).all(|pair| course.curve(pair[0], pair[1], false)) {
+    if !(course.curve(leaves, joins, false) && course.curve(joins, cp, false)) {
         return None;
     }
     let before_m = pace.driven_m - course.length_m();
-    let begin = Pose { position: poses[0].position - came * before_m.max(0.0), ..poses[0] };
-    (before_m > 0.02).then_some((begin, poses))
+    let begin = Pose { position: leaves.position - came * before_m.max(0.0), ..leaves };
+    (before_m > 0.02).then(|| (begin, vec![leaves, joins, cp]))
 }
 
 /// No bend of who comes out to pass is tighter. [m]
