@@ -40,6 +40,9 @@ const PUSH_MPS: f64 = 10.0;
 const THROW_S: f64 = 0.25;
 const THROW_M: f64 = 1.0;
 
+/// Who is pushed while it rolls towards an ego that stands does so at this speed. [m/s]
+const PUSHED_ROLLING_MPS: f64 = 2.0;
+
 /// Who touches the partner on its way is faster than it by so much. [m/s]
 const NUDGE_MPS: f64 = 2.0;
 
@@ -332,6 +335,17 @@ fn pusher(told: &Told) -> (PartnerKind, Option<Size>, f64) {
 /// The line by which the partner comes to the contact, as long as its pace needs.
 fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
     let cp = &told.cp;
+    let ground = &staging.ground;
+    if let Some(begin_m) = staging.cp_follows_m.map(|at_m| at_m - pace.driven_m)
+        && (0.0..ground.first_m()).contains(&begin_m)
+    {
+        let legs =
+            vec![Leg::Lanes { roads: ground.route.clone(), until_m: None, lane: None, against: false, reverse: false }];
+        let begin = ground.sv_pose(begin_m);
+        let plan =
+            ActorPlan { speed_mps: pace.speed_mps, course: legs, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
+        return (plan, begin);
+    }
     let reverse = cp.state == ContactState::Reversing;
     let gear = if reverse { -1.0 } else { 1.0 };
     let arm_m = recrash_roads::arm_m(cp.kind, size_of(cp).0);
@@ -449,14 +463,20 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     };
     let actor =
         |id: &str, kind, size, plan| Actor { id: id.to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan };
-    let braking_s = ROLLING_MPS / STOPPING_MPS2;
+    let rolls_mps = if told.pushed_rolling { PUSHED_ROLLING_MPS } else { 0.0 };
+    let braking_s = (ROLLING_MPS - rolls_mps) / STOPPING_MPS2;
     let from_s = ((told.contact_s - STOOD_S - braking_s) * 10.0).floor() / 10.0;
-    let driven_m = ROLLING_MPS * from_s + 0.5 * ROLLING_MPS * braking_s;
+    let driven_m = ROLLING_MPS * from_s + 0.5 * (ROLLING_MPS + rolls_mps) * braking_s;
     let ego_drives_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
     let (partner, pusher_mps) = if told.sv.state == ContactState::Parked {
         (ActorPlan::standing(place(at(THROW_M))), PUSH_MPS)
     } else if ego_drives_mps > 0.0 {
         (on(ego_drives_mps, at(THROW_M + ego_drives_mps * told.contact_s), Vec::new()), ego_drives_mps + PUSH_MPS)
+    } else if rolls_mps > 0.0 {
+        // It slows behind the ego, and rolls yet when it is pushed.
+        let slow = vec![when(from_s, Deed::Speed { to_mps: rolls_mps, rate_mps2: STOPPING_MPS2 })];
+        let rolled_m = rolls_mps * (told.contact_s - from_s - braking_s);
+        (on(ROLLING_MPS, at(THROW_M + driven_m + rolled_m), slow), rolls_mps + PUSH_MPS)
     } else {
         let stop =
             vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }), next(Deed::Hold { for_s: None })];
@@ -464,6 +484,6 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     };
     let (kind, size, pusher_m) = pusher(told);
     let until_m = THROW_M + 0.5 * (size_of(cp).0 + pusher_m) + pusher_mps * (told.contact_s - THROW_S);
-    let behind_m = until_m + ego_drives_mps * THROW_S;
+    let behind_m = until_m + (ego_drives_mps + rolls_mps) * THROW_S;
     vec![actor("cp", cp.kind, cp.size, partner), actor("pusher", kind, size, on(pusher_mps, at(behind_m), Vec::new()))]
 }

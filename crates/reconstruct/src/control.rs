@@ -7,7 +7,7 @@ use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, 
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
-use recrash_model::scenario::{Act, ActorPlan, Aspect, Control, Deed, Device, MapSpec, Phase, Trigger};
+use recrash_model::scenario::{ActorPlan, Aspect, Control, Deed, Device, MapSpec, Phase, Trigger};
 use recrash_roads::{ControlPlacement, Scenario};
 
 /// Longest phase. [s]
@@ -95,11 +95,18 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, partner: Op
 
 /// When the ego sets off last, where it does. [s]
 fn sets_off_s(ego: &ActorPlan) -> Option<f64> {
-    let sets_off = |act: &&Act| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
-    let stood = ego.speed_mps == 0.0 || ego.acts.iter().any(|act| matches!(act.deed, Deed::Stop { .. }));
-    let last = ego.acts.iter().rfind(sets_off).filter(|_| stood)?;
-    match last.when {
-        Some(Trigger::TimeS(time_s)) => Some(time_s),
+    let (mut stands, mut last) = (ego.speed_mps == 0.0, None);
+    for act in &ego.acts {
+        match act.deed {
+            Deed::Stop { .. } => stands = true,
+            Deed::Speed { to_mps, .. } if to_mps > 0.0 && stands => {
+                (stands, last) = (false, act.when.as_ref());
+            }
+            _ => {}
+        }
+    }
+    match last? {
+        Trigger::TimeS(time_s) => Some(*time_s),
         _ => None,
     }
 }

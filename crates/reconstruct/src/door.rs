@@ -178,7 +178,16 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
                     let owner_off = if told.gate_swings { 0 } else { zones_off(&owner.zones, owner_zone) };
                     let off = owner_off + zones_off(&other.zones, other_zone);
                     let (ground, door) = (ground.clone(), Some(opening.clone()));
-                    found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, door, cost: (off, trial) });
+                    found.push(Staging {
+                        ground,
+                        sv_s_m,
+                        sv,
+                        cp,
+                        cp_came: came,
+                        cp_follows_m: None,
+                        door,
+                        cost: (off, trial),
+                    });
                 }
             }
         }

@@ -20,6 +20,7 @@ use recrash_model::math;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::narrative::FirstMover;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
+use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::Scenario;
 
@@ -149,6 +150,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
                 && as_told
                 && in_order;
         let before = |stood: bool, slowed: bool, gained: bool| match (stood, slowed, gained) {
+            (true, true, _) => ", had stood, then slowed",
             (true, ..) => ", had stood",
             (false, true, _) => ", had slowed",
             (false, false, true) => ", had gained speed",
@@ -456,8 +458,10 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
 /// Who turns back by more than this on its way swings. [deg]
 const MOST_BACK_DEG: f64 = 30.0;
 
-/// Nobody turns faster in a step. [deg]
-const FASTEST_TURN_DEG: f64 = 20.0;
+/// Nothing that is longer than this on wheels drives a tighter circle, by a step of this. [m, m, rad]
+const WHEELED_M: f64 = 2.5;
+const TIGHTEST_M: f64 = 4.5;
+const SKIDS_RAD: f64 = 0.03;
 
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
 const AS_STAGED_S: f64 = 0.15;
@@ -465,11 +469,13 @@ const AS_STAGED_S: f64 = 0.15;
 /// Who slowed has lost at least this, who gained speed has gained it, or a quarter. [m/s]
 const CHANGED_MPS: f64 = 1.0;
 
-/// Whether somebody slowed before a time, and whether it gained speed.
+/// Whether somebody slowed before a time, since it last stood, and whether it gained speed.
 fn changed(track: &ActorTrack, time_s: f64) -> (bool, bool) {
     let until = ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
     let now_mps = track.states[until].velocity().length();
-    let any = |was: &dyn Fn(f64) -> bool| track.states[..=until].iter().any(|state| was(state.velocity().length()));
+    let stood = track.states[..until].iter().rposition(|state| state.velocity().length() < STANDS_MPS).unwrap_or(0);
+    let any =
+        |was: &dyn Fn(f64) -> bool| track.states[stood..=until].iter().any(|state| was(state.velocity().length()));
     (any(&|mps| mps > now_mps + CHANGED_MPS), any(&|mps| mps < now_mps - CHANGED_MPS.min(0.25 * now_mps)))
 }
 
@@ -491,7 +497,11 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     // Every second.
     let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
     let turns = || track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
-    if turns().any(|turn| turn.to_degrees().abs() > FASTEST_TURN_DEG) {
+    let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M;
+    let tighter = |(turn, state): (f64, &ActorState)| {
+        wheels && turn.abs() > SKIDS_RAD + state.velocity().length() * STEP_S / TIGHTEST_M
+    };
+    if turns().zip(&track.states).any(tighter) {
         return true;
     }
     let (all, net) = turns().fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));

@@ -258,6 +258,8 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         all.extend(if waits && told.sv.turning == Turning::Right {
             // It has begun to turn.
             inside(&[6.0, 10.0, 14.0, 3.0, 18.0, 22.0, 28.0])
+        } else if told.goes_straight_behind() {
+            inside(&[8.0, 9.0, 10.0, 14.0, 18.0, 22.0])
         } else if told.sv.turning != Turning::No {
             inside(&[10.0, 14.0, 6.0, 18.0, 3.0, 22.0, 28.0])
         } else {

@@ -197,6 +197,12 @@ fn last_pace(told: &Told) -> Pace {
 fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pace, f64, Option<f64>)) -> Pace {
     let (cp, contact_s) = (&told.cp, told.contact_s);
     let usual = last_pace(told);
+    if told.waits_behind() && told.sv.state == ContactState::Moving && ego.speed_mps == 0.0 {
+        let ego_s = contact_s - first_time(&ego.acts);
+        if let Some(pace) = start_after(contact_s, cp.speed_mps, ego_m + BEHIND_M, ego_s - FOLLOWS_S) {
+            return pace;
+        }
+    }
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
     let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
     let enters = cp.movement == Some(Movement::EnteringTraffic);
@@ -318,6 +324,9 @@ fn pace(contact_s: f64, side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
             ];
             Pace { speed_mps: rolling_mps, acts, driven_m }
         }
+        ContactState::Moving if side.slowed_from.is_some() && (side.stood_first || !side.phases.is_empty()) => {
+            starts_and_slows(contact_s, side.speed_mps, 0.0).unwrap_or_else(|| slows(contact_s, side))
+        }
         ContactState::Moving if side.stood_first || !side.phases.is_empty() => {
             let moving_s = ((side.speed_mps / STARTS_MPS2).min(LONGEST_START_S) * 10.0).ceil().max(5.0) / 10.0;
             let go = Deed::Speed { to_mps: side.speed_mps, rate_mps2: side.speed_mps / moving_s };
@@ -351,6 +360,25 @@ fn slows(contact_s: f64, side: &Side) -> Pace {
     Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
 }
 
+/// From a stand up to more than its speed at the contact, and down to that: so far, or as far as that takes.
+fn starts_and_slows(contact_s: f64, speed_mps: f64, driven_m: f64) -> Option<Pace> {
+    let from_mps = speed_mps + STARTS_AND_SLOWS_MPS;
+    let gaining_s = (from_mps / STARTS_MPS2 * 10.0).ceil() / 10.0;
+    let braking_s = (STARTS_AND_SLOWS_MPS / SLOWS_MPS2 * 10.0).ceil() / 10.0;
+    let least_m = 0.5 * from_mps * gaining_s + 0.5 * (from_mps + speed_mps) * braking_s;
+    let keeps_s = ((driven_m.max(least_m) - least_m) / from_mps * 10.0).round() / 10.0;
+    let begins_s = contact_s - gaining_s - keeps_s - braking_s;
+    let acts = vec![
+        when(begins_s, Deed::Speed { to_mps: from_mps, rate_mps2: from_mps / gaining_s }),
+        when(contact_s - braking_s, Deed::Speed { to_mps: speed_mps, rate_mps2: STARTS_AND_SLOWS_MPS / braking_s }),
+    ];
+    let driven_m = least_m + from_mps * keeps_s;
+    (begins_s > 1.0).then_some(Pace { speed_mps: 0.0, acts, driven_m })
+}
+
+/// Who set off and slowed again was faster by so much between. [m/s]
+pub(crate) const STARTS_AND_SLOWS_MPS: f64 = 3.0;
+
 /// It gains speed until the contact.
 fn gains(contact_s: f64, speed_mps: f64) -> Pace {
     let by_mps = GAINS_MPS.min(0.5 * speed_mps);
@@ -381,7 +409,9 @@ fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
     };
     let stops = stops && matches!(sv.state, ContactState::SettingOff | ContactState::Moving);
     let driven_m = past_line_m(told, ground, sv_s_m).filter(|_| stops)?;
-    start_over(told.contact_s, sv.speed_mps, driven_m)
+    // Who slows again before it has come so far stood behind others, and not at the line.
+    let slows = sv.slowed_from.and_then(|_| starts_and_slows(told.contact_s, sv.speed_mps, driven_m));
+    slows.or_else(|| start_over(told.contact_s, sv.speed_mps, driven_m))
 }
 
 /// Who stood beside the ego before a junction sets off from the same line.
@@ -409,6 +439,18 @@ pub(crate) fn start_over(contact_s: f64, speed_mps: f64, driven_m: f64) -> Optio
     let from_s = ((contact_s - moving_s) * 10.0).round() / 10.0;
     let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
     Some(Pace { speed_mps: 0.0, acts: vec![when(from_s, go)], driven_m })
+}
+
+/// From a stand to a speed, so far and in so long.
+fn start_after(contact_s: f64, speed_mps: f64, driven_m: f64, moving_s: f64) -> Option<Pace> {
+    let moving_s = (moving_s * 10.0).floor() / 10.0;
+    let gaining_s = 2.0 * (moving_s - driven_m / speed_mps);
+    let rate_mps2 = speed_mps / gaining_s;
+    if !(0.1..=moving_s).contains(&gaining_s) || rate_mps2 > STRONGEST_START_MPS2 || moving_s > contact_s - 1.0 {
+        return None;
+    }
+    let go = Deed::Speed { to_mps: speed_mps, rate_mps2 };
+    Some(Pace { speed_mps: 0.0, acts: vec![when(contact_s - moving_s, go)], driven_m })
 }
 
 /// Nobody sets off harder. [m/s^2]

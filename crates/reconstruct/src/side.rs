@@ -147,9 +147,10 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
             stands && !fact.after_contact && !fact.begun
         });
     let slows = party.acts.iter().any(|fact| matches!(fact.act, Act::Slow | Act::Stop) && !fact.after_contact);
-    let slowed_from = (slows && !gained_last(party) && !stood_first && state == ContactState::Moving).then(|| {
+    let slows = slows && (!stood_first || slowed_after_its_stand(party));
+    let slowed_from = (slows && !gained_last(party) && state == ContactState::Moving).then(|| {
         let approach = party.speeds.iter().find(|speed| speed.value.meaning == SpeedMeaning::Approach);
-        Slowed(approach.map(|speed| speed.value.mps))
+        Slowed(approach.map(|speed| speed.value.mps).filter(|_| !stood_first))
     });
     // Of somebody on foot, an animal or a thing the state says enough.
     let drives =
@@ -197,6 +198,16 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         lane: told(&party.lane),
         control: control(party),
     }
+}
+
+/// Whether somebody who stood and set off is told to have slowed after it.
+fn slowed_after_its_stand(party: &Party) -> bool {
+    let last = |of: fn(Act) -> bool| {
+        let before = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun && of(fact.act));
+        before.map(|fact| fact.step).max()
+    };
+    let stands = last(|act| matches!(act, Act::Hold | Act::SetOff | Act::Stop));
+    last(|act| act == Act::Slow) > stands
 }
 
 /// Whether the last change of speed before the contact that is told is a gain.

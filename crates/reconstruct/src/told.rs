@@ -5,7 +5,7 @@ use crate::ground::LANE_M;
 use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
-use crate::pace::GAINS_MPS;
+use crate::pace::{GAINS_MPS, STARTS_AND_SLOWS_MPS};
 use crate::side::{Side, Slant, Turning, side};
 use crate::things::{self, Lies, SLIDES_MPS};
 use crate::touch::side_of;
@@ -43,8 +43,9 @@ const AFTER_MPS: f64 = 5.2;
 /// Who sets off behind an ego that moves is faster than it by so much. [m/s]
 const SETS_OFF_FASTER_MPS: f64 = 1.0;
 
-/// Speed in a turn. [m/s]
+/// Speed in a turn, usual and at most. [m/s]
 const TURNS_MPS: f64 = 5.0;
+const FASTEST_TURN_MPS: f64 = 7.0;
 
 /// An account, in the terms of a staging.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,6 +81,8 @@ pub(crate) struct Told {
     /// Somebody threw the partner at the subject vehicle; and who, where told.
     pub(crate) pushed: bool,
     pub(crate) pusher: Option<Kind>,
+    /// Who was pushed is told to have come along or slowed, and not to have stood.
+    pub(crate) pushed_rolling: bool,
     pub(crate) striker: Option<Striker>,
     /// Lanes in the ego's direction.
     pub(crate) lanes: Option<u8>,
@@ -158,6 +161,8 @@ impl Told {
         let into_flank = thing.is_some() && cp.state == ContactState::Moving && on_flank;
         let order = told(&account.order).filter(|_| !into_flank);
         let wanted_rig = trailer::rig(partner, &cp, origin);
+        let pushed_rolling = (partner.did(Act::Follow) || partner.did(Act::Slow))
+            && !(partner.did(Act::Stop) || partner.did(Act::Hold) || cp.state.stands());
         let sv_reverses = sv.state == ContactState::Reversing;
         let mut this = Self {
             crash_type,
@@ -179,6 +184,7 @@ impl Told {
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),
+            pushed_rolling,
             trailer_of: kind.filter(|_| trailer::touches(partner)),
             wanted_rig,
             rig: None,
@@ -374,6 +380,10 @@ impl Told {
             PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley => 5.0,
             _ => 11.2,
         };
+        // In a turn nobody drives at the posted speed.
+        if self.origin == Origin::Behind && matches!(self.sv.turning, Turning::Left | Turning::Right) {
+            return TURNS_MPS;
+        }
         let share = match self.origin {
             Origin::Behind | Origin::Ahead => 0.5,
             Origin::Beside { .. } => 0.6,
@@ -422,6 +432,12 @@ impl Told {
         if self.cp.impact_mps.is_none() && self.cp.state == ContactState::SettingOff && self.origin == Origin::Behind {
             self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + SETS_OFF_FASTER_MPS);
         }
+        // So is who set off behind an ego that slowed again: as fast as that was between.
+        let waits = self.cp.stood_first || self.cp.state == ContactState::SettingOff;
+        let slowed = self.sv.stood_first && self.sv.slowed_from.is_some();
+        if self.cp.impact_mps.is_none() && self.origin == Origin::Behind && waits && slowed {
+            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + STARTS_AND_SLOWS_MPS);
+        }
         if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.comes_across() {
             let sv = self.sv.speed_mps;
             match self.origin {
@@ -432,6 +448,10 @@ impl Told {
                             || self.ahead == Some(true) && self.cp.turning == Turning::No) =>
                 {
                     self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.5).max(0.4));
+                }
+                // Who turns across from beside came up beside it, and slowed for its turn.
+                Origin::Beside { .. } if matches!(self.cp.turning, Turning::Left | Turning::Right) => {
+                    self.cp.speed_mps = self.cp.speed_mps.max((sv + 2.5).min(FASTEST_TURN_MPS));
                 }
                 Origin::Behind | Origin::Beside { .. }
                     if self.sv.state != ContactState::Reversing && !self.cp.stood_first =>

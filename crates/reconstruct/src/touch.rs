@@ -33,6 +33,8 @@ pub(crate) struct Staging {
     pub(crate) cp: Pose,
     /// Heading of the partner some seconds before, of who does not reverse the way it moves. [rad]
     pub(crate) cp_came: f64,
+    /// Along the ego's way, where the partner is at the contact that comes by it. [m]
+    pub(crate) cp_follows_m: Option<f64>,
     /// The door that takes part.
     pub(crate) door: Option<Opening>,
     /// How well it fits: zone steps off on both sides, then the order of trial.
@@ -89,6 +91,14 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         let behind_m = 0.5 * (size_of(&told.sv).0 + size_of(&told.cp).0);
         let behind = ground.sv_pose((sv_s_m - behind_m).max(0.0)).heading;
+        trial += 1;
+        if let Some((back_m, cp, (sv_seen, cp_seen))) = follows(told, ground, (sv_s_m, sv)) {
+            let (sv_off, cp_off) = (zones_off(&told.sv.zones, sv_seen), zones_off(&told.cp.zones, cp_seen));
+            // Zones are told to a step: its way through the turn is worth more than that.
+            let off = if sv_off.max(cp_off) <= 1 { 0 } else { sv_off + cp_off };
+            let (ground, cp_follows_m) = (ground.clone(), Some(sv_s_m - back_m));
+            found.push(Staging { ground, sv_s_m, sv, cp, cp_came: 0.0, cp_follows_m, door: None, cost: (off, trial) });
+        }
         for (came, heading) in headings(told, sv.heading, behind) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
                 for &sv_point in things::sv_points(told, sv_zone) {
@@ -99,9 +109,14 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         };
                         let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
                         let face_on = told.scrapes() && is_face_on(told, sv, cp);
-                        let cost = (off + if face_on { FACE_ON } else { 0 }, trial);
+                        let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
+                        let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
+                        let worse = [(face_on, FACE_ON), (swings, SWINGS), (late, LATE)];
+                        let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
+                        let cost = (off + worse, trial);
                         let (ground, door) = (ground.clone(), None);
-                        found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, door, cost });
+                        let cp_follows_m = None;
+                        found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, cp_follows_m, door, cost });
                     }
                 }
             }
@@ -121,10 +136,64 @@ fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
     along_m < across_m
 }
 
-/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps.
+/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps; and of who goes straight on behind an ego that
+/// turns, that it swings by more than this. [rad]
 const FACE_ON: u32 = 2;
+const SWINGS: u32 = 2;
+const SWINGS_RAD: f64 = 0.35;
+
+/// The same of it, that the ego has turned by more than this. [rad]
+const LATE: u32 = 1;
+const EARLY_RAD: f64 = 0.6;
+
+/// Who comes behind an ego that turns comes by its way: how far behind it on that, where they touch, and the zones that then meet.
+fn follows(told: &Told, ground: &Ground, (sv_s_m, sv): (f64, Pose)) -> Option<(f64, Pose, (ContactZone, ContactZone))> {
+    if !told.turns_behind() {
+        return None;
+    }
+    let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
+    let own = OrientedBox::new(sv, sv_length, sv_width);
+    let at = |back_m: f64| OrientedBox::new(ground.sv_pose(sv_s_m - back_m), cp_length, cp_width);
+    let (mut inside, mut outside) = (0.25 * cp_length, sv_length + cp_length);
+    if outside > sv_s_m || !at(inside).overlaps(&own) || at(outside).overlaps(&own) {
+        return None;
+    }
+    for _ in 0..30 {
+        let middle = 0.5 * (inside + outside);
+        if at(middle).overlaps(&own) { inside = middle } else { outside = middle }
+    }
+    let (cp, touching) = (ground.sv_pose(sv_s_m - inside), at(inside - 0.01));
+    let velocities = (velocity(&told.sv, sv.heading), velocity(&told.cp, cp.heading));
+    let geometry = contact_geometry(&own, velocities.0, &touching, velocities.1);
+    Some((inside, cp, (geometry.ego_zone, geometry.other_zone)))
+}
 
 impl Told {
+    /// Whether the partner comes behind an ego that turns, by the same way.
+    fn turns_behind(&self) -> bool {
+        let turns = match self.sv.turning {
+            Turning::Left => Movement::LeftTurn,
+            Turning::Right => Movement::RightTurn,
+            Turning::No | Turning::Round => return false,
+        };
+        // Behind an ego that has turned and stands, it goes straight on again.
+        let same = self
+            .cp
+            .movement
+            .is_none_or(|movement| movement == turns || self.sv.state.stands() && movement == Movement::Straight);
+        let moves = matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff);
+        same && moves && self.origin == Origin::Behind && self.thing.is_none() && self.rig.is_none()
+    }
+
+    /// Whether the partner is told to go straight on behind an ego that turns.
+    pub(crate) fn goes_straight_behind(&self) -> bool {
+        let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
+        turns
+            && self.origin == Origin::Behind
+            && self.cp.movement == Some(Movement::Straight)
+            && !self.sv.state.stands()
+    }
+
     /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.
     fn scrapes(&self) -> bool {
         self.crash_type == CrashType::Lateral && side_of(&self.sv.zones).is_some()

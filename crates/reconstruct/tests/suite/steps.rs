@@ -174,3 +174,35 @@ fn who_changed_lanes_behind_the_ego_comes_out_of_the_other_lane() {
     let (states, met) = partner(&shown);
     assert!((states[0].y - met.y).abs() > 2.5, "{} {}", states[0].y, met.y);
 }
+
+#[test]
+fn who_set_off_and_slowed_again_does() {
+    let account = story(
+        "The AV was stopped at a red light behind other traffic, and a sedan was stopped behind the AV. When the light turned green, the AV \
+         proceeded forward and then slowed for a pedestrian. The sedan proceeded forward and the front of the sedan made contact with the \
+         rear of the AV.",
+    );
+    let shown = made(&account);
+    let ego = speeds(&shown);
+    let (fastest, last) = (ego.iter().copied().fold(0.0, f64::max), ego[ego.len() - 1]);
+    assert!(ego.contains(&0.0) && fastest > last + 1.5, "{ego:?}");
+    // Who stood behind it sets off after it.
+    let begins = |speeds: &[f64]| speeds.iter().rposition(|speed| *speed == 0.0).expect("it stands");
+    let sedan: Vec<f64> = partner(&shown).0.iter().map(|state| state.speed()).collect();
+    assert!(begins(&sedan) > begins(&ego), "{sedan:?}");
+    // One that keeps its speed does not pass for it.
+    assert!(missed(&account, |less| without_acts(less, &[Act::Slow])).contains(&CheckKind::SvState));
+}
+
+#[test]
+fn who_turns_behind_the_ego_comes_by_its_way() {
+    let account = story(
+        "The AV was making a right turn at the intersection of Elm Street and braked for a pedestrian. A sedan making a right turn behind the \
+         AV made contact with the rear of the AV with its front.",
+    );
+    let shown = made(&account);
+    let states = partner(&shown).0;
+    let turned = |from: usize| degrees_between(states[from].heading, states[states.len() - 1].heading);
+    // As the lane turns, and no sharper.
+    assert!(turned(states.len() - 6) < 35.0, "{}", turned(states.len() - 6));
+}
