@@ -115,7 +115,8 @@ impl Told {
         match (parks, self.place) {
             (true, _) if self.diagonal => vec![StripKind::Stalls, StripKind::Sidewalk],
             (true, _) => vec![StripKind::Parking, StripKind::Sidewalk],
-            (false, PlaceKind::Highway) => vec![StripKind::Shoulder],
+            (false, PlaceKind::Highway) if self.sv.movement != Some(Movement::Straight) => vec![StripKind::Shoulder],
+            (false, PlaceKind::Highway) => Vec::new(),
             (false, _) if lot => Vec::new(),
             (false, _) => vec![StripKind::Sidewalk],
         }
@@ -127,8 +128,8 @@ impl Told {
         self.edge == Some(LeftRight::Left) && self.thing.is_some() && (street || self.sv.turning != Turning::No)
     }
 
-    /// From the middle of the outermost lane to where the partner stands, and whether it stands on this side of that line: a small thing in a
-    /// parking strip does. [m]
+    /// From the middle of the outermost lane to the partner's flank: behind the strip beside it, and a small thing at the end of a parking strip
+    /// stands in that. [m]
     fn edge_m(&self) -> f64 {
         let strip = self.beside_edge().first().copied().filter(|strip| strip.is_paved() && !self.is_parked_along());
         let on_strip_m = strip.filter(|_| !self.edge_is_median()).map_or(0.0, StripKind::usual_width_m);
@@ -145,7 +146,7 @@ impl Told {
 /// What is longer goes along the road. [m]
 const LONG_M: f64 = 2.5;
 
-/// An ego that has stood and driven no farther since drifts by no more than this share of it. [m]
+/// An ego that has stood, and driven no farther since, drifts by this share of it. [m]
 const LEAST_DRIFT_M: f64 = 7.0;
 const DRIFTS: f64 = 0.12;
 
@@ -154,42 +155,21 @@ const FARTHEST_M: f64 = 5.0;
 
 /// Ways in which the ego comes to the edge of its road and touches what stands there.
 pub(crate) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Staging> {
-    // To the right of the ego's line, and to the partner's flank that is nearer to it.
-    let (right, near) = if side == LeftRight::Right { (1.0, 1.0) } else { (-1.0, -1.0) };
-    let corner = (1.0, -right);
-    let within = (1.0, -0.75 * right);
+    // Seen from the ego's line to the right, and from what stands there to the flank that is nearer.
+    let right = if side == LeftRight::Right { 1.0 } else { -1.0 };
+    let (corner, within) = ((1.0, -right), (1.0, -0.75 * right));
     let flank_only = !told.sv.zones.is_empty() && !told.sv.zones.iter().any(|zone| zone.is_front());
     let sv_points = match told.goes_along() || told.is_parked_along() || flank_only {
         true => vec![corner],
         false => vec![within, corner],
     };
-    // As it faces, and where it may be touched.
-    let mut ways: Vec<(f64, (f64, f64))> = Vec::new();
-    if told.diagonal {
-        // Its rear to the road, and the corner of it that is nearest.
-        ways.push((-0.25 * math::PI * right, (-1.0, near)));
-        ways.push((-0.75 * math::PI * right, (-1.0, -near)));
-    }
-    for (turned, near) in [(0.0, near), (math::PI, -near)] {
-        let by_zones = || {
-            let zones = if told.cp.zones.is_empty() { &ContactZone::ALL[..8] } else { &told.cp.zones[..] };
-            let at = zones.iter().flat_map(|zone| points(*zone)).copied();
-            at.filter(|point| point.1 * near > 0.9).map(|point| (turned, point)).collect::<Vec<_>>()
-        };
-        match (told.is_parked_along(), told.goes_along()) {
-            _ if told.diagonal => {}
-            (true, _) => ways.extend(by_zones()),
-            (false, true) => ways.extend([-0.5, 0.0, 0.5].map(|along| (turned, (along, near)))),
-            (false, false) => ways.push((turned, (-near * right, near))),
-        }
-    }
     let mut found = Vec::new();
     let mut trial = 0;
     for sv_s_m in ground.places() {
         for &sv_point in &sv_points {
             let Some((ground, sv)) = drifted(told, ground, sv_s_m, sv_point, right * told.edge_m()) else { continue };
             let along = ground.pose(ground.beside(at(told, sv, sv_point)).0, 0.0).heading;
-            for &(turned, cp_point) in &ways {
+            for &(turned, cp_point) in &ways(told, right) {
                 trial += 1;
                 let heading = math::wrap_angle(along + turned);
                 let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else { continue };
@@ -208,6 +188,30 @@ pub(crate) fn from_stand(told: &Told) -> Option<Pace> {
     let turns = told.edge.is_some() && sv.stood_first && sv.turning != Turning::No;
     let driven_m = sv.speed_mps * (told.contact_s - STOOD_S - 1.0) * 0.9;
     turns.then(|| start_over(told.contact_s, sv.speed_mps, driven_m)).flatten()
+}
+
+/// How the partner may face, against the road, and where it may be touched; `near`: its flank that is nearer to the ego, where it faces as the
+/// road goes. [rad]
+fn ways(told: &Told, near: f64) -> Vec<(f64, (f64, f64))> {
+    if told.diagonal {
+        // Its rear to the road, and the corner of it that is nearest.
+        return vec![(-0.25 * math::PI * near, (-1.0, near)), (-0.75 * math::PI * near, (-1.0, -near))];
+    }
+    if told.goes_along() {
+        return [-0.5, 0.0, 0.5].map(|along| (0.0, (along, near))).to_vec();
+    }
+    if !told.is_parked_along() {
+        return vec![(0.0, (-1.0, near))];
+    }
+    let zones = if told.cp.zones.is_empty() { &ContactZone::ALL[..8] } else { &told.cp.zones[..] };
+    let on_flank = [(0.0, near), (math::PI, -near)].into_iter().flat_map(|(turned, near)| {
+        let at = zones.iter().flat_map(|zone| points(*zone)).copied();
+        at.filter(move |point| point.1 * near > 0.9).map(move |point| (turned, point))
+    });
+    let corners = [(0.0, near), (math::PI, -near)]
+        .into_iter()
+        .flat_map(|(turned, near)| [-1.0, 1.0].map(|end| (turned, (end, near))));
+    on_flank.chain(corners).collect()
 }
 
 /// A point of the ego's outline, in shares of half of its length and width.
@@ -242,7 +246,7 @@ fn drifted(told: &Told, ground: &Ground, sv_s_m: f64, point: (f64, f64), line_m:
 /// What stands at the edge reaches no farther into a lane. [m]
 const INTO_LANE_M: f64 = 0.15;
 
-/// What goes along the road is at no greater angle to it, and what is told to be diagonal at no smaller one. [deg]
+/// What goes along the road is at no greater angle to it, and who is told to be parked diagonally at no smaller one. [deg]
 const ALONG_DEG: f64 = 15.0;
 
 pub(crate) fn words(side: LeftRight) -> String {

@@ -220,7 +220,7 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             }
         }
     };
-    if things::across(told).is_some() {
+    if told.lies.is_some() {
         return vec![(sv_heading, sv_heading)];
     }
     if told.stands_across() {
