@@ -30,10 +30,12 @@ pub(crate) fn side(account: &Account, sv: &Side, cp: &Side, lies: Option<Lies>, 
     let partner = account.partner.as_ref()?;
     let touched = side_of(&sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
     let beside = match origin {
-        Origin::Beside { side } => Some(side),
+        Origin::Beside { side } | Origin::Parked { side: Some(side) } => Some(side),
         _ => None,
     };
-    let side = beside.or(touched).or(sv.aside)?;
+    // No pole stands in a lane.
+    let usual = (told(&partner.kind) == Some(Kind::Pole)).then_some(LeftRight::Right);
+    let side = beside.or(touched).or(sv.aside).or(usual)?;
     let drives = matches!(sv.state, ContactState::Moving | ContactState::SettingOff)
         && !matches!(
             sv.movement,
@@ -61,7 +63,8 @@ fn stands_there(account: &Account, partner: &Party, (sv, cp): (&Side, &Side), be
         _ if !cp.state.stands() => false,
         Kind::Curb => true,
         // Else it is ahead.
-        Kind::Wall | Kind::Pole | Kind::Barrier => beside || !sv.zones.contains(&ContactZone::Front),
+        Kind::Pole => true,
+        Kind::Wall | Kind::Barrier => beside || !sv.zones.contains(&ContactZone::Front),
         Kind::Gate => beside,
         Kind::Object if things::is_fixed(partner) => true,
         Kind::Debris | Kind::Object | Kind::Sign | Kind::Cone | Kind::Cart => told_beside,
@@ -128,13 +131,19 @@ impl Told {
         self.edge == Some(LeftRight::Left) && self.thing.is_some() && (street || self.sv.turning != Turning::No)
     }
 
-    /// From the middle of the outermost lane to the partner's flank: behind the strip beside it, and a small thing at the end of a parking strip
-    /// stands in that. [m]
+    /// From the middle of the outermost lane to the partner's flank: behind the strip beside it, but a small thing stands in that; who is parked
+    /// stands by the lane, or in the middle of its strip where the ego pulls over too. [m]
     fn edge_m(&self) -> f64 {
-        let strip = self.beside_edge().first().copied().filter(|strip| strip.is_paved() && !self.is_parked_along());
-        let on_strip_m = strip.filter(|_| !self.edge_is_median()).map_or(0.0, StripKind::usual_width_m);
-        let small_m = if on_strip_m > 0.0 && !self.goes_along() { size_of(&self.cp).1 } else { 0.0 };
-        0.5 * LANE_M + on_strip_m - small_m
+        let strip = self.beside_edge().first().copied().filter(|strip| strip.is_paved() && !self.edge_is_median());
+        let strip_m = strip.map_or(0.0, StripKind::usual_width_m);
+        let width_m = size_of(&self.cp).1;
+        let on_strip_m = match (self.is_parked_along(), self.sv.movement) {
+            (true, Some(Movement::ParkingManeuver)) => (0.5 * (strip_m - width_m)).max(0.0),
+            (true, _) => 0.0,
+            (false, _) if strip_m > 0.0 && !self.goes_along() => strip_m - width_m,
+            (false, _) => strip_m,
+        };
+        0.5 * LANE_M + on_strip_m
     }
 
     /// Whether the partner is a thing that goes along the road.
@@ -159,7 +168,8 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Sta
     let right = if side == LeftRight::Right { 1.0 } else { -1.0 };
     let (corner, within) = ((1.0, -right), (1.0, -0.75 * right));
     let flank_only = !told.sv.zones.is_empty() && !told.sv.zones.iter().any(|zone| zone.is_front());
-    let sv_points = match told.goes_along() || told.is_parked_along() || flank_only {
+    let in_passing = told.is_parked_along() && told.sv.movement != Some(Movement::ParkingManeuver);
+    let sv_points = match told.goes_along() || in_passing || flank_only {
         true => vec![corner],
         false => vec![within, corner],
     };

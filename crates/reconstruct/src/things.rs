@@ -11,6 +11,7 @@ use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind, Source,
     Striker, told,
 };
+use recrash_model::geometry::OrientedBox;
 use recrash_model::math;
 use recrash_model::scenario::{ObstacleKind, Size};
 use recrash_model::template::Movement;
@@ -171,6 +172,30 @@ pub(crate) fn cp_points(told: &Told, zone: ContactZone) -> &'static [(f64, f64)]
         _ if told.stands_across() => &touch::points(zone)[..1],
         _ => touch::points(zone),
     }
+}
+
+/// Nearer to the middle of the ego than this a hole is under no wheel; nor beside it by more. [m]
+const WHEELS_M: (f64, f64) = (0.35, 1.3);
+
+/// How what the ego drives over is told to lie, whether it does, and how it lies.
+pub(crate) fn check(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Option<(String, bool, String)> {
+    let lies = told.lies?;
+    let corners = other.corners().map(|corner| ego.to_local(corner).y);
+    let least_m = corners.iter().copied().fold(f64::MAX, f64::min);
+    let most_m = corners.iter().copied().fold(f64::MIN, f64::max);
+    if lies.size().is_some() {
+        let across = least_m < -ego.half_width && most_m > ego.half_width;
+        let seen = format!("from {:.1} m to the right to {most_m:.1} m to the left", -least_m);
+        return Some(("across the ego's way".to_owned(), across, seen));
+    }
+    let left_m = ego.to_local(other.centre).y;
+    let there = (WHEELS_M.0..WHEELS_M.1).contains(&left_m.abs());
+    let (side, of) = match side_of(&told.sv.zones) {
+        Some(side) if side > 0.0 => (" on the left", left_m > 0.0),
+        Some(_) => (" on the right", left_m < 0.0),
+        None => ("", true),
+    };
+    Some((format!("under a wheel{side}"), there && of, format!("{left_m:.1} m to the left of the ego's middle")))
 }
 
 /// Whether a thing is told to be fixed, and no more.

@@ -299,7 +299,7 @@ impl Told {
             (CheckKind::CpSpeed, cp.impact_mps.is_some()),
             (CheckKind::SvMovement, sv.movement.is_some()),
             (CheckKind::CpMovement, cp.movement.is_some() && moves),
-            (CheckKind::Approach, self.origin_told && moves || self.edge.is_some()),
+            (CheckKind::Approach, self.origin_told && moves || self.edge.is_some() || self.lies.is_some()),
             (CheckKind::Order, self.order.is_some() && moves),
             (CheckKind::PassedOn, self.pushed),
             (CheckKind::SvLane, sv.lane.is_some()),

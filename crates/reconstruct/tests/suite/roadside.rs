@@ -41,12 +41,17 @@ const WATER: &str =
 const DOOR: &str = "The AV was traveling west when the driver of a parked sedan on the right side of the street opened the front left door, and the \
                     door made contact with the front right of the AV.";
 
+const HOLE: &str = "The AV was traveling north when the front left of the AV made contact with a pothole.";
+
+const POLE: &str =
+    "The AV was traveling north on Elm Street when the front of the AV made contact with a utility pole.";
+
 const IN_TURN_LANE: &str = "The AV was traveling west in the left turn lane of Oak Street and the front of the AV made contact with a piece of \
                             debris.";
 
 /// The stories of this file, as they are shown.
 pub fn shown() -> Vec<(String, Account, Reconstruction)> {
-    let texts = [KERB, WIDE, MEDIAN, BIN, PARKED, DIAGONAL, ALLEY, AHEAD, FIXED, WATER, DOOR];
+    let texts = [KERB, WIDE, MEDIAN, BIN, PARKED, DIAGONAL, ALLEY, AHEAD, FIXED, WATER, DOOR, HOLE, POLE];
     texts.into_iter().map(|text| (text[..40].to_owned(), story(text), made(&story(text)))).collect()
 }
 
@@ -175,12 +180,26 @@ fn what_is_fixed_stands_beside_the_aisle() {
 
 #[test]
 fn water_lies_across_the_lane() {
-    let (object, _, y_m) = {
-        let shown = made(&story(WATER));
-        let (object, x_m, y_m) = thing(&shown);
-        (object.clone(), x_m, y_m)
-    };
-    assert!(object.size.is_some_and(|size| size.width_m > 3.0 && size.length_m > 3.0) && y_m.abs() < 0.1, "{object:?}");
+    let account = story(WATER);
+    let shown = made(&account);
+    let (object, _, y_m) = thing(&shown);
+    let size = object.size.expect("its size");
+    assert!(size.width_m > 3.0 && size.length_m > 3.0 && y_m.abs() < 0.1, "{object:?}");
+    assert_eq!(moved(&account, 1.0, 0.0), [CheckKind::Approach]);
+}
+
+#[test]
+fn a_hole_under_no_wheel_or_another_one_does_not_pass() {
+    let account = story(HOLE);
+    assert!(moved(&account, -0.7, 0.0).contains(&CheckKind::Approach));
+    assert!(moved(&account, -1.4, 0.0).contains(&CheckKind::Approach));
+}
+
+#[test]
+fn a_pole_stands_in_no_lane() {
+    let shown = made(&story(POLE));
+    let (_, _, y_m) = thing(&shown);
+    assert!(y_m < -1.7, "{y_m}");
 }
 
 #[test]
