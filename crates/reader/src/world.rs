@@ -398,7 +398,9 @@ impl World {
 
     /// The thing that was named last.
     pub fn thing(&self) -> Option<Actor> {
-        (1..self.actors.len()).max_by_key(|&actor| self.actors[actor].last)
+        // "a bin that stood away from the curb": a curb is a place first.
+        (1..self.actors.len())
+            .max_by_key(|&actor| (self.actors[actor].kind != Some(Kind::Curb), self.actors[actor].last))
     }
 
     /// Somebody else of its kind, the one named last.

@@ -149,7 +149,7 @@ pub(crate) fn straight_plan(start: Vec2, way: Vec2, (speed_mps, contact_s): (f64
 /// line is driven there alone.
 pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pose> {
     let on_way = ground.sv_pose(sv_s_m);
-    if told.sv_aside().is_none() {
+    if ground.drift.or(told.sv_aside()).is_none() {
         return Some(ground.pose(sv_s_m, ground.stands_m));
     }
     let alone = ScenarioDraft {
@@ -180,9 +180,12 @@ const ASIDE_M: (f64, f64) = (14.0, 60.0);
 /// Who drove on after it had changed lanes has done so for so long. [s]
 const DRIVES_ON_S: f64 = 1.5;
 
+/// Who drifts to the edge of the road drives at least so many times as far as it drifts until then.
+const DRIFTS_BY: f64 = 5.0;
+
 /// The move out of the ego's line, half done at the contact, or done before it.
-fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
-    let half_m = (0.5 * ASIDE_S * speed_mps).clamp(0.5 * ASIDE_M.0, 0.5 * ASIDE_M.1);
+fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64, least_m: f64) -> Act {
+    let half_m = (0.5 * ASIDE_S * speed_mps).clamp(0.5 * ASIDE_M.0, 0.5 * ASIDE_M.1).max(least_m);
     let drives = pace.speed_mps > 0.0;
     let (half_m, from_s) = if aside.done {
         (half_m, (contact_s - DRIVES_ON_S - 2.0 * half_m / speed_mps.max(0.1)).max(0.0))
@@ -192,7 +195,7 @@ fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
         let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
         let half_m = (braking_m + pace.speed_mps * ROLLS_S).min(pace.driven_m);
         (half_m, (brakes_s - ROLLS_S).max(0.0))
-    } else if half_m < pace.driven_m && drives {
+    } else if half_m < pace.driven_m && (drives || least_m > 0.0) {
         (half_m, contact_s - half_m / speed_mps)
     } else {
         (pace.driven_m.max(1.0), first_time(&pace.acts))
@@ -202,9 +205,11 @@ fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64) -> Act {
 
 fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
     let (mut lead, mut pace) = ego_paces(told, ground, sv_s_m);
-    let aside = told.sv_aside();
+    let aside = ground.drift.or(told.sv_aside());
     if let Some(aside) = aside {
-        let shift = shift(told.contact_s, aside, &pace, told.sv.speed_mps);
+        let by_m = (aside.to_t_m - aside.from_t_m).abs();
+        let least_m = if ground.drift.is_some() { DRIFTS_BY * by_m } else { 0.0 };
+        let shift = shift(told.contact_s, aside, &pace, told.sv.speed_mps, least_m);
         // It leaves its line before it stops for good.
         let at = if told.sv.state.stands() { 0 } else { pace.acts.len() };
         match lead.as_mut().filter(|_| told.sv.state.stands()) {
@@ -239,7 +244,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
     };
     // Where it begins inside of the junction, it is on no lane of its first road.
     let start = if start_m > ground.first_m() {
-        let pose = ground.sv_pose(start_m);
+        let pose = ground.pose(start_m, ground.drift.map_or(0.0, |drift| drift.from_t_m));
         Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
     } else {
         lane(start_m)
@@ -272,10 +277,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         && staging.door.is_none()
     {
         let size = Some(Size { length_m, width_m });
-        return (
-            Vec::new(),
-            vec![ObjectSpec { kind: things::obstacle_kind(thing, told.lies), at: at(staging.cp), size }],
-        );
+        return (Vec::new(), vec![ObjectSpec { kind: things::obstacle_kind(thing, told), at: at(staging.cp), size }]);
     }
     if told.is_thrown() {
         return (thrown(told, staging), Vec::new());

@@ -6,7 +6,9 @@ use crate::lateral::is_on_foot;
 use crate::movement::{self, Way};
 use crate::others;
 use crate::phases;
+use crate::roadside;
 use crate::side::Slant;
+use crate::things;
 use crate::told::Told;
 use crate::touch::{side_of, zones_off};
 use crate::trailer::{self, Rig};
@@ -208,7 +210,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
         list.push(Check { kind, expected, observed, result });
     };
-    if let Some(track) = touch.track.filter(|_| told.origin_told) {
+    if let Some((expected, shown, observed)) = things::check(told, &ego_box, &touch.other_box) {
+        fact(CheckKind::Approach, shown, expected, observed);
+    } else if let Some(side) = told.edge {
+        let (shown, observed) = roadside::check(told, side, scenario, &touch.ego, &touch.other_box);
+        fact(CheckKind::Approach, shown, roadside::words(side), observed);
+    } else if let Some(track) = touch.track.filter(|_| told.origin_told) {
         let (shown, observed) = origin(told, ego_track, track, touch.time_s);
         fact(CheckKind::Approach, shown, origin_words(told), observed);
     }

@@ -3,7 +3,7 @@
 use crate::others::Extra;
 use crate::side::Turning;
 use crate::things::Lies;
-use crate::told::Told;
+use crate::told::{Aside, Told};
 use crate::touch::size_of;
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
@@ -40,6 +40,8 @@ pub(crate) struct Ground {
     pub(crate) stands_m: f64,
     /// From the ego's line to the middle of the nearest lane of those who come towards it. [m]
     pub(crate) opposing_m: f64,
+    /// The drift that brings the ego to what stands at the edge of its road.
+    pub(crate) drift: Option<Aside>,
 }
 
 impl Ground {
@@ -68,14 +70,19 @@ impl Ground {
         APPROACH_M
     }
 
-    /// The same, with the ego's front where the road begins that it turns into.
-    fn at_entry(self, ego_m: f64) -> Self {
+    /// The same, with the ego's front so far behind where the road begins that it turns into.
+    fn at_entry(self, ego_m: f64, behind_m: &[f64]) -> Self {
         let centre_y_m = (self.lanes as f64 - 0.5) * LANE_M;
         let entry_m = (0..1000)
             .map(|step| APPROACH_M + 0.05 * f64::from(step))
             .find(|s_m| (self.sv_pose(*s_m).position.y - centre_y_m).abs() >= corner_m(self.lanes))
             .unwrap_or(APPROACH_M);
-        Self { places: vec![entry_m - 0.5 * ego_m], ..self }
+        Self { places: behind_m.iter().map(|behind_m| entry_m - 0.5 * ego_m + behind_m).collect(), ..self }
+    }
+
+    /// The same, with an ego that drifts.
+    pub(crate) fn drifting(&self, drift: Aside) -> Self {
+        Self { drift: Some(drift), ..self.clone() }
     }
 
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
@@ -114,12 +121,21 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
     if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
-        let at_entry = told.lies == Some(Lies::Edge) && told.sv.turning != Turning::No;
-        return if at_entry { ground.at_entry(size_of(&told.sv).0) } else { ground };
+        let behind_m: &[f64] = match (told.edge, told.lies) {
+            (Some(_), _) => &BEHIND_ENTRY_M,
+            (None, Some(Lies::Edge)) => &[0.0],
+            // At the end of the space that it turned into.
+            _ if told.stands_across() => &BEHIND_ENTRY_M,
+            _ => &[],
+        };
+        let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+        return if turns && !behind_m.is_empty() { ground.at_entry(size_of(&told.sv).0, behind_m) } else { ground };
     }
     let one_way = is_one_way(told);
-    let oncoming = if one_way || told.place == PlaceKind::Highway { 0 } else { 1 };
+    let one_sided = one_way || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
+    let oncoming = if one_sided || told.place == PlaceKind::Highway { 0 } else { 1 };
     let (right, left) = match told.place {
+        _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
         PlaceKind::Highway => (strips(lanes_for(told, 3), &[StripKind::Shoulder]), Vec::new()),
         _ if lot => (strips(1, &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
         _ => {
@@ -133,7 +149,8 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
     let usual = match lanes {
         _ if one_way => 0,
-        2.. if to_right || passes_right(told) => lanes - 2,
+        _ if told.edge == Some(LeftRight::Left) => 0,
+        2.. if told.edge.is_none() && (to_right || passes_right(told)) => lanes - 2,
         _ => lanes - 1,
     };
     let lane = told_lane(told, lanes).unwrap_or(usual);
@@ -148,6 +165,35 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let at_kerb = told.is_at_kerb() && !lot && told.place != PlaceKind::Highway && !one_way;
     let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
     Ground { stands_m, ..ground }
+}
+
+/// From where the road begins that the ego turns into to the ego's front, where it meets what stands at the edge of that road, or across
+/// it. [m]
+const BEHIND_ENTRY_M: [f64; 3] = [3.0, 5.0, 8.0];
+
+/// Strips of a road at whose edge something stands.
+fn beside_edge(told: &Told, side: LeftRight, lot: bool, oncoming: usize) -> (Vec<Strip>, Vec<Strip>) {
+    let usual: &[StripKind] = match told.place {
+        PlaceKind::Highway => &[StripKind::Shoulder],
+        PlaceKind::Alley => &[],
+        _ if lot => &[StripKind::Stalls],
+        _ => &[StripKind::Parking, StripKind::Sidewalk],
+    };
+    let edge = told.beside_edge();
+    let lanes = if lot { 1 } else { lanes_for(told, if told.place == PlaceKind::Highway { 3 } else { 2 }) };
+    match side {
+        LeftRight::Right => {
+            let opposite: &[StripKind] = if told.place == PlaceKind::Highway { &[] } else { usual };
+            (strips(lanes, &edge), strips(oncoming, opposite))
+        }
+        LeftRight::Left if told.edge_is_median() => (strips(lanes, usual), behind_median(strips(oncoming, usual))),
+        LeftRight::Left => (strips(lanes, usual), strips(0, &edge)),
+    }
+}
+
+/// The same, on the other side of a median.
+fn behind_median(strips: Vec<Strip>) -> Vec<Strip> {
+    [Strip::of(StripKind::Median)].into_iter().chain(strips).collect()
 }
 
 /// Who is parked on the left, facing as the ego does, is so on a one-way street.
@@ -166,6 +212,11 @@ fn lanes_for(told: &Told, usual: usize) -> usize {
         Origin::Stall { side: Some(LeftRight::Left) } | Origin::Driveway { side: Some(LeftRight::Left) }
     );
     let usual = if from_left && told.backs_out() { 1 } else { usual };
+    // The lane by whose edge something stands is the only one of the road that the ego turns into.
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    if told.edge.is_some() && turns && told.sv.lane.is_none() {
+        return 1;
+    }
     let needed = [told.sv.lane, told.cp.lane].into_iter().flatten().map(|word| match word {
         LaneWord::Center => 3,
         LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn => 2,
@@ -216,16 +267,30 @@ fn corner_m(lanes: usize) -> f64 {
 fn junction(told: &Told, crossing: bool) -> Ground {
     let lanes = lanes_for(told, 2);
     let corner_m = corner_m(lanes);
+    let exits_by = match told.sv.turning {
+        Turning::Left => "left",
+        Turning::Right => "right",
+        Turning::No | Turning::Round => "own",
+    };
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
-        straight(id, start, length_m, strips(lanes, &[StripKind::Sidewalk]), strips(lanes, &[StripKind::Sidewalk]))
+        let usual = || strips(lanes, &[StripKind::Sidewalk]);
+        let (away, towards) = match told.edge.filter(|_| id == exits_by) {
+            Some(LeftRight::Right) if id == "own" => (usual(), strips(lanes, &told.beside_edge())),
+            Some(LeftRight::Left) if id == "own" => (behind_median(usual()), usual()),
+            Some(LeftRight::Right) => (strips(lanes, &told.beside_edge()), usual()),
+            Some(LeftRight::Left) => (usual(), behind_median(usual())),
+            None => (usual(), usual()),
+        };
+        straight(id, start, length_m, away, towards)
     };
     let one_way = is_one_way(told);
     let (exit, lane) = match told.sv.turning {
         Turning::Left => ("left+", told_lane(told, lanes).unwrap_or(0)),
         Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
         Turning::No | Turning::Round => {
-            ("ahead+", told_lane(told, lanes).unwrap_or(if one_way { 0 } else { lanes - 1 }))
+            let left = one_way || told.edge == Some(LeftRight::Left);
+            ("ahead+", told_lane(told, lanes).unwrap_or(if left { 0 } else { lanes - 1 }))
         }
     };
     // The ego's lane lies on the x axis, or beside it.
@@ -295,5 +360,17 @@ fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>,
     let lane = across.lane as u8;
     let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
     let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
-    Ground { map, route, lane, way, places, junction, lanes: across.lanes, kerbs_m, stands_m: 0.0, opposing_m }
+    Ground {
+        map,
+        route,
+        lane,
+        way,
+        places,
+        junction,
+        lanes: across.lanes,
+        kerbs_m,
+        stands_m: 0.0,
+        opposing_m,
+        drift: None,
+    }
 }

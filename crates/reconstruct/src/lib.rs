@@ -18,6 +18,7 @@ mod movement;
 mod others;
 mod pace;
 mod phases;
+mod roadside;
 mod side;
 mod things;
 mod told;

@@ -4,6 +4,7 @@ use crate::ground::Ground;
 use crate::kerb;
 use crate::lateral::{self, PULL_OUT_M};
 use crate::phases::{self, Lead, MOVES_UP_M, Phase};
+use crate::roadside;
 use crate::side::{Side, Turning};
 use crate::things;
 use crate::told::Told;
@@ -83,6 +84,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);
     let usual = from_line(told, ground, sv_s_m)
         .or_else(|| before_who_waits(told))
+        .or_else(|| roadside::from_stand(told))
         .unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
     let begins_s = match sv.state.stands() {
         true => contact_s - told.choices.stood_s,

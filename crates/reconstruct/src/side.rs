@@ -111,7 +111,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         _ => ContactState::Moving,
     });
     // Who moves backwards moves.
-    let backs = state == ContactState::Moving && movement == Some(Movement::Backing);
+    let backs = state == ContactState::Moving && movement == Some(Movement::Backing) && !went_on(party);
     let state = if backs { ContactState::Reversing } else { state };
     if !state_told {
         assumed.push(format!("the {who} is {state:?} at the contact"));
@@ -208,6 +208,14 @@ fn slowed_after_its_stand(party: &Party) -> bool {
     };
     let stands = last(|act| matches!(act, Act::Hold | Act::SetOff | Act::Stop));
     last(|act| act == Act::Slow) > stands
+}
+
+/// Whether somebody is told to have driven on, forwards, after it had backed.
+fn went_on(party: &Party) -> bool {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let backed = before().filter(|fact| fact.act == Act::Reverse).map(|fact| fact.step).max();
+    let goes = |act: Act| matches!(act, Act::Enter | Act::Cross | Act::Pass);
+    backed.is_some_and(|backed| before().any(|fact| fact.step > backed && goes(fact.act)))
 }
 
 /// Whether the last change of speed before the contact that is told is a gain.

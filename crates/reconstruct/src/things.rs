@@ -6,11 +6,12 @@ use crate::lateral::is_on_foot;
 use crate::pace::{Pace, start_over};
 use crate::side::{Side, Turning};
 use crate::told::Told;
-use crate::touch;
+use crate::touch::{self, side_of, size_of};
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind, Source, Striker,
-    told,
+    Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind, Source,
+    Striker, told,
 };
+use recrash_model::geometry::OrientedBox;
 use recrash_model::math;
 use recrash_model::scenario::{ObstacleKind, Size};
 use recrash_model::template::Movement;
@@ -25,11 +26,16 @@ pub(crate) enum Lies {
     Edge,
     /// A hole: under a wheel.
     Hole,
+    /// Water: on the whole lane.
+    Water,
 }
 
 /// Along the way, of a speed bump and of an edge. [m]
 const BUMP_M: f64 = 0.4;
 const EDGE_M: f64 = 0.3;
+
+/// Along the way, of water that stands on the road. [m]
+const WATER_M: f64 = 8.0;
 
 impl Lies {
     /// What the words for it tell.
@@ -41,7 +47,8 @@ impl Lies {
         match told(&thing.kind)? {
             Kind::Curb | Kind::Pothole if any(&["speed bump", "speed hump", "speed table"]) => Some(Self::Bump),
             Kind::Debris if any(&["spikes"]) => Some(Self::Bump),
-            Kind::Pothole if any(&["water", "wet cement"]) => None,
+            Kind::Pothole if any(&["water meter"]) => Some(Self::Hole),
+            Kind::Pothole if any(&["water", "flood", "wet cement"]) => Some(Self::Water),
             Kind::Pothole if sv.only_above_or_below && turns_in && !any(&["hole", "removed"]) => Some(Self::Edge),
             Kind::Pothole => Some(Self::Hole),
             _ => None,
@@ -53,13 +60,25 @@ impl Lies {
         match self {
             Self::Bump => Some(Size { length_m: BUMP_M, width_m: LANE_M }),
             Self::Edge => Some(Size { length_m: EDGE_M, width_m: LANE_M }),
+            Self::Water => Some(Size { length_m: WATER_M, width_m: LANE_M }),
             Self::Hole => None,
         }
     }
 }
 
 /// Lengths and widths of things that are longer or shorter than others of their kind, by the words for them; usual ones, assumed. [m]
-const SIZES_M: [(&str, f64, f64); 10] = [
+const SIZES_M: [(&str, f64, f64); 21] = [
+    ("solar panel", 1.6, 1.0),
+    ("planter", 1.0, 1.0),
+    ("bollard", 0.3, 0.3),
+    ("pillar", 0.6, 0.6),
+    ("column", 0.6, 0.6),
+    ("utility box", 0.8, 0.6),
+    ("electrical box", 0.8, 0.6),
+    ("bench", 1.5, 0.6),
+    ("cement bumper", 1.8, 0.3),
+    ("door frame", 0.3, 0.3),
+    ("fixed", 1.0, 1.0),
     ("bicycle", 1.7, 0.6),
     ("mattress", 1.9, 1.4),
     ("ladder", 2.5, 0.5),
@@ -74,7 +93,8 @@ const SIZES_M: [(&str, f64, f64); 10] = [
 
 /// The size of a small thing, where the words for it tell more than its kind.
 pub(crate) fn size(thing: &Party) -> Option<Size> {
-    let small = matches!(told(&thing.kind)?, Kind::Debris | Kind::Object | Kind::Scooter | Kind::Cargo);
+    let kind = told(&thing.kind)?;
+    let small = matches!(kind, Kind::Debris | Kind::Object | Kind::Scooter | Kind::Cargo | Kind::Wall | Kind::Pole);
     let text = words_of(&thing.kind).filter(|_| small)?;
     let found = SIZES_M.iter().find(|(word, ..)| text.contains(word));
     found.map(|(_, length_m, width_m)| Size { length_m: *length_m, width_m: *width_m })
@@ -106,6 +126,14 @@ fn is_thing(kind: Kind) -> bool {
     kind.group() == KindGroup::Object
 }
 
+/// Whether something lies in the lane for turns that the ego came along, and only a column tells that it turned.
+pub(crate) fn lies_before_turn(told: &Told, sv: &Party) -> bool {
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    let lane = matches!(told.sv.lane, Some(LaneWord::LeftTurn | LaneWord::RightTurn));
+    let by_words = sv.movement.as_ref().is_some_and(|fact| fact.source.is_told()) || sv.did(Act::Turn);
+    turns && lane && !by_words && told.thing.is_some() && told.edge.is_none()
+}
+
 /// Whether the ego is told to have changed lanes and driven on before it came to a thing.
 pub(crate) fn changed_lanes_before(account: &Account) -> bool {
     let before = || account.sv.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
@@ -131,9 +159,48 @@ pub(crate) fn sv_points(told: &Told, zone: ContactZone) -> &'static [(f64, f64)]
         (Some(Lies::Hole), ContactZone::Front) => &[(1.0, 0.75), (1.0, -0.75)],
         (Some(Lies::Hole), ContactZone::FrontLeft) => &[(1.0, 0.75)],
         (Some(Lies::Hole), ContactZone::FrontRight) => &[(1.0, -0.75)],
-        (Some(Lies::Bump | Lies::Edge), _) => &touch::points(zone)[..1],
+        (Some(Lies::Bump | Lies::Edge | Lies::Water), _) => &touch::points(zone)[..1],
         _ => touch::points(zone),
     }
+}
+
+/// Points of the partner's outline that are touched: of a hole the middle of a side.
+pub(crate) fn cp_points(told: &Told, zone: ContactZone) -> &'static [(f64, f64)] {
+    match (told.lies, zone) {
+        (Some(Lies::Hole), ContactZone::Rear | ContactZone::Front) => &touch::points(zone)[..1],
+        (Some(Lies::Hole), _) => &[],
+        _ if told.stands_across() => &touch::points(zone)[..1],
+        _ => touch::points(zone),
+    }
+}
+
+/// Nearer to the middle of the ego than this a hole is under no wheel; nor beside it by more. [m]
+const WHEELS_M: (f64, f64) = (0.35, 1.3);
+
+/// How what the ego drives over is told to lie, whether it does, and how it lies.
+pub(crate) fn check(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Option<(String, bool, String)> {
+    let lies = told.lies?;
+    let corners = other.corners().map(|corner| ego.to_local(corner).y);
+    let least_m = corners.iter().copied().fold(f64::MAX, f64::min);
+    let most_m = corners.iter().copied().fold(f64::MIN, f64::max);
+    if lies.size().is_some() {
+        let across = least_m < -ego.half_width && most_m > ego.half_width;
+        let seen = format!("from {:.1} m to the right to {most_m:.1} m to the left", -least_m);
+        return Some(("across the ego's way".to_owned(), across, seen));
+    }
+    let left_m = ego.to_local(other.centre).y;
+    let there = (WHEELS_M.0..WHEELS_M.1).contains(&left_m.abs());
+    let (side, of) = match side_of(&told.sv.zones) {
+        Some(side) if side > 0.0 => (" on the left", left_m > 0.0),
+        Some(_) => (" on the right", left_m < 0.0),
+        None => ("", true),
+    };
+    Some((format!("under a wheel{side}"), there && of, format!("{left_m:.1} m to the left of the ego's middle")))
+}
+
+/// Whether a thing is told to be fixed, and no more.
+pub(crate) fn is_fixed(thing: &Party) -> bool {
+    told(&thing.kind) == Some(Kind::Object) && words_of(&thing.kind).is_some_and(|text| text.contains("fixed"))
 }
 
 /// How fast a thing is that rolls or slides, from how far away. [m/s, m]
@@ -157,6 +224,13 @@ pub(crate) fn swings(kind: Kind, thing: &Party, striker: Option<Striker>) -> boo
 pub(crate) const POST: Size = Size { length_m: 0.3, width_m: 0.3 };
 
 impl Told {
+    /// Whether the partner is a kerb or a wall that stands across the ego's way: nobody tells on which side of it.
+    pub(crate) fn stands_across(&self) -> bool {
+        let along = matches!(self.thing, Some(Kind::Curb | Kind::Wall));
+        let ahead = side_of(&self.sv.zones).is_none() || self.sv.zones.contains(&ContactZone::Front);
+        along && ahead && self.lies.is_none() && self.edge.is_none()
+    }
+
     /// Whether the partner is a thing that came into the way by itself.
     pub(crate) fn is_sliding(&self) -> bool {
         self.thing.is_some() && self.slides && self.cp.state == ContactState::Moving
@@ -192,10 +266,17 @@ pub(crate) fn headings(told: &Told) -> Vec<f64> {
     from.into_iter().flat_map(|side| [0.0, 0.5, -0.5].map(|off| across(side) + off)).collect()
 }
 
+/// What is told as a wall, and is no longer than this, is a pole. [m]
+const SLIM_M: f64 = 0.5;
+
 /// How a thing is drawn.
-pub(crate) fn obstacle_kind(kind: Kind, lies: Option<Lies>) -> ObstacleKind {
+pub(crate) fn obstacle_kind(kind: Kind, told: &Told) -> ObstacleKind {
+    let slim = size_of(&told.cp).0 < SLIM_M;
     match kind {
-        Kind::Pothole if matches!(lies, Some(Lies::Bump | Lies::Edge)) => ObstacleKind::Kerb,
+        Kind::Pothole if matches!(told.lies, Some(Lies::Bump | Lies::Edge)) => ObstacleKind::Kerb,
+        Kind::Wall if slim => ObstacleKind::Pole,
+        Kind::Object if told.edge.is_some() => ObstacleKind::Wall,
+        Kind::Debris if told.edge.is_some() => ObstacleKind::Container,
         Kind::Wall => ObstacleKind::Wall,
         Kind::Pole => ObstacleKind::Pole,
         Kind::Curb => ObstacleKind::Kerb,

@@ -6,6 +6,7 @@ use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::{GAINS_MPS, STARTS_AND_SLOWS_MPS};
+use crate::roadside;
 use crate::side::{Side, Slant, Turning, side};
 use crate::things::{self, Lies, SLIDES_MPS};
 use crate::touch::side_of;
@@ -60,6 +61,10 @@ pub(crate) struct Told {
     pub(crate) gate_swings: bool,
     /// How the partner lies that the ego drives over, where told.
     pub(crate) lies: Option<Lies>,
+    /// The side of the road at whose edge the partner stands.
+    pub(crate) edge: Option<LeftRight>,
+    /// The partner is told to be parked at an angle to the road.
+    pub(crate) diagonal: bool,
     /// The ego had changed lanes, and driven on, before it came to a thing.
     pub(crate) lane_changed: bool,
     /// The partner is on foot, or an animal, and is told to have come across.
@@ -154,6 +159,12 @@ impl Told {
             true => Origin::Parked { side: right },
             false => origin,
         };
+        let edge = Some(origin).filter(|_| !gate_swings && account.door.is_none());
+        let edge = edge.and_then(|origin| roadside::side(account, &sv, &cp, lies, origin));
+        if edge.is_some() && things::size(partner).is_none() {
+            cp.size = roadside::size(kind).or(cp.size);
+        }
+        let diagonal = roadside::is_diagonal(partner, &cp);
         cp.backs_in = kerb::backs_in(partner, cp.state, origin, place);
         let striker = told(&account.striker);
         // What rolls into the ego's flank comes there after its front; that a thing is there first is only a rule.
@@ -173,6 +184,8 @@ impl Told {
             slides: things::slides(partner),
             gate_swings,
             lies,
+            edge,
+            diagonal,
             lane_changed: things::changed_lanes_before(account),
             walks_across: things::walks_across(origin, partner),
             origin,
@@ -203,7 +216,7 @@ impl Told {
             choices: Choices::default(),
             assumed,
         };
-        this.courses(partner);
+        this.courses(&account.sv, partner);
         this.phases();
         this.wanted = others::wanted(&this, &account.others);
         if this.origin_told {
@@ -213,7 +226,7 @@ impl Told {
     }
 
     /// What the acts tell of the ways beside the movements.
-    fn courses(&mut self, partner: &Party) {
+    fn courses(&mut self, sv: &Party, partner: &Party) {
         let drives_on =
             |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
         self.sv.dodges = (drives_on(&self.sv) || self.sv.stopped_aside.is_some()) && self.sv_aside().is_some();
@@ -229,6 +242,9 @@ impl Told {
                 true => Some(Slant::Swung),
                 false => (fact.act == Act::Turn).then_some(Slant::Stood(fact.side)),
             });
+        }
+        if things::lies_before_turn(self, sv) {
+            (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
         }
         // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
         let follows = self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear;
@@ -289,7 +305,7 @@ impl Told {
             (CheckKind::CpSpeed, cp.impact_mps.is_some()),
             (CheckKind::SvMovement, sv.movement.is_some()),
             (CheckKind::CpMovement, cp.movement.is_some() && moves),
-            (CheckKind::Approach, self.origin_told && moves),
+            (CheckKind::Approach, self.origin_told && moves || self.edge.is_some() || self.lies.is_some()),
             (CheckKind::Order, self.order.is_some() && moves),
             (CheckKind::PassedOn, self.pushed),
             (CheckKind::SvLane, sv.lane.is_some()),

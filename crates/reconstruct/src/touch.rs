@@ -7,6 +7,7 @@ use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::kerb;
 use crate::lateral::is_on_foot;
+use crate::roadside;
 use crate::side::{Side, Slant, Turning};
 use crate::things;
 use crate::told::Told;
@@ -66,7 +67,11 @@ pub(crate) fn size_of(side: &Side) -> (f64, f64) {
 pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
     let ground = ground_for(told);
     let by_part = told.door.is_some() || told.gate_swings;
-    let mut found = if by_part { door::stagings(told, &ground) } else { bodies(told, &ground) };
+    let mut found = match told.edge {
+        _ if by_part => door::stagings(told, &ground),
+        Some(side) => roadside::stagings(told, &ground, side),
+        None => bodies(told, &ground),
+    };
     found.sort_by_key(|staging| staging.cost);
     // Of those that are almost the same, one.
     let mut kept: Vec<Staging> = Vec::new();
@@ -102,7 +107,7 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
         for (came, heading) in headings(told, sv.heading, behind) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
                 for &sv_point in things::sv_points(told, sv_zone) {
-                    for &cp_point in points(cp_zone) {
+                    for &cp_point in things::cp_points(told, cp_zone) {
                         trial += 1;
                         let Some((cp, sv_seen, cp_seen)) = touch(told, sv, heading, sv_point, cp_point) else {
                             continue;
@@ -226,7 +231,8 @@ fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
     let near = |zones: &[ContactZone]| -> Vec<ContactZone> {
         all().into_iter().filter(|zone| !zones.contains(zone) && zones_off(zones, *zone) == 1).collect()
     };
-    let (sv, cp) = (of(&told.sv.zones), of(&told.cp.zones));
+    let flanks = [ContactZone::Left, ContactZone::Right];
+    let (sv, cp) = (of(&told.sv.zones), if told.stands_across() { flanks.to_vec() } else { of(&told.cp.zones) });
     let (sv_near, cp_near) = (near(&told.sv.zones), near(&told.cp.zones));
     let mut pairs = Vec::new();
     for (first, second) in [(&sv, &cp), (&sv, &cp_near), (&sv_near, &cp), (&sv_near, &cp_near)] {
@@ -283,8 +289,11 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             }
         }
     };
-    if things::across(told).is_some() {
+    if told.lies.is_some() {
         return vec![(sv_heading, sv_heading)];
+    }
+    if told.stands_across() {
+        list.push((sv_heading, sv_heading + math::FRAC_PI_2));
     }
     if told.cp.backs_in {
         return kerb::headings().collect();
@@ -369,6 +378,7 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             }
         }
         // It has come round the ego, and is beside it.
+        Origin::Parked { .. } if told.cp.state == ContactState::Parked => list.push((0.0, 0.0)),
         Origin::Parked { .. } if told.comes_round => list.extend(aside.iter().map(|off| (0.0, degrees(*off)))),
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Sidewalk { side } | Origin::Parked { side } => {
             for from in unknown(side) {
@@ -396,7 +406,7 @@ pub(crate) fn velocity(side: &Side, heading: f64) -> Vec2 {
 
 /// Places the partner so that the two points meet, and takes it back to where the boxes just touch; the zones that then
 /// meet. `None` where they do not close on each other there.
-fn touch(
+pub(crate) fn touch(
     told: &Told,
     sv: Pose,
     heading: f64,

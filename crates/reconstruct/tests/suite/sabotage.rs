@@ -1,6 +1,7 @@
 //! A reconstruction that was sabotaged is refused or not called true: on our own stories, and on real records where they are.
 
 use crate::common::record;
+use crate::roadside;
 use crate::stories::shown;
 use crate::things;
 use crate::ways;
@@ -86,6 +87,7 @@ fn every_sabotage_of_our_own_stories_is_caught() {
     let mut made = shown();
     made.extend(ways::shown());
     made.extend(things::shown());
+    made.extend(roadside::shown());
     // One whose column tells the speed at the impact.
     let text = "The AV was traveling straight when a car pulled out of a driveway on its right, and the front of the AV made \
                 contact with the left side of the car.";

@@ -69,7 +69,7 @@ fn others_crash(made: &Reconstruction) -> bool {
 }
 
 /// The thing that lies on the road.
-fn thing(made: &Reconstruction) -> (&ObjectSpec, f64, f64) {
+pub fn thing(made: &Reconstruction) -> (&ObjectSpec, f64, f64) {
     let object = made.draft.objects.first().expect("a thing");
     let Place::Plane { x_m, y_m, .. } = object.at else { panic!("{:?}", object.at) };
     (object, x_m, y_m)
