@@ -436,7 +436,7 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     let pulls_out = aside && !turns && told.passes_from_behind();
     if pulls_out {
         // Out of the ego's lane.
-        position.y = staging.sv.position.y;
+        position.y = if told.comes_along_kerb() { 0.0 } else { staging.sv.position.y };
     } else if let Some(line_y_m) = line_y_m {
         position.y = line_y_m;
     } else if turn.abs() > 0.01 {

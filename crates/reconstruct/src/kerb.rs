@@ -60,11 +60,11 @@ pub(crate) fn leaves_driveway(partner: &Party) -> bool {
 }
 
 impl Told {
-    /// Whether the ego is parked at the kerb, and the partner does not come along behind it.
+    /// Whether the ego is parked at the kerb. Whom somebody has to pass on the other side of the road is in its lane.
     pub(crate) fn is_at_kerb(&self) -> bool {
-        let comes_behind = self.origin == Origin::Behind && self.cp.state != ContactState::Reversing;
+        let in_the_way = self.origin == Origin::Behind && self.cp.lane == Some(LaneWord::Opposing);
         let on_lane = self.sv.lane.is_some_and(|lane| lane != LaneWord::Curb);
-        self.sv.state == ContactState::Parked && self.thing.is_none() && !comes_behind && !on_lane
+        self.sv.state == ContactState::Parked && self.thing.is_none() && !on_lane && !in_the_way
     }
 
     /// Whether the partner reverses out of a stall or a driveway.

@@ -66,6 +66,15 @@ impl Told {
             && !own_lane
     }
 
+    /// Whether the partner comes along the lane beside which the ego is parked.
+    pub(crate) fn comes_along_kerb(&self) -> bool {
+        self.is_at_kerb()
+            && self.origin == Origin::Behind
+            && self.cp.state == ContactState::Moving
+            && !self.cp.stood_first
+            && !self.is_thrown()
+    }
+
     /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.
     pub(crate) fn stood_beside(&self) -> bool {
         let beside = matches!(self.origin, Origin::Parked { .. } | Origin::Stall { .. } | Origin::Driveway { .. });
@@ -103,6 +112,9 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     if told.cp.backs_in {
         return Some(0.0);
     }
+    if told.comes_along_kerb() && staging.ground.stands_m > 0.0 {
+        return Some(0.0);
+    }
     if told.comes_over {
         return Some(staging.ground.opposing_m.max(staging.cp.position.y));
     }
@@ -131,6 +143,7 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
             Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane | Movement::LaneDeparture
         )
     );
+    let leaves = leaves || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind();
     if !(leaves || told.cp.dodges || told.comes_over) || told.cp.state != ContactState::Moving || pace.speed_mps == 0.0
     {
         return None;
@@ -158,7 +171,7 @@ pub(crate) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     let cp = staging.cp;
     let comes_in = math::wrap_angle(cp.heading - staging.cp_came);
     let out_y_m = cp.position.y - 0.5 * OUT_M * comes_in;
-    let own_y_m = staging.sv.position.y;
+    let own_y_m = if told.comes_along_kerb() { 0.0 } else { staging.sv.position.y };
     let back_m = (pace.driven_m - 0.5).min(OUT_M + COMES_OUT_M);
     let bends_m = (4.0 * LEAST_BY_RADIUS_M * (out_y_m - own_y_m).abs()).sqrt();
     if back_m - OUT_M < bends_m {

@@ -297,3 +297,16 @@ fn who_reverses_out_of_a_crossing_road_moves_from_there() {
     let (states, met) = partner(&shown);
     assert!(states[0].y > met.y + 1.0 && met.speed() < 0.0, "{:?} to {met:?}", states[0]);
 }
+
+#[test]
+fn who_runs_into_one_parked_at_the_kerb_comes_along_the_lane() {
+    let account = story(
+        "The AV was parked at the curb on Elm Street. A sedan approached from behind and the front right of the sedan made contact with the \
+         rear left of the AV.",
+    );
+    let shown = made(&account);
+    let (ego, states) = (shown.rollout.ego_track().states[0], partner(&shown).0);
+    // In the lane, the ego beside it.
+    assert!((states[0].y - ego.y - 2.9).abs() < 0.1, "{:?}", states[0]);
+    assert!(states[states.len() - 1].y < states[0].y - 0.5);
+}
