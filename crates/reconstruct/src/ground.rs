@@ -1,6 +1,6 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
-use crate::others::Extra;
+use crate::others::Role;
 use crate::side::Turning;
 use crate::things::Lies;
 use crate::told::Told;
@@ -198,6 +198,11 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
     }
 }
 
+/// Whether somebody stands ahead of the ego in its lane.
+fn waits_behind(told: &Told) -> bool {
+    told.extras.iter().any(|extra| extra.role == Role::Lead)
+}
+
 fn passes_right(told: &Told) -> bool {
     matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || told.origin == Origin::Behind
@@ -248,7 +253,12 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     };
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
     let at_line: &[f64] = match told.sv.state {
-        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => &[-5.0, -8.0],
+        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => {
+            match waits_behind(told) {
+                true => &[-13.0, -15.0],
+                false => &[-5.0, -8.0],
+            }
+        }
         ContactState::SettingOff if told.sv.control.is_some() => &[3.0, 1.0, 5.0, -3.0],
         _ => &[],
     };
@@ -266,7 +276,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         all
     } else {
         // At the line, or behind who stands there.
-        let behind = told.extras.contains(&Extra::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
+        let behind = waits_behind(told) || told.origin == Origin::Ahead && told.thing.is_none();
         vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
     };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes } };

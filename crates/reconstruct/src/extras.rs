@@ -1,0 +1,310 @@
+//! Where others than the two stand and drive, seen from how the ego and the partner come to the contact.
+
+use crate::came::straight_plan;
+use crate::ground::Ground;
+use crate::others::{Extra, Role};
+use crate::pace::{first_time, when};
+use crate::side::{Turning, size_of as size_of_kind};
+use crate::told::Told;
+use crate::touch::{Staging, size_of};
+use recrash_model::account::{ContactState, ControlDevice, LeftRight};
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::rollout::{ActorTrack, Rollout};
+use recrash_model::scenario::{Actor, ActorPlan, Deed, Leg, Place, StripKind, Trigger};
+use recrash_model::vehicle::VehicleSpec;
+
+/// From the ego's front to who stands ahead, and to who crosses on foot, also between the two. [m]
+const LEAD_GAP_M: f64 = 2.5;
+const WALKER_GAP_M: f64 = 3.0;
+const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
+
+/// An ego that slows for somebody could stop before it, braking so, and has this much room besides. [m/s^2, m]
+const BRAKES_MPS2: f64 = 2.5;
+const ROOM_M: f64 = 2.0;
+
+/// Who drives ahead of the ego is so far ahead of it, and slows so much earlier. [m, s]
+const HEADWAY_M: f64 = 7.0;
+const EARLIER_S: f64 = 0.4;
+
+/// Who stood ahead sets off so long before the one behind it does, to this speed. [s, m/s, m/s^2]
+const SETS_OFF_BEFORE_S: f64 = 0.8;
+const GOES_MPS: f64 = 8.0;
+const GOES_MPS2: f64 = 1.5;
+
+/// From the stop line to the lane of who crosses from the left, and from the right. [m]
+const CROSSING_LANES_M: [f64; 2] = [11.0, 15.0];
+
+/// Who crosses, or comes by, does so before the contact: the ego stands for it, or slows; and before an ego that stood sets off, or
+/// begins its turn. [s]
+const CROSSES_BEFORE_S: f64 = 1.0;
+const MET_BEFORE_S: f64 = 0.5;
+const CLEARED_S: f64 = 0.8;
+
+/// Speeds of those who cross. [m/s]
+const WALKS_MPS: f64 = 1.4;
+const RIDES_MPS: f64 = 3.5;
+const RUNS_MPS: f64 = 3.0;
+const CROSSES_MPS: f64 = 7.0;
+
+/// From the ego's front to who is parked ahead at the kerb, and to whom it goes round. [m]
+const PARKED_AHEAD_M: f64 = 9.0;
+const ROUND_AHEAD_M: f64 = 6.0;
+
+/// Who goes round somebody has left its line by so much, and leaves so much room beside it. [m]
+const BESIDE_M: f64 = 2.4;
+const ROOM_BESIDE_M: f64 = 0.6;
+
+/// Slower than this is standing. [m/s]
+pub(crate) const STANDS_MPS: f64 = 0.1;
+
+/// The last time that somebody stood until a step: its first and its last step.
+pub(crate) fn last_stand(track: &ActorTrack, until: usize) -> Option<(usize, usize)> {
+    let stands = |step: &usize| track.states[*step].velocity().length() < STANDS_MPS;
+    let last = (0..=until.min(track.states.len() - 1)).rfind(stands)?;
+    let first = (0..last).rfind(|step| !stands(step)).map_or(0, |step| step + 1);
+    Some((first, last))
+}
+
+/// The two, as they come to the contact.
+struct Scene<'a> {
+    told: &'a Told,
+    ground: &'a Ground,
+    /// The ego's plan.
+    recorded: &'a ActorPlan,
+    ego: &'a ActorTrack,
+    partner: Option<&'a ActorTrack>,
+    /// The step of the contact.
+    until: usize,
+    /// When the ego stood last.
+    stand: Option<(usize, usize)>,
+}
+
+/// Them, on the road; `alone`: the crash without them.
+pub(crate) fn actors(told: &Told, staging: &Staging, recorded: &ActorPlan, alone: &Rollout) -> Vec<Actor> {
+    let ego = alone.ego_track();
+    let until = ((told.contact_s * 10.0).round() as usize).min(ego.states.len() - 1);
+    let partner = alone.actors.iter().find(|track| track.id == "cp");
+    let stand = last_stand(ego, until);
+    let scene = Scene { told, ground: &staging.ground, recorded, ego, partner, until, stand };
+    told.extras.iter().flat_map(|extra| scene.actors(extra)).collect()
+}
+
+impl Scene<'_> {
+    fn actors(&self, extra: &Extra) -> Vec<Actor> {
+        let kind = match extra.role {
+            Role::Animal => PartnerKind::Animal,
+            _ => extra.kind.partner_kind().unwrap_or(PartnerKind::PassengerCar),
+        };
+        let size = size_of_kind(extra.kind);
+        let spec = VehicleSpec::of(kind);
+        let (length_m, width_m) = size.map_or((spec.length_m, spec.width_m), |size| (size.length_m, size.width_m));
+        let plans = match extra.role {
+            Role::Lead => self.lead(extra, length_m).into_iter().collect(),
+            Role::Slower => self.slower(length_m).into_iter().collect(),
+            Role::Walker if kind == PartnerKind::Pedestrian => vec![self.crosses(extra, WALKS_MPS)],
+            Role::Walker => vec![self.crosses(extra, RIDES_MPS)],
+            Role::Animal => vec![self.crosses(extra, RUNS_MPS)],
+            Role::Crosser => self.crosser(extra).into_iter().collect(),
+            Role::Oncoming => self.oncoming().into_iter().collect(),
+            Role::Kerb => self.parked(extra, length_m),
+            Role::Obstacle => vec![self.obstacle(extra, (length_m, width_m))],
+        };
+        let name = |number: usize| if number == 0 { String::new() } else { format!("-{}", number + 1) };
+        let actor = |(number, plan): (usize, ActorPlan)| Actor {
+            id: extra.role.id().to_owned() + &name(number),
+            kind,
+            size,
+            mass_kg: None,
+            parts: Vec::new(),
+            plan,
+        };
+        plans.into_iter().enumerate().map(actor).collect()
+    }
+
+    fn front_m(&self) -> f64 {
+        0.5 * size_of(&self.told.sv).0
+    }
+
+    fn mps(&self, step: usize) -> f64 {
+        self.ego.states[step].velocity().length()
+    }
+
+    /// How far along its way the ego is, and how far to the right of it. [m]
+    fn at(&self, step: usize) -> (f64, f64) {
+        self.ground.beside(self.ego.states[step].position())
+    }
+
+    /// A place so far ahead of where the ego is: along its way, or straight ahead where it has left that.
+    fn ahead(&self, step: usize, ahead_m: f64) -> Pose {
+        let (s_m, t_m) = self.at(step);
+        let pose = self.ego.states[step].pose();
+        let way = self.ground.pose(s_m, 0.0);
+        match math::wrap_angle(way.heading - pose.heading).abs() < 0.1 {
+            true => self.ground.pose(s_m + ahead_m, t_m),
+            false => Pose { position: pose.position + Vec2::from_heading(pose.heading) * ahead_m, ..pose },
+        }
+    }
+
+    /// Where the ego stands or slows for somebody, and how far ahead of it that one is at least. [m]
+    fn stops(&self) -> (usize, f64) {
+        match self.stand {
+            Some((from, _)) => (from, 0.0),
+            None => (self.until, ROOM_M + 0.5 * self.mps(self.until) * self.mps(self.until) / BRAKES_MPS2),
+        }
+    }
+
+    /// Whether the ego stood, and drives at the contact.
+    fn sets_off(&self) -> Option<usize> {
+        self.stand.map(|(_, to)| to).filter(|to| *to + 1 < self.until)
+    }
+
+    /// When somebody crosses ahead, or comes by. [s]
+    fn clears_s(&self) -> f64 {
+        let (until_s, turning) = (0.1 * self.until as f64, self.told.sv.turning != Turning::No);
+        let came = self.ego.states[0].heading;
+        let turns = |step: &usize| math::wrap_angle(self.ego.states[*step].heading - came).abs() > 0.15;
+        let turned = (0..self.until).find(turns).filter(|_| turning && !self.told.sv.state.stands());
+        match (self.sets_off(), turned) {
+            (Some(to), _) => 0.1 * to as f64 - CLEARED_S,
+            (None, Some(turned)) => 0.1 * turned as f64 - MET_BEFORE_S,
+            (None, None) if self.stand.is_some() => until_s - CROSSES_BEFORE_S,
+            (None, None) => until_s - MET_BEFORE_S,
+        }
+        .max(1.0)
+    }
+
+    fn lead(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
+        let (step, room_m) = self.stops();
+        let ahead_m = self.front_m() + LEAD_GAP_M + room_m + 0.5 * length_m;
+        let pose = self.ahead(step, ahead_m);
+        // Before the light.
+        let controlled = self.told.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
+        let (line_m, s_m) = (self.ground.first_m(), self.at(step).0);
+        let beyond = s_m + ahead_m + 0.5 * length_m > line_m;
+        if controlled && self.ground.junction && s_m + self.front_m() < line_m && beyond {
+            return None;
+        }
+        let place = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
+        let stands = ActorPlan::standing(place(pose));
+        if !extra.goes {
+            return Some(stands);
+        }
+        let follows = self.sets_off().or_else(|| {
+            let (from, to) = self.partner.and_then(|track| last_stand(track, self.until))?;
+            (to + 1 < self.until && from > 0 || to > step).then_some(to)
+        });
+        let goes_s = 0.1 * follows.unwrap_or(self.until.saturating_sub(12)) as f64 - SETS_OFF_BEFORE_S;
+        let goes_s = (goes_s.max(0.1 * step as f64 + 0.5) * 10.0).round() / 10.0;
+        let to = pose.position + Vec2::from_heading(pose.heading) * 90.0;
+        Some(ActorPlan {
+            course: vec![Leg::Curve { to: Place::at(to.x, to.y, pose.heading.to_degrees()), reverse: false }],
+            acts: vec![when(goes_s.max(0.1), Deed::Speed { to_mps: GOES_MPS, rate_mps2: GOES_MPS2 })],
+            ..stands
+        })
+    }
+
+    /// It drives as the ego does, ahead of it and a little earlier.
+    fn slower(&self, length_m: f64) -> Option<ActorPlan> {
+        let straight = self.told.sv.turning == Turning::No && self.told.sv_aside().is_none();
+        let drives = self.recorded.speed_mps > 0.0 && !self.recorded.acts.is_empty();
+        if !straight || !drives || self.told.sv.state == ContactState::Reversing {
+            return None;
+        }
+        let (s_m, t_m) = self.at(0);
+        let ahead_m = self.front_m() + HEADWAY_M + EARLIER_S * self.recorded.speed_mps + 0.5 * length_m;
+        let place = |s_m: f64| {
+            let pose = self.ground.pose(s_m, t_m);
+            Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+        };
+        let mut acts = self.recorded.acts.clone();
+        for act in &mut acts {
+            if let Some(Trigger::TimeS(time_s)) = &mut act.when {
+                *time_s = (*time_s - EARLIER_S).max(0.1);
+            }
+        }
+        (first_time(&acts) > 0.0).then(|| ActorPlan {
+            speed_mps: self.recorded.speed_mps,
+            course: vec![Leg::Curve { to: place(self.at(self.until).0 + ahead_m + 60.0), reverse: false }],
+            acts,
+            ..ActorPlan::standing(place(s_m + ahead_m))
+        })
+    }
+
+    /// Somebody who crosses the ego's way, from the kerb on the right where nobody tells from which.
+    fn crosses(&self, extra: &Extra, speed_mps: f64) -> ActorPlan {
+        let (step, room_m) = self.stops();
+        let lead = self.told.extras.iter().any(|extra| extra.role == Role::Lead);
+        let gap_m = if lead { WALKER_BETWEEN_M } else { WALKER_GAP_M } + room_m;
+        let met = self.ahead(step, self.front_m() + gap_m);
+        let left = Vec2::from_heading(met.heading).left();
+        let way = if extra.side == Some(LeftRight::Left) { left * -1.0 } else { left };
+        straight_plan(met.position - way * (speed_mps * self.clears_s()), way, (speed_mps, self.told.contact_s))
+    }
+
+    /// A vehicle on the crossing road, ahead of the ego.
+    fn crosser(&self, extra: &Extra) -> Option<ActorPlan> {
+        let (step, _) = self.stops();
+        let lane_m = CROSSING_LANES_M[usize::from(extra.side == Some(LeftRight::Right))];
+        let room_m = self.ground.first_m() + lane_m - self.at(step).0 - self.front_m();
+        if !self.ground.junction || room_m < WALKER_GAP_M {
+            return None;
+        }
+        let line = self.ground.sv_pose(self.ground.first_m());
+        let ahead = Vec2::from_heading(line.heading);
+        let way = if extra.side == Some(LeftRight::Right) { ahead.left() } else { ahead.left() * -1.0 };
+        let from = line.position + ahead * lane_m - way * (CROSSES_MPS * self.clears_s());
+        Some(straight_plan(from, way, (CROSSES_MPS, self.told.contact_s)))
+    }
+
+    /// A vehicle that comes towards the ego in its own lane, and passes it.
+    fn oncoming(&self) -> Option<ActorPlan> {
+        let two_way = self.ground.map.roads[0].left.iter().any(|strip| strip.kind == StripKind::Driving);
+        let (step, _) = self.stops();
+        let road = self.ground.pose(self.at(step).0.min(self.ground.first_m()), -self.ground.opposing_m);
+        let way = Vec2::from_heading(road.heading) * -1.0;
+        let from = road.position - way * (CROSSES_MPS * self.clears_s());
+        two_way.then(|| straight_plan(from, way, (CROSSES_MPS, self.told.contact_s)))
+    }
+
+    /// Who is parked at the kerb ahead of the ego, on both sides where nobody tells on which.
+    fn parked(&self, extra: &Extra, length_m: f64) -> Vec<ActorPlan> {
+        let road = &self.ground.map.roads[0];
+        let has =
+            |strips: &[recrash_model::scenario::Strip]| strips.iter().any(|strip| strip.kind == StripKind::Parking);
+        let s_m = self.at(self.until).0 + self.front_m() + PARKED_AHEAD_M + 0.5 * length_m;
+        let [left_m, right_m] = self.ground.kerbs_m;
+        let two_way = road.left.iter().any(|strip| strip.kind == StripKind::Driving);
+        let sides = [
+            (LeftRight::Right, has(&road.right), right_m, 0.0),
+            (LeftRight::Left, has(&road.left), -left_m, if two_way { 180.0 } else { 0.0 }),
+        ];
+        let told = |side: LeftRight| extra.side.is_none_or(|told| told == side);
+        let plan = |(_, _, t_m, turned_deg): (LeftRight, bool, f64, f64)| {
+            let pose = self.ground.pose(s_m, t_m);
+            ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
+        };
+        sides.into_iter().filter(|(side, is, ..)| *is && told(*side)).map(plan).collect()
+    }
+
+    /// Whom the ego goes round: where it has left its line, ahead of it there, or beside it.
+    fn obstacle(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> ActorPlan {
+        let line_m = self.told.sv_aside().map(|aside| aside.from_t_m);
+        let (s_m, t_m) = match line_m {
+            Some(line_m) => {
+                let left = (0..self.until).find(|step| (self.at(*step).1 - line_m).abs() > BESIDE_M);
+                let ahead_m = self.front_m() + ROUND_AHEAD_M + 0.5 * length_m;
+                (left.map_or_else(|| self.at(self.until).0 + ahead_m, |step| self.at(step).0), line_m)
+            }
+            None => {
+                let sign = if extra.side == Some(LeftRight::Left) { -1.0 } else { 1.0 };
+                let beside_m = 0.5 * (size_of(&self.told.sv).1 + width_m) + ROOM_BESIDE_M;
+                let (s_m, t_m) = self.at(self.until);
+                (s_m, t_m + sign * beside_m)
+            }
+        };
+        let pose = self.ground.pose(s_m, t_m);
+        ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()))
+    }
+}
