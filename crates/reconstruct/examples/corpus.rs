@@ -70,6 +70,12 @@ fn main() {
                 row[1] += 1;
                 row[2] += usize::from(made.is_true());
                 for fact in &made.verdict.checks {
+                    if flags.iter().any(|flag| flag == "--others")
+                        && fact.kind == CheckKind::Others
+                        && is_developed(account)
+                    {
+                        println!("{} {:?}: {} | {}", account.report, fact.result, fact.expected, fact.observed);
+                    }
                     let count = facts.entry(fact.kind).or_default();
                     count[0] += 1;
                     count[1] += usize::from(fact.result == CheckResult::Shown);

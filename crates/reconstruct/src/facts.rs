@@ -246,9 +246,9 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         held(CheckKind::Reason, said.join(", "), reason(told, scenario, rollout, touch.time_s));
     }
     if told.others > 0 {
-        let there = Seen::new(told, rollout, touch.time_s).count();
-        let result = if there >= told.others { CheckResult::Shown } else { CheckResult::CannotBeShown };
-        held(CheckKind::Others, format!("{} more", told.others), (result, format!("{there} more")));
+        let (all, expected, observed) = Seen::new(told, rollout, touch.time_s).others();
+        let result = if all { CheckResult::Shown } else { CheckResult::CannotBeShown };
+        held(CheckKind::Others, expected, (result, observed));
     }
     for (kind, side) in [(CheckKind::SvZones, &told.sv), (CheckKind::CpZones, &told.cp)] {
         if side.only_above_or_below {

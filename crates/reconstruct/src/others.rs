@@ -46,6 +46,23 @@ impl Role {
     }
 }
 
+impl Extra {
+    /// For sentences.
+    pub(crate) const fn words(&self) -> &'static str {
+        match self.role {
+            Role::Lead if self.goes => "one stands ahead and drives on",
+            Role::Lead => "one stands ahead",
+            Role::Slower => "one ahead slows",
+            Role::Walker => "somebody crosses",
+            Role::Animal => "an animal crosses",
+            Role::Crosser => "one comes along the crossing road",
+            Role::Oncoming => "one comes by from ahead",
+            Role::Kerb => "parked at the kerb",
+            Role::Obstacle => "one stands that it goes round",
+        }
+    }
+}
+
 /// Somebody else who has a part in what the ego does.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Extra {

@@ -37,10 +37,19 @@ impl<'a> Seen<'a> {
         Self { told, rollout, ego, until: ((time_s * 10.0) as usize).min(ego.states.len() - 1) }
     }
 
-    /// How many of the others who are told of are there as told.
-    pub(crate) fn count(&self) -> usize {
-        let drawn = self.told.wanted.iter().filter(|extra| self.holds(extra)).map(|extra| extra.of.len());
-        drawn.sum::<usize>() + usize::from(self.throws()) * self.told.throwers
+    /// Whether all of the others who are told of are there as told; who is wanted, and who is there.
+    pub(crate) fn others(&self) -> (bool, String, String) {
+        let words = |list: &[&Extra], throws: bool| {
+            let words = list.iter().map(|extra| extra.words()).chain(throws.then_some("one throws the partner"));
+            words.collect::<Vec<_>>().join(", ")
+        };
+        let told: Vec<&Extra> = self.told.wanted.iter().filter(|extra| !extra.of.is_empty()).collect();
+        let there: Vec<&Extra> = told.iter().copied().filter(|extra| self.holds(extra)).collect();
+        let throws = self.throws() && self.told.throwers > 0;
+        let count = there.iter().map(|extra| extra.of.len()).sum::<usize>() + usize::from(throws);
+        let all = words(&told, self.told.throwers > 0);
+        let expected = format!("{} more: {}", self.told.others, if all.is_empty() { "not known where" } else { &all });
+        (count >= self.told.others, expected, format!("{count} more: {}", words(&there, throws)))
     }
 
     /// Whether somebody who is drawn is elsewhere than it is wanted, or drives against its red light.
