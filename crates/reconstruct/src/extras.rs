@@ -1,7 +1,7 @@
 //! Where others than the two stand and drive, seen from how the ego and the partner come to the contact.
 
 use crate::came::straight_plan;
-use crate::ground::Ground;
+use crate::ground::{Ground, LANE_M};
 use crate::others::{Extra, Role};
 use crate::pace::{first_time, when};
 use crate::side::{Turning, size_of as size_of_kind};
@@ -12,7 +12,7 @@ use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorTrack, Rollout};
-use recrash_model::scenario::{Actor, ActorPlan, Deed, Leg, Place, StripKind, Trigger};
+use recrash_model::scenario::{Actor, ActorPlan, Deed, Leg, Place, Strip, StripKind, Trigger};
 use recrash_model::vehicle::VehicleSpec;
 
 /// From the ego's front to who stands ahead, and to who crosses on foot, also between the two. [m]
@@ -55,6 +55,10 @@ const ROUND_AHEAD_M: f64 = 6.0;
 /// Who goes round somebody has left its line by so much, and leaves so much room beside it. [m]
 const BESIDE_M: f64 = 2.4;
 const ROOM_BESIDE_M: f64 = 0.6;
+
+/// Who changes into the ego's lane is no slower, and takes so long. [m/s, s]
+const MERGES_MPS: f64 = 5.0;
+const MERGES_S: f64 = 3.5;
 
 /// Slower than this is standing. [m/s]
 pub(crate) const STANDS_MPS: f64 = 0.1;
@@ -110,6 +114,8 @@ impl Scene<'_> {
             Role::Oncoming => self.oncoming().into_iter().collect(),
             Role::Kerb => self.parked(extra, length_m),
             Role::Obstacle => vec![self.obstacle(extra, (length_m, width_m))],
+            Role::Passed => self.passed(length_m).into_iter().collect(),
+            Role::Merger => vec![self.merger(extra, length_m)],
         };
         let name = |number: usize| if number == 0 { String::new() } else { format!("-{}", number + 1) };
         let actor = |(number, plan): (usize, ActorPlan)| Actor {
@@ -268,17 +274,23 @@ impl Scene<'_> {
         two_way.then(|| straight_plan(from, way, (CROSSES_MPS, self.told.contact_s)))
     }
 
-    /// Who is parked at the kerb ahead of the ego, on both sides where nobody tells on which.
+    /// Who is parked at the kerb ahead of the ego, on both sides where nobody tells on which; in a lot in a stall.
     fn parked(&self, extra: &Extra, length_m: f64) -> Vec<ActorPlan> {
         let road = &self.ground.map.roads[0];
-        let has =
-            |strips: &[recrash_model::scenario::Strip]| strips.iter().any(|strip| strip.kind == StripKind::Parking);
-        let s_m = self.at(self.until).0 + self.front_m() + PARKED_AHEAD_M + 0.5 * length_m;
-        let [left_m, right_m] = self.ground.kerbs_m;
-        let two_way = road.left.iter().any(|strip| strip.kind == StripKind::Driving);
+        // The ego goes against the line of a road that is drawn from the junction.
+        let (right, left) = if self.ground.junction { (&road.left, &road.right) } else { (&road.right, &road.left) };
+        let is = |strips: &[Strip], kind: StripKind| strips.iter().any(|strip| strip.kind == kind);
+        let stalls = is(right, StripKind::Stalls);
+        let has = |strips: &[Strip]| is(strips, StripKind::Parking) || is(strips, StripKind::Stalls);
+        let ahead_m = self.at(self.until).0 + self.front_m() + PARKED_AHEAD_M + 0.5 * length_m;
+        let s_m = if self.ground.junction { ahead_m.min(self.ground.first_m() - PARKED_AHEAD_M) } else { ahead_m };
+        let wider_m = 0.5 * (StripKind::Stalls.usual_width_m() - StripKind::Parking.usual_width_m());
+        let [left_m, right_m] = self.ground.kerbs_m.map(|kerb_m| kerb_m + if stalls { wider_m } else { 0.0 });
+        let two_way = is(left, StripKind::Driving);
+        let turned_deg = if stalls { 90.0 } else { 0.0 };
         let sides = [
-            (LeftRight::Right, has(&road.right), right_m, 0.0),
-            (LeftRight::Left, has(&road.left), -left_m, if two_way { 180.0 } else { 0.0 }),
+            (LeftRight::Right, has(right), right_m, turned_deg),
+            (LeftRight::Left, has(left), -left_m, if two_way && !stalls { 180.0 } else { turned_deg }),
         ];
         let told = |side: LeftRight| extra.side.is_none_or(|told| told == side);
         let plan = |(_, _, t_m, turned_deg): (LeftRight, bool, f64, f64)| {
@@ -286,6 +298,43 @@ impl Scene<'_> {
             ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
         };
         sides.into_iter().filter(|(side, is, ..)| *is && told(*side)).map(plan).collect()
+    }
+
+    /// Whom the partner goes round: in the line on which it came, where it has left that, or ahead of where it touches the ego.
+    fn passed(&self, length_m: f64) -> Option<ActorPlan> {
+        let track = self.partner?;
+        let (came, met) = (track.states[0].pose(), track.states[self.until.min(track.states.len() - 1)].pose());
+        let along = Vec2::from_heading(came.heading);
+        let left = track.states[..=self.until]
+            .iter()
+            .find(|state| along.cross(state.position() - came.position).abs() > BESIDE_M);
+        let on_m = match left {
+            Some(state) => along.dot(state.position() - came.position),
+            None => along.dot(met.position - came.position) + 0.5 * (track.length_m + length_m) + ROUND_AHEAD_M,
+        };
+        let at = came.position + along * on_m;
+        (on_m > 0.0).then(|| ActorPlan::standing(Place::at(at.x, at.y, came.heading.to_degrees())))
+    }
+
+    /// Who changes into the ego's lane ahead of it, out of the lane beside it, and is there at the contact.
+    fn merger(&self, extra: &Extra, length_m: f64) -> ActorPlan {
+        let (s_m, t_m) = self.at(self.until);
+        let speed_mps = self.mps(self.until).max(MERGES_MPS);
+        let met_m = s_m + self.front_m() + self.stops().1 + 0.5 * length_m + ROUND_AHEAD_M;
+        let from_m = if extra.side == Some(LeftRight::Right) { LANE_M } else { -LANE_M };
+        let over_m = speed_mps * MERGES_S;
+        let place = |s_m: f64| {
+            let pose = self.ground.pose(s_m, t_m + from_m);
+            Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+        };
+        let until_s = self.told.contact_s;
+        let shift = Deed::Shift { to_t_m: -from_m, over_m };
+        ActorPlan {
+            speed_mps,
+            course: vec![Leg::Curve { to: place(met_m + 60.0), reverse: false }],
+            acts: vec![when(((until_s - MERGES_S - MET_BEFORE_S) * 10.0).round() / 10.0, shift)],
+            ..ActorPlan::standing(place(met_m - speed_mps * until_s))
+        }
     }
 
     /// Whom the ego goes round: where it has left its line, ahead of it there, or beside it.

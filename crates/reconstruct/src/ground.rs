@@ -112,7 +112,9 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
         && !matches!(told.sv.turning, Turning::Left | Turning::Right);
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
-    if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
+    // Who gives way to crossing traffic is at a junction.
+    let gives_way = told.place != PlaceKind::Highway && has(told, Role::Crosser);
+    if (crossing || controlled || gives_way) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
         let at_entry = told.lies == Some(Lies::Edge) && told.sv.turning != Turning::No;
         return if at_entry { ground.at_entry(size_of(&told.sv).0) } else { ground };
@@ -198,9 +200,9 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
     }
 }
 
-/// Whether somebody stands ahead of the ego in its lane.
-fn waits_behind(told: &Told) -> bool {
-    told.extras.iter().any(|extra| extra.role == Role::Lead)
+/// Whether somebody with this part is drawn.
+fn has(told: &Told, role: Role) -> bool {
+    told.extras.iter().any(|extra| extra.role == role)
 }
 
 fn passes_right(told: &Told) -> bool {
@@ -223,7 +225,9 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     let corner_m = corner_m(lanes);
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
-        straight(id, start, length_m, strips(lanes, &[StripKind::Sidewalk]), strips(lanes, &[StripKind::Sidewalk]))
+        let beside: &[StripKind] =
+            if has(told, Role::Kerb) { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
+        straight(id, start, length_m, strips(lanes, beside), strips(lanes, beside))
     };
     let one_way = is_one_way(told);
     let (exit, lane) = match told.sv.turning {
@@ -254,7 +258,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
     let at_line: &[f64] = match told.sv.state {
         ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => {
-            match waits_behind(told) {
+            match has(told, Role::Lead) {
                 true => &[-13.0, -15.0],
                 false => &[-5.0, -8.0],
             }
@@ -276,7 +280,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         all
     } else {
         // At the line, or behind who stands there.
-        let behind = waits_behind(told) || told.origin == Origin::Ahead && told.thing.is_none();
+        let behind = has(told, Role::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
         vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
     };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes } };

@@ -28,6 +28,10 @@ pub(crate) enum Role {
     Kerb,
     /// Stands in the lane that the ego leaves, or beside its way: it goes round it.
     Obstacle,
+    /// Stands in the lane that the partner leaves: it goes round it.
+    Passed,
+    /// Changes from beside the ego into its lane, ahead of it.
+    Merger,
 }
 
 impl Role {
@@ -42,6 +46,8 @@ impl Role {
             Self::Oncoming => "oncoming",
             Self::Kerb => "kerb",
             Self::Obstacle => "obstacle",
+            Self::Passed => "passed",
+            Self::Merger => "merger",
         }
     }
 }
@@ -59,6 +65,8 @@ impl Extra {
             Role::Oncoming => "one comes by from ahead",
             Role::Kerb => "parked at the kerb",
             Role::Obstacle => "one stands that it goes round",
+            Role::Passed => "one stands that the partner goes round",
+            Role::Merger => "one changes into its lane ahead",
         }
     }
 }
@@ -168,6 +176,7 @@ fn is_drawn(told: &Told, role: Role) -> bool {
     match role {
         Role::Kerb => true,
         Role::Obstacle => drives,
+        Role::Passed => told.thing.is_none(),
         Role::Lead | Role::Slower => drives && told.thing.is_none() && told.origin != Origin::Ahead,
         _ => drives && told.thing.is_none(),
     }
@@ -183,6 +192,11 @@ fn sets_off(told: &Told) -> bool {
 fn goes_round(told: &Told) -> bool {
     told.sv_aside().is_some_and(|aside| aside.from_t_m == 0.0 && told.sv.movement != Some(Movement::ParkingManeuver))
         || told.sv.movement == Some(Movement::Passing)
+}
+
+/// Whether the ego keeps its lane.
+fn is_straight(told: &Told) -> bool {
+    told.sv.turning == Turning::No && told.sv_aside().is_none()
 }
 
 /// What the words tell of somebody else.
@@ -209,11 +223,15 @@ impl Story<'_> {
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
     fn is_met(&self, other: &Other) -> bool {
         let Some((named, end)) = span(&other.kind.source) else { return false };
-        let before = self.reactions().any(|(start, _)| (end..end + NAMED_BEFORE).contains(&start) && named < start);
+        let before = self.reactions().any(|(start, _)| (end..end + NAMED_BEFORE).contains(&start));
+        let turns = self.account.sv.acts.iter().filter(|fact| fact.act == Act::Turn && !fact.after_contact);
+        let turns = turns
+            .filter_map(|fact| span(&fact.source))
+            .any(|(start, end)| (start..end + NAMED_BEFORE).contains(&named));
         let reacts = self.reactions().next().is_some();
         let crosses =
             |fact: &ActFact| matches!(fact.act, Act::Cross | Act::Enter | Act::RunRed | Act::PullOut | Act::UTurn);
-        self.is_near(other) || reacts && before_contact(other).any(crosses) || before
+        self.is_near(other) || reacts && before_contact(other).any(crosses) || before || turns
     }
 
     /// Whether who stood drove on.
@@ -236,6 +254,13 @@ impl Story<'_> {
         }
     }
 
+    /// Whether the partner goes round somebody who stands: it comes over from the opposite side, or passes where the ego is at the kerb.
+    fn is_passed(&self, told: &Told) -> bool {
+        let passes = |fact: &ActFact| matches!(fact.act, Act::Pass | Act::LaneChange) && !fact.after_contact;
+        let at_kerb = told.sv.state == ContactState::Parked || told.sv.movement == Some(Movement::EnteringTraffic);
+        told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
+    }
+
     fn vehicle(&self, told: &Told, other: &Other) -> Option<Role> {
         let words = text(&other.kind.source);
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
@@ -243,6 +268,10 @@ impl Story<'_> {
         let place = other.place.as_ref().map(|fact| fact.value);
         let near = self.is_near(other);
         let because = |reason: StandReason| told.reasons.contains(&reason);
+        let stands = did(&[Act::Hold, Act::Stop, Act::Park]) && !did(&[Act::SetOff, Act::Follow, Act::Reverse]);
+        if stands && !other.several && !near && self.is_passed(told) {
+            return Some(Role::Passed);
+        }
         let parked = said(&["parked"]) || before_contact(other).any(|fact| text(&fact.source).contains("park"));
         if parked && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
             let double = said(&["double"]) || before_contact(other).any(|fact| text(&fact.source).contains("double"));
@@ -256,7 +285,9 @@ impl Story<'_> {
         }
         if place == Some(Origin::Opposite) || said(&["oncoming", "opposing"]) {
             let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park]);
-            return (near && only_passes).then_some(Role::Oncoming);
+            // Of who turns across it, it is told only because that waits for it.
+            let waits = near || other.several && told.sv.turning == Turning::Left;
+            return (waits && only_passes).then_some(Role::Oncoming);
         }
         let queue = because(StandReason::Queue) || because(StandReason::LeadVehicle);
         let ahead = place == Some(Origin::Ahead) || said(&["lead", "preceding"]);
@@ -264,13 +295,18 @@ impl Story<'_> {
         let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside;
         let turns = told.sv.turning != Turning::No || because(StandReason::StopSign);
         let passes = turns && (because(StandReason::Yield) || did(&[Act::Follow]));
-        if near && !ahead && !queue && other.several && (crosses || passes || because(StandReason::Yield)) {
+        let waits = near || other.several && told.sv.turning != Turning::No && said(&["cross"]);
+        if waits && !ahead && !queue && other.several && (crosses || passes || because(StandReason::Yield)) {
             let turns_left = told.sv.turning == Turning::Left && !because(StandReason::StopSign) && !said(&["cross"]);
             let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]);
             return junction.then_some(if turns_left { Role::Oncoming } else { Role::Crosser });
         }
         let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Reverse, Act::Pass, Act::Drift]);
         let reacts = self.reactions().next().is_some();
+        let merges = did(&[Act::LaneChange, Act::PullOut]) && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
+        if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && is_straight(told) {
+            return Some(Role::Merger);
+        }
         if !(near && !beside || ahead && reacts) || leaves || place == Some(Origin::Behind) {
             return None;
         }
@@ -283,8 +319,11 @@ impl Story<'_> {
     fn side(&self, role: Role, told: &Told, other: &Other) -> Option<LeftRight> {
         let passes = self.account.sv.acts.iter().find(|fact| fact.act == Act::Pass && !fact.after_contact);
         let passed = passes.and_then(|fact| fact.side).or(told.sv.aside).map(LeftRight::other);
+        let changes = before_contact(other).find(|fact| matches!(fact.act, Act::LaneChange | Act::PullOut));
         match other.place.as_ref().map(|fact| fact.value) {
             Some(Origin::Beside { side }) => Some(side),
+            // Who changes to its right comes from the left.
+            _ if role == Role::Merger => changes.and_then(|fact| fact.side).map(LeftRight::other),
             _ => passed.filter(|_| role == Role::Obstacle),
         }
     }

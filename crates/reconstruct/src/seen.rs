@@ -71,7 +71,9 @@ impl<'a> Seen<'a> {
             StandReason::Queue | StandReason::LeadVehicle => is(Role::Lead),
             StandReason::Pedestrian => is(Role::Walker),
             StandReason::Animal => is(Role::Animal),
-            StandReason::Yield => [Role::Walker, Role::Crosser, Role::Oncoming, Role::Lead].into_iter().any(is),
+            StandReason::Yield => {
+                [Role::Walker, Role::Crosser, Role::Oncoming, Role::Lead, Role::Merger].into_iter().any(is)
+            }
             StandReason::BlockedPath => is(Role::Lead) || is(Role::Obstacle),
             StandReason::Parked => self.told.sv.state == recrash_model::account::ContactState::Parked,
             _ => false,
@@ -111,6 +113,8 @@ impl<'a> Seen<'a> {
                 Role::Oncoming => self.comes_by(track),
                 Role::Kerb => self.is_parked(track),
                 Role::Obstacle => self.is_passed(extra, track),
+                Role::Passed => self.partner_passes(track),
+                Role::Merger => self.merges(extra, track),
             }
     }
 
@@ -197,6 +201,27 @@ impl<'a> Seen<'a> {
 
     fn stays(&self, track: &ActorTrack) -> bool {
         (0..=self.until).all(|step| Self::mps(track, step) < STANDS_MPS)
+    }
+
+    /// Whether the partner goes round somebody who stands in the line on which it came.
+    fn partner_passes(&self, track: &ActorTrack) -> bool {
+        let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let came = partner.states[0].pose();
+        let along = Vec2::from_heading(came.heading);
+        let aside = |of: Vec2| along.cross(of - came.position);
+        let met = partner.states[self.until.min(partner.states.len() - 1)].position();
+        let at = track.states[0].position();
+        let beside = (0..=self.until).any(|step| (aside(partner.states[step].position()) - aside(at)).abs() > 0.8);
+        self.stays(track) && aside(at).abs() < 0.5 * LANE_M && beside && (at - met).length() < PARKED_M
+    }
+
+    /// Whether somebody was beside the ego's lane, on the told side, and is in it ahead of the ego at the contact.
+    fn merges(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        let was = |step: usize| self.beside(track, step).1;
+        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (was(0) > 0.0));
+        let beside = (0..self.until).any(|step| was(step).abs() > 0.7 * LANE_M);
+        (0.0..CROSSING_M).contains(&ahead_m) && left_m.abs() < 0.4 * LANE_M && beside && side
     }
 
     /// Whether the ego goes round somebody who stands: it came along its line, and leaves that to the other side; or it goes by.
