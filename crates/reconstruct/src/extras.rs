@@ -3,7 +3,7 @@
 use crate::came::straight_plan;
 use crate::ground::{Ground, LANE_M};
 use crate::others::{Extra, Role};
-use crate::pace::{first_time, when};
+use crate::pace::{first_time, next, when};
 use crate::side::{Turning, size_of as size_of_kind};
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
@@ -56,6 +56,10 @@ const ROUND_AHEAD_M: f64 = 6.0;
 const BESIDE_M: f64 = 2.4;
 const ROOM_BESIDE_M: f64 = 0.6;
 
+/// Whom the partner passes before it comes in, it has passed so long before the contact, so far beside. [steps, m]
+const PASSED_BEFORE: usize = 35;
+const PASSED_BESIDE_M: f64 = 3.0;
+
 /// Who changes into the ego's lane is no slower, and takes so long. [m/s, s]
 const MERGES_MPS: f64 = 5.0;
 const MERGES_S: f64 = 3.5;
@@ -63,12 +67,25 @@ const MERGES_S: f64 = 3.5;
 /// Slower than this is standing. [m/s]
 pub(crate) const STANDS_MPS: f64 = 0.1;
 
-/// The last time that somebody stood until a step: its first and its last step.
-pub(crate) fn last_stand(track: &ActorTrack, until: usize) -> Option<(usize, usize)> {
-    let stands = |step: &usize| track.states[*step].velocity().length() < STANDS_MPS;
-    let last = (0..=until.min(track.states.len() - 1)).rfind(stands)?;
-    let first = (0..last).rfind(|step| !stands(step)).map_or(0, |step| step + 1);
-    Some((first, last))
+/// When somebody stood until a step: first and last steps.
+pub(crate) fn stands(track: &ActorTrack, until: usize) -> Vec<(usize, usize)> {
+    let mut list: Vec<(usize, usize)> = Vec::new();
+    for step in
+        (0..=until.min(track.states.len() - 1)).filter(|step| track.states[*step].velocity().length() < STANDS_MPS)
+    {
+        match list.last_mut().filter(|(_, last)| last + 1 == step) {
+            Some((_, last)) => *last = step,
+            None => list.push((step, step)),
+        }
+    }
+    list
+}
+
+/// When the ego stood behind somebody who stood ahead: last, or the time before that where this one drives on before it moves.
+pub(crate) fn stood_behind(extra: &Extra, ego: &ActorTrack, until: usize) -> Option<(usize, usize)> {
+    let list = stands(ego, until);
+    let back = if extra.first && list.last().is_some_and(|(_, to)| to + 1 >= until) { 2 } else { 1 };
+    list.len().checked_sub(back).or(list.len().checked_sub(1)).map(|at| list[at])
 }
 
 /// The two, as they come to the contact.
@@ -90,7 +107,7 @@ pub(crate) fn actors(told: &Told, staging: &Staging, recorded: &ActorPlan, alone
     let ego = alone.ego_track();
     let until = ((told.contact_s * 10.0).round() as usize).min(ego.states.len() - 1);
     let partner = alone.actors.iter().find(|track| track.id == "cp");
-    let stand = last_stand(ego, until);
+    let stand = stands(ego, until).last().copied();
     let scene = Scene { told, ground: &staging.ground, recorded, ego, partner, until, stand };
     told.extras.iter().flat_map(|extra| scene.actors(extra)).collect()
 }
@@ -182,33 +199,62 @@ impl Scene<'_> {
     }
 
     fn lead(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
-        let (step, room_m) = self.stops();
+        let stand = stood_behind(extra, self.ego, self.until);
+        let (step, room_m) = stand.map_or_else(|| self.stops(), |(from, _)| (from, 0.0));
         let ahead_m = self.front_m() + LEAD_GAP_M + room_m + 0.5 * length_m;
-        let pose = self.ahead(step, ahead_m);
+        let (s_m, _) = self.at(step);
+        let pose = match self.told.sv_aside() {
+            // In the lane, or in that into which the ego changes.
+            Some(aside) => {
+                let lane_m = if aside.to_t_m.abs() >= LANE_M { aside.to_t_m } else { 0.0 };
+                self.ground.pose(s_m + ahead_m + ROOM_M, lane_m)
+            }
+            None => self.ahead(step, ahead_m),
+        };
         // Before the light.
         let controlled = self.told.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
-        let (line_m, s_m) = (self.ground.first_m(), self.at(step).0);
+        let line_m = self.ground.first_m();
         let beyond = s_m + ahead_m + 0.5 * length_m > line_m;
         if controlled && self.ground.junction && s_m + self.front_m() < line_m && beyond {
             return None;
         }
-        let place = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
-        let stands = ActorPlan::standing(place(pose));
-        if !extra.goes {
-            return Some(stands);
+        let along = Vec2::from_heading(pose.heading);
+        let at = |ahead_m: f64| {
+            let point = pose.position + along * ahead_m;
+            Place::at(point.x, point.y, pose.heading.to_degrees())
+        };
+        let course = vec![Leg::Curve { to: at(90.0), reverse: false }];
+        if extra.goes {
+            let goes_s = (self.goes_s(step, stand) * 10.0).round() / 10.0;
+            let acts = vec![when(goes_s, Deed::Speed { to_mps: GOES_MPS, rate_mps2: GOES_MPS2 })];
+            return Some(ActorPlan { course, acts, ..ActorPlan::standing(at(0.0)) });
         }
-        let follows = self.sets_off().or_else(|| {
-            let (from, to) = self.partner.and_then(|track| last_stand(track, self.until))?;
-            (to + 1 < self.until && from > 0 || to > step).then_some(to)
+        // Behind whom the ego moves up, that one has moved up before.
+        let Some((up_s, up_m)) = self.moved_up() else { return Some(ActorPlan::standing(at(0.0))) };
+        let speed_mps = 0.9 * (GOES_MPS2 * up_m).sqrt();
+        let stop = Deed::Stop { rate_mps2: GOES_MPS2, at_m: Some(up_m) };
+        let acts = vec![when(up_s, Deed::Speed { to_mps: speed_mps, rate_mps2: GOES_MPS2 }), next(stop)];
+        Some(ActorPlan { course, acts, ..ActorPlan::standing(at(-up_m)) })
+    }
+
+    /// When who stands ahead of the ego drives on: before the ego does, else before the partner. [s]
+    fn goes_s(&self, step: usize, stand: Option<(usize, usize)>) -> f64 {
+        let ego = stand.map(|(_, to)| to).filter(|to| *to + 1 < self.until);
+        let follows = ego.or_else(|| {
+            let (from, to) = self.partner.and_then(|track| stands(track, self.until).last().copied())?;
+            (to + 1 < self.until && (from > 0 || to > step)).then_some(to)
         });
-        let goes_s = 0.1 * follows.unwrap_or(self.until.saturating_sub(12)) as f64 - SETS_OFF_BEFORE_S;
-        let goes_s = (goes_s.max(0.1 * step as f64 + 0.5) * 10.0).round() / 10.0;
-        let to = pose.position + Vec2::from_heading(pose.heading) * 90.0;
-        Some(ActorPlan {
-            course: vec![Leg::Curve { to: Place::at(to.x, to.y, pose.heading.to_degrees()), reverse: false }],
-            acts: vec![when(goes_s.max(0.1), Deed::Speed { to_mps: GOES_MPS, rate_mps2: GOES_MPS2 })],
-            ..stands
-        })
+        let follows_s = 0.1 * follows.unwrap_or(self.until.saturating_sub(12)) as f64;
+        (follows_s - SETS_OFF_BEFORE_S).max(0.1 * step as f64 + 0.5)
+    }
+
+    /// When, and how far, the ego moved up before it stood for good. [s, m]
+    fn moved_up(&self) -> Option<(f64, f64)> {
+        let list = stands(self.ego, self.until);
+        let [.., (_, before), (last, to)] = list.as_slice() else { return None };
+        let up_m = self.at(*last).0 - self.at(*before).0;
+        let up_s = (0.1 * *before as f64 - SETS_OFF_BEFORE_S).max(0.1);
+        (to + 1 >= self.until && (1.0..20.0).contains(&up_m)).then_some(((up_s * 10.0).round() / 10.0, up_m))
     }
 
     /// It drives as the ego does, ahead of it and a little earlier.
@@ -308,11 +354,17 @@ impl Scene<'_> {
         let left = track.states[..=self.until]
             .iter()
             .find(|state| along.cross(state.position() - came.position).abs() > BESIDE_M);
+        // Beside the line, on the ego's side, where it passes before it comes in.
+        let before = self.until.saturating_sub(PASSED_BEFORE).min(track.states.len() - 1);
+        let over = self.told.comes_over;
+        let aside_m = if over { 0.0 } else { PASSED_BESIDE_M };
+        let to_ego = along.cross(self.ego.states[self.until].position() - came.position).signum();
         let on_m = match left {
+            _ if !over => along.dot(track.states[before].position() - came.position),
             Some(state) => along.dot(state.position() - came.position),
             None => along.dot(met.position - came.position) + 0.5 * (track.length_m + length_m) + ROUND_AHEAD_M,
         };
-        let at = came.position + along * on_m;
+        let at = came.position + along * on_m + along.left() * (to_ego * aside_m);
         (on_m > 0.0).then(|| ActorPlan::standing(Place::at(at.x, at.y, came.heading.to_degrees())))
     }
 
@@ -343,8 +395,9 @@ impl Scene<'_> {
         let (s_m, t_m) = match line_m {
             Some(line_m) => {
                 let left = (0..self.until).find(|step| (self.at(*step).1 - line_m).abs() > BESIDE_M);
-                let ahead_m = self.front_m() + ROUND_AHEAD_M + 0.5 * length_m;
-                (left.map_or_else(|| self.at(self.until).0 + ahead_m, |step| self.at(step).0), line_m)
+                let ahead_m = self.front_m() + 0.5 * length_m;
+                let room_m = if left.is_some() { ROOM_M } else { ROUND_AHEAD_M };
+                (self.at(left.unwrap_or(self.until)).0 + ahead_m + room_m, line_m)
             }
             None => {
                 let sign = if extra.side == Some(LeftRight::Left) { -1.0 } else { 1.0 };

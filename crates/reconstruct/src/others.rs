@@ -80,6 +80,8 @@ pub(crate) struct Extra {
     pub(crate) kind: Kind,
     /// Who stands ahead drives on before the ego or the partner does.
     pub(crate) goes: bool,
+    /// It does so before the ego moves between two stops.
+    pub(crate) first: bool,
     /// On which side of the ego it is, or from which it comes, where told.
     pub(crate) side: Option<LeftRight>,
 }
@@ -136,19 +138,28 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     for (number, other) in account.others.iter().enumerate() {
         let Some(role) = story.role(told, other).filter(|role| is_drawn(told, *role)) else { continue };
         let kind = other.kind.value;
-        let goes = role == Role::Lead && (sets_off(told) || story.drives_on(other));
+        let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
+        let goes = role == Role::Lead && sets_off(told) || drives_on.is_some();
+        let first = drives_on == Some(true);
         match list.iter_mut().find(|extra| extra.role == role) {
             Some(known) if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind)) => {
                 known.of.push(number);
                 known.goes |= goes;
+                known.first |= first;
             }
             Some(_) => {}
-            None => list.push(Extra { role, of: vec![number], kind, goes, side: story.side(role, told, other) }),
+            None => {
+                let side = story.side(role, told, other);
+                list.push(Extra { role, of: vec![number], kind, goes, first, side });
+            }
         }
     }
     let queue = told.reasons.iter().any(|reason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle));
     if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
-        list.insert(0, Extra { role: Role::Lead, of: Vec::new(), kind: Kind::Vehicle, goes: false, side: None });
+        list.insert(
+            0,
+            Extra { role: Role::Lead, of: Vec::new(), kind: Kind::Vehicle, goes: false, first: false, side: None },
+        );
     }
     list
 }
@@ -234,12 +245,19 @@ impl Story<'_> {
         self.is_near(other) || reacts && before_contact(other).any(crosses) || before || turns
     }
 
-    /// Whether who stood drove on.
-    fn drives_on(&self, other: &Other) -> bool {
+    /// Whether who stood drove on; and whether it did so before the ego did.
+    fn drives_on(&self, other: &Other) -> Option<bool> {
         let stood = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
-        let since = self.account.sv.acts.iter().chain(&other.acts).filter(stood).map(|fact| fact.step).min();
-        let drives = |fact: &ActFact| matches!(fact.act, Act::SetOff | Act::Follow | Act::Accelerate | Act::Leave);
-        since.is_some_and(|since| before_contact(other).any(|fact| fact.step > since && drives(fact)))
+        let since = self.account.sv.acts.iter().chain(&other.acts).filter(stood).map(|fact| fact.step).min()?;
+        let drives = |fact: &&ActFact| {
+            fact.step > since && matches!(fact.act, Act::SetOff | Act::Follow | Act::Accelerate | Act::Leave)
+        };
+        let at = before_contact(other).find(drives)?.step;
+        let moves = |fact: &&ActFact| {
+            let moves = matches!(fact.act, Act::SetOff | Act::Follow | Act::Enter | Act::LaneChange | Act::Turn);
+            moves && fact.step > since && !fact.after_contact
+        };
+        Some(self.account.sv.acts.iter().find(moves).is_some_and(|fact| at < fact.step))
     }
 
     fn role(&self, told: &Told, other: &Other) -> Option<Role> {

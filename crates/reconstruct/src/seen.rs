@@ -1,7 +1,7 @@
 //! Whether a rollout holds the others who are told of, where and when they matter.
 
 use crate::control;
-use crate::extras::{STANDS_MPS, last_stand};
+use crate::extras::{STANDS_MPS, stood_behind};
 use crate::ground::LANE_M;
 use crate::others::{Extra, Role};
 use crate::told::Told;
@@ -144,7 +144,7 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody stands ahead where the ego stands or slows, and drives on before it does, where told.
     fn leads(&self, extra: &Extra, track: &ActorTrack) -> bool {
-        let (from, to) = last_stand(self.ego, self.until).unwrap_or((self.until, self.until));
+        let (from, to) = stood_behind(extra, self.ego, self.until).unwrap_or((self.until, self.until));
         let (ahead_m, left_m) = self.beside(track, from);
         let within_m = AHEAD_M + 0.5 * track.length_m + self.stopping_m(from);
         let there = ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M;
@@ -212,7 +212,9 @@ impl<'a> Seen<'a> {
         let met = partner.states[self.until.min(partner.states.len() - 1)].position();
         let at = track.states[0].position();
         let beside = (0..=self.until).any(|step| (aside(partner.states[step].position()) - aside(at)).abs() > 0.8);
-        self.stays(track) && aside(at).abs() < 0.5 * LANE_M && beside && (at - met).length() < PARKED_M
+        let in_line = aside(at).abs() < 0.5 * LANE_M && beside;
+        let by = aside(at).abs() < 1.2 * LANE_M && along.dot(met - at) > 0.0;
+        self.stays(track) && (in_line || by) && (at - met).length() < PARKED_M
     }
 
     /// Whether somebody was beside the ego's lane, on the told side, and is in it ahead of the ego at the contact.

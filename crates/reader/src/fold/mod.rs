@@ -406,7 +406,8 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
             continue;
         }
         let touched_partner = reading.contacts.touched_partner(story, actor);
-        if !touched_partner && is_nobody(reading, (first, end), &acts) {
+        let again = known.sentence.is_some_and(|last| first < story.sentences[last].first);
+        if !touched_partner && is_nobody(reading, (first, end), &acts, again) {
             continue;
         }
         all.push(Other {
@@ -421,8 +422,8 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
 }
 
 /// Whether a noun of which no act is told before the contact names nobody who was there: "a lane of traffic", "a passenger pickup", a
-/// street that is called so; or somebody whom only the headline names, or what is told of afterwards.
-fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFact]) -> bool {
+/// street that is called so; or somebody whom only the headline names, or what is told of afterwards. `again`: it is named again later.
+fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFact], again: bool) -> bool {
     let story = &reading.story;
     let is = |at: Option<usize>, words: &[&str]| {
         at.and_then(|at| story.tokens.get(at)).is_some_and(|token| words.contains(&token.text.as_str()))
@@ -441,7 +442,7 @@ fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFac
     if pickup || of_way || adjective || street || involved {
         return true;
     }
-    if acts.iter().any(|fact| !fact.after_contact) {
+    if again || acts.iter().any(|fact| !fact.after_contact) {
         return false;
     }
     let contact = reading.contacts.first.map(|number| story.frames[number].sentence);
