@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use recrash_model::account::{Account, told};
-use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorTrack, EventKind};
 use recrash_model::vehicle::VehicleSpec;
@@ -144,6 +144,10 @@ fn main() {
         sum[2],
         100.0 * sum[2] as f64 / sum[0] as f64
     );
+    let all_checked = |(_, made): &&(&Account, Result<Reconstruction, _>)| {
+        made.as_ref().is_ok_and(|made| made.verdict.faithful() == Answer::Yes)
+    };
+    println!("all checked: {}", results.iter().filter(all_checked).count());
     println!("not staged: {reasons:?}");
     let beside = results
         .par_iter()

@@ -124,9 +124,9 @@ impl Scene<'_> {
         let plans = match extra.role {
             Role::Lead => self.lead(extra, length_m).into_iter().collect(),
             Role::Slower => self.slower(length_m).into_iter().collect(),
-            Role::Walker if kind == PartnerKind::Pedestrian => vec![self.crosses(extra, WALKS_MPS)],
-            Role::Walker => vec![self.crosses(extra, RIDES_MPS)],
-            Role::Animal => vec![self.crosses(extra, RUNS_MPS)],
+            Role::Walker if kind == PartnerKind::Pedestrian => vec![self.crosses(extra, WALKS_MPS, self.clears_s())],
+            Role::Walker => vec![self.crosses(extra, RIDES_MPS, self.clears_s())],
+            Role::Animal => vec![self.crosses(extra, RUNS_MPS, self.runs_s())],
             Role::Crosser => self.crosser(extra).into_iter().collect(),
             Role::Oncoming => self.oncoming().into_iter().collect(),
             Role::Kerb => self.parked(extra, length_m),
@@ -196,6 +196,12 @@ impl Scene<'_> {
             (None, None) => until_s - MET_BEFORE_S,
         }
         .max(1.0)
+    }
+
+    /// When an animal runs across: the ego brakes for it, and comes to a stop then. [s]
+    fn runs_s(&self) -> f64 {
+        let came = self.stand.map(|(from, _)| 0.1 * from as f64 - MET_BEFORE_S).filter(|at_s| *at_s > 1.0);
+        came.unwrap_or_else(|| self.clears_s())
     }
 
     fn lead(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
@@ -285,14 +291,14 @@ impl Scene<'_> {
     }
 
     /// Somebody who crosses the ego's way, from the kerb on the right where nobody tells from which.
-    fn crosses(&self, extra: &Extra, speed_mps: f64) -> ActorPlan {
+    fn crosses(&self, extra: &Extra, speed_mps: f64, at_s: f64) -> ActorPlan {
         let (step, room_m) = self.stops();
         let lead = self.told.extras.iter().any(|extra| extra.role == Role::Lead);
         let gap_m = if lead { WALKER_BETWEEN_M } else { WALKER_GAP_M } + room_m;
         let met = self.ahead(step, self.front_m() + gap_m);
         let left = Vec2::from_heading(met.heading).left();
         let way = if extra.side == Some(LeftRight::Left) { left * -1.0 } else { left };
-        straight_plan(met.position - way * (speed_mps * self.clears_s()), way, (speed_mps, self.told.contact_s))
+        straight_plan(met.position - way * (speed_mps * at_s), way, (speed_mps, self.told.contact_s))
     }
 
     /// A vehicle on the crossing road, ahead of the ego.

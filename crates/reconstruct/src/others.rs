@@ -216,10 +216,12 @@ struct Story<'a> {
 }
 
 impl Story<'_> {
-    /// What the ego did for somebody: where the words stand, and its place in the order of the story.
+    /// What the ego did for somebody: where the words stand. That it stood when it was struck, said with its name, is nothing of that.
     fn reactions(&self) -> impl Iterator<Item = (usize, usize)> {
         let reacts = |fact: &&ActFact| {
-            matches!(fact.act, Act::Slow | Act::Stop | Act::Hold | Act::Swerve) && !fact.after_contact
+            let acts = matches!(fact.act, Act::Slow | Act::Stop | Act::Hold | Act::Swerve);
+            let named = ["the ", "a ", "its "].iter().any(|article| text(&fact.source).starts_with(article));
+            acts && !fact.after_contact && !named
         };
         let acts = self.account.sv.acts.iter().filter(reacts).map(|fact| &fact.source);
         acts.chain(self.account.sv.reasons.iter().map(|fact| &fact.source)).filter_map(span)
@@ -261,7 +263,9 @@ impl Story<'_> {
     }
 
     fn role(&self, told: &Told, other: &Other) -> Option<Role> {
-        if other.touched_partner {
+        // Who throws the partner is drawn there; and who comes afterwards is not.
+        let later = !other.acts.is_empty() && other.acts.iter().all(|fact| fact.after_contact);
+        if other.touched_partner || later {
             return None;
         }
         match other.kind.value.group() {
@@ -325,7 +329,9 @@ impl Story<'_> {
         if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && is_straight(told) {
             return Some(Role::Merger);
         }
-        if !(near && !beside || ahead && reacts) || leaves || place == Some(Origin::Behind) {
+        // Who drives elsewhere does not stand ahead.
+        let elsewhere = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !ahead && !queue;
+        if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
             return None;
         }
         let slows = did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);

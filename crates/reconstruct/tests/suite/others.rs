@@ -153,7 +153,10 @@ fn crossing_traffic_has_a_road_and_no_red_light() {
     // It would go on at red: the ego's light is green, and nobody crosses.
     let green = "The AV was stopped at a green light at the intersection of Elm Street and Oak Street, yielding to cross traffic. A van \
                  approached from behind and the front of the van made contact with the rear of the stationary AV.";
-    assert!(made(&told(green)).rollout.actors.iter().all(|track| track.id != "crosser"));
+    let without = made(&told(green));
+    let words = without.verdict.checks.iter().find(|check| check.kind == CheckKind::Others).expect("others are told");
+    assert!(words.expected.contains("crossing") && words.result == CheckResult::CannotBeShown, "{words:?}");
+    assert!(without.rollout.actors.iter().all(|track| track.id != "crosser"));
 }
 
 #[test]
