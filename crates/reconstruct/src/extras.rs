@@ -1,7 +1,7 @@
 //! Where others than the two stand and drive, seen from how the ego and the partner come to the contact.
 
 use crate::came::straight_plan;
-use crate::ground::{Ground, LANE_M};
+use crate::ground::{Ground, LANE_M, corner_m};
 use crate::others::{Extra, Role};
 use crate::pace::{first_time, next, when};
 use crate::side::{Turning, size_of as size_of_kind};
@@ -132,6 +132,8 @@ impl Scene<'_> {
             Role::Kerb => self.parked(extra, length_m),
             Role::Obstacle => vec![self.obstacle(extra, (length_m, width_m))],
             Role::Passed => self.passed(length_m).into_iter().collect(),
+            Role::Blocker => self.blocker(length_m).into_iter().collect(),
+            Role::Beyond => self.beyond(length_m).into_iter().collect(),
             Role::Merger => vec![self.merger(extra, length_m)],
         };
         let name = |number: usize| if number == 0 { String::new() } else { format!("-{}", number + 1) };
@@ -314,6 +316,30 @@ impl Scene<'_> {
         let way = if extra.side == Some(LeftRight::Right) { ahead.left() } else { ahead.left() * -1.0 };
         let from = line.position + ahead * lane_m - way * (CROSSES_MPS * self.clears_s());
         Some(straight_plan(from, way, (CROSSES_MPS, self.told.contact_s)))
+    }
+
+    /// A vehicle that stands across the junction, on the crossing road's lane that the ego comes to first.
+    fn blocker(&self, length_m: f64) -> Option<ActorPlan> {
+        let (step, _) = self.stops();
+        let [lane_m, _] = CROSSING_LANES_M;
+        let room_m = self.ground.first_m() + lane_m - self.at(step).0 - self.front_m();
+        if !self.ground.junction || room_m < WALKER_GAP_M {
+            return None;
+        }
+        let line = self.ground.sv_pose(self.ground.first_m());
+        let ahead = Vec2::from_heading(line.heading);
+        let at = line.position + ahead * lane_m + ahead.left() * (0.2 * length_m);
+        Some(ActorPlan::standing(Place::at(at.x, at.y, line.heading.to_degrees() - 90.0)))
+    }
+
+    /// A vehicle that stands right behind the junction in the ego's lane.
+    fn beyond(&self, length_m: f64) -> Option<ActorPlan> {
+        let line = self.ground.sv_pose(self.ground.first_m());
+        let ahead = Vec2::from_heading(line.heading);
+        let way_m = 2.0 * corner_m(self.ground.lanes) + ROOM_M + 0.5 * length_m;
+        let at = line.position + ahead * way_m;
+        let before = self.at(self.stops().0).0 < self.ground.first_m();
+        (self.ground.junction && before).then(|| ActorPlan::standing(Place::at(at.x, at.y, line.heading.to_degrees())))
     }
 
     /// A vehicle that comes towards the ego in its own lane, and passes it.

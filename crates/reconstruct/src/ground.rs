@@ -215,7 +215,7 @@ fn passes_right(told: &Told) -> bool {
 }
 
 /// From a junction's centre to where its arms begin, wider with more lanes. [m]
-fn corner_m(lanes: usize) -> f64 {
+pub(crate) fn corner_m(lanes: usize) -> f64 {
     CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M
 }
 

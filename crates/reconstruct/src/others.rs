@@ -32,6 +32,10 @@ pub(crate) enum Role {
     Passed,
     /// Changes from beside the ego into its lane, ahead of it.
     Merger,
+    /// Stands across the junction, in the ego's way.
+    Blocker,
+    /// Stands behind the junction, in the ego's lane: there is no room for it.
+    Beyond,
 }
 
 impl Role {
@@ -48,6 +52,8 @@ impl Role {
             Self::Obstacle => "obstacle",
             Self::Passed => "passed",
             Self::Merger => "merger",
+            Self::Blocker => "blocker",
+            Self::Beyond => "beyond",
         }
     }
 }
@@ -67,6 +73,8 @@ impl Extra {
             Role::Obstacle => "one stands that it goes round",
             Role::Passed => "one stands that the partner goes round",
             Role::Merger => "one changes into its lane ahead",
+            Role::Blocker => "one stands across the junction",
+            Role::Beyond => "one stands behind the junction",
         }
     }
 }
@@ -153,6 +161,11 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 list.push(Extra { role, of: vec![number], kind, goes, first, side });
             }
         }
+    }
+    let blocked = told.reasons.contains(&StandReason::BlockedJunction) && told.sv.state == ContactState::Stopped;
+    if blocked && told.thing.is_none() && list.iter().all(|extra| extra.role != Role::Beyond) {
+        let kind = Kind::Vehicle;
+        list.push(Extra { role: Role::Beyond, of: Vec::new(), kind, goes: false, first: false, side: None });
     }
     let queue = told.reasons.iter().any(|reason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle));
     if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
@@ -329,8 +342,16 @@ impl Story<'_> {
         if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && is_straight(told) {
             return Some(Role::Merger);
         }
+        let junction = told.place == PlaceKind::Intersection || told.is_controlled();
+        let waits = near && told.sv.state == ContactState::Stopped && other.several && !queue;
+        if waits && because(StandReason::BlockedJunction) {
+            return Some(Role::Beyond);
+        }
         // Who drives elsewhere does not stand ahead.
         let elsewhere = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !ahead && !queue;
+        if waits && junction && elsewhere {
+            return Some(Role::Blocker);
+        }
         if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
             return None;
         }

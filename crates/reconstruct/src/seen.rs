@@ -74,6 +74,7 @@ impl<'a> Seen<'a> {
             StandReason::Yield => {
                 [Role::Walker, Role::Crosser, Role::Oncoming, Role::Lead, Role::Merger].into_iter().any(is)
             }
+            StandReason::BlockedJunction => is(Role::Beyond) || is(Role::Blocker),
             StandReason::BlockedPath => is(Role::Lead) || is(Role::Obstacle),
             StandReason::Parked => self.told.sv.state == recrash_model::account::ContactState::Parked,
             _ => false,
@@ -115,6 +116,8 @@ impl<'a> Seen<'a> {
                 Role::Obstacle => self.is_passed(extra, track),
                 Role::Passed => self.partner_passes(track),
                 Role::Merger => self.merges(extra, track),
+                Role::Blocker => self.blocks(track, true),
+                Role::Beyond => self.blocks(track, false),
             }
     }
 
@@ -201,6 +204,14 @@ impl<'a> Seen<'a> {
 
     fn stays(&self, track: &ActorTrack) -> bool {
         (0..=self.until).all(|step| Self::mps(track, step) < STANDS_MPS)
+    }
+
+    /// Whether somebody stands ahead of the ego all the time, across its way or along it.
+    fn blocks(&self, track: &ActorTrack, across: bool) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        let facing = math::wrap_angle(track.states[0].heading - self.ego.states[self.until].heading).abs();
+        let stands = self.stays(track) && (across == (0.8..2.4).contains(&facing));
+        stands && (0.0..PARKED_M).contains(&ahead_m) && left_m.abs() < LANE_M
     }
 
     /// Whether the partner goes round somebody who stands in the line on which it came.

@@ -1,6 +1,6 @@
 //! Others of the story are there as they are told; and a rollout in which they are not does not pass for it.
 
-use crate::ways::{before_contact, made, partner, speeds, story};
+use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
 use recrash_model::account::Account;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{CheckKind, CheckResult};
@@ -30,6 +30,16 @@ const ROUND: &str = "The AV was traveling north and changed lanes to the left to
 const KERB: &str = "The AV was stopped on a narrow street with vehicles parked at the curb. A van approached from behind and the front of the \
                     van made contact with the rear of the stationary AV.";
 
+const BLOCKED: &str = "The AV came to a stop at a red light at the intersection of Elm Street and Oak Street. When the light turned green, the \
+                       AV remained stopped as vehicles traveling on Oak Street were still occupying the intersection. A van approached \
+                       from behind and the front of the van made contact with the rear of the stationary AV.";
+const NO_ROOM: &str = "The AV was stopped at a green light at the intersection of Elm Street and Oak Street to keep the intersection clear, \
+                       as traffic was stopped on the other side. A van approached from behind and the front of the van made contact with \
+                       the rear of the stationary AV.";
+const OVERTAKEN: &str = "The AV was pulling out of a parking space at the right curb with a second vehicle stopped in the lane, when a van \
+                         passed the second vehicle and changed lanes to the right, and the front right of the van made contact with the \
+                         front left of the AV.";
+
 fn told(text: &str) -> Account {
     let whole = if text.contains("made contact") { text.to_owned() } else { format!("{text} {STRUCK}") };
     story(&whole)
@@ -58,6 +68,22 @@ fn shown_but(text: &str, id: &str, change: impl Fn(&mut Actor)) -> Reconstructio
     let mut changed = shown.draft.clone();
     change(changed.actors.iter_mut().find(|actor| actor.id == id).expect("it is there"));
     assert_eq!(others(&changed, &account), Some(CheckResult::CannotBeShown), "{id} is changed");
+    shown
+}
+
+/// A staging that holds why the ego stood; and does not without this one.
+fn shown_reason(text: &str, id: &str) -> Reconstruction {
+    let account = told(text);
+    let shown = made(&account);
+    let reason = |draft: &ScenarioDraft| {
+        let scenario = recrash_roads::check(draft.clone()).expect("it can run").value;
+        let verdict = held_against(&account, &scenario, &simulate(&scenario, Ego::Recorded)).expect("it can be staged");
+        verdict.checks.iter().find(|check| check.kind == CheckKind::Reason).map(|check| check.result)
+    };
+    assert_eq!(reason(&shown.draft), Some(CheckResult::Shown), "{:?}", shown.verdict);
+    let mut gone = shown.draft.clone();
+    gone.actors.retain(|actor| actor.id != id);
+    assert_eq!(reason(&gone), Some(CheckResult::CannotBeShown), "{id} is gone");
     shown
 }
 
@@ -184,6 +210,28 @@ fn whom_the_ego_goes_round_stands_in_the_lane_that_it_leaves() {
     let (obstacle, ego) = (track(&shown, "obstacle"), shown.rollout.ego_track());
     assert!((obstacle.states[0].y - ego.states[0].y).abs() < 0.5 && obstacle.states[0].x > ego.states[0].x);
     assert_eq!(obstacle.kind, PartnerKind::HeavyTruck);
+}
+
+#[test]
+fn whom_the_partner_goes_round_stands_where_it_goes_by() {
+    let shown = shown_but(OVERTAKEN, "passed", |passed| moved(&mut passed.plan, 0.0, -12.0));
+    let (passed, (states, met)) = (track(&shown, "passed"), partner(&shown));
+    let by = states.iter().position(|state| state.x > passed.states[0].x).expect("it goes by");
+    assert!((2.0..5.0).contains(&(states[by].y - passed.states[0].y).abs()) && met.x > passed.states[0].x + 3.0);
+}
+
+#[test]
+fn who_still_is_in_the_junction_stands_across_the_egos_way() {
+    let shown = shown_but(BLOCKED, "blocker", |blocker| moved(&mut blocker.plan, 0.0, 12.0));
+    let (blocker, ego) = (track(&shown, "blocker").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(degrees_between(blocker.heading, ego.heading) > 80.0 && blocker.x - ego.x < 25.0, "{blocker:?}");
+}
+
+#[test]
+fn who_leaves_no_room_stands_behind_the_junction() {
+    let shown = shown_reason(NO_ROOM, "beyond");
+    let (beyond, ego) = (track(&shown, "beyond").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(degrees_between(beyond.heading, ego.heading) < 10.0 && beyond.x - ego.x > 28.0, "{beyond:?}");
 }
 
 #[test]
