@@ -2,7 +2,7 @@
 
 use crate::came::straight_plan;
 use crate::ground::{Ground, LANE_M, corner_m};
-use crate::others::{Extra, Role};
+use crate::others::{Extra, Role, waits_ahead};
 use crate::pace::{first_time, next, when};
 use crate::side::{Turning, size_of as size_of_kind};
 use crate::told::Told;
@@ -209,8 +209,9 @@ impl Scene<'_> {
     fn lead(&self, extra: &Extra, length_m: f64) -> Option<ActorPlan> {
         let stand = stood_behind(extra, self.ego, self.until);
         let (step, room_m) = stand.map_or_else(|| self.stops(), |(from, _)| (from, 0.0));
-        let ahead_m = self.front_m() + LEAD_GAP_M + room_m + 0.5 * length_m;
         let (s_m, _) = self.at(step);
+        let behind_m = self.queue_m(s_m).unwrap_or_else(|| self.front_m() + room_m);
+        let ahead_m = behind_m + LEAD_GAP_M + 0.5 * length_m;
         let pose = match self.told.sv_aside() {
             // In the lane, or in that into which the ego changes.
             Some(aside) => {
@@ -243,6 +244,13 @@ impl Scene<'_> {
         let stop = Deed::Stop { rate_mps2: GOES_MPS2, at_m: Some(up_m) };
         let acts = vec![when(up_s, Deed::Speed { to_mps: speed_mps, rate_mps2: GOES_MPS2 }), next(stop)];
         Some(ActorPlan { course, acts, ..ActorPlan::standing(at(-up_m)) })
+    }
+
+    /// From the ego to the front of a partner that stands in the queue ahead of it. [m]
+    fn queue_m(&self, s_m: f64) -> Option<f64> {
+        let track = self.partner.filter(|_| waits_ahead(self.told))?;
+        let farthest = track.states[..=self.until].iter().map(|state| self.ground.beside(state.position()).0);
+        Some(farthest.fold(s_m, f64::max) - s_m + 0.5 * track.length_m)
     }
 
     /// When who stands ahead of the ego drives on: before the ego does, else before the partner. [s]

@@ -281,7 +281,9 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     } else {
         // At the line, or behind who stands there.
         let behind = has(told, Role::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
-        vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
+        let before_m = if behind { 13.0 } else { 5.0 };
+        let both = has(told, Role::Lead) && told.origin == Origin::Ahead;
+        vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }]
     };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes } };
     with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true)

@@ -201,9 +201,17 @@ fn is_drawn(told: &Told, role: Role) -> bool {
         Role::Kerb => true,
         Role::Obstacle => drives,
         Role::Passed => told.thing.is_none(),
-        Role::Lead | Role::Slower => drives && told.thing.is_none() && told.origin != Origin::Ahead,
+        // Ahead of a partner that is ahead itself, and stands or backs there.
+        Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
+        Role::Slower => drives && told.thing.is_none() && told.origin != Origin::Ahead,
         _ => drives && told.thing.is_none(),
     }
+}
+
+/// Whether the partner stands in the queue ahead of the ego, or backs out of it.
+pub(crate) fn waits_ahead(told: &Told) -> bool {
+    let queue = told.reasons.contains(&StandReason::Queue) && told.sv.state == ContactState::Stopped;
+    queue && told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing
 }
 
 /// Whether the ego stood, and is under way again at the contact.

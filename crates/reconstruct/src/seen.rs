@@ -3,7 +3,7 @@
 use crate::control;
 use crate::extras::{STANDS_MPS, stood_behind};
 use crate::ground::LANE_M;
-use crate::others::{Extra, Role};
+use crate::others::{Extra, Role, waits_ahead};
 use crate::told::Told;
 use recrash_model::account::{LeftRight, StandReason};
 use recrash_model::geometry::Vec2;
@@ -149,7 +149,8 @@ impl<'a> Seen<'a> {
     fn leads(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (from, to) = stood_behind(extra, self.ego, self.until).unwrap_or((self.until, self.until));
         let (ahead_m, left_m) = self.beside(track, from);
-        let within_m = AHEAD_M + 0.5 * track.length_m + self.stopping_m(from);
+        let queue_m = if waits_ahead(self.told) { PARKED_M } else { 0.0 };
+        let within_m = AHEAD_M + 0.5 * track.length_m + self.stopping_m(from) + queue_m;
         let there = ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M;
         let stood = Self::mps(track, from) < STANDS_MPS;
         let goes = (from..=self.until).find(|step| Self::mps(track, *step) > 2.0 * STANDS_MPS);
