@@ -1,11 +1,11 @@
 //! Whether a rollout holds the others who are told of, where and when they matter.
 
 use crate::control;
-use crate::extras::{STANDS_MPS, stood_behind};
+use crate::extras::{STANDS_MPS, stands, stood_behind};
 use crate::ground::LANE_M;
 use crate::others::{Extra, Role, waits_ahead};
 use crate::told::Told;
-use recrash_model::account::{LeftRight, StandReason};
+use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
@@ -68,6 +68,7 @@ impl<'a> Seen<'a> {
     pub(crate) fn reason(&self, reason: StandReason) -> bool {
         let is = |role: Role| self.told.wanted.iter().any(|extra| extra.role == role && self.holds(extra));
         match reason {
+            StandReason::LeadVehicle if self.told.origin == Origin::Ahead => is(Role::Lead) || self.partner_leads(),
             StandReason::Queue | StandReason::LeadVehicle => is(Role::Lead),
             StandReason::Pedestrian => is(Role::Walker),
             StandReason::Animal => is(Role::Animal),
@@ -76,9 +77,18 @@ impl<'a> Seen<'a> {
             }
             StandReason::BlockedJunction => is(Role::Beyond) || is(Role::Blocker),
             StandReason::BlockedPath => is(Role::Lead) || is(Role::Obstacle),
-            StandReason::Parked => self.told.sv.state == recrash_model::account::ContactState::Parked,
+            StandReason::Parked => self.told.sv.state == ContactState::Parked,
             _ => false,
         }
+    }
+
+    /// Whether the partner stands ahead of the ego where that came to stand.
+    fn partner_leads(&self) -> bool {
+        let Some(track) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let from = stands(self.ego, self.until).first().map_or(self.until, |(from, _)| *from);
+        let (ahead_m, left_m) = self.beside(track, from);
+        let within_m = AHEAD_M + 0.5 * track.length_m;
+        ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M
     }
 
     fn find(&self, role: Role) -> Option<&'a ActorTrack> {
@@ -89,7 +99,7 @@ impl<'a> Seen<'a> {
     fn throws(&self) -> bool {
         let number = self.rollout.actors.iter().position(|track| track.id == "pusher");
         let as_told = |number: usize| {
-            let kind = self.told.pusher.and_then(recrash_model::account::Kind::partner_kind);
+            let kind = self.told.pusher.and_then(Kind::partner_kind);
             kind.is_none_or(|kind| kind == self.rollout.actors[number].kind)
         };
         let touches = |number: usize| {
@@ -109,8 +119,8 @@ impl<'a> Seen<'a> {
             && match extra.role {
                 Role::Lead => self.leads(extra, track),
                 Role::Slower => self.slows_ahead(track),
-                Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.from_side(extra, track),
-                Role::Crosser => self.crosses(track, CROSSING_M) && self.from_side(extra, track),
+                Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.is_on_side(extra, track),
+                Role::Crosser => self.crosses(track, CROSSING_M) && self.is_on_side(extra, track),
                 Role::Oncoming => self.comes_by(track),
                 Role::Kerb => self.is_parked(track),
                 Role::Obstacle => self.is_passed(extra, track),
@@ -181,7 +191,7 @@ impl<'a> Seen<'a> {
     }
 
     /// Whether somebody who crosses comes from the told side.
-    fn from_side(&self, extra: &Extra, track: &ActorTrack) -> bool {
+    fn is_on_side(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let (_, left_m) = self.beside(track, 0);
         extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0))
     }
