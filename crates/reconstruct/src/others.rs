@@ -363,7 +363,7 @@ impl Story<'_> {
         if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
             return None;
         }
-        let slows = did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);
+        let slows = said(&["slow"]) || did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);
         let moves = matches!(told.sv.state, ContactState::Moving) && !sets_off(told);
         Some(if slows && moves { Role::Slower } else { Role::Lead })
     }
@@ -375,6 +375,12 @@ impl Story<'_> {
         let changes = before_contact(other).find(|fact| matches!(fact.act, Act::LaneChange | Act::PullOut));
         match other.place.as_ref().map(|fact| fact.value) {
             Some(Origin::Beside { side }) => Some(side),
+            // One that is parked is where the partner comes from, or on the right.
+            _ if role == Role::Kerb && !other.several => match told.origin {
+                Origin::Parked { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => side,
+                _ => None,
+            }
+            .or(Some(LeftRight::Right)),
             // Who changes to its right comes from the left.
             _ if role == Role::Merger => changes.and_then(|fact| fact.side).map(LeftRight::other),
             _ => passed.filter(|_| role == Role::Obstacle),

@@ -122,7 +122,7 @@ impl<'a> Seen<'a> {
                 Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.is_on_side(extra, track),
                 Role::Crosser => self.crosses(track, CROSSING_M) && self.is_on_side(extra, track),
                 Role::Oncoming => self.comes_by(track),
-                Role::Kerb => self.is_parked(track),
+                Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
                 Role::Obstacle => self.is_passed(extra, track),
                 Role::Passed => self.partner_passes(track),
                 Role::Merger => self.merges(extra, track),

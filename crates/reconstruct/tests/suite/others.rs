@@ -242,6 +242,18 @@ fn a_row_of_parked_vehicles_stands_beside_the_lanes() {
 }
 
 #[test]
+fn one_parked_vehicle_stands_on_the_side_from_which_the_partner_comes() {
+    let account = told(
+        "The AV was traveling north. A sedan exiting a driveway on the left entered the roadway in front of a van parked at the curb, and \
+         the front of the sedan made contact with the left side of the AV.",
+    );
+    let shown = made(&account);
+    let (kerb, ego) = (track(&shown, "kerb"), shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(kerb.kind == PartnerKind::Van && kerb.states[0].y > ego.y + 2.5, "{:?}", kerb.states[0]);
+    assert!(shown.rollout.actors.iter().all(|track| track.id != "kerb-2"));
+}
+
+#[test]
 fn words_that_name_nobody_bring_nobody() {
     let texts = [
         "The AV was stopped in traffic for a red light before a pedestrian crosswalk.",
