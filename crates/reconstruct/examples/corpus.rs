@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use recrash_model::account::{Account, told};
-use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::metrics::{Answer, CheckKind, CheckResult};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorTrack, EventKind};
 use recrash_model::vehicle::VehicleSpec;
@@ -70,6 +70,12 @@ fn main() {
                 row[1] += 1;
                 row[2] += usize::from(made.is_true());
                 for fact in &made.verdict.checks {
+                    if flags.iter().any(|flag| flag == "--others")
+                        && fact.kind == CheckKind::Others
+                        && is_developed(account)
+                    {
+                        println!("{} {:?}: {} | {}", account.report, fact.result, fact.expected, fact.observed);
+                    }
                     let count = facts.entry(fact.kind).or_default();
                     count[0] += 1;
                     count[1] += usize::from(fact.result == CheckResult::Shown);
@@ -138,6 +144,10 @@ fn main() {
         sum[2],
         100.0 * sum[2] as f64 / sum[0] as f64
     );
+    let all_checked = |(_, made): &&(&Account, Result<Reconstruction, _>)| {
+        made.as_ref().is_ok_and(|made| made.verdict.faithful() == Answer::Yes)
+    };
+    println!("all checked: {}", results.iter().filter(all_checked).count());
     println!("not staged: {reasons:?}");
     let beside = results
         .par_iter()

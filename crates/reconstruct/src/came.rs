@@ -2,10 +2,11 @@
 
 use crate::control;
 use crate::door::Opening;
+use crate::extras;
 use crate::ground::Ground;
 use crate::kerb;
 use crate::lateral;
-use crate::others::{self, Extra};
+use crate::others::Role;
 use crate::pace::{Pace, ROLLING_MPS, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, when};
 use crate::phases;
 use crate::side::{Turning, size_of as size_of_kind};
@@ -68,12 +69,10 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             None => opens(told.contact_s, door, &mut recorded, &mut parts),
         }
     }
-    actors.extend(others::actors(told, staging));
     let mut map = ground.map.clone();
     let begins = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan.start);
     map.roads[0].driveways.extend(begins.and_then(|begins| kerb::driveway(told, ground, begins)));
-    let cp = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan);
-    let control = control::devices(told, ground, &recorded, cp);
+    let control = control::devices(told, ground, &recorded, &actors);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
         _ if let Some(lead) = &lead => Some(lead.handover_s(told.contact_s - HANDOVER_BEFORE_S)),
@@ -87,7 +86,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     let target_speed_mps = wanted_mps.min(FASTEST_EGO_MPS);
     let id: String =
         account.incident.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).take(40).collect();
-    ScenarioDraft {
+    let draft = ScenarioDraft {
         format: SCENARIO_FORMAT.to_owned(),
         id: format!("incident-{id}"),
         source: Source {
@@ -114,7 +113,20 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         objects,
         duration_s: told.contact_s + GOES_ON_S,
         ..ScenarioDraft::default()
+    };
+    with_others(told, staging, draft)
+}
+
+/// The same with the others of the story, who go by what the two do.
+fn with_others(told: &Told, staging: &Staging, mut draft: ScenarioDraft) -> ScenarioDraft {
+    let alone = (!told.extras.is_empty()).then(|| recrash_roads::check(draft.clone()).ok()).flatten();
+    if let (Some(alone), Some(recorded)) = (alone, draft.ego.recorded.as_ref()) {
+        let alone = recrash_sim::simulate(&alone.value, recrash_sim::Ego::Recorded);
+        draft.actors.extend(extras::actors(told, staging, recorded, &alone));
+        // Who waits ahead waits for the same light.
+        draft.control = control::devices(told, &staging.ground, recorded, &draft.actors);
     }
+    draft
 }
 
 /// Somebody opens a door.
@@ -128,7 +140,8 @@ fn opens(contact_s: f64, door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<P
 /// made the recorded driver stop is then part of the task.
 fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
     let at_line = staging.ground.junction && told.sv.control.is_some();
-    if told.sv.state != ContactState::Stopped || told.extras.contains(&Extra::Lead) || at_line {
+    let lead = told.extras.iter().any(|extra| extra.role == Role::Lead && !extra.goes);
+    if told.sv.state != ContactState::Stopped || lead || at_line {
         return Vec::new();
     }
     vec![MissionStop { s_m: staging.sv_s_m, t_m: 0.0, for_s: None }]

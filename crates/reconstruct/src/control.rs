@@ -1,13 +1,14 @@
 //! Signals and signs: drawn as they are told, and held against who drove past them when.
 
 use crate::ground::Ground;
+use crate::others::Role;
 use crate::side::{Side, Turning};
 use crate::told::Told;
 use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState};
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
-use recrash_model::scenario::{ActorPlan, Aspect, Control, Deed, Device, MapSpec, Phase, Trigger};
+use recrash_model::scenario::{Actor, ActorPlan, Aspect, Control, Deed, Device, MapSpec, Phase, Trigger};
 use recrash_roads::{ControlPlacement, Scenario};
 
 /// Longest phase. [s]
@@ -33,7 +34,7 @@ const STANDS_MPS: f64 = 0.1;
 const BESIDE_M: f64 = 1.5;
 
 /// The devices that are told, and on the other arms what goes with them.
-pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, partner: Option<&ActorPlan>) -> Vec<Control> {
+pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[Actor]) -> Vec<Control> {
     if !ground.junction {
         return Vec::new();
     }
@@ -65,7 +66,9 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, partner: Op
         let is_ego = std::ptr::eq(*side, &told.sv);
         // Who waits in the ego's lane, ahead of it or behind it, waits for the same light.
         let in_lane = matches!(told.origin, Origin::Ahead | Origin::Behind);
-        let of_queue = [Some(ego), partner.filter(|_| in_lane)].into_iter().flatten().filter_map(sets_off_s);
+        let waits = |actor: &&Actor| actor.id == Role::Lead.id() || in_lane && actor.id == "cp";
+        let others = actors.iter().filter(waits).map(|actor| &actor.plan);
+        let of_queue = others.chain([ego]).filter_map(sets_off_s);
         let changed_s = match of_queue.filter(|_| is_ego).reduce(f64::min) {
             Some(sets_off_s) => sets_off_s - GREEN_BEFORE_S,
             None if side.state.stands() => told.contact_s - CHANGED_S,
@@ -221,6 +224,15 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
     };
     let result = if state && obeyed { CheckResult::Shown } else { CheckResult::NotShown };
     (result, format!("{color}at {time_s:.1} s, {did}"))
+}
+
+/// Whether somebody drives over a line while its signal is red.
+pub(crate) fn runs_red(scenario: &Scenario, track: &ActorTrack) -> bool {
+    let all = scenario.draft().control.iter().zip(scenario.control());
+    all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?))).any(|(control, line)| {
+        let crossed_s = passage(track, &line, track.states.len() - 1).and_then(|passage| passage.crossed_s);
+        crossed_s.is_some_and(|at_s| control.device.aspect(at_s) == Some(Aspect::Red))
+    })
 }
 
 /// How somebody came by a stop line.

@@ -7,6 +7,7 @@ use crate::movement::{self, Way};
 use crate::others;
 use crate::phases;
 use crate::roadside;
+use crate::seen::Seen;
 use crate::side::Slant;
 use crate::things;
 use crate::told::Told;
@@ -21,7 +22,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::narrative::FirstMover;
-use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, STEP_S};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::Scenario;
@@ -254,9 +255,9 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         held(CheckKind::Reason, said.join(", "), reason(told, scenario, rollout, touch.time_s));
     }
     if told.others > 0 {
-        let drawn = rollout.actors.iter().filter(|track| track.role == Role::Partner).count().saturating_sub(1);
-        let result = if drawn >= told.others { CheckResult::Shown } else { CheckResult::CannotBeShown };
-        held(CheckKind::Others, format!("{} more", told.others), (result, format!("{drawn} more")));
+        let (all, expected, observed) = Seen::new(told, rollout, touch.time_s).others();
+        let result = if all { CheckResult::Shown } else { CheckResult::CannotBeShown };
+        held(CheckKind::Others, expected, (result, observed));
     }
     for (kind, side) in [(CheckKind::SvZones, &told.sv), (CheckKind::CpZones, &told.cp)] {
         if side.only_above_or_below {
@@ -332,7 +333,7 @@ fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (
         StandReason::RedLight => controlled(ControlDevice::Signal),
         StandReason::StopSign => controlled(ControlDevice::StopSign),
         StandReason::PickupDropoff => !draft.ego.stops.is_empty(),
-        other => others::holds(told, *other, rollout, time_s),
+        other => Seen::new(told, rollout, time_s).reason(*other),
     };
     match told.reasons.iter().all(holds) {
         true => (CheckResult::Shown, "in the scene".to_owned()),
@@ -432,6 +433,12 @@ fn toucher<'a>(rollout: &'a Rollout, touch: &Touch<'_>) -> Option<&'a ActorTrack
         }
         _ => None,
     })
+}
+
+/// Whether one of the others who are drawn is elsewhere than it is wanted, or goes on at red.
+pub(crate) fn others_stray(told: &Told, scenario: &Scenario, rollout: &Rollout) -> bool {
+    let time_s = first_touch(rollout).map_or(told.contact_s, |touch| touch.time_s);
+    !told.extras.is_empty() && Seen::new(told, rollout, time_s).strays(scenario)
 }
 
 fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {

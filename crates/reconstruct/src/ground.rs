@@ -1,6 +1,6 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
-use crate::others::Extra;
+use crate::others::Role;
 use crate::side::Turning;
 use crate::things::Lies;
 use crate::told::{Aside, Told};
@@ -119,7 +119,9 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
         && !matches!(told.sv.turning, Turning::Left | Turning::Right);
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
-    if (crossing || controlled) && !lot || told.place == PlaceKind::Intersection {
+    // Who gives way to crossing traffic is at a junction.
+    let gives_way = told.place != PlaceKind::Highway && has(told, Role::Crosser);
+    if (crossing || controlled || gives_way) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
         let behind_m: &[f64] = match (told.edge, told.lies) {
             (Some(_), _) => &BEHIND_ENTRY_M,
@@ -249,6 +251,11 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
     }
 }
 
+/// Whether somebody with this part is drawn.
+fn has(told: &Told, role: Role) -> bool {
+    told.extras.iter().any(|extra| extra.role == role)
+}
+
 fn passes_right(told: &Told) -> bool {
     matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || told.origin == Origin::Behind
@@ -259,7 +266,7 @@ fn passes_right(told: &Told) -> bool {
 }
 
 /// From a junction's centre to where its arms begin, wider with more lanes. [m]
-fn corner_m(lanes: usize) -> f64 {
+pub(crate) fn corner_m(lanes: usize) -> f64 {
     CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M
 }
 
@@ -274,7 +281,9 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     };
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
-        let usual = || strips(lanes, &[StripKind::Sidewalk]);
+        let beside: &[StripKind] =
+            if has(told, Role::Kerb) { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
+        let usual = || strips(lanes, beside);
         let (away, towards) = match told.edge.filter(|_| id == exits_by) {
             Some(LeftRight::Right) if id == "own" => (usual(), strips(lanes, &told.beside_edge())),
             Some(LeftRight::Left) if id == "own" => (behind_median(usual()), usual()),
@@ -313,7 +322,12 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     };
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
     let at_line: &[f64] = match told.sv.state {
-        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => &[-5.0, -8.0],
+        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => {
+            match has(told, Role::Lead) {
+                true => &[-13.0, -15.0],
+                false => &[-5.0, -8.0],
+            }
+        }
         ContactState::SettingOff if told.sv.control.is_some() => &[3.0, 1.0, 5.0, -3.0],
         _ => &[],
     };
@@ -333,8 +347,10 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         all
     } else {
         // At the line, or behind who stands there.
-        let behind = told.extras.contains(&Extra::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
-        vec![APPROACH_M - if behind { 13.0 } else { 5.0 }]
+        let behind = has(told, Role::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
+        let before_m = if behind { 13.0 } else { 5.0 };
+        let both = has(told, Role::Lead) && told.origin == Origin::Ahead;
+        vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }]
     };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes } };
     with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true)

@@ -10,6 +10,7 @@ mod came;
 mod choices;
 mod control;
 mod door;
+mod extras;
 mod facts;
 mod ground;
 mod kerb;
@@ -19,6 +20,7 @@ mod others;
 mod pace;
 mod phases;
 mod roadside;
+mod seen;
 mod side;
 mod things;
 mod told;
@@ -90,8 +92,8 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 }
 
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    // The best so far: told facts that are not shown, then whether the partner strays.
-    let mut best: Option<((usize, bool), Reconstruction)> = None;
+    // The best so far: told facts that are not shown, then whether others are not as told, and whether the partner strays.
+    let mut best: Option<((usize, bool, bool), Reconstruction)> = None;
     let mut refused = 0;
     for told in told.variants() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
@@ -103,12 +105,13 @@ fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold>
             let scenario = checked.value;
             let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
             let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
-            let cost = (verdict.failures().count(), facts::strays(&told, &scenario, &rollout));
+            let others = facts::others_stray(&told, &scenario, &rollout);
+            let cost = (verdict.failures().count(), others, facts::strays(&told, &scenario, &rollout));
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
                 best = Some((cost, Reconstruction { draft, rollout, verdict, assumed }));
             }
-            if cost == (0, false) {
+            if cost == (0, false, false) {
                 return best.map(|(_, best)| best).ok_or(Untold::NoContact);
             }
         }

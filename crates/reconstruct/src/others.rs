@@ -1,68 +1,115 @@
-//! Others than the two: those for whom the ego stood.
+//! Others than the two: who is told of besides them, and what they are to the ego.
 
-use crate::came::straight_plan;
+use crate::phases::Phase;
+use crate::side::Turning;
 use crate::told::Told;
-use crate::touch::{Staging, size_of};
-use recrash_model::account::{Account, ContactState, Kind, KindGroup, Origin, Other as InStory, StandReason};
-use recrash_model::geometry::Vec2;
-use recrash_model::kinds::PartnerKind;
-use recrash_model::math;
-use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
-use recrash_model::scenario::{Actor, ActorPlan, Place};
-use recrash_model::vehicle::VehicleSpec;
+use recrash_model::account::{
+    Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, Source, StandReason,
+};
+use recrash_model::rollout::{EventKind, Rollout};
+use recrash_model::template::Movement;
 
-/// Somebody that an ego stands for.
+/// What somebody else is to the ego.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Extra {
-    /// A vehicle that stands ahead of it.
+pub(crate) enum Role {
+    /// Stands ahead of it in its lane.
     Lead,
-    /// Somebody on foot who crosses its lane in front of it.
+    /// Drives ahead of it, and slows.
+    Slower,
+    /// Somebody on foot or on a bicycle who crosses its way.
     Walker,
     /// An animal that does.
     Animal,
     /// A vehicle on the crossing road.
     Crosser,
+    /// A vehicle that comes towards it, and passes it.
+    Oncoming,
+    /// Vehicles parked at the kerb.
+    Kerb,
+    /// Stands in the lane that the ego leaves, or beside its way: it goes round it.
+    Obstacle,
+    /// Stands in the lane that the partner leaves: it goes round it.
+    Passed,
+    /// Changes from beside the ego into its lane, ahead of it.
+    Merger,
+    /// Stands across the junction, in the ego's way.
+    Blocker,
+    /// Stands behind the junction, in the ego's lane: there is no room for it.
+    Beyond,
 }
 
-impl Extra {
+impl Role {
     /// The name of its actor.
-    const fn id(self) -> &'static str {
+    pub(crate) const fn id(self) -> &'static str {
         match self {
             Self::Lead => "lead",
+            Self::Slower => "slower",
             Self::Walker => "walker",
             Self::Animal => "animal",
             Self::Crosser => "crosser",
+            Self::Oncoming => "oncoming",
+            Self::Kerb => "kerb",
+            Self::Obstacle => "obstacle",
+            Self::Passed => "passed",
+            Self::Merger => "merger",
+            Self::Blocker => "blocker",
+            Self::Beyond => "beyond",
         }
     }
 }
 
-/// From the ego's front to who stands ahead, and to who crosses on foot, also between the two. [m]
-const LEAD_GAP_M: f64 = 2.5;
-const WALKER_GAP_M: f64 = 3.0;
-const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
+impl Extra {
+    /// For sentences.
+    pub(crate) const fn words(&self) -> &'static str {
+        match self.role {
+            Role::Lead if self.goes => "one stands ahead and drives on",
+            Role::Lead => "one stands ahead",
+            Role::Slower => "one ahead slows",
+            Role::Walker => "somebody crosses",
+            Role::Animal => "an animal crosses",
+            Role::Crosser => "one comes along the crossing road",
+            Role::Oncoming => "one comes by from ahead",
+            Role::Kerb => "parked at the kerb",
+            Role::Obstacle => "one stands that it goes round",
+            Role::Passed => "one stands that the partner goes round",
+            Role::Merger => "one changes into its lane ahead",
+            Role::Blocker => "one stands across the junction",
+            Role::Beyond => "one stands behind the junction",
+        }
+    }
+}
 
-/// From the stop line to the lane of who crosses from the left. [m]
-const CROSSING_LANE_M: f64 = 11.0;
+/// Somebody else who has a part in what the ego does.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Extra {
+    pub(crate) role: Role,
+    /// Which of the account's others it is; none where only a reason to stand tells of it. More than one where they are the same.
+    pub(crate) of: Vec<usize>,
+    pub(crate) kind: Kind,
+    /// Who stands ahead drives on before the ego or the partner does.
+    pub(crate) goes: bool,
+    /// It does so before the ego moves between two stops.
+    pub(crate) first: bool,
+    /// On which side of the ego it is, or from which it comes, where told.
+    pub(crate) side: Option<LeftRight>,
+}
 
-/// Who crosses is in the ego's lane so long before the contact: the ego stands for it. [s]
-const CROSSES_BEFORE_S: f64 = 1.0;
-
-/// Speeds of those who cross. [m/s]
-const WALKS_MPS: f64 = 1.4;
-const RUNS_MPS: f64 = 3.0;
-const CROSSES_MPS: f64 = 7.0;
-
-/// Whoever stands ahead of an ego stands no farther ahead, and who crosses on foot, and in a vehicle. [m]
-const AHEAD_M: f64 = 8.0;
-const CROSSING_M: f64 = 30.0;
+/// Who is named no farther behind the words that the ego slowed or stood is whom it did so for; of who is on foot, and of animals, nor
+/// farther before them. [byte]
+const NAMED_WITHIN: usize = 70;
+const NAMED_BEFORE: usize = 160;
 
 /// Why the ego stood. A crossing where nobody else is told of is nobody that it stood for, and the partner is not one of the others.
-pub(crate) fn reasons(account: &Account) -> Vec<StandReason> {
-    let any = |of: fn(Kind) -> bool| account.others.iter().any(|other| of(other.kind.value));
+pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
+    let story = Story { account };
+    let any = |of: fn(Kind) -> bool| account.others.iter().any(|other| of(other.kind.value) && story.is_met(other));
     let told = account.sv.reasons.iter().map(|fact| fact.value);
+    // Who comes towards it is whom it gave way to.
+    let ahead = !matches!(origin, Origin::Behind | Origin::Beside { .. });
     told.filter(|reason| match reason {
         StandReason::Pedestrian => any(is_on_foot),
         StandReason::Animal => any(|kind| kind.group() == KindGroup::Animal),
+        StandReason::Yield if ahead => account.others.iter().any(|other| story.is_near(other)),
         _ => true,
     })
     .collect()
@@ -88,114 +135,274 @@ pub(crate) fn crash(told: &Told, rollout: &Rollout) -> Option<String> {
     })
 }
 
-/// Whom the ego stood for, by the told reasons and the others of the story.
-pub(crate) fn wanted(told: &Told, others: &[InStory]) -> Vec<Extra> {
-    if told.sv.state != ContactState::Stopped || told.thing.is_some() {
-        return Vec::new();
-    }
-    let on_foot = others.iter().any(|other| is_on_foot(other.kind.value));
-    let vehicle = others.iter().any(|other| other.kind.value.is_vehicle());
+pub(crate) fn is_on_foot(kind: Kind) -> bool {
+    matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist)
+}
+
+/// Everybody who has a part in what the ego does, by what is told.
+pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
+    let story = Story { account };
     let mut list: Vec<Extra> = Vec::new();
-    for reason in &told.reasons {
-        let extra = match reason {
-            StandReason::Queue | StandReason::LeadVehicle if told.origin != Origin::Ahead => Extra::Lead,
-            StandReason::Pedestrian => Extra::Walker,
-            StandReason::Animal => Extra::Animal,
-            StandReason::Yield if on_foot => Extra::Walker,
-            StandReason::Yield if vehicle => Extra::Crosser,
-            _ => continue,
-        };
-        if !list.contains(&extra) {
-            list.push(extra);
+    for (number, other) in account.others.iter().enumerate() {
+        let Some(role) = story.role(told, other).filter(|role| is_drawn(told, *role)) else { continue };
+        let kind = other.kind.value;
+        let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
+        let goes = role == Role::Lead && sets_off(told) || drives_on.is_some();
+        let first = drives_on == Some(true);
+        match list.iter_mut().find(|extra| extra.role == role) {
+            Some(known) if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind)) => {
+                known.of.push(number);
+                known.goes |= goes;
+                known.first |= first;
+            }
+            Some(_) => {}
+            None => {
+                let side = story.side(role, told, other);
+                list.push(Extra { role, of: vec![number], kind, goes, first, side });
+            }
         }
+    }
+    let blocked = told.reasons.contains(&StandReason::BlockedJunction) && told.sv.state == ContactState::Stopped;
+    if blocked && told.thing.is_none() && list.iter().all(|extra| extra.role != Role::Beyond) {
+        let kind = Kind::Vehicle;
+        list.push(Extra { role: Role::Beyond, of: Vec::new(), kind, goes: false, first: false, side: None });
+    }
+    let queue = told.reasons.iter().any(|reason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle));
+    if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
+        list.insert(
+            0,
+            Extra { role: Role::Lead, of: Vec::new(), kind: Kind::Vehicle, goes: false, first: false, side: None },
+        );
     }
     list
 }
 
-fn is_on_foot(kind: Kind) -> bool {
-    matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist)
+/// What to try: all of them, all but one, one of them, and none.
+pub(crate) fn choices(wanted: &[Extra]) -> Vec<Vec<Extra>> {
+    let without = |left_out: usize| {
+        let kept = wanted.iter().enumerate().filter(|(number, _)| *number != left_out);
+        kept.map(|(_, extra)| extra.clone()).collect::<Vec<_>>()
+    };
+    let mut list = vec![wanted.to_vec()];
+    if wanted.len() > 2 {
+        list.extend((0..wanted.len()).rev().map(without));
+    }
+    if wanted.len() > 1 {
+        list.extend(wanted.iter().map(|extra| vec![extra.clone()]));
+    }
+    list.extend((!wanted.is_empty()).then(Vec::new));
+    list
 }
 
-/// Whether the scene holds whom the ego stood for.
-pub(crate) fn holds(told: &Told, reason: StandReason, rollout: &Rollout, time_s: f64) -> bool {
-    let crosses =
-        |extra: Extra, within_m: f64| find(rollout, extra).any(|track| crosses(rollout, track, time_s, within_m));
-    match reason {
-        StandReason::Queue | StandReason::LeadVehicle => {
-            find(rollout, Extra::Lead).any(|track| stands_ahead(rollout, track, time_s))
-        }
-        StandReason::Pedestrian => crosses(Extra::Walker, AHEAD_M),
-        StandReason::Animal => crosses(Extra::Animal, AHEAD_M),
-        StandReason::Yield => crosses(Extra::Walker, AHEAD_M) || crosses(Extra::Crosser, CROSSING_M),
-        StandReason::Parked => told.sv.state == ContactState::Parked,
-        _ => false,
+/// Whether one with this part can be drawn in this crash.
+fn is_drawn(told: &Told, role: Role) -> bool {
+    let drives = matches!(told.sv.state, ContactState::Stopped | ContactState::Moving | ContactState::SettingOff);
+    match role {
+        Role::Kerb => true,
+        Role::Obstacle => drives,
+        Role::Passed => told.thing.is_none(),
+        // Ahead of a partner that is ahead itself, and stands or backs there.
+        Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
+        Role::Slower => drives && told.thing.is_none() && told.origin != Origin::Ahead,
+        _ => drives && told.thing.is_none(),
     }
 }
 
-fn find(rollout: &Rollout, extra: Extra) -> impl Iterator<Item = &ActorTrack> {
-    rollout.actors.iter().filter(move |track| track.id == extra.id())
+/// Whether the partner stands in the queue ahead of the ego, or backs out of it.
+pub(crate) fn waits_ahead(told: &Told) -> bool {
+    let queue = told.reasons.contains(&StandReason::Queue) && told.sv.state == ContactState::Stopped;
+    queue && told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing
 }
 
-fn stands_ahead(rollout: &Rollout, track: &ActorTrack, time_s: f64) -> bool {
-    let ego = rollout.ego_track();
-    let step = ((time_s * 10.0) as usize).min(ego.states.len() - 1);
-    let state = &ego.states[step];
-    let way = track.states[step.min(track.states.len() - 1)].position() - state.position();
-    way.dot(Vec2::from_heading(state.heading)) > 0.0 && way.length() < AHEAD_M + ego.length_m
+/// Whether the ego stood, and is under way again at the contact.
+fn sets_off(told: &Told) -> bool {
+    let stood = told.sv.stood_first || told.sv.phases.contains(&Phase::Stands);
+    told.sv.state == ContactState::SettingOff || told.sv.state == ContactState::Moving && stood
 }
 
-/// Whether somebody passes ahead of the ego, from one side of it to the other, while it stands before a time.
-fn crosses(rollout: &Rollout, track: &ActorTrack, time_s: f64, within_m: f64) -> bool {
-    let ego = rollout.ego_track();
-    let until = ((time_s * 10.0) as usize).min(ego.states.len().min(track.states.len()) - 1);
-    let beside = |step: usize| {
-        let (state, other) = (&ego.states[step], &track.states[step]);
-        let (ahead, way) = (Vec2::from_heading(state.heading), other.position() - state.position());
-        (ahead.dot(way) - 0.5 * ego.length_m, ahead.cross(way))
-    };
-    (1..=until).any(|step| {
-        let ((ahead_m, left_m), (_, before_m)) = (beside(step), beside(step - 1));
-        let stands = ego.states[step].velocity().length() < 0.1;
-        stands && (0.0..within_m).contains(&ahead_m) && left_m * before_m <= 0.0 && left_m != before_m
-    })
+/// Whether the ego goes round something.
+fn goes_round(told: &Told) -> bool {
+    told.sv_aside().is_some_and(|aside| aside.from_t_m == 0.0 && told.sv.movement != Some(Movement::ParkingManeuver))
+        || told.sv.movement == Some(Movement::Passing)
 }
 
-/// Them, on the road.
-pub(crate) fn actors(told: &Told, staging: &Staging) -> Vec<Actor> {
-    // Who crosses has a road to cross on, ahead of the ego.
-    let crossing = staging.ground.junction && crossing_m(staging) > 0.5 * size_of(&told.sv).0 + WALKER_GAP_M;
-    let there = |extra: &&Extra| **extra != Extra::Crosser || crossing;
-    told.extras.iter().filter(there).map(|extra| actor(*extra, told, staging)).collect()
+/// Whether the ego keeps its lane.
+fn is_straight(told: &Told) -> bool {
+    told.sv.turning == Turning::No && told.sv_aside().is_none()
 }
 
-/// From the ego to the lane of who crosses from the left. [m]
-fn crossing_m(staging: &Staging) -> f64 {
-    staging.ground.first_m() + CROSSING_LANE_M - staging.sv_s_m
+/// What the words tell of somebody else.
+struct Story<'a> {
+    account: &'a Account,
 }
 
-fn actor(extra: Extra, told: &Told, staging: &Staging) -> Actor {
-    let sv = staging.sv;
-    let ahead = Vec2::from_heading(sv.heading);
-    let front_m = 0.5 * size_of(&told.sv).0;
-    let crossing = |ahead_m: f64, way: Vec2, speed_mps: f64| {
-        let met = sv.position + ahead * ahead_m;
-        straight_plan(met - way * (speed_mps * (told.contact_s - CROSSES_BEFORE_S)), way, (speed_mps, told.contact_s))
-    };
-    let gap_m = if told.extras.contains(&Extra::Lead) { WALKER_BETWEEN_M } else { WALKER_GAP_M };
-    let (kind, plan) = match extra {
-        Extra::Lead => {
-            let car_m = VehicleSpec::of(PartnerKind::PassengerCar).length_m;
-            let at = sv.position + ahead * (front_m + LEAD_GAP_M + 0.5 * car_m);
-            let plan = ActorPlan::standing(Place::at(at.x, at.y, sv.heading.to_degrees()));
-            (PartnerKind::PassengerCar, plan)
+impl Story<'_> {
+    /// What the ego did for somebody: where the words stand. That it stood when it was struck, said with its name, is nothing of that.
+    fn reactions(&self) -> impl Iterator<Item = (usize, usize)> {
+        let reacts = |fact: &&ActFact| {
+            let acts = matches!(fact.act, Act::Slow | Act::Stop | Act::Hold | Act::Swerve);
+            let named = ["the ", "a ", "its "].iter().any(|article| text(&fact.source).starts_with(article));
+            acts && !fact.after_contact && !named
+        };
+        let acts = self.account.sv.acts.iter().filter(reacts).map(|fact| &fact.source);
+        acts.chain(self.account.sv.reasons.iter().map(|fact| &fact.source)).filter_map(span)
+    }
+
+    /// Whether somebody is named with the words that the ego slowed or stood.
+    fn is_near(&self, other: &Other) -> bool {
+        let Some((named, _)) = span(&other.kind.source) else { return false };
+        self.reactions().any(|(start, end)| (start..=end + NAMED_WITHIN).contains(&named))
+    }
+
+    /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
+    fn is_met(&self, other: &Other) -> bool {
+        let Some((named, end)) = span(&other.kind.source) else { return false };
+        let before = self.reactions().any(|(start, _)| (end..end + NAMED_BEFORE).contains(&start));
+        let turns = self.account.sv.acts.iter().filter(|fact| fact.act == Act::Turn && !fact.after_contact);
+        let turns = turns
+            .filter_map(|fact| span(&fact.source))
+            .any(|(start, end)| (start..end + NAMED_BEFORE).contains(&named));
+        let reacts = self.reactions().next().is_some();
+        let crosses =
+            |fact: &ActFact| matches!(fact.act, Act::Cross | Act::Enter | Act::RunRed | Act::PullOut | Act::UTurn);
+        self.is_near(other) || reacts && before_contact(other).any(crosses) || before || turns
+    }
+
+    /// Whether who stood drove on; and whether it did so before the ego did.
+    fn drives_on(&self, other: &Other) -> Option<bool> {
+        let stood = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
+        let since = self.account.sv.acts.iter().chain(&other.acts).filter(stood).map(|fact| fact.step).min()?;
+        let drives = |fact: &&ActFact| {
+            fact.step > since && matches!(fact.act, Act::SetOff | Act::Follow | Act::Accelerate | Act::Leave)
+        };
+        let at = before_contact(other).find(drives)?.step;
+        let moves = |fact: &&ActFact| {
+            let moves = matches!(fact.act, Act::SetOff | Act::Follow | Act::Enter | Act::LaneChange | Act::Turn);
+            moves && fact.step > since && !fact.after_contact
+        };
+        Some(self.account.sv.acts.iter().find(moves).is_some_and(|fact| at < fact.step))
+    }
+
+    fn role(&self, told: &Told, other: &Other) -> Option<Role> {
+        // Who throws the partner is drawn there; and who comes afterwards is not.
+        let later = !other.acts.is_empty() && other.acts.iter().all(|fact| fact.after_contact);
+        if other.touched_partner || later {
+            return None;
         }
-        // From the kerb on the right.
-        Extra::Walker => (PartnerKind::Pedestrian, crossing(front_m + gap_m, ahead.left(), WALKS_MPS)),
-        Extra::Animal => (PartnerKind::Animal, crossing(front_m + gap_m, ahead.left(), RUNS_MPS)),
-        Extra::Crosser => {
-            let way = Vec2::from_heading(sv.heading - math::FRAC_PI_2);
-            (PartnerKind::PassengerCar, crossing(crossing_m(staging), way, CROSSES_MPS))
+        match other.kind.value.group() {
+            KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
+            KindGroup::Animal => self.is_met(other).then_some(Role::Animal),
+            KindGroup::Car | KindGroup::Truck => self.vehicle(told, other),
+            _ => None,
         }
-    };
-    Actor { id: extra.id().to_owned(), kind, size: None, mass_kg: None, parts: Vec::new(), plan }
+    }
+
+    /// Whether the partner goes round somebody who stands: it comes over from the opposite side, or passes where the ego is at the kerb.
+    fn is_passed(&self, told: &Told) -> bool {
+        let passes = |fact: &ActFact| matches!(fact.act, Act::Pass | Act::LaneChange) && !fact.after_contact;
+        let at_kerb = told.sv.state == ContactState::Parked || told.sv.movement == Some(Movement::EnteringTraffic);
+        told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
+    }
+
+    fn vehicle(&self, told: &Told, other: &Other) -> Option<Role> {
+        let words = text(&other.kind.source);
+        let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
+        let did = |acts: &[Act]| before_contact(other).any(|fact| acts.contains(&fact.act));
+        let place = other.place.as_ref().map(|fact| fact.value);
+        let near = self.is_near(other);
+        let because = |reason: StandReason| told.reasons.contains(&reason);
+        let stands = did(&[Act::Hold, Act::Stop, Act::Park]) && !did(&[Act::SetOff, Act::Follow, Act::Reverse]);
+        if stands && !other.several && !near && self.is_passed(told) {
+            return Some(Role::Passed);
+        }
+        let parked = said(&["parked"]) || before_contact(other).any(|fact| text(&fact.source).contains("park"));
+        if parked && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
+            let double = said(&["double"]) || before_contact(other).any(|fact| text(&fact.source).contains("double"));
+            let blocks = near && (because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || double);
+            return match (other.several, goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value)) {
+                (true, _) => Some(Role::Kerb),
+                (false, true) => Some(Role::Obstacle),
+                (false, false) if blocks => Some(Role::Lead),
+                (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
+            };
+        }
+        if place == Some(Origin::Opposite) || said(&["oncoming", "opposing"]) {
+            let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park]);
+            // Of who turns across it, it is told only because that waits for it.
+            let waits = near || other.several && told.sv.turning == Turning::Left;
+            return (waits && only_passes).then_some(Role::Oncoming);
+        }
+        let queue = because(StandReason::Queue) || because(StandReason::LeadVehicle);
+        let ahead = place == Some(Origin::Ahead) || said(&["lead", "preceding"]);
+        let beside = matches!(place, Some(Origin::Beside { .. }));
+        let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside;
+        let turns = told.sv.turning != Turning::No || because(StandReason::StopSign);
+        let passes = turns && (because(StandReason::Yield) || did(&[Act::Follow]));
+        let waits = near || other.several && told.sv.turning != Turning::No && said(&["cross"]);
+        if waits && !ahead && !queue && other.several && (crosses || passes || because(StandReason::Yield)) {
+            let turns_left = told.sv.turning == Turning::Left && !because(StandReason::StopSign) && !said(&["cross"]);
+            let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]);
+            return junction.then_some(if turns_left { Role::Oncoming } else { Role::Crosser });
+        }
+        let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Reverse, Act::Pass, Act::Drift]);
+        let reacts = self.reactions().next().is_some();
+        let merges = did(&[Act::LaneChange, Act::PullOut]) && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
+        if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && is_straight(told) {
+            return Some(Role::Merger);
+        }
+        let junction = told.place == PlaceKind::Intersection || told.is_controlled();
+        let waits = near && told.sv.state == ContactState::Stopped && other.several && !queue;
+        if waits && because(StandReason::BlockedJunction) {
+            return Some(Role::Beyond);
+        }
+        // Who drives elsewhere does not stand ahead.
+        let elsewhere = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !ahead && !queue;
+        if waits && junction && elsewhere {
+            return Some(Role::Blocker);
+        }
+        if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
+            return None;
+        }
+        let slows = said(&["slow"]) || did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);
+        let moves = matches!(told.sv.state, ContactState::Moving) && !sets_off(told);
+        Some(if slows && moves { Role::Slower } else { Role::Lead })
+    }
+
+    /// On which side of the ego somebody is, or from which it comes.
+    fn side(&self, role: Role, told: &Told, other: &Other) -> Option<LeftRight> {
+        let passes = self.account.sv.acts.iter().find(|fact| fact.act == Act::Pass && !fact.after_contact);
+        let passed = passes.and_then(|fact| fact.side).or(told.sv.aside).map(LeftRight::other);
+        let changes = before_contact(other).find(|fact| matches!(fact.act, Act::LaneChange | Act::PullOut));
+        match other.place.as_ref().map(|fact| fact.value) {
+            Some(Origin::Beside { side }) => Some(side),
+            // One that is parked is where the partner comes from, or on the right.
+            _ if role == Role::Kerb && !other.several => match told.origin {
+                Origin::Parked { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => side,
+                _ => None,
+            }
+            .or(Some(LeftRight::Right)),
+            // Who changes to its right comes from the left.
+            _ if role == Role::Merger => changes.and_then(|fact| fact.side).map(LeftRight::other),
+            _ => passed.filter(|_| role == Role::Obstacle),
+        }
+    }
+}
+
+fn before_contact(other: &Other) -> impl Iterator<Item = &ActFact> {
+    other.acts.iter().filter(|fact| !fact.after_contact && !fact.begun)
+}
+
+/// Where the words of a fact stand.
+fn span(source: &Source) -> Option<(usize, usize)> {
+    match source {
+        Source::Words { start, end, .. } => Some((*start, *end)),
+        _ => None,
+    }
+}
+
+fn text(source: &Source) -> String {
+    match source {
+        Source::Words { text, .. } => text.to_lowercase(),
+        _ => String::new(),
+    }
 }

@@ -88,6 +88,8 @@ pub(crate) struct Told {
     pub(crate) pusher: Option<Kind>,
     /// Who was pushed is told to have come along or slowed, and not to have stood.
     pub(crate) pushed_rolling: bool,
+    /// So many of the others are told to have touched the partner first.
+    pub(crate) throwers: usize,
     pub(crate) striker: Option<Striker>,
     /// Lanes in the ego's direction.
     pub(crate) lanes: Option<u8>,
@@ -198,12 +200,13 @@ impl Told {
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),
             pushed_rolling,
+            throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),
             trailer_of: kind.filter(|_| trailer::touches(partner)),
             wanted_rig,
             rig: None,
             striker,
             lanes: told(&account.place.lanes),
-            reasons: others::reasons(account),
+            reasons: others::reasons(account, origin),
             others: account.others.len(),
             door: told(&account.door),
             posted_mps: told(&account.place.posted_mps),
@@ -218,7 +221,7 @@ impl Told {
         };
         this.courses(&account.sv, partner);
         this.phases();
-        this.wanted = others::wanted(&this, &account.others);
+        this.wanted = others::wanted(&this, account);
         if this.origin_told {
             this.speeds();
         }
@@ -337,10 +340,8 @@ impl Told {
     /// Everything to try: with those whom the ego stood for, with one of them, then without them.
     pub(crate) fn variants(self) -> Vec<Self> {
         let with_extras = |told: Self| {
-            let wanted = told.wanted.clone();
-            let one = wanted.iter().filter(|_| wanted.len() > 1).map(|extra| vec![*extra]).collect::<Vec<_>>();
-            let all = [wanted].into_iter().filter(|extras| !extras.is_empty()).chain(one).chain([Vec::new()]);
-            all.map(|extras| Self { extras, ..told.clone() }).collect::<Vec<_>>()
+            let all = others::choices(&told.wanted);
+            all.into_iter().map(|extras| Self { extras, ..told.clone() }).collect::<Vec<_>>()
         };
         let with_rig = |told: Self| {
             let drawn = told.wanted_rig.map(|rig| {

@@ -16,7 +16,7 @@ use crate::lexicon::{Lexicon, Occupant, Sense};
 use crate::world::{Actor, SUBJECT};
 use contact::Contacts;
 use recrash_model::account::{
-    ACCOUNT_FORMAT, Account, Act, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker, told,
+    ACCOUNT_FORMAT, Account, Act, ActFact, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker, told,
 };
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
@@ -405,15 +405,53 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         if !lively || known.mentions == 0 || kind == Kind::Curb {
             continue;
         }
+        let touched_partner = reading.contacts.touched_partner(story, actor);
+        let again = known.sentence.is_some_and(|last| first < story.sentences[last].first);
+        if !touched_partner && is_nobody(reading, (first, end), &acts, again) {
+            continue;
+        }
         all.push(Other {
             kind: reading.told(kind, first, end),
             place: origin::place_of(reading, actor),
             several: known.several,
             acts,
-            touched_partner: reading.contacts.touched_partner(story, actor),
+            touched_partner,
         });
     }
     all
+}
+
+/// Whether a noun of which no act is told before the contact names nobody who was there: "a lane of traffic", "a passenger pickup", a
+/// street that is called so; or somebody whom only the headline names, or what is told of afterwards. `again`: it is named again later.
+fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFact], again: bool) -> bool {
+    let story = &reading.story;
+    let is = |at: Option<usize>, words: &[&str]| {
+        at.and_then(|at| story.tokens.get(at)).is_some_and(|token| words.contains(&token.text.as_str()))
+    };
+    let inside = |words: &[&str]| (first..end).any(|at| is(Some(at), words));
+    let pickup = inside(&["pickup", "pick"]) && inside(&["passenger", "rider", "customer", "requested"])
+        || is(Some(end), &["pickup", "pick"]);
+    let way = ["lane", "lanes", "flow", "direction", "side", "light", "lights", "rules"];
+    let of_way = is(first.checked_sub(1), &["of"]) && is(first.checked_sub(2), &way) && inside(&["traffic"]);
+    let adjective =
+        is(Some(end), &["crosswalk", "crosswalks", "signal", "signals", "light", "lights", "control", "officer"])
+            || inside(&["pedestrian"]) && (inside(&["traffic"]) || is(Some(end), &["traffic"]));
+    let capital = |at: usize| story.tokens.get(at).is_some_and(|token| token.capital);
+    let street = end == first + 1 && capital(first) && capital(end) && first > 0;
+    let involved = inside(&["involved"]) || is(Some(end), &["involved"]) || is(first.checked_sub(1), &["both"]);
+    if pickup || of_way || adjective || street || involved {
+        return true;
+    }
+    if again || acts.iter().any(|fact| !fact.after_contact) {
+        return false;
+    }
+    let contact = reading.contacts.first.map(|number| story.frames[number].sentence);
+    let after = contact.is_some_and(|sentence| first >= story.sentences[sentence].end);
+    let headline = story.frames.iter().any(|frame| {
+        let sentence = story.sentences[frame.sentence];
+        frame.sense == Sense::Headline && (sentence.first..sentence.end).contains(&first)
+    });
+    after || headline
 }
 
 /// Whether a door took part.

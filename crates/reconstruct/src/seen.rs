@@ -1,0 +1,264 @@
+//! Whether a rollout holds the others who are told of, where and when they matter.
+
+use crate::control;
+use crate::extras::{STANDS_MPS, stands, stood_behind};
+use crate::ground::LANE_M;
+use crate::others::{Extra, Role, waits_ahead};
+use crate::told::Told;
+use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
+use recrash_roads::Scenario;
+
+/// Whoever stands ahead of an ego stands no farther ahead of its front, who crosses on foot, and who crosses or comes by in a vehicle.
+/// An ego that moves could stop before them, braking so. [m, m/s^2]
+const AHEAD_M: f64 = 8.0;
+const CROSSING_M: f64 = 30.0;
+const BRAKES_MPS2: f64 = 2.0;
+
+/// Who is parked beside the way is no farther off, ahead or behind. [m]
+const PARKED_M: f64 = 40.0;
+
+/// Who slowed has lost so much. [m/s]
+const SLOWED_MPS: f64 = 0.8;
+
+/// A rollout, and when the two touch.
+pub(crate) struct Seen<'a> {
+    told: &'a Told,
+    rollout: &'a Rollout,
+    ego: &'a ActorTrack,
+    until: usize,
+}
+
+impl<'a> Seen<'a> {
+    pub(crate) fn new(told: &'a Told, rollout: &'a Rollout, time_s: f64) -> Self {
+        let ego = rollout.ego_track();
+        Self { told, rollout, ego, until: ((time_s * 10.0) as usize).min(ego.states.len() - 1) }
+    }
+
+    /// Whether all of the others who are told of are there as told; who is wanted, and who is there.
+    pub(crate) fn others(&self) -> (bool, String, String) {
+        let words = |list: &[&Extra], throws: bool| {
+            let words = list.iter().map(|extra| extra.words()).chain(throws.then_some("one throws the partner"));
+            words.collect::<Vec<_>>().join(", ")
+        };
+        let told: Vec<&Extra> = self.told.wanted.iter().filter(|extra| !extra.of.is_empty()).collect();
+        let there: Vec<&Extra> = told.iter().copied().filter(|extra| self.holds(extra)).collect();
+        let throws = self.throws() && self.told.throwers > 0;
+        let count = there.iter().map(|extra| extra.of.len()).sum::<usize>() + usize::from(throws);
+        let all = words(&told, self.told.throwers > 0);
+        let expected = format!("{} more: {}", self.told.others, if all.is_empty() { "not known where" } else { &all });
+        (count >= self.told.others, expected, format!("{count} more: {}", words(&there, throws)))
+    }
+
+    /// Whether somebody who is drawn is elsewhere than it is wanted, or drives against its red light.
+    pub(crate) fn strays(&self, scenario: &Scenario) -> bool {
+        let runs_red = |track: &ActorTrack| {
+            !matches!(track.id.as_str(), "cp" | "pusher")
+                && !std::ptr::eq(track, self.ego)
+                && control::runs_red(scenario, track)
+        };
+        let there = |extra: &&Extra| self.find(extra.role).is_some();
+        self.told.extras.iter().filter(there).any(|extra| !self.holds(extra))
+            || self.rollout.actors.iter().any(runs_red)
+    }
+
+    /// Whether the scene holds whom the ego stood for.
+    pub(crate) fn reason(&self, reason: StandReason) -> bool {
+        let is = |role: Role| self.told.wanted.iter().any(|extra| extra.role == role && self.holds(extra));
+        match reason {
+            StandReason::LeadVehicle if self.told.origin == Origin::Ahead => is(Role::Lead) || self.partner_leads(),
+            StandReason::Queue | StandReason::LeadVehicle => is(Role::Lead),
+            StandReason::Pedestrian => is(Role::Walker),
+            StandReason::Animal => is(Role::Animal),
+            StandReason::Yield => {
+                [Role::Walker, Role::Crosser, Role::Oncoming, Role::Lead, Role::Merger].into_iter().any(is)
+            }
+            StandReason::BlockedJunction => is(Role::Beyond) || is(Role::Blocker),
+            StandReason::BlockedPath => is(Role::Lead) || is(Role::Obstacle),
+            StandReason::Parked => self.told.sv.state == ContactState::Parked,
+            _ => false,
+        }
+    }
+
+    /// Whether the partner stands ahead of the ego where that came to stand.
+    fn partner_leads(&self) -> bool {
+        let Some(track) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let from = stands(self.ego, self.until).first().map_or(self.until, |(from, _)| *from);
+        let (ahead_m, left_m) = self.beside(track, from);
+        let within_m = AHEAD_M + 0.5 * track.length_m;
+        ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M
+    }
+
+    fn find(&self, role: Role) -> Option<&'a ActorTrack> {
+        self.rollout.actors.iter().find(|track| track.id == role.id())
+    }
+
+    /// Whether who is told to have thrown the partner touched it.
+    fn throws(&self) -> bool {
+        let number = self.rollout.actors.iter().position(|track| track.id == "pusher");
+        let as_told = |number: usize| {
+            let kind = self.told.pusher.and_then(Kind::partner_kind);
+            kind.is_none_or(|kind| kind == self.rollout.actors[number].kind)
+        };
+        let touches = |number: usize| {
+            self.rollout.events.iter().any(|event| match event.kind {
+                EventKind::Contact { a, b, .. } => a == number || b == number,
+                _ => false,
+            })
+        };
+        number.is_some_and(|number| as_told(number) && touches(number))
+    }
+
+    /// Whether somebody is there, of its kind, and does its part.
+    pub(crate) fn holds(&self, extra: &Extra) -> bool {
+        let Some(track) = self.find(extra.role) else { return false };
+        let as_told = extra.kind.partner_kind().is_none_or(|kind| kind == track.kind);
+        as_told
+            && match extra.role {
+                Role::Lead => self.leads(extra, track),
+                Role::Slower => self.slows_ahead(track),
+                Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.is_on_side(extra, track),
+                Role::Crosser => self.crosses(track, CROSSING_M) && self.is_on_side(extra, track),
+                Role::Oncoming => self.comes_by(track),
+                Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
+                Role::Obstacle => self.is_passed(extra, track),
+                Role::Passed => self.partner_passes(track),
+                Role::Merger => self.merges(extra, track),
+                Role::Blocker => self.blocks(track, true),
+                Role::Beyond => self.blocks(track, false),
+            }
+    }
+
+    fn mps(track: &ActorTrack, step: usize) -> f64 {
+        track.states[step.min(track.states.len() - 1)].velocity().length()
+    }
+
+    /// How far ahead of the ego's front somebody is at a step, and how far to its left. [m]
+    fn beside(&self, track: &ActorTrack, step: usize) -> (f64, f64) {
+        let (state, other) = (&self.ego.states[step], &track.states[step.min(track.states.len() - 1)]);
+        let (ahead, way) = (Vec2::from_heading(state.heading), other.position() - state.position());
+        (ahead.dot(way) - 0.5 * self.ego.length_m, ahead.cross(way))
+    }
+
+    /// How far it takes the ego to stop. [m]
+    fn stopping_m(&self, step: usize) -> f64 {
+        0.5 * Self::mps(self.ego, step) * Self::mps(self.ego, step) / BRAKES_MPS2
+    }
+
+    /// Whether the ego stands at a step, or has slowed.
+    fn gives_way(&self, step: usize) -> bool {
+        let now_mps = Self::mps(self.ego, step);
+        let was = (0..step).any(|before| Self::mps(self.ego, before) > now_mps + SLOWED_MPS);
+        let will = (step..=self.until).any(|later| Self::mps(self.ego, later) < now_mps - SLOWED_MPS);
+        now_mps < STANDS_MPS || was || will
+    }
+
+    /// Whether somebody stands ahead where the ego stands or slows, and drives on before it does, where told.
+    fn leads(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let (from, to) = stood_behind(extra, self.ego, self.until).unwrap_or((self.until, self.until));
+        let (ahead_m, left_m) = self.beside(track, from);
+        let queue_m = if waits_ahead(self.told) { PARKED_M } else { 0.0 };
+        let within_m = AHEAD_M + 0.5 * track.length_m + self.stopping_m(from) + queue_m;
+        let there = ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M;
+        let stood = Self::mps(track, from) < STANDS_MPS;
+        let goes = (from..=self.until).find(|step| Self::mps(track, *step) > 2.0 * STANDS_MPS);
+        let ego_goes = to + 1 < self.until && self.gives_way(from);
+        let in_order = match (extra.goes, goes) {
+            (false, goes) => goes.is_none(),
+            (true, Some(goes)) => !ego_goes || goes <= to + 1,
+            (true, None) => false,
+        };
+        there && stood && in_order && self.beside(track, self.until).0 > 0.0
+    }
+
+    /// Whether somebody drives ahead in the ego's lane, and slows before the ego is touched.
+    fn slows_ahead(&self, track: &ActorTrack) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        let slowed = (0..self.until).any(|step| Self::mps(track, step) > Self::mps(track, self.until) + SLOWED_MPS);
+        (0.0..CROSSING_M).contains(&ahead_m) && left_m.abs() < 0.5 * LANE_M && slowed
+    }
+
+    /// Whether somebody passes ahead of the ego, from one side of it to the other, while it stands or slows before the contact.
+    fn crosses(&self, track: &ActorTrack, within_m: f64) -> bool {
+        let last = self.until.min(track.states.len() - 1);
+        (1..=last).any(|step| {
+            let ((ahead_m, left_m), (_, before_m)) = (self.beside(track, step), self.beside(track, step - 1));
+            let near = (0.0..within_m + self.stopping_m(step)).contains(&ahead_m);
+            near && left_m * before_m <= 0.0 && left_m != before_m && self.gives_way(step)
+        })
+    }
+
+    /// Whether somebody who crosses comes from the told side.
+    fn is_on_side(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let (_, left_m) = self.beside(track, 0);
+        extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0))
+    }
+
+    /// Whether somebody comes towards the ego, and passes it on its left while it stands or slows.
+    fn comes_by(&self, track: &ActorTrack) -> bool {
+        let last = self.until.min(track.states.len() - 1);
+        (1..=last).any(|step| {
+            let ((ahead_m, left_m), (before_m, _)) = (self.beside(track, step), self.beside(track, step - 1));
+            let facing = math::wrap_angle(track.states[step].heading - self.ego.states[0].heading).abs();
+            let by = ahead_m <= 0.0 && before_m > 0.0 && facing > 2.0;
+            by && (1.5..4.0 * LANE_M).contains(&left_m) && self.gives_way(step)
+        })
+    }
+
+    /// Whether somebody stands beside the ego's way all the time.
+    fn is_parked(&self, track: &ActorTrack) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        self.stays(track) && ahead_m.abs() < PARKED_M && left_m.abs() > 0.5 * LANE_M
+    }
+
+    fn stays(&self, track: &ActorTrack) -> bool {
+        (0..=self.until).all(|step| Self::mps(track, step) < STANDS_MPS)
+    }
+
+    /// Whether somebody stands ahead of the ego all the time, across its way or along it.
+    fn blocks(&self, track: &ActorTrack, across: bool) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        let facing = math::wrap_angle(track.states[0].heading - self.ego.states[self.until].heading).abs();
+        let stands = self.stays(track) && (across == (0.8..2.4).contains(&facing));
+        stands && (0.0..PARKED_M).contains(&ahead_m) && left_m.abs() < LANE_M
+    }
+
+    /// Whether the partner goes round somebody who stands in the line on which it came.
+    fn partner_passes(&self, track: &ActorTrack) -> bool {
+        let Some(partner) = self.rollout.actors.iter().find(|track| track.id == "cp") else { return false };
+        let came = partner.states[0].pose();
+        let along = Vec2::from_heading(came.heading);
+        let aside = |of: Vec2| along.cross(of - came.position);
+        let met = partner.states[self.until.min(partner.states.len() - 1)].position();
+        let at = track.states[0].position();
+        let beside = (0..=self.until).any(|step| (aside(partner.states[step].position()) - aside(at)).abs() > 0.8);
+        let in_line = aside(at).abs() < 0.5 * LANE_M && beside;
+        let by = aside(at).abs() < 1.2 * LANE_M && along.dot(met - at) > 0.0;
+        self.stays(track) && (in_line || by) && (at - met).length() < PARKED_M
+    }
+
+    /// Whether somebody was beside the ego's lane, on the told side, and is in it ahead of the ego at the contact.
+    fn merges(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        let was = |step: usize| self.beside(track, step).1;
+        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (was(0) > 0.0));
+        let beside = (0..self.until).any(|step| was(step).abs() > 0.7 * LANE_M);
+        (0.0..CROSSING_M).contains(&ahead_m) && left_m.abs() < 0.4 * LANE_M && beside && side
+    }
+
+    /// Whether the ego goes round somebody who stands: it came along its line, and leaves that to the other side; or it goes by.
+    fn is_passed(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let came = self.ego.states[0].pose();
+        let ahead = Vec2::from_heading(came.heading);
+        let way = track.states[0].position() - came.position;
+        let moved = self.ego.states[self.until].position() - came.position;
+        let (left_m, ego_left_m) = (ahead.cross(way), ahead.cross(moved));
+        let in_line = left_m.abs() < 0.5 * LANE_M && (left_m - ego_left_m).abs() > 0.8;
+        let by = left_m.abs() >= 0.5 * LANE_M && left_m.abs() < 1.5 * LANE_M;
+        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > ego_left_m));
+        let near = self.beside(track, self.until).0.abs() < CROSSING_M;
+        self.stays(track) && ahead.dot(way) > 0.0 && near && (in_line || by) && side
+    }
+}

@@ -1,0 +1,268 @@
+//! Others of the story are there as they are told; and a rollout in which they are not does not pass for it.
+
+use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
+use recrash_model::account::Account;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::rollout::ActorTrack;
+use recrash_model::scenario::{Actor, ActorPlan, Aspect, Deed, Device, Place, ScenarioDraft, Trigger};
+use recrash_reconstruct::{Reconstruction, held_against};
+use recrash_sim::{Ego, simulate};
+
+const STRUCK: &str = "A van approached from behind and the front of the van made contact with the rear of the AV.";
+const WALKER: &str =
+    "The AV was traveling north on Elm Street and slowed to yield to a pedestrian crossing the street.";
+const BUS: &str = "The AV was traveling north when it came to a stop behind a bus that was stopped ahead of the AV.";
+const MOVES_OFF: &str = "The AV was stopped in a queue of traffic for a red light at the intersection of Elm Street and Oak Street, and a van \
+                         was stopped behind it. When the light turned green and traffic ahead advanced, the AV began to proceed. The van \
+                         began to proceed and the front of the van made contact with the rear of the AV.";
+const MOVES_UP: &str = "The AV was stopped in a queue of traffic. The AV proceeded forward a short distance and came to a stop. A van \
+                        approached from behind and the front of the van made contact with the rear of the stationary AV.";
+const ONCOMING: &str = "The AV was traveling north on Elm Street and came to a stop to yield to oncoming traffic before making a left turn onto \
+                        Oak Street. A van approached from behind and the front of the van made contact with the rear of the stationary AV.";
+const CROSSING: &str = "The AV was stopped at a stop sign at the intersection of Elm Street and Oak Street, yielding to cross traffic. A van \
+                        approached from behind and the front of the van made contact with the rear of the stationary AV.";
+const SLOWS: &str = "The AV was traveling north when a leading sedan began to slow, prompting the AV to slow.";
+const MERGES: &str = "The AV was traveling north when a sedan to the left of the AV changed lanes to the right in front of the AV, and the AV \
+                      slowed.";
+const ROUND: &str = "The AV was traveling north and changed lanes to the left to pass a double-parked truck. The front of the AV made contact \
+                     with a traffic cone.";
+const KERB: &str = "The AV was stopped on a narrow street with vehicles parked at the curb. A van approached from behind and the front of the \
+                    van made contact with the rear of the stationary AV.";
+
+const BLOCKED: &str = "The AV came to a stop at a red light at the intersection of Elm Street and Oak Street. When the light turned green, the \
+                       AV remained stopped as vehicles traveling on Oak Street were still occupying the intersection. A van approached \
+                       from behind and the front of the van made contact with the rear of the stationary AV.";
+const NO_ROOM: &str = "The AV was stopped at a green light at the intersection of Elm Street and Oak Street to keep the intersection clear, \
+                       as traffic was stopped on the other side. A van approached from behind and the front of the van made contact with \
+                       the rear of the stationary AV.";
+const OVERTAKEN: &str = "The AV was pulling out of a parking space at the right curb with a second vehicle stopped in the lane, when a van \
+                         passed the second vehicle and changed lanes to the right, and the front right of the van made contact with the \
+                         front left of the AV.";
+
+fn told(text: &str) -> Account {
+    let whole = if text.contains("made contact") { text.to_owned() } else { format!("{text} {STRUCK}") };
+    story(&whole)
+}
+
+fn track<'a>(made: &'a Reconstruction, id: &str) -> &'a ActorTrack {
+    let ids: Vec<&str> = made.rollout.actors.iter().map(|track| track.id.as_str()).collect();
+    made.rollout.actors.iter().find(|track| track.id == id).unwrap_or_else(|| panic!("{id} of {ids:?}"))
+}
+
+fn others(draft: &ScenarioDraft, account: &Account) -> Option<CheckResult> {
+    let scenario = recrash_roads::check(draft.clone()).expect("it can run").value;
+    let verdict = held_against(account, &scenario, &simulate(&scenario, Ego::Recorded)).expect("it can be staged");
+    verdict.checks.iter().find(|check| check.kind == CheckKind::Others).map(|check| check.result)
+}
+
+/// A staging that shows the others as told; and does not where one of them is changed so.
+fn shown_but(text: &str, id: &str, change: impl Fn(&mut Actor)) -> Reconstruction {
+    let account = told(text);
+    let shown = made(&account);
+    assert_eq!(others(&shown.draft, &account), Some(CheckResult::Shown), "{:?}", shown.verdict);
+    track(&shown, id);
+    let mut gone = shown.draft.clone();
+    gone.actors.retain(|actor| actor.id != id);
+    assert_eq!(others(&gone, &account), Some(CheckResult::CannotBeShown), "{id} is gone");
+    let mut changed = shown.draft.clone();
+    change(changed.actors.iter_mut().find(|actor| actor.id == id).expect("it is there"));
+    assert_eq!(others(&changed, &account), Some(CheckResult::CannotBeShown), "{id} is changed");
+    shown
+}
+
+/// A staging that holds why the ego stood; and does not without this one.
+fn shown_reason(text: &str, id: &str) -> Reconstruction {
+    let account = told(text);
+    let shown = made(&account);
+    let reason = |draft: &ScenarioDraft| {
+        let scenario = recrash_roads::check(draft.clone()).expect("it can run").value;
+        let verdict = held_against(&account, &scenario, &simulate(&scenario, Ego::Recorded)).expect("it can be staged");
+        verdict.checks.iter().find(|check| check.kind == CheckKind::Reason).map(|check| check.result)
+    };
+    assert_eq!(reason(&shown.draft), Some(CheckResult::Shown), "{:?}", shown.verdict);
+    let mut gone = shown.draft.clone();
+    gone.actors.retain(|actor| actor.id != id);
+    assert_eq!(reason(&gone), Some(CheckResult::CannotBeShown), "{id} is gone");
+    shown
+}
+
+fn moved(plan: &mut ActorPlan, by_x_m: f64, by_y_m: f64) {
+    let places = plan.course.iter_mut().filter_map(|leg| match leg {
+        recrash_model::scenario::Leg::Curve { to, .. } => Some(to),
+        _ => None,
+    });
+    for place in places.chain([&mut plan.start]) {
+        if let Place::Plane { x_m, y_m, .. } = place {
+            (*x_m, *y_m) = (*x_m + by_x_m, *y_m + by_y_m);
+        }
+    }
+}
+
+fn stands_from_the_start(actor: &mut Actor) {
+    actor.plan = ActorPlan::standing(actor.plan.start.clone());
+}
+
+#[test]
+fn an_ego_that_slows_for_somebody_on_foot_could_stop_before_it() {
+    let shown = shown_but(WALKER, "walker", stands_from_the_start);
+    let (walker, ego) = (track(&shown, "walker"), shown.rollout.ego_track());
+    let last = before_contact(&shown);
+    let (at, from) = (walker.states[last], ego.states[last]);
+    let room_m = at.x - from.x - 0.5 * ego.length_m;
+    assert!(walker.kind == PartnerKind::Pedestrian && from.speed() > 0.1, "{from:?}");
+    assert!(room_m > 0.2 * from.speed() * from.speed() && room_m < 20.0, "{room_m}");
+    // It crosses the ego's way.
+    assert!(walker.states[0].y < from.y - 2.0 && at.y > from.y - 0.5, "{at:?}");
+}
+
+#[test]
+fn who_stands_ahead_is_of_the_told_kind() {
+    let shown = shown_but(BUS, "lead", |lead| lead.kind = PartnerKind::PassengerCar);
+    assert_eq!(track(&shown, "lead").kind, PartnerKind::Bus);
+}
+
+#[test]
+fn a_queue_that_moves_off_does_so_at_green_and_before_the_ego() {
+    let shown = shown_but(MOVES_OFF, "lead", stands_from_the_start);
+    let sets_off = |id: &str| track(&shown, id).states.iter().position(|state| state.speed() > 0.2).expect("it drives");
+    let ego = speeds(&shown).iter().position(|speed| *speed > 0.2).expect("it drives");
+    let (lead, partner) = (sets_off("lead"), sets_off("cp"));
+    assert!(lead < ego && ego < partner, "{lead}, {ego}, {partner}");
+    let own = shown.draft.control.iter().find(|control| control.at == "own-").expect("a signal");
+    let Device::Signal { .. } = own.device else { panic!("{own:?}") };
+    let green_s =
+        (0..120).map(|step| 0.1 * f64::from(step)).find(|at_s| own.device.aspect(*at_s) == Some(Aspect::Green));
+    assert!(green_s.is_some_and(|green_s| green_s < 0.1 * lead as f64), "{green_s:?}, {lead}");
+}
+
+#[test]
+fn who_drives_on_after_the_ego_did_not_make_way_for_it() {
+    shown_but(MOVES_OFF, "lead", |lead| {
+        for act in &mut lead.plan.acts {
+            act.when = Some(Trigger::TimeS(8.8));
+        }
+    });
+}
+
+#[test]
+fn behind_an_ego_that_moves_up_nobody_ahead_stood_in_its_way() {
+    let shown = made(&told(MOVES_UP));
+    let (lead, ego) = (track(&shown, "lead"), shown.rollout.ego_track());
+    let gap = |step: usize| lead.states[step].x - ego.states[step].x;
+    let last = before_contact(&shown);
+    assert!(lead.states[last].x - lead.states[0].x > 2.0, "it moved up");
+    assert!((60..=last).all(|step| gap(step) < 14.0 && gap(step) > 6.0), "{}", gap(last));
+    assert_eq!(lead.states[last].speed(), 0.0);
+}
+
+#[test]
+fn oncoming_traffic_that_the_ego_yields_to_comes_by_in_its_own_lane() {
+    let shown = shown_but(ONCOMING, "oncoming", |oncoming| moved(&mut oncoming.plan, 150.0, 0.0));
+    let (oncoming, ego) = (track(&shown, "oncoming"), shown.rollout.ego_track());
+    let by =
+        (0..before_contact(&shown)).find(|step| oncoming.states[*step].x < ego.states[*step].x).expect("it comes by");
+    assert!(
+        ego.states[by].speed() < 0.1 && oncoming.states[by].y - ego.states[by].y > 2.5,
+        "{:?}",
+        oncoming.states[by]
+    );
+}
+
+#[test]
+fn crossing_traffic_has_a_road_and_no_red_light() {
+    let shown = shown_but(CROSSING, "crosser", stands_from_the_start);
+    let crosser = track(&shown, "crosser");
+    let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
+    let (states, _) = partner(&shown);
+    assert!(crosser.states[..states.len()].iter().all(|state| scenario.network().on_road(state.position())));
+    // It would go on at red: the ego's light is green, and nobody crosses.
+    let green = "The AV was stopped at a green light at the intersection of Elm Street and Oak Street, yielding to cross traffic. A van \
+                 approached from behind and the front of the van made contact with the rear of the stationary AV.";
+    let without = made(&told(green));
+    let words = without.verdict.checks.iter().find(|check| check.kind == CheckKind::Others).expect("others are told");
+    assert!(words.expected.contains("crossing") && words.result == CheckResult::CannotBeShown, "{words:?}");
+    assert!(without.rollout.actors.iter().all(|track| track.id != "crosser"));
+}
+
+#[test]
+fn who_slows_ahead_of_the_ego_slows_first() {
+    let shown = shown_but(SLOWS, "slower", |slower| slower.plan.acts.clear());
+    let slows = |speeds: Vec<f64>| speeds.iter().position(|speed| *speed < speeds[0] - 0.3).expect("it slows");
+    let slower: Vec<f64> = track(&shown, "slower").states.iter().map(|state| state.speed()).collect();
+    assert!(slows(slower) < slows(speeds(&shown)));
+}
+
+#[test]
+fn who_cuts_in_comes_from_the_told_side() {
+    let shown = shown_but(MERGES, "merger", |merger| {
+        merger.plan.acts.retain(|act| !matches!(act.deed, Deed::Shift { .. }));
+    });
+    let (merger, last) = (track(&shown, "merger"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[last];
+    assert!(merger.states[0].y > ego.y + 2.5, "it was on the left");
+    assert!(merger.states[last].x > ego.x + 4.0 && (merger.states[last].y - ego.y).abs() < 1.0);
+}
+
+#[test]
+fn whom_the_ego_goes_round_stands_in_the_lane_that_it_leaves() {
+    let shown = shown_but(ROUND, "obstacle", |obstacle| moved(&mut obstacle.plan, 0.0, 8.0));
+    let (obstacle, ego) = (track(&shown, "obstacle"), shown.rollout.ego_track());
+    assert!((obstacle.states[0].y - ego.states[0].y).abs() < 0.5 && obstacle.states[0].x > ego.states[0].x);
+    assert_eq!(obstacle.kind, PartnerKind::HeavyTruck);
+}
+
+#[test]
+fn whom_the_partner_goes_round_stands_where_it_goes_by() {
+    let shown = shown_but(OVERTAKEN, "passed", |passed| moved(&mut passed.plan, 0.0, -12.0));
+    let (passed, (states, met)) = (track(&shown, "passed"), partner(&shown));
+    let by = states.iter().position(|state| state.x > passed.states[0].x).expect("it goes by");
+    assert!((2.0..5.0).contains(&(states[by].y - passed.states[0].y).abs()) && met.x > passed.states[0].x + 3.0);
+}
+
+#[test]
+fn who_still_is_in_the_junction_stands_across_the_egos_way() {
+    let shown = shown_but(BLOCKED, "blocker", |blocker| moved(&mut blocker.plan, 0.0, 12.0));
+    let (blocker, ego) = (track(&shown, "blocker").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(degrees_between(blocker.heading, ego.heading) > 80.0 && blocker.x - ego.x < 25.0, "{blocker:?}");
+}
+
+#[test]
+fn who_leaves_no_room_stands_behind_the_junction() {
+    let shown = shown_reason(NO_ROOM, "beyond");
+    let (beyond, ego) = (track(&shown, "beyond").states[0], shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(degrees_between(beyond.heading, ego.heading) < 10.0 && beyond.x - ego.x > 28.0, "{beyond:?}");
+}
+
+#[test]
+fn a_row_of_parked_vehicles_stands_beside_the_lanes() {
+    let shown = shown_but(KERB, "kerb", |kerb| moved(&mut kerb.plan, 90.0, 0.0));
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    assert!((track(&shown, "kerb").states[0].y - ego.y).abs() > 2.5);
+}
+
+#[test]
+fn one_parked_vehicle_stands_on_the_side_from_which_the_partner_comes() {
+    let account = told(
+        "The AV was traveling north. A sedan exiting a driveway on the left entered the roadway in front of a van parked at the curb, and \
+         the front of the sedan made contact with the left side of the AV.",
+    );
+    let shown = made(&account);
+    let (kerb, ego) = (track(&shown, "kerb"), shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert!(kerb.kind == PartnerKind::Van && kerb.states[0].y > ego.y + 2.5, "{:?}", kerb.states[0]);
+    assert!(shown.rollout.actors.iter().all(|track| track.id != "kerb-2"));
+}
+
+#[test]
+fn words_that_name_nobody_bring_nobody() {
+    let texts = [
+        "The AV was stopped in traffic for a red light before a pedestrian crosswalk.",
+        "The AV was stopped in the lane of traffic for a passenger pickup.",
+    ];
+    for text in texts {
+        let account = told(text);
+        let quiet = account.others.iter().all(|other| !other.kind.value.is_vehicle() || other.several);
+        assert!(quiet, "{:?}", account.others);
+        assert!(made(&account).rollout.actors.iter().all(|track| !matches!(track.id.as_str(), "walker" | "crosser")));
+    }
+}
