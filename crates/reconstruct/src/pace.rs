@@ -206,7 +206,7 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
         }
     }
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
-    let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
+    let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. }) && told.ahead != Some(true);
     let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
         ContactState::Moving if told.brakes_late() => slows(contact_s, cp),
