@@ -262,7 +262,10 @@ impl Chunker<'_> {
             let adjective = |at: usize| {
                 self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Adjective(_))).is_some()
             };
-            if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) {
+            // "stopped at the light and another van came": two nouns.
+            let begins = DETERMINERS.contains(&self.text(at + 1)) || self.text(at + 1) == "another";
+            if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) && !begins
+            {
                 at += 1;
                 continue;
             }

@@ -679,7 +679,17 @@ fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> 
         Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay) if sv_front && cp_front => {
             return rule(Origin::Opposite);
         }
-        Some(Movement::Passing) => return rule(Origin::Behind),
+        // Out of a way across, or a stall there.
+        Some(Movement::Backing) if !sv_rear || !cp_rear => {
+            let backs = told(&account.sv.state) == Some(ContactState::Reversing);
+            if let Some(side) = zone_side(account).filter(|_| !backs) {
+                return rule(Origin::Cross { side });
+            }
+        }
+        Some(Movement::Passing) => {
+            let corner = account.sv.zones.iter().all(|zone| zone.value != Z::Rear);
+            return rule(zone_side(account).filter(|_| corner).map_or(Origin::Behind, |side| Origin::Beside { side }));
+        }
         _ => {}
     }
     if let (true, Some(side)) = (partner.did(Act::LaneChange), zone_side(account)) {

@@ -687,6 +687,10 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         {
             Some(ContactState::Moving)
         }
+        // It moved into something, and backwards by the column.
+        (Some(state), Some(Movement::Backing)) if state != ContactState::Reversing && moves_at_contact(reading) => {
+            Some(ContactState::Reversing)
+        }
         // Slowing in words, standing in numbers: it had come to stand.
         // Told to come to a stop, and still rolling in numbers.
         (Some(ContactState::Stopped), _)

@@ -249,6 +249,8 @@ impl Parser<'_> {
                     | Act::Pass
                     | Act::PullOut
                     | Act::Enter
+                    | Act::LaneChange
+                    | Act::Swerve
                     | Act::LoseControl
                     | Act::Fall
                     | Act::Roll
