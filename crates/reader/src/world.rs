@@ -45,6 +45,8 @@ pub struct Known {
     pub group: Option<Actor>,
     /// It was called a tractor.
     pub tractor: bool,
+    /// It was called parked, or told to stand.
+    pub parked: bool,
     /// Who tows it.
     pub towed_by: Option<Actor>,
 }
@@ -112,6 +114,7 @@ impl World {
         let known = &mut self.actors[actor];
         known.sentence = Some(self.sentence);
         known.tractor |= noun.tractor;
+        known.parked |= noun.occupant.is_none() && noun.adjectives.contains(&Adjective::Parked);
         known.last = self.clock;
         known.mentions += 1;
         if actor == SUBJECT && noun.subject {
@@ -314,6 +317,13 @@ impl World {
                 return there;
             }
         }
+        // "The parked car" is who was called so; who drives is not.
+        let parked = has(Adjective::Parked) && !noun.several;
+        let called = self.latest(|known| parked && known.parked && fits(known) && !known.several);
+        if called.is_some() {
+            return called;
+        }
+        let fits = |known: &Known| fits(known) && !(parked && known.acted && !known.parked);
         let named = self.latest(|known| {
             !noun.names.is_empty() && known.names.iter().any(|name| noun.names.contains(name)) && fits(known)
         });

@@ -480,6 +480,35 @@ impl Chunker<'_> {
         if matches!(self.text(at), "parking") && self.spot(at).is_some() {
             return None;
         }
+        // "its rear parking sensor", "in a parallel parking space", "from a parked position".
+        let named = at + found.length;
+        let of_parking = matches!(self.text(named - 1), "parking" | "parked")
+            && matches!(
+                self.text(named),
+                "sensor"
+                    | "sensors"
+                    | "brake"
+                    | "light"
+                    | "lights"
+                    | "camera"
+                    | "lot"
+                    | "garage"
+                    | "structure"
+                    | "area"
+                    | "space"
+                    | "spot"
+                    | "stall"
+                    | "bay"
+                    | "lane"
+                    | "meter"
+                    | "position"
+                    | "attendant"
+                    | "enforcement"
+                    | "aisle"
+            );
+        if of_parking && (self.text(at) != "parking" || word_before != "was") && found.length <= 2 {
+            return None;
+        }
         if matches!(self.text(at), "traveling" | "driving" | "turning" | "merging")
             && matches!(self.text(at + 1), "lane" | "lanes")
         {

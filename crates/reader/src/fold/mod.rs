@@ -77,7 +77,15 @@ impl Reading<'_> {
             && frame.joint == Some(crate::chunk::Joint::While)
             && frame.clause > at.clause
             && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
-        !(simultaneous || frame.described && frame.sentence == at.sentence)
+        // "It hit the vehicle, which was stopped": told again, with what was so then.
+        let retold = frame.act() == Some(Act::Hold)
+            && (frame.described || frame.joint == Some(crate::chunk::Joint::While))
+            && self.story.frames[number.saturating_sub(2)..number].iter().any(|other| {
+                other.sentence == frame.sentence
+                    && other.is_contact()
+                    && [(other.who, other.object), (other.object, other.who)].contains(&(at.who, at.object))
+            });
+        !(simultaneous || retold || frame.described && frame.sentence == at.sentence)
     }
 
     /// Whether a sentence behind the crash tells what had been before it: "The other car had run the light".
@@ -429,9 +437,16 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
         let words = &reading.story.tokens[..reading.story.sentences[frame.sentence].end];
         words.windows(2).any(|pair| pair[0].text == "door" && pair[1].text == "open")
     };
+    // "was struck by the door of a van that was parked".
+    let of_parked = |frame: &Frame| {
+        frames.iter().any(|other| {
+            frame.who.is_some() && other.who == frame.who && other.sense == Sense::Parked && other.happened()
+        })
+    };
     let (_, frame) = opened.or_else(|| {
         frames.iter().enumerate().find(|(_, frame)| {
-            frame.is_contact() && (open(&frame.with) || open(&frame.on) || door(&frame.with) && stands_open(frame))
+            let opens = door(&frame.with) && (stands_open(frame) || of_parked(frame));
+            frame.is_contact() && (open(&frame.with) || open(&frame.on) || opens)
         })
     })?;
     let owner = match frame.act() {

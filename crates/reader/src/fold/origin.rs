@@ -190,6 +190,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let (first, end) = reading.window(number);
         let source = reading.words(first, end);
         match frame.out_of {
+            // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
+            Some(Spot::Stall) if at_curb(reading, actor) && did(Act::Reverse) && square_front(account) => {
+                return told_as(Origin::Ahead, source);
+            }
             Some(Spot::Stall) if at_curb(reading, actor) => {
                 return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
             }

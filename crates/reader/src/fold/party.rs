@@ -229,7 +229,7 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
             Act::Reverse => ContactState::Reversing,
             Act::Follow | Act::Enter if stands && text.starts_with("continu") => continue,
             // "was stopped at a light, heading west".
-            Act::Follow
+            Act::Follow | Act::Turn
                 if stands && frame.form == crate::lexicon::Form::Ing && since == (frame.sentence, frame.clause) =>
             {
                 continue;
@@ -383,7 +383,9 @@ fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
     let Some(first) = reading.contacts.first else { return Vec::new() };
     let partner = reading.contacts.partner;
     let mut all: Vec<Fact<ContactZone>> = Vec::new();
-    for (number, frame) in reading.story.frames.iter().enumerate().skip(first) {
+    // What the crash told again leaves out stands where it was told first.
+    let frames = || reading.story.frames.iter().enumerate();
+    for (number, frame) in frames().skip(first).chain(frames().take(first)) {
         let pair = [frame.who, frame.object];
         let ours =
             frame.is_contact() && pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None));
@@ -744,7 +746,9 @@ fn stops_at_contact(reading: &Reading<'_>) -> bool {
     let last = reading.before(SUBJECT).filter(|(_, frame)| frame.happened()).last();
     last.is_some_and(|(number, frame)| {
         let while_it = number > contact && frame.joint == Some(crate::chunk::Joint::While);
-        frame.sentence == sentence && while_it && frame.act() == Some(Act::Stop)
+        // "was coming to a stop when a van struck it".
+        let when_it = number < contact && frame.form == crate::lexicon::Form::Ing && frame.joint.is_none();
+        frame.sentence == sentence && (while_it || when_it) && frame.act() == Some(Act::Stop)
     })
 }
 

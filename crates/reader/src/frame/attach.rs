@@ -215,12 +215,14 @@ impl Parser<'_> {
         let mut who = None;
         if let Some(frame) = carry.frame {
             // "made contact with the van ahead": the van.
-            if let (None, Some(last)) = (to, &carry.last)
+            // "made contact with a van behind it": the van.
+            let named = to == Some(SUBJECT) && relation == Relation::Behind;
+            if let (true, Some(last)) = (to.is_none() || named, &carry.last)
                 && self.frames[frame].is_contact()
                 && self.frames[frame].who == Some(SUBJECT)
                 && self.frames[frame].object == Some(last.actor)
                 && last.actor != SUBJECT
-                && matches!(relation, Relation::Ahead | Relation::Left | Relation::Right)
+                && (named || matches!(relation, Relation::Ahead | Relation::Left | Relation::Right))
             {
                 return self.note(last.actor, relation);
             }

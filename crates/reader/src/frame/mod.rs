@@ -9,7 +9,7 @@ mod row;
 mod subject;
 
 use crate::chunk::{Joint, Piece, Spot};
-use crate::lexicon::{COMPANY, Form, Lexicon, Occupant, Part, Progress, Relation, Sense};
+use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
 use parser::Parser;
@@ -190,7 +190,19 @@ fn tells_contact(words: &[Token]) -> bool {
         let phrase: Vec<String> = phrase.split(' ').map(str::to_owned).collect();
         crate::lexicon::find(&phrase, words).is_some()
     };
-    tells("made contact") || tells("struck") || tells("collided") || tells("rear ended") || tells("collision involving")
+    let touches = |at: usize| {
+        let found = Lexicon::get().longest(words, at, |meaning| {
+            matches!(
+                meaning,
+                Meaning::Verb(
+                    Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::OpenDoorInto,
+                    Form::Past | Form::Ing
+                )
+            )
+        });
+        found.is_some() && !words[at].capital
+    };
+    tells("made contact") || tells("collision involving") || (0..words.len()).any(touches)
 }
 
 fn looks_back(words: &[Token]) -> bool {

@@ -722,6 +722,9 @@ impl Parser<'_> {
             (twin.who, twin.with) = (Some(also.actor), also.piece.clone());
             self.frames.push(twin);
         }
+        if let (Some(who), Some(Act::Hold | Act::Park | Act::Stop)) = (frame.who, frame.act()) {
+            self.world.actors[who].parked = true;
+        }
         self.frames.push(frame);
         let number = self.frames.len() - 1;
         if unnamed || leading {

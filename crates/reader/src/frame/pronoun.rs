@@ -24,6 +24,8 @@ impl Parser<'_> {
                 && frame.who == Some(actor)
                 && frame.object.is_none()
                 && !carry.fresh
+                // "clipping the rear sensors with its mirror".
+                && !(frame.on.is_some() && carry.preposition == Some("with"))
                 // "was hit by its front bumper".
                 || frame.is_contact() && frame.passive && frame.object == Some(actor) && frame.who.is_none()
         });
@@ -73,7 +75,15 @@ impl Parser<'_> {
                 && transitive(frame.sense)
         });
         let place = matches!(carry.preposition, Some("toward" | "towards" | "past" | "around" | "against"));
-        if doer != Some(actor) || !(carry.relation.is_some() || place || takes && carry.preposition.is_none()) {
+        // "made contact with a van stopped behind it": it is the van that stands there.
+        let of_object = frame.zip(carry.last.as_ref()).is_some_and(|(frame, last)| {
+            carry.relation.is_some()
+                && frame.is_contact()
+                && frame.object == Some(last.actor)
+                && last.actor != actor
+                && last.piece.is_none()
+        });
+        if of_object || doer != Some(actor) || !(carry.relation.is_some() || place || takes && carry.preposition.is_none()) {
             return actor;
         }
         match actor {

@@ -12,7 +12,7 @@ impl Parser<'_> {
     pub(super) fn doing(&self, placed: &Placed) -> Option<(Act, Option<LeftRight>)> {
         (placed.first..placed.end).find_map(|at| {
             let act = match self.tokens[at].text.as_str() {
-                "passing" | "overtaking" => Act::Pass,
+                "passing" | "overtaking" | "splitting" => Act::Pass,
                 "merging" => Act::LaneChange,
                 "turning" => Act::Turn,
                 "reversing" | "backing" => Act::Reverse,
