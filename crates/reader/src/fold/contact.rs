@@ -161,6 +161,17 @@ fn column_sort(kind: PartnerKind) -> Option<KindGroup> {
 /// Whether the sentence of a frame says that it is one more event.
 fn goes_on(story: &Story, number: usize) -> bool {
     let sentence = story.sentences[story.frames[number].sentence];
+    // With what led to it told in between it is the same event, told in full.
+    let first = story.frames.iter().find(|frame| frame.is_contact()).map_or(0, |frame| frame.sentence);
+    let leads = |frame: &Frame| {
+        (first + 1..story.frames[number].sentence).contains(&frame.sentence) && frame.act().is_some() && frame.happened()
+    };
+    let again = story.tokens[sentence.first..sentence.end]
+        .iter()
+        .any(|token| matches!(token.text.as_str(), "again" | "second" | "another" | "third" | "times"));
+    if story.frames.iter().filter(|frame| leads(frame)).count() > 1 && !again {
+        return false;
+    }
     let words = &story.tokens[sentence.first..story.frames[number].first];
     words.iter().any(|token| matches!(token.text.as_str(), "then" | "again" | "subsequently"))
         || story.tokens[sentence.first..sentence.end]

@@ -191,8 +191,21 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let source = reading.words(first, end);
         match frame.out_of {
             // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
-            Some(Spot::Stall) if at_curb(reading, actor) && did(Act::Reverse) && square_front(account) => {
+            Some(Spot::Stall)
+                if did(Act::Reverse)
+                    && square_front(account)
+                    && (at_curb(reading, actor) || clues.any(Relation::Ahead)) =>
+            {
                 return told_as(Origin::Ahead, source);
+            }
+            // Both go backwards, and meet at their rears.
+            Some(Spot::Stall)
+                if did(Act::Reverse)
+                    && told(&account.sv.state) == Some(ContactState::Reversing)
+                    && !account.sv.zones.is_empty()
+                    && account.sv.zones.iter().all(|zone| zone.value.is_rear()) =>
+            {
+                return told_as(Origin::Behind, source);
             }
             Some(Spot::Stall) if at_curb(reading, actor) => {
                 return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
@@ -275,6 +288,22 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         && did(Act::PullOut)
         && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
     let crosses = matches!(turn, Some(2 | 6));
+    // "entered traffic from a stop sign on the right", "from a side street": no kerb.
+    let from_road = frames().find(|(number, frame)| {
+        let (first, end) = reading.window(*number);
+        let words = &reading.story.tokens[first..end.min(first + 14)];
+        let from = words.iter().position(|token| token.text == "from");
+        let road = |word: &str| matches!(word, "intersection" | "sign" | "street" | "avenue" | "road" | "alley");
+        let curb = |word: &str| matches!(word, "curb" | "side" | "parked" | "spot" | "space" | "stall" | "lane");
+        frame.act() == Some(Act::PullOut)
+            && from.is_some_and(|from| {
+                words[from..].iter().any(|token| road(&token.text)) && !words[from..].iter().any(|token| curb(&token.text))
+            })
+    });
+    if let (Some((number, _)), Some(side), false) = (from_road, side.or_else(|| zone_side(account)), parked) {
+        let (first, end) = reading.window(number);
+        return told_as(Origin::Cross { side }, reading.words(first, end));
+    }
     if leaves_curb && (parked || !(behind_first(clues) || crosses)) {
         let source = clues.source(|frame| frame.act() == Some(Act::PullOut));
         return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
