@@ -203,7 +203,7 @@ impl World {
 
     fn find(&mut self, noun: &Noun, hint: Option<Relation>) -> Option<Actor> {
         if let Some((who, plain)) = noun.occupant {
-            return Some(self.occupant(noun, who, plain));
+            return Some(self.occupant(noun, who, plain, hint));
         }
         if noun.subject {
             return Some(SUBJECT);
@@ -366,15 +366,26 @@ impl World {
         found
     }
 
-    fn occupant(&mut self, noun: &Noun, who: Occupant, plain: bool) -> Actor {
+    fn occupant(&mut self, noun: &Noun, who: Occupant, plain: bool, hint: Option<Relation>) -> Actor {
         if let Some(owner) = &noun.owner {
             let owner = (**owner).clone();
-            return self.find(&owner, None).unwrap_or_else(|| self.add(&owner));
+            // "The driver of the vehicle behind it".
+            let placed = hint.filter(|_| !owner.subject);
+            return self.find(&owner, placed).unwrap_or_else(|| self.add(&owner));
         }
         match who {
             // "A driver ran the light": nobody who was named.
             Occupant::Driver if plain && noun.article == Article::Indefinite => {
                 self.latest(|known| known.announced).unwrap_or_else(|| {
+                    self.actors.push(Known { kind: Some(Kind::Vehicle), ..Known::default() });
+                    self.actors.len() - 1
+                })
+            }
+            // "The driver behind it": of another vehicle.
+            Occupant::Driver if plain && hint.is_some() => {
+                let there = |known: &Known| known.relations.iter().any(|(place, _)| Some(*place) == hint);
+                let known = self.latest(|known| known.kind.is_some_and(Kind::is_vehicle) && there(known));
+                known.unwrap_or_else(|| {
                     self.actors.push(Known { kind: Some(Kind::Vehicle), ..Known::default() });
                     self.actors.len() - 1
                 })

@@ -468,6 +468,17 @@ impl Chunker<'_> {
         if behind_preposition && form == Form::Base && single {
             return None;
         }
+        // "minor scratches to both vehicles".
+        let mark = matches!(self.text(at), "scratches" | "scrapes" | "dents" | "marks" | "bumps" | "dings" | "scuffs");
+        if mark
+            && matches!(
+                word_before,
+                "minor" | "slight" | "light" | "small" | "some" | "surface" | "visible" | "cosmetic" | "superficial" | "few"
+                    | "multiple" | "several" | "paint" | "and" | "of" | "with" | "had"
+            )
+        {
+            return None;
+        }
         // "right turn" as a noun: "during the right turn".
         if matches!(self.text(at), "left" | "right")
             && matches!(self.text(at + 1), "turn")

@@ -352,6 +352,17 @@ impl Chunker<'_> {
             at += 1;
         };
         let (mut noun, length) = self.heads(noun, first, at, company, make, head)?;
+        // "a single car collision", "South Van Ness".
+        let crash = matches!(self.text(first + length), "collision" | "crash" | "accident" | "incident");
+        let street = noun.article == Article::None
+            && length == 1
+            && first > self.first
+            && self.tokens[first].capital
+            && self.text(first) == "van"
+            && self.tokens.get(first + 1).is_some_and(|next| next.capital);
+        if crash && !noun.subject && noun.occupant.is_none() && noun.number.is_none() || street {
+            return None;
+        }
         if one_of {
             (noun.one_of, noun.several) = (noun.several, false);
             noun.article = if noun.one_of { Article::Indefinite } else { Article::Definite };

@@ -306,7 +306,11 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return if both { rule(Role::Responder, "it backed away") } else { rule(Role::Initiator, "it went backwards") };
     }
     let cp_stands = cp_state(account).is_some_and(ContactState::stands) && !partner.did(Act::OpenDoor);
-    if cp_stands {
+    // "cut in front of it and braked to a stop".
+    let before: Vec<Act> = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+    let cut = matches!(before.as_slice(), [.., Act::LaneChange | Act::Swerve, Act::Stop | Act::Slow]);
+    let drove_on = told(&account.sv.movement) == Some(Movement::Straight);
+    if cp_stands && !(cut && drove_on) {
         return rule(Role::Initiator, "it moved into one that stood");
     }
     let sv_changes = account.sv.did(Act::LaneChange) || account.sv.did(Act::UTurn) || account.sv.did(Act::PullOut);

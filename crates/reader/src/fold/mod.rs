@@ -58,7 +58,7 @@ impl Reading<'_> {
         // "Before it set off, a van struck it".
         let until = frame.sentence == at.sentence
             && frame.joint == Some(crate::chunk::Joint::Before)
-            && at.joint != frame.joint
+            && (at.joint != frame.joint || at.sense == Sense::ContactMade)
             && !frame.is_contact();
         if until && frame.progress != crate::lexicon::Progress::Wished {
             return true;

@@ -450,6 +450,16 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let Some(side) = lane_side(account).or_else(|| changed_from(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
     }
+    // Who changes lanes into the leftmost one comes from the right.
+    let edge = account.sv.lane.as_ref().and_then(|lane| match lane.value {
+        LaneWord::Left | LaneWord::LeftTurn => Some(LeftRight::Right),
+        LaneWord::Right | LaneWord::RightTurn | LaneWord::Curb => Some(LeftRight::Left),
+        _ => None,
+    });
+    let into_ours = frames().any(|(_, frame)| frame.act() == Some(Act::LaneChange) && frame.object == Some(SUBJECT));
+    if let (true, Some(side)) = (into_ours && zone_side(account).is_none_or(|touched| Some(touched) == edge), edge) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "into the lane at the edge of the road"));
+    }
     // Both turn the same way, side by side.
     if reading.did(SUBJECT, Act::Turn)
         && did(Act::Turn)
@@ -592,7 +602,8 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let partner = account.partner.as_ref()?;
     let moved_over =
         [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass, Act::Pushed].into_iter().any(|act| partner.did(act));
-    let parked = told(&partner.state) == Some(ContactState::Parked);
+    let stood_by = told(&partner.state).is_some_and(ContactState::stands) && account.sv.did(Act::Pass);
+    let parked = told(&partner.state) == Some(ContactState::Parked) || stood_by;
     let swiped = clues.reading.contacts.first.is_some_and(|number| {
         let frame = &clues.reading.story.frames[number];
         clues.reading.story.tokens[frame.first].text.starts_with("sideswip")
@@ -600,6 +611,12 @@ fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     let beside = moved_over || parked || swiped || clues.any(Relation::Beside);
     if let (true, Some(side)) = (beside, zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
+    }
+    // Backwards, into one that stands.
+    let stands = told(&partner.state).is_some_and(ContactState::stands);
+    let at_rear = account.sv.zones.iter().all(|zone| zone.value.is_rear());
+    if stands && at_rear && told(&account.sv.state) == Some(ContactState::Reversing) {
+        return Some(Fact::by_rule(Origin::Behind, "who goes backwards meets who stands behind it"));
     }
     let walks = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal));
     let flank = !has_zone(&account.sv, |zone| zone.is_front() || zone.is_rear());

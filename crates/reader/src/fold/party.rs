@@ -388,7 +388,9 @@ fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
     for (number, frame) in frames().skip(first).chain(frames().take(first)) {
         let pair = [frame.who, frame.object];
         let ours =
-            frame.is_contact() && pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None));
+            frame.is_contact() && (pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None))
+                // "causing a scrape on its door".
+                || frame.sentence == reading.story.frames[first].sentence && pair == [None, Some(SUBJECT)]);
         let same = number == first || (all.is_empty() && ours);
         if !same {
             continue;
@@ -436,7 +438,14 @@ fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) 
             Some(owner) => owner,
             None => SUBJECT,
         };
-        alone && frame.sense == Sense::Damage && frame.sentence == crash.sentence && whose == actor && !frame.negated
+        // "It made contact with a curb. This caused damage to its front right tire."
+        let next = frame.sentence == crash.sentence + 1 && {
+            let begins = &reading.story.tokens[reading.story.sentences[frame.sentence].first..];
+            let word = |at: usize| begins.get(at).map_or("", |token| token.text.as_str());
+            word(0) == "this" || word(0) == "the" && matches!(word(1), "contact" | "collision" | "impact")
+        };
+        let here = frame.sentence == crash.sentence || next;
+        alone && frame.sense == Sense::Damage && here && whose == actor && !frame.negated
     });
     if let Some((frame, zone)) = damage.and_then(|frame| Some((frame, frame.on.as_ref().and_then(zone_of)?))) {
         return Some(Fact { value: zone, source: reading.of(frame) });

@@ -543,6 +543,15 @@ impl Parser<'_> {
             all.get(at + 1).map(|placed| &placed.chunk),
             Some(Chunk::Word | Chunk::Preposition("on") | Chunk::Piece(_) | Chunk::Noun(_))
         );
+        // "remained consistent", "remained in autonomous mode": nobody stands.
+        let kept = word.starts_with("remain") && placed.end == placed.first + 1 && {
+            let next = |at: usize| self.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+            matches!(
+                next(0),
+                "consistent" | "constant" | "engaged" | "unchanged" | "upright" | "active" | "green" | "red" | "steady" | "the"
+            ) || next(0) == "in" && (1..4).any(|at| matches!(next(at), "mode" | "control" | "motion"))
+        };
+        let sense = if kept { Sense::Other } else { sense };
         // "a bicycle ridden by a courier" passes nobody.
         let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
         let next = all.get(at + 1).map(|placed| &placed.chunk);
