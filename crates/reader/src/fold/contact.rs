@@ -127,6 +127,17 @@ fn as_column(
     let Some(column) = record.partner.known().and_then(column_sort) else { return unchanged };
     let is = |actor: Actor| story.world.actors[actor].kind.and_then(sort) == Some(column);
     let said = story.world.actors[partner].kind.and_then(sort);
+    // "the truck came back and its gate struck it": what stands does not strike, who came did.
+    let stands = story.world.actors[partner].kind.is_some_and(|kind| {
+        matches!(kind, Kind::Wall | Kind::Pole | Kind::Curb | Kind::Gate | Kind::Barrier | Kind::Sign | Kind::Chain)
+    });
+    if stands && story.frames[first].who == Some(partner) {
+        let sentence = story.frames[first].sentence;
+        let came = story.frames[..first].iter().rev().find(|frame| {
+            frame.sentence + 1 >= sentence && frame.act().is_some() && frame.happened() && frame.who.is_some_and(is)
+        });
+        return came.and_then(|frame| frame.who).map_or(unchanged, |actor| (first, actor));
+    }
     if said.is_none_or(|said| said == column) {
         return unchanged;
     }

@@ -431,6 +431,23 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if ahead && side.is_none() {
         return told_as(Origin::Ahead, clues.has(Relation::Ahead));
     }
+    // Front on flank at a junction, from that side: across.
+    let only = |party: &recrash_model::account::Party, wanted: fn(Z) -> bool| {
+        !party.zones.is_empty() && party.zones.iter().all(|zone| wanted(zone.value))
+    };
+    let stops = account.place.features.iter().any(|feature| {
+        matches!(
+            feature.value,
+            recrash_model::account::RoadFeature::StopSign | recrash_model::account::RoadFeature::Signal
+        )
+    });
+    let flank = only(&account.sv, |zone| matches!(zone, Z::Left | Z::Right))
+        && account.partner.as_ref().is_some_and(|partner| only(partner, |zone| zone == Z::Front));
+    let across = flank && stops && !sv_stands && !moved_over && !did(Act::Pass) && !did(Act::Turn);
+    if let (true, Some(side)) = (across && zone_side(account) == side, side) {
+        let relation = if side == LeftRight::Left { Relation::Left } else { Relation::Right };
+        return told_as(Origin::Cross { side }, clues.has(relation));
+    }
     if let Some(side) = side.filter(|_| first_is_side(clues) || !did(Act::Pass)) {
         let kind = told(&account.partner.as_ref()?.kind);
         if kind.is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal)) {
@@ -471,6 +488,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         && let Some(side) = zone_side(account)
     {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched, where it goes backwards"));
+    }
+    if let (true, Some(side)) = (on_side_street(reading, actor) && !did(Act::Pass), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Cross { side }, "the side that was touched by one on a road that crosses"));
     }
     // Who turns and is met by one of whom no direction is told: the side that was touched tells it.
     let turning =
@@ -558,8 +578,12 @@ fn square_front(account: &Account) -> bool {
 /// Whether the words put somebody on a road that crosses.
 fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
     let tokens = &reading.story.tokens;
-    reading.before(actor).any(|(number, _)| {
+    reading.before(actor).any(|(number, frame)| {
         let (first, end) = reading.window(number);
+        // "A coupe on the cross street ran the light": between its name and its verb.
+        let named = reading.story.world.actors[actor].kind_tokens.map_or(first, |(_, end)| end);
+        let sentence = reading.story.sentences[frame.sentence];
+        let first = if (sentence.first..first).contains(&named) { named } else { first };
         let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
         (first..end).any(|at| {
             let road = matches!(word(at + 1), "street" | "road" | "streets");

@@ -723,6 +723,19 @@ fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         {
             Some(ContactState::Stopped)
         }
+        // "had pulled over", and no number says more.
+        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
+            if record.sv_speed_mps.is_none()
+                && !moves_at_contact(reading)
+                && account
+                    .sv
+                    .acts
+                    .iter()
+                    .rfind(|fact| !fact.after_contact)
+                    .is_some_and(|fact| matches!(fact.act, Act::PullOver | Act::Park)) =>
+        {
+            Some(if column == Some(Movement::Parked) { ContactState::Parked } else { ContactState::Stopped })
+        }
         (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
             if zero && !moves_at_contact(reading) =>
         {

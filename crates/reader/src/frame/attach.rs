@@ -307,6 +307,12 @@ impl Parser<'_> {
         let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead");
         let begins = indefinite && side && carry.frame.is_none() && carry.subject.is_none();
         let governs = governs && !possessed && !begins;
+        // "hit the van behind the front wheel": where on the van.
+        let part = matches!(next, Some(Chunk::Piece(piece)) if piece.owner.is_none() && !piece.its);
+        let touches = carry.frame.is_some_and(|frame| self.frames[frame].is_contact());
+        if part && touches && matches!(relation, Relation::Behind | Relation::Ahead) {
+            return;
+        }
         // "behind [XXX]", "next to the mall": places.
         let last = self.tokens[placed.end - 1].text.as_str();
         let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")

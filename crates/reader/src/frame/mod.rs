@@ -128,6 +128,9 @@ pub struct Own<'a> {
     pub vehicle: &'a str,
 }
 
+/// Companies that report, and whose vehicles others drive too.
+const MAKERS: [&str; 3] = ["tesla", "rivian", "lucid"];
+
 /// Most tokens of a narrative that are read; the longest published one has a third of it.
 const MOST_TOKENS: usize = 6_000;
 
@@ -137,7 +140,9 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     tokens.truncate(MOST_TOKENS);
     for at in 0..tokens.len() {
         let named = tokens[at].capital && tokens[at].text.len() > 2 && tokens[at].text == own.company;
-        if named && Lexicon::get().longest(&tokens, at, |_| true).is_none() {
+        // "A Tesla struck it": of the company only in its own reports.
+        let make = |meaning: Meaning| matches!(meaning, Meaning::Make) && MAKERS.contains(&own.company);
+        if named && Lexicon::get().longest(&tokens, at, |meaning| !make(meaning)).is_none() {
             COMPANY.clone_into(&mut tokens[at].text);
         }
     }
