@@ -162,6 +162,7 @@ impl Parser<'_> {
                 let actor = match &piece.owner {
                     Some(owner) => {
                         let actor = self.world.resolve(owner, (placed.first, placed.end), None);
+                        let actor = self.as_a_result(actor, placed.first);
                         self.attribute(owner, actor, placed, carry);
                         Some(actor)
                     }

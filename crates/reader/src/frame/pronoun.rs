@@ -58,6 +58,18 @@ impl Parser<'_> {
         (carry.fresh && carry.joint == Some(Joint::While) && stands && struck).then_some(SUBJECT)
     }
 
+    /// "A truck struck a parked truck, and as a result the truck touched it": of two of a kind the one that was struck.
+    pub(super) fn as_a_result(&self, actor: Actor, first: usize) -> Actor {
+        let Some(last) = self.frames.iter().rev().find(|frame| frame.is_contact() && !frame.aside) else { return actor };
+        let Some(struck) = last.object.filter(|struck| *struck != SUBJECT && last.who == Some(actor)) else {
+            return actor;
+        };
+        let alike = self.world.actors[struck].kind == self.world.actors[actor].kind;
+        let words = &self.tokens[last.end.min(first)..first];
+        let follows = words.iter().any(|token| matches!(token.text.as_str(), "result" | "force" | "causing"));
+        if alike && follows { struck } else { actor }
+    }
+
     /// Whose door was opened last.
     pub(super) fn door_of(&self) -> Option<Actor> {
         self.frames.iter().rev().find(|frame| frame.act() == Some(Act::OpenDoor) && frame.happened())?.who
