@@ -413,6 +413,22 @@ impl Chunker<'_> {
             found = self.lexicon.longest(self.tokens, at, others)?;
         }
         let Meaning::Verb(sense, form) = found.meaning else { return None };
+        // "climbed the curb"; a hill is climbed too.
+        let over = ["climb", "mount", "hop", "jump", "ride", "rode", "roll", "go", "went"];
+        if sense == Sense::Contact
+            && over.iter().any(|stem| token.text.starts_with(stem))
+            && matches!(
+                self.text(at + found.length - 1),
+                "up" | "over" | "onto" | "on" | "climbed" | "climbs" | "climbing" | "climb" | "mounted" | "mounting"
+                    | "mounts" | "hopped" | "hopping" | "hops" | "jumped" | "jumping" | "jumps"
+            )
+            && !self.noun(at + found.length).is_some_and(|(noun, _)| {
+                noun.subject || noun.kind.is_some_and(|kind| kind.group() == recrash_model::account::KindGroup::Object)
+            })
+            && self.piece(at + found.length).is_none()
+        {
+            return None;
+        }
         let word_before = if at > self.first { self.text(at - 1) } else { "" };
         // Behind an article or an adjective it is a noun: "the stop", "a lane change", "initial contact".
         let article = DETERMINERS.contains(&word_before) && word_before != "that" && word_before != "this";

@@ -75,7 +75,13 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             continue;
         }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
+        let lane = reading.story.world.actors[actor].lane.and_then(|(lane, ..)| match lane {
+            LaneWord::LeftTurn => Some(LeftRight::Left),
+            LaneWord::RightTurn => Some(LeftRight::Right),
+            _ => None,
+        });
         let side = if sided(act) { frame.side.or_else(|| to_lane(reading, actor, frame, act)) } else { None };
+        let side = side.or(lane.filter(|_| act == Act::Turn));
         let after_contact = reading.is_after(number);
         let fact = ActFact {
             act,

@@ -10,7 +10,7 @@ mod subject;
 
 use crate::chunk::{Joint, Piece, Spot};
 use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};
-use crate::token::{Sentence, Token};
+use crate::token::{Sentence, Token, TokenKind};
 use crate::world::{Actor, SUBJECT, World};
 use parser::Parser;
 use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
@@ -138,6 +138,24 @@ const MOST_TOKENS: usize = 6_000;
 pub fn story(text: &str, own: Own<'_>) -> Story {
     let mut tokens = crate::token::tokens(text);
     tokens.truncate(MOST_TOKENS);
+    // "V2", "Unit 2": another vehicle.
+    for at in (0..tokens.len()).rev() {
+        let number = tokens[at].text.strip_prefix('v').filter(|number| matches!(*number, "2" | "3" | "4" | "5"));
+        let unit = matches!(tokens[at].text.as_str(), "unit" | "party") && {
+            let next = tokens.get(at + 1).map_or("", |next| next.text.as_str());
+            matches!(next, "2" | "3" | "4" | "5")
+        };
+        if let Some(number) = number.map(str::to_owned) {
+            let middle = tokens[at].start + 1;
+            let end = std::mem::replace(&mut tokens[at].end, middle);
+            let token = Token { start: middle, end, text: number, kind: TokenKind::Number, capital: false };
+            tokens.insert(at + 1, token);
+        }
+        if unit || tokens[at].text.len() == 2 && tokens[at].text.starts_with('v') && tokens[at].end == tokens[at].start + 1 {
+            "vehicle".clone_into(&mut tokens[at].text);
+            tokens[at].capital = false;
+        }
+    }
     for at in 0..tokens.len() {
         let named = tokens[at].capital && tokens[at].text.len() > 2 && tokens[at].text == own.company;
         // "A Tesla struck it": of the company only in its own reports.

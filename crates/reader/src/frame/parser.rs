@@ -2,7 +2,9 @@
 
 use super::Frame;
 use super::adverbs::goes_about;
-use super::row::{acts, another_finite, names_doer, next_is_verb, next_preposition, relation_behind, transitive};
+use super::row::{
+    acts, another_finite, looks_somewhere, names_doer, next_is_verb, next_preposition, relation_behind, transitive,
+};
 use super::sided;
 use crate::chunk::{Article, Chunk, Joint, Piece, Placed, Spot, chunks, is_determiner};
 use crate::lexicon::{Form, Lexicon, Occupant, Progress, Relation, Sense};
@@ -460,6 +462,12 @@ impl Parser<'_> {
             .take(3)
             .map(|placed| &placed.chunk)
             .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
+        // "rolled across the street and into the van": one way.
+        let into = matches!(behind.first().map(|placed| &placed.chunk), Some(Chunk::Preposition("into" | "against")));
+        if joint == Joint::And && into && carry.frame.is_some() {
+            (carry.preposition, carry.relation) = (None, None);
+            return;
+        }
         // "between the van and a parked car": the second of a pair, and no new clause.
         let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
         let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
@@ -584,7 +592,7 @@ impl Parser<'_> {
         let mut leads = false;
         if placed.end == placed.first + 1
             && let Some(progress) = self.lexicon.progress(&word)
-            && (next_is_verb(all, at) || matches!(sense, Sense::Other))
+            && (next_is_verb(all, at) || matches!(sense, Sense::Other) && !looks_somewhere(all, at))
         {
             // "before proceeding to turn": not done.
             let before = carry.joint == Some(Joint::Before) && carry.fresh && form == Form::Ing;
@@ -596,7 +604,7 @@ impl Parser<'_> {
             }
             if swallowed {
                 carry.began = false;
-                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false);
+                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false, another_finite(all, at));
                 carry.began = true;
                 carry.has_verb |= form != Form::Ing || carry.be;
                 return;
@@ -611,7 +619,8 @@ impl Parser<'_> {
         let sense = if both { Sense::ContactMade } else { sense };
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
-        let who = self.who_of(sense, form, placed, carry, purpose).filter(|_| !carry.stranger && !both);
+        let finite_behind = another_finite(all, at);
+        let who = self.who_of(sense, form, placed, carry, purpose, finite_behind).filter(|_| !carry.stranger && !both);
         let mut frame = self.frame(who.as_ref().map(|mention| mention.actor), sense, form, placed, carry);
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);

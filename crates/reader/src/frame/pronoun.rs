@@ -53,7 +53,10 @@ impl Parser<'_> {
         let stands = all[at + 1..].iter().take(2).any(|placed| {
             matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Hold | Act::Stop | Act::Park) | Sense::Parked, _))
         });
-        let last = self.frames.last().filter(|frame| frame.sentence == self.sentence && frame.is_contact())?;
+        let meets = |frame: &&crate::frame::Frame| {
+            frame.is_contact() || matches!(frame.sense, Sense::Approach | Sense::Act(Act::Pass)) && frame.happened()
+        };
+        let last = self.frames.last().filter(|frame| frame.sentence == self.sentence).filter(meets)?;
         let struck = !last.passive && last.object == Some(SUBJECT) && last.who != Some(SUBJECT);
         (carry.fresh && carry.joint == Some(Joint::While) && stands && struck).then_some(SUBJECT)
     }

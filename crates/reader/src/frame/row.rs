@@ -238,6 +238,12 @@ pub(super) fn next_is_verb(all: &[Placed], at: usize) -> bool {
     false
 }
 
+/// "was looking at his phone": nothing that is wished.
+pub(super) fn looks_somewhere(all: &[Placed], at: usize) -> bool {
+    let next = all.get(at + 1).map(|placed| &placed.chunk);
+    matches!(next, Some(Chunk::Preposition(word)) if !matches!(*word, "to" | "for"))
+}
+
 /// Whether a finite verb stands behind in the same clause.
 pub(super) fn another_finite(all: &[Placed], at: usize) -> bool {
     for placed in &all[at + 1..] {
