@@ -165,22 +165,14 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     let sentences = crate::token::sentences(&tokens);
-    let lexicon = Lexicon::get();
-    let mut standing = Vec::new();
-    let mut parser =
-        Parser { tokens: &tokens, lexicon, world: World::new(own), frames: Vec::new(), sentence: 0, looks_back: false };
-    for (number, sentence) in sentences.iter().enumerate() {
-        let words = &tokens[sentence.first..sentence.end];
-        let drop = lexicon.is_standing(words) && !tells_contact(words);
-        standing.push(drop);
-        if drop {
-            continue;
+    let (mut standing, mut frames, mut world) = parse(&tokens, &sentences, own, false);
+    // Where no words tell a contact, a word that nobody knows may.
+    if !frames.iter().any(Frame::is_contact) {
+        let guessed = parse(&tokens, &sentences, own, true);
+        if guessed.1.iter().any(Frame::is_contact) {
+            (standing, frames, world) = guessed;
         }
-        (parser.sentence, parser.world.sentence) = (number, number);
-        parser.looks_back = looks_back(words) || could_not_avoid(words);
-        parser.read(*sentence);
     }
-    let (mut frames, world) = (parser.frames, parser.world);
     frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
     adverbs::apply(&mut frames, &tokens, &sentences);
     // "a sedan and a van collided": with each other.
@@ -205,6 +197,26 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     Story { tokens, sentences, standing, frames, world }
+}
+
+/// Which sentences are standing phrases, the frames of the others, and who is in them.
+fn parse(tokens: &[Token], sentences: &[Sentence], own: Own<'_>, guesses: bool) -> (Vec<bool>, Vec<Frame>, World) {
+    let lexicon = Lexicon::get();
+    let mut standing = Vec::new();
+    let (world, frames) = (World::new(own), Vec::new());
+    let mut parser = Parser { tokens, lexicon, world, frames, sentence: 0, looks_back: false, guesses };
+    for (number, sentence) in sentences.iter().enumerate() {
+        let words = &tokens[sentence.first..sentence.end];
+        let drop = lexicon.is_standing(words) && !tells_contact(words);
+        standing.push(drop);
+        if drop {
+            continue;
+        }
+        (parser.sentence, parser.world.sentence) = (number, number);
+        parser.looks_back = looks_back(words) || could_not_avoid(words);
+        parser.read(*sentence);
+    }
+    (standing, parser.frames, parser.world)
 }
 
 /// A sentence with a standing phrase in it may tell the crash all the same.

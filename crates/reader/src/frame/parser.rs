@@ -19,6 +19,8 @@ pub(super) struct Parser<'a> {
     pub(super) frames: Vec<Frame>,
     pub(super) sentence: usize,
     pub(super) looks_back: bool,
+    /// Words that nobody knows may tell the contact: where no other words do.
+    pub(super) guesses: bool,
 }
 
 /// What is carried from chunk to chunk.
@@ -282,6 +284,9 @@ impl Parser<'_> {
                 return;
             }
             Chunk::Word if self.touches_by_parts(&self.tokens[placed.first].text, all, at, carry) => {
+                self.verb(Sense::Contact, Form::Past, all, at, carry);
+            }
+            Chunk::Word if self.guesses && self.may_touch(all, at, carry) => {
                 self.verb(Sense::Contact, Form::Past, all, at, carry);
             }
             // "The AV misjudged a van's speed and turned": what it did to the van.
