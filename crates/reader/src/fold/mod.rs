@@ -158,7 +158,8 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let record = &report.record;
     let text = record.narrative.as_str();
     let (make, company) = (own_make(record), company(record));
-    let own = Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle };
+    let partner = record.partner.known().and_then(partner_word);
+    let own = Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle, partner };
     let story = story(text, own);
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };
@@ -228,6 +229,23 @@ pub fn account(incident: &Incident) -> Option<Account> {
 pub fn refold(account: &mut Account) {
     account.scenario = scenario::scenario(account);
     account.matrix = scenario::matrix(account);
+}
+
+/// What the reader calls the road user that the column names.
+fn partner_word(kind: PartnerKind) -> Option<&'static str> {
+    Some(match kind {
+        PartnerKind::PassengerCar => "car",
+        PartnerKind::Suv => "suv",
+        PartnerKind::Van => "van",
+        PartnerKind::PickupTruck => "pickup",
+        PartnerKind::HeavyTruck => "truck",
+        PartnerKind::Bus => "bus",
+        PartnerKind::Motorcycle => "motorcycle",
+        PartnerKind::Cyclist => "bicyclist",
+        PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist => "pedestrian",
+        PartnerKind::Animal => "animal",
+        PartnerKind::FirstResponder | PartnerKind::FixedObject => return None,
+    })
 }
 
 /// Kind of the subject vehicle, by its make, where that makes trucks only.

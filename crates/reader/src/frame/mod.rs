@@ -13,7 +13,7 @@ use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Occupant, Part, Progress, 
 use crate::token::{Sentence, Token, TokenKind};
 use crate::world::{Actor, SUBJECT, World};
 use parser::Parser;
-use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 /// One event.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,6 +126,8 @@ pub struct Own<'a> {
     pub company: &'a str,
     /// What the record calls the vehicle: it is meant by "the Volvo" where nobody was named before.
     pub vehicle: &'a str,
+    /// A word for the road user that the record says it crashed with: meant by a noun that nobody knows, where nobody else is named.
+    pub partner: Option<&'a str>,
 }
 
 /// Companies that report, and whose vehicles others drive too.
@@ -165,12 +167,27 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     let sentences = crate::token::sentences(&tokens);
-    let (mut standing, mut frames, mut world) = parse(&tokens, &sentences, own, false);
-    // Where no words tell a contact, a word that nobody knows may.
-    if !frames.iter().any(Frame::is_contact) {
-        let guessed = parse(&tokens, &sentences, own, true);
-        if guessed.1.iter().any(Frame::is_contact) {
-            (standing, frames, world) = guessed;
+    let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
+    // "A gleeper struck it": who is meant is told by the record.
+    let alone = world.actors.iter().skip(1).all(|known| known.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
+    if let Some(word) = own.partner.filter(|_| alone) {
+        for stranger in strangers(&tokens) {
+            let mut named = tokens.clone();
+            for token in named.iter_mut().filter(|token| token.text == stranger) {
+                word.clone_into(&mut token.text);
+            }
+            let read = best(&named, &sentences, own);
+            let meets = |frame: &Frame| {
+                let pair = [frame.who, frame.object];
+                let other = pair.into_iter().flatten().find(|actor| *actor != SUBJECT);
+                frame.is_contact() && pair.contains(&Some(SUBJECT)) && other.is_some_and(|actor| {
+                    read.2.actors[actor].kind_tokens.is_some_and(|(_, end)| tokens[end - 1].text == stranger)
+                })
+            };
+            if read.1.iter().any(meets) {
+                (standing, frames, world) = read;
+                break;
+            }
         }
     }
     frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
@@ -197,6 +214,38 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     Story { tokens, sentences, standing, frames, world }
+}
+
+/// Nouns that nobody knows, and that may be a road user: "a gleeper was", "by a gleeper".
+fn strangers(tokens: &[Token]) -> Vec<String> {
+    let lexicon = Lexicon::get();
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let mut all: Vec<String> = Vec::new();
+    for (at, token) in tokens.iter().enumerate().skip(1) {
+        let unknown = token.kind == TokenKind::Word
+            && !token.capital
+            && token.text.len() > 3
+            && lexicon.longest(tokens, at, |_| true).is_none()
+            && ["a", "an", "another", "the", "one"].contains(&word(at - 1));
+        let acts = lexicon.longest(tokens, at + 1, |meaning| matches!(meaning, Meaning::Verb(..))).is_some()
+            || matches!(word(at + 1), "was" | "had" | "that" | "which" | "who" | "behind" | "in" | "on" | "from" | "also");
+        let done_by = at > 1 && matches!(word(at - 2), "by" | "with" | "into");
+        if unknown && (acts || done_by) && !all.contains(&token.text) {
+            all.push(token.text.clone());
+        }
+    }
+    all.truncate(6);
+    all
+}
+
+/// A narrative as its words tell it; where none tells a contact, a word that nobody knows may.
+fn best(tokens: &[Token], sentences: &[Sentence], own: Own<'_>) -> (Vec<bool>, Vec<Frame>, World) {
+    let read = parse(tokens, sentences, own, false);
+    if read.1.iter().any(Frame::is_contact) {
+        return read;
+    }
+    let guessed = parse(tokens, sentences, own, true);
+    if guessed.1.iter().any(Frame::is_contact) { guessed } else { read }
 }
 
 /// Which sentences are standing phrases, the frames of the others, and who is in them.
