@@ -419,8 +419,22 @@ impl Chunker<'_> {
             && over.iter().any(|stem| token.text.starts_with(stem))
             && matches!(
                 self.text(at + found.length - 1),
-                "up" | "over" | "onto" | "on" | "climbed" | "climbs" | "climbing" | "climb" | "mounted" | "mounting"
-                    | "mounts" | "hopped" | "hopping" | "hops" | "jumped" | "jumping" | "jumps"
+                "up" | "over"
+                    | "onto"
+                    | "on"
+                    | "climbed"
+                    | "climbs"
+                    | "climbing"
+                    | "climb"
+                    | "mounted"
+                    | "mounting"
+                    | "mounts"
+                    | "hopped"
+                    | "hopping"
+                    | "hops"
+                    | "jumped"
+                    | "jumping"
+                    | "jumps"
             )
             && !self.noun(at + found.length).is_some_and(|(noun, _)| {
                 noun.subject || noun.kind.is_some_and(|kind| kind.group() == recrash_model::account::KindGroup::Object)
@@ -489,8 +503,23 @@ impl Chunker<'_> {
         if mark
             && matches!(
                 word_before,
-                "minor" | "slight" | "light" | "small" | "some" | "surface" | "visible" | "cosmetic" | "superficial" | "few"
-                    | "multiple" | "several" | "paint" | "and" | "of" | "with" | "had"
+                "minor"
+                    | "slight"
+                    | "light"
+                    | "small"
+                    | "some"
+                    | "surface"
+                    | "visible"
+                    | "cosmetic"
+                    | "superficial"
+                    | "few"
+                    | "multiple"
+                    | "several"
+                    | "paint"
+                    | "and"
+                    | "of"
+                    | "with"
+                    | "had"
             )
         {
             return None;
@@ -591,6 +620,9 @@ impl Chunker<'_> {
     fn goes_to_a_place(&self, at: usize) -> bool {
         if !matches!(self.text(at - 1), "into" | "onto") {
             return false;
+        }
+        if self.text(at) == "traffic" {
+            return true;
         }
         let begins = match self.noun(at) {
             Some((_, length)) if self.text(at + length) == "'s" => at + length + 1,

@@ -264,7 +264,11 @@ impl Chunker<'_> {
             };
             // "stopped at the light and another van came": two nouns.
             let begins = DETERMINERS.contains(&self.text(at + 1)) || self.text(at + 1) == "another";
-            if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) && !begins
+            if self.text(at) == "and"
+                && !noun.adjectives.is_empty()
+                && adjective(at + 1)
+                && adjective(at - 1)
+                && !begins
             {
                 at += 1;
                 continue;

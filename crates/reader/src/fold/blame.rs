@@ -31,8 +31,9 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     if let Some(door) = &account.door {
         let first = reading.contacts.first.map(|number| &reading.story.frames[number]);
         let by_subject = first.is_some_and(|frame| frame.who == Some(SUBJECT));
-        if door.value == Striker::Sv && by_subject {
-            return Some(Fact { value: Striker::Sv, source: door.source.clone() });
+        let by_partner = first.is_some_and(|frame| frame.who == reading.contacts.partner && frame.with.is_some());
+        if door.value == Striker::Sv && by_subject || door.value == Striker::Cp && by_partner {
+            return Some(door.clone());
         }
     }
     let (sv, cp) = (sv_state(account), cp_state(account));
@@ -374,7 +375,8 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
             .iter()
             .filter(|fact| !fact.after_contact)
             .all(|fact| matches!(fact.act, Act::Follow | Act::Enter | Act::Slow | Act::Cross));
-        if told(&account.came_from) == Some(Origin::Opposite) && on_its_way && !partner.acts.is_empty() {
+        let drives_on = !partner.acts.is_empty() || told(&partner.movement) == Some(Movement::Straight);
+        if told(&account.came_from) == Some(Origin::Opposite) && on_its_way && drives_on {
             return rule(Role::Initiator, "it turned across the way of one who came on");
         }
         return if both_turn || straight_from_turn_lane || came_to_flank {

@@ -175,7 +175,9 @@ fn goes_on(story: &Story, number: usize) -> bool {
     // With what led to it told in between it is the same event, told in full.
     let first = story.frames.iter().find(|frame| frame.is_contact()).map_or(0, |frame| frame.sentence);
     let leads = |frame: &Frame| {
-        (first + 1..story.frames[number].sentence).contains(&frame.sentence) && frame.act().is_some() && frame.happened()
+        (first + 1..story.frames[number].sentence).contains(&frame.sentence)
+            && frame.act().is_some()
+            && frame.happened()
     };
     let again = story.tokens[sentence.first..sentence.end]
         .iter()

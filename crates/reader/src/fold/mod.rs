@@ -2,12 +2,14 @@
 
 mod blame;
 mod contact;
+mod fallback;
 mod movement;
 mod origin;
 mod party;
 mod picture;
 mod place;
 mod scenario;
+mod state;
 mod types;
 
 use crate::chunk::Piece;
@@ -159,7 +161,8 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let text = record.narrative.as_str();
     let (make, company) = (own_make(record), company(record));
     let partner = record.partner.known().and_then(partner_word);
-    let own = Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle, partner };
+    let own =
+        Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle, partner };
     let story = story(text, own);
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };

@@ -3,6 +3,7 @@
 mod adverbs;
 mod attach;
 mod build;
+mod joint;
 mod parser;
 mod pronoun;
 mod row;
@@ -153,7 +154,9 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             let token = Token { start: middle, end, text: number, kind: TokenKind::Number, capital: false };
             tokens.insert(at + 1, token);
         }
-        if unit || tokens[at].text.len() == 2 && tokens[at].text.starts_with('v') && tokens[at].end == tokens[at].start + 1 {
+        if unit
+            || tokens[at].text.len() == 2 && tokens[at].text.starts_with('v') && tokens[at].end == tokens[at].start + 1
+        {
             "vehicle".clone_into(&mut tokens[at].text);
             tokens[at].capital = false;
         }
@@ -169,7 +172,8 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     let sentences = crate::token::sentences(&tokens);
     let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
     // "A gleeper struck it": who is meant is told by the record.
-    let alone = world.actors.iter().skip(1).all(|known| known.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
+    let alone =
+        world.actors.iter().skip(1).all(|known| known.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
     if let Some(word) = own.partner.filter(|_| alone) {
         for stranger in strangers(&tokens) {
             let mut named = tokens.clone();
@@ -180,9 +184,11 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             let meets = |frame: &Frame| {
                 let pair = [frame.who, frame.object];
                 let other = pair.into_iter().flatten().find(|actor| *actor != SUBJECT);
-                frame.is_contact() && pair.contains(&Some(SUBJECT)) && other.is_some_and(|actor| {
-                    read.2.actors[actor].kind_tokens.is_some_and(|(_, end)| tokens[end - 1].text == stranger)
-                })
+                frame.is_contact()
+                    && pair.contains(&Some(SUBJECT))
+                    && other.is_some_and(|actor| {
+                        read.2.actors[actor].kind_tokens.is_some_and(|(_, end)| tokens[end - 1].text == stranger)
+                    })
             };
             if read.1.iter().any(meets) {
                 (standing, frames, world) = read;
@@ -228,7 +234,10 @@ fn strangers(tokens: &[Token]) -> Vec<String> {
             && lexicon.longest(tokens, at, |_| true).is_none()
             && ["a", "an", "another", "the", "one"].contains(&word(at - 1));
         let acts = lexicon.longest(tokens, at + 1, |meaning| matches!(meaning, Meaning::Verb(..))).is_some()
-            || matches!(word(at + 1), "was" | "had" | "that" | "which" | "who" | "behind" | "in" | "on" | "from" | "also");
+            || matches!(
+                word(at + 1),
+                "was" | "had" | "that" | "which" | "who" | "behind" | "in" | "on" | "from" | "also"
+            );
         let done_by = at > 1 && matches!(word(at - 2), "by" | "with" | "into");
         if unknown && (acts || done_by) && !all.contains(&token.text) {
             all.push(token.text.clone());

@@ -10,7 +10,7 @@ use crate::chunk::{Article, Chunk, Joint, Piece, Placed, Spot, chunks, is_determ
 use crate::lexicon::{Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, Kind, LeftRight};
+use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -113,6 +113,15 @@ impl Parser<'_> {
         let placed = &all[at];
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         match &placed.chunk {
+            // "its toolbox scratched the door": whose it is.
+            Chunk::Noun(noun)
+                if matches!(self.tokens[placed.first].text.as_str(), "its" | "their" | "his" | "her")
+                    && matches!(next, Some(Chunk::Verb(Sense::Contact, _)))
+                    && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Cargo) =>
+            {
+                let actor = self.its(carry);
+                self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
+            }
             Chunk::Noun(noun) => {
                 let hint = relation_behind(all, at, &self.world);
                 let actor = match self.apposed(noun, all, at, carry) {
@@ -342,7 +351,7 @@ impl Parser<'_> {
     }
 
     /// Behind a clause that tells of a place the sentence goes on with whom it is about.
-    fn leave_place(&self, carry: &mut Carry) {
+    pub(super) fn leave_place(&self, carry: &mut Carry) {
         if std::mem::take(&mut carry.place) && carry.subject.is_none() {
             carry.subject = carry.main.clone();
             carry.has_verb = carry.main.is_some();
@@ -461,82 +470,6 @@ impl Parser<'_> {
         carry.fresh = false;
     }
 
-    fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
-        let next = behind
-            .iter()
-            .take(3)
-            .map(|placed| &placed.chunk)
-            .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
-        // "rolled across the street and into the van": one way.
-        let into = matches!(behind.first().map(|placed| &placed.chunk), Some(Chunk::Preposition("into" | "against")));
-        if joint == Joint::And && into && carry.frame.is_some() {
-            (carry.preposition, carry.relation) = (None, None);
-            return;
-        }
-        // "between the van and a parked car": the second of a pair, and no new clause.
-        let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
-        let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
-            // "and the van, coming from the left, hit it".
-            Chunk::Comma => !matches!(
-                behind.get(2).map(|placed| &placed.chunk),
-                Some(Chunk::Verb(_, Form::Ing) | Chunk::Not | Chunk::Relative)
-            ),
-            // "and the van then reversed" is a clause of its own.
-            Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
-            _ => false,
-        });
-        if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair)) {
-            carry.preposition = Some("and");
-            return;
-        }
-        // "the van and the bus": nouns in a row.
-        let nouns = joint == Joint::And
-            && matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)))
-            && !carry.has_verb
-            && !carry.after_comma
-            && carry.subject.is_some();
-        if nouns {
-            carry.also = carry.subject.clone();
-            return;
-        }
-        carry.also = None;
-        self.leave_place(carry);
-        carry.clause += 1;
-        (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
-        if joint != Joint::And || !matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            carry.stranger = false;
-        }
-        if joint != Joint::And {
-            carry.joint = Some(joint);
-            (carry.progress, carry.negated) = (None, false);
-        }
-        if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            // "did not slow down or stop" denies both.
-            let or = behind.first().is_some_and(|next| next.first > 0 && self.tokens[next.first - 1].text == "or");
-            carry.negated = or
-                && matches!(next, Some(Chunk::Verb(_, Form::Base)))
-                && carry.frame.is_some_and(|frame| self.frames[frame].negated);
-            carry.row = true;
-            if carry.relative {
-                // "a van that was behind it and struck it" goes on with the van.
-                carry.has_verb = true;
-            }
-            if !matches!(next, Some(Chunk::Verb(_, Form::Base))) {
-                carry.progress = None;
-            }
-            return;
-        }
-        (carry.progress, carry.negated) = (None, false);
-        carry.relative = false;
-        carry.fresh = true;
-        carry.frame = None;
-        carry.governed = false;
-        if joint != Joint::And && !matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_) | Chunk::Pronoun)) {
-            // "while stopped", "before turning": of whom the clause is about, or of who is named next.
-            carry.has_verb = carry.subject.is_some();
-        }
-    }
-
     fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
         if carry.place && carry.subject.is_none() {
             return;
@@ -562,7 +495,16 @@ impl Parser<'_> {
             let next = |at: usize| self.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
             matches!(
                 next(0),
-                "consistent" | "constant" | "engaged" | "unchanged" | "upright" | "active" | "green" | "red" | "steady" | "the"
+                "consistent"
+                    | "constant"
+                    | "engaged"
+                    | "unchanged"
+                    | "upright"
+                    | "active"
+                    | "green"
+                    | "red"
+                    | "steady"
+                    | "the"
             ) || next(0) == "in" && (1..4).any(|at| matches!(next(at), "mode" | "control" | "motion"))
         };
         let sense = if kept { Sense::Other } else { sense };
@@ -609,7 +551,8 @@ impl Parser<'_> {
             }
             if swallowed {
                 carry.began = false;
-                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false, another_finite(all, at));
+                carry.lead_who =
+                    self.who_of(Sense::Act(Act::Follow), form, placed, carry, false, another_finite(all, at));
                 carry.began = true;
                 carry.has_verb |= form != Form::Ing || carry.be;
                 return;
@@ -638,7 +581,8 @@ impl Parser<'_> {
         frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject;
         frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
         // "a van parked on the left began to move": the first verb describes, the second one tells.
-        let bare = placed.end == placed.first + 1;
+        // "double-parked" is one word as well.
+        let bare = placed.end == placed.first + 1 || sense == Sense::Act(Act::Park) && word != "pulled";
         let describes =
             matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow);
         let described = bare

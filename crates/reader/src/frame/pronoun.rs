@@ -63,7 +63,9 @@ impl Parser<'_> {
 
     /// "A truck struck a parked truck, and as a result the truck touched it": of two of a kind the one that was struck.
     pub(super) fn as_a_result(&self, actor: Actor, first: usize) -> Actor {
-        let Some(last) = self.frames.iter().rev().find(|frame| frame.is_contact() && !frame.aside) else { return actor };
+        let Some(last) = self.frames.iter().rev().find(|frame| frame.is_contact() && !frame.aside) else {
+            return actor;
+        };
         let Some(struck) = last.object.filter(|struck| *struck != SUBJECT && last.who == Some(actor)) else {
             return actor;
         };
@@ -98,7 +100,10 @@ impl Parser<'_> {
                 && last.actor != actor
                 && last.piece.is_none()
         });
-        if of_object || doer != Some(actor) || !(carry.relation.is_some() || place || takes && carry.preposition.is_none()) {
+        if of_object
+            || doer != Some(actor)
+            || !(carry.relation.is_some() || place || takes && carry.preposition.is_none())
+        {
             return actor;
         }
         match actor {

@@ -48,7 +48,8 @@ impl Parser<'_> {
     /// "was ...ed by".
     pub(super) fn may_touch(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
         let token = &self.tokens[all[at].first];
-        let apart = ["miss", "avoid", "notic", "observ", "clear", "own", "lease", "operat", "assist", "inspect", "view"];
+        let apart =
+            ["miss", "avoid", "notic", "observ", "clear", "own", "lease", "operat", "assist", "inspect", "view"];
         let unknown = token.kind == TokenKind::Word
             && !token.capital
             && token.text.len() > 4
@@ -65,9 +66,10 @@ impl Parser<'_> {
         let preposition = matches!(next, Some(Chunk::Preposition("with" | "into" | "against" | "along" | "onto")));
         let object = if preposition { behind.next() } else { next };
         let touched = match object {
-            Some(Chunk::Piece(piece)) => {
-                piece.owner.as_ref().map_or(piece.its && preposition, |owner| owner.subject != (subject.actor == SUBJECT))
-            }
+            Some(Chunk::Piece(piece)) => piece
+                .owner
+                .as_ref()
+                .map_or(piece.its && preposition, |owner| owner.subject != (subject.actor == SUBJECT)),
             Some(Chunk::Noun(noun)) => noun.subject != (subject.actor == SUBJECT) && noun.kind.is_some() | noun.subject,
             _ => false,
         };

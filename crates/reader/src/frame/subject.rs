@@ -180,8 +180,7 @@ impl Parser<'_> {
         let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
         // "The van ahead of it stopped": the van, unless it has a verb of its own behind.
         let waits = carry.subject.is_some() && !carry.has_verb && carry.joint.is_none_or(|joint| joint != Joint::And);
-        let of_place =
-            carry.governed && carry.frame.is_none() && form == Form::Past && (finite_behind || !waits);
+        let of_place = carry.governed && carry.frame.is_none() && form == Form::Past && (finite_behind || !waits);
         if adjacent && participle && (carry.has_verb || of_place) && self.touches_last(sense, form, placed, carry) {
             return carry.last.clone();
         }
