@@ -131,7 +131,10 @@ fn as_column(
     let stands = story.world.actors[partner].kind.is_some_and(|kind| {
         matches!(kind, Kind::Wall | Kind::Pole | Kind::Curb | Kind::Gate | Kind::Barrier | Kind::Sign | Kind::Chain)
     });
-    if stands && story.frames[first].who == Some(partner) {
+    // "She pushed a stroller, and its wheel touched it": it is she whom the column means.
+    let pushed = matches!(column, KindGroup::OnFoot | KindGroup::Cyclist)
+        && story.world.actors[partner].kind.is_some_and(|kind| kind.group() == KindGroup::Object);
+    if (stands || pushed) && story.frames[first].who == Some(partner) {
         let sentence = story.frames[first].sentence;
         let came = story.frames[..first].iter().rev().find(|frame| {
             frame.sentence + 1 >= sentence && frame.act().is_some() && frame.happened() && frame.who.is_some_and(is)

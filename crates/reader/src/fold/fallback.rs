@@ -23,6 +23,11 @@ pub(super) fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origi
     if let (true, Some(side)) = (beside, zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
     }
+    // Backwards, over an animal.
+    let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
+    if animal && told(&account.sv.state) == Some(ContactState::Reversing) && zone_side(account).is_none() {
+        return Some(Fact::by_rule(Origin::Behind, "who goes backwards meets who is behind it"));
+    }
     // Backwards, into one that stands.
     let stands = told(&partner.state).is_some_and(ContactState::stands);
     let at_rear = account.sv.zones.iter().all(|zone| zone.value.is_rear());

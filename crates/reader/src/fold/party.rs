@@ -283,6 +283,22 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
         }
         state = Some((next, reading.of(frame)));
     }
+    // "had been waiting, jumped the light and hit it": who runs into another moves.
+    let hits = contact.map(|number| &reading.story.frames[number]).filter(|frame| {
+        let word = reading.story.tokens[frame.first].text.as_str();
+        let runs = ["hit", "struck", "ran", "drove", "crash", "slam", "ram", "plow", "collid", "smash"];
+        actor != SUBJECT
+            && frame.who == Some(actor)
+            && frame.object == Some(SUBJECT)
+            && frame.sense == Sense::Contact
+            && frame.with.is_none()
+            && !frame.passive
+            && runs.iter().any(|stem| word.starts_with(stem))
+    });
+    if let (Some(frame), Some((ContactState::Stopped, _))) = (hits, &state) {
+        state = Some((ContactState::Moving, reading.of(frame)));
+        standing = None;
+    }
     let state = state.map(|(value, source)| Fact { value, source });
     (state, standing.map(|(value, source)| Fact { value, source }))
 }

@@ -124,6 +124,16 @@ impl Parser<'_> {
                     taken.object = Some(actor);
                 }
             }
+            // "a bucket rolled under its front end".
+            "under"
+                if actor == SUBJECT
+                    && mention.piece.is_some()
+                    && self.frames[frame].who.is_some_and(|who| who != SUBJECT)
+                    && matches!(self.frames[frame].act(), Some(Act::Roll | Act::Fall | Act::Drift | Act::Follow)) =>
+            {
+                let who = self.frames[frame].who;
+                self.touch(frame, who, mention, placed, carry);
+            }
             "for"
                 if matches!(sense, Sense::Act(Act::Stop | Act::Hold))
                     && self.frames[frame].who == Some(SUBJECT)

@@ -116,7 +116,10 @@ impl Parser<'_> {
             // "its toolbox scratched the door": whose it is.
             Chunk::Noun(noun)
                 if matches!(self.tokens[placed.first].text.as_str(), "its" | "their" | "his" | "her")
-                    && matches!(next, Some(Chunk::Verb(Sense::Contact, _)))
+                    && all[at + 1..]
+                        .iter()
+                        .find(|placed| !matches!(placed.chunk, Chunk::Word | Chunk::Piece(_)))
+                        .is_some_and(|placed| matches!(placed.chunk, Chunk::Verb(Sense::Contact, _)))
                     && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Cargo) =>
             {
                 let actor = self.its(carry);
