@@ -44,7 +44,7 @@ const ABBREVIATIONS: [&str; 26] = [
 ];
 
 /// British spellings of words that the lexicon knows in American.
-const SPELLINGS: [(&str, &str); 14] = [
+const SPELLINGS: [(&str, &str); 18] = [
     ("kerb", "curb"),
     ("kerbs", "curbs"),
     ("kerbside", "curbside"),
@@ -59,6 +59,10 @@ const SPELLINGS: [(&str, &str); 14] = [
     ("manoeuvring", "maneuvering"),
     ("pavements", "sidewalks"),
     ("carriageway", "roadway"),
+    ("bumber", "bumper"),
+    ("vehical", "vehicle"),
+    ("vehice", "vehicle"),
+    ("vehilce", "vehicle"),
 ];
 
 fn american(word: String) -> String {
@@ -107,7 +111,12 @@ pub fn tokens(text: &str) -> Vec<Token> {
             '\'' | '\u{2019}' | '\u{60}' | '\u{b4}' => {
                 let follows = chars.peek().map(|(_, next)| *next);
                 let touches = all.last().is_some_and(|last: &Token| last.end == start && last.kind != TokenKind::Mark);
-                if touches && follows == Some('s') {
+                let its = follows == Some('s') && all.last().is_some_and(|last: &Token| last.text == "it");
+                if let (true, true, Some(last)) = (touches, its, all.last_mut()) {
+                    // "with it's bumper".
+                    chars.next();
+                    (last.text, last.end) = ("its".to_owned(), end + 1);
+                } else if touches && follows == Some('s') {
                     chars.next();
                     let text = "'s".to_owned();
                     all.push(Token { start, end: end + 1, text, kind: TokenKind::Word, capital: false });

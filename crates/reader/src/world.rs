@@ -45,6 +45,8 @@ pub struct Known {
     pub group: Option<Actor>,
     /// It was called a tractor.
     pub tractor: bool,
+    /// It was called parked, or told to stand.
+    pub parked: bool,
     /// Who tows it.
     pub towed_by: Option<Actor>,
 }
@@ -112,6 +114,7 @@ impl World {
         let known = &mut self.actors[actor];
         known.sentence = Some(self.sentence);
         known.tractor |= noun.tractor;
+        known.parked |= noun.occupant.is_none() && noun.adjectives.contains(&Adjective::Parked);
         known.last = self.clock;
         known.mentions += 1;
         if actor == SUBJECT && noun.subject {
@@ -200,7 +203,7 @@ impl World {
 
     fn find(&mut self, noun: &Noun, hint: Option<Relation>) -> Option<Actor> {
         if let Some((who, plain)) = noun.occupant {
-            return Some(self.occupant(noun, who, plain));
+            return Some(self.occupant(noun, who, plain, hint));
         }
         if noun.subject {
             return Some(SUBJECT);
@@ -314,6 +317,13 @@ impl World {
                 return there;
             }
         }
+        // "The parked car" is who was called so; who drives is not.
+        let parked = has(Adjective::Parked) && !noun.several;
+        let called = self.latest(|known| parked && known.parked && fits(known) && !known.several);
+        if called.is_some() {
+            return called;
+        }
+        let fits = |known: &Known| fits(known) && !(parked && known.acted && !known.parked);
         let named = self.latest(|known| {
             !noun.names.is_empty() && known.names.iter().any(|name| noun.names.contains(name)) && fits(known)
         });
@@ -356,15 +366,26 @@ impl World {
         found
     }
 
-    fn occupant(&mut self, noun: &Noun, who: Occupant, plain: bool) -> Actor {
+    fn occupant(&mut self, noun: &Noun, who: Occupant, plain: bool, hint: Option<Relation>) -> Actor {
         if let Some(owner) = &noun.owner {
             let owner = (**owner).clone();
-            return self.find(&owner, None).unwrap_or_else(|| self.add(&owner));
+            // "The driver of the vehicle behind it".
+            let placed = hint.filter(|_| !owner.subject);
+            return self.find(&owner, placed).unwrap_or_else(|| self.add(&owner));
         }
         match who {
             // "A driver ran the light": nobody who was named.
             Occupant::Driver if plain && noun.article == Article::Indefinite => {
                 self.latest(|known| known.announced).unwrap_or_else(|| {
+                    self.actors.push(Known { kind: Some(Kind::Vehicle), ..Known::default() });
+                    self.actors.len() - 1
+                })
+            }
+            // "The driver behind it": of another vehicle.
+            Occupant::Driver if plain && hint.is_some() => {
+                let there = |known: &Known| known.relations.iter().any(|(place, _)| Some(*place) == hint);
+                let known = self.latest(|known| known.kind.is_some_and(Kind::is_vehicle) && there(known));
+                known.unwrap_or_else(|| {
                     self.actors.push(Known { kind: Some(Kind::Vehicle), ..Known::default() });
                     self.actors.len() - 1
                 })

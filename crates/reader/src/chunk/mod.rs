@@ -413,6 +413,36 @@ impl Chunker<'_> {
             found = self.lexicon.longest(self.tokens, at, others)?;
         }
         let Meaning::Verb(sense, form) = found.meaning else { return None };
+        // "climbed the curb"; a hill is climbed too.
+        let over = ["climb", "mount", "hop", "jump", "ride", "rode", "roll", "go", "went"];
+        if sense == Sense::Contact
+            && over.iter().any(|stem| token.text.starts_with(stem))
+            && matches!(
+                self.text(at + found.length - 1),
+                "up" | "over"
+                    | "onto"
+                    | "on"
+                    | "climbed"
+                    | "climbs"
+                    | "climbing"
+                    | "climb"
+                    | "mounted"
+                    | "mounting"
+                    | "mounts"
+                    | "hopped"
+                    | "hopping"
+                    | "hops"
+                    | "jumped"
+                    | "jumping"
+                    | "jumps"
+            )
+            && !self.noun(at + found.length).is_some_and(|(noun, _)| {
+                noun.subject || noun.kind.is_some_and(|kind| kind.group() == recrash_model::account::KindGroup::Object)
+            })
+            && self.piece(at + found.length).is_none()
+        {
+            return None;
+        }
         let word_before = if at > self.first { self.text(at - 1) } else { "" };
         // Behind an article or an adjective it is a noun: "the stop", "a lane change", "initial contact".
         let article = DETERMINERS.contains(&word_before) && word_before != "that" && word_before != "this";
@@ -468,6 +498,32 @@ impl Chunker<'_> {
         if behind_preposition && form == Form::Base && single {
             return None;
         }
+        // "minor scratches to both vehicles".
+        let mark = matches!(self.text(at), "scratches" | "scrapes" | "dents" | "marks" | "bumps" | "dings" | "scuffs");
+        if mark
+            && matches!(
+                word_before,
+                "minor"
+                    | "slight"
+                    | "light"
+                    | "small"
+                    | "some"
+                    | "surface"
+                    | "visible"
+                    | "cosmetic"
+                    | "superficial"
+                    | "few"
+                    | "multiple"
+                    | "several"
+                    | "paint"
+                    | "and"
+                    | "of"
+                    | "with"
+                    | "had"
+            )
+        {
+            return None;
+        }
         // "right turn" as a noun: "during the right turn".
         if matches!(self.text(at), "left" | "right")
             && matches!(self.text(at + 1), "turn")
@@ -478,6 +534,35 @@ impl Chunker<'_> {
         }
         // "parking lot", "driving lane", "parking space" are places.
         if matches!(self.text(at), "parking") && self.spot(at).is_some() {
+            return None;
+        }
+        // "its rear parking sensor", "in a parallel parking space", "from a parked position".
+        let named = at + found.length;
+        let of_parking = matches!(self.text(named - 1), "parking" | "parked")
+            && matches!(
+                self.text(named),
+                "sensor"
+                    | "sensors"
+                    | "brake"
+                    | "light"
+                    | "lights"
+                    | "camera"
+                    | "lot"
+                    | "garage"
+                    | "structure"
+                    | "area"
+                    | "space"
+                    | "spot"
+                    | "stall"
+                    | "bay"
+                    | "lane"
+                    | "meter"
+                    | "position"
+                    | "attendant"
+                    | "enforcement"
+                    | "aisle"
+            );
+        if of_parking && (self.text(at) != "parking" || word_before != "was") && found.length <= 2 {
             return None;
         }
         if matches!(self.text(at), "traveling" | "driving" | "turning" | "merging")
@@ -535,6 +620,9 @@ impl Chunker<'_> {
     fn goes_to_a_place(&self, at: usize) -> bool {
         if !matches!(self.text(at - 1), "into" | "onto") {
             return false;
+        }
+        if self.text(at) == "traffic" {
+            return true;
         }
         let begins = match self.noun(at) {
             Some((_, length)) if self.text(at + length) == "'s" => at + length + 1,

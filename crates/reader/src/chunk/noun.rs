@@ -262,7 +262,14 @@ impl Chunker<'_> {
             let adjective = |at: usize| {
                 self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Adjective(_))).is_some()
             };
-            if self.text(at) == "and" && !noun.adjectives.is_empty() && adjective(at + 1) && adjective(at - 1) {
+            // "stopped at the light and another van came": two nouns.
+            let begins = DETERMINERS.contains(&self.text(at + 1)) || self.text(at + 1) == "another";
+            if self.text(at) == "and"
+                && !noun.adjectives.is_empty()
+                && adjective(at + 1)
+                && adjective(at - 1)
+                && !begins
+            {
                 at += 1;
                 continue;
             }
@@ -349,6 +356,17 @@ impl Chunker<'_> {
             at += 1;
         };
         let (mut noun, length) = self.heads(noun, first, at, company, make, head)?;
+        // "a single car collision", "South Van Ness".
+        let crash = matches!(self.text(first + length), "collision" | "crash" | "accident" | "incident");
+        let street = noun.article == Article::None
+            && length == 1
+            && first > self.first
+            && self.tokens[first].capital
+            && self.text(first) == "van"
+            && self.tokens.get(first + 1).is_some_and(|next| next.capital);
+        if crash && !noun.subject && noun.occupant.is_none() && noun.number.is_none() || street {
+            return None;
+        }
         if one_of {
             (noun.one_of, noun.several) = (noun.several, false);
             noun.article = if noun.one_of { Article::Indefinite } else { Article::Definite };

@@ -21,6 +21,10 @@ impl Chunker<'_> {
                 _ => return None,
             })
         };
+        // "going east to west": where it ends.
+        if let (Some(_), "to", Some(end)) = (bare(word), self.text(at + 1), bare(self.text(at + 2))) {
+            return Some((end, 3));
+        }
         let stem =
             word.strip_suffix("bound").or_else(|| word.strip_suffix("bounds")).or_else(|| word.strip_suffix("erly"));
         if let Some(compass) = stem.filter(|stem| !stem.is_empty()).and_then(bare) {

@@ -31,8 +31,9 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
     if let Some(door) = &account.door {
         let first = reading.contacts.first.map(|number| &reading.story.frames[number]);
         let by_subject = first.is_some_and(|frame| frame.who == Some(SUBJECT));
-        if door.value == Striker::Sv && by_subject {
-            return Some(Fact { value: Striker::Sv, source: door.source.clone() });
+        let by_partner = first.is_some_and(|frame| frame.who == reading.contacts.partner && frame.with.is_some());
+        if door.value == Striker::Sv && by_subject || door.value == Striker::Cp && by_partner {
+            return Some(door.clone());
         }
     }
     let (sv, cp) = (sv_state(account), cp_state(account));
@@ -306,7 +307,11 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
         return if both { rule(Role::Responder, "it backed away") } else { rule(Role::Initiator, "it went backwards") };
     }
     let cp_stands = cp_state(account).is_some_and(ContactState::stands) && !partner.did(Act::OpenDoor);
-    if cp_stands {
+    // "cut in front of it and braked to a stop".
+    let before: Vec<Act> = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+    let cut = matches!(before.as_slice(), [.., Act::LaneChange | Act::Swerve, Act::Stop | Act::Slow]);
+    let drove_on = told(&account.sv.movement) == Some(Movement::Straight);
+    if cp_stands && !(cut && drove_on) {
         return rule(Role::Initiator, "it moved into one that stood");
     }
     let sv_changes = account.sv.did(Act::LaneChange) || account.sv.did(Act::UTurn) || account.sv.did(Act::PullOut);
@@ -370,7 +375,8 @@ pub(crate) fn role(reading: &Reading<'_>, account: &Account) -> Option<Fact<Role
             .iter()
             .filter(|fact| !fact.after_contact)
             .all(|fact| matches!(fact.act, Act::Follow | Act::Enter | Act::Slow | Act::Cross));
-        if told(&account.came_from) == Some(Origin::Opposite) && on_its_way && !partner.acts.is_empty() {
+        let drives_on = !partner.acts.is_empty() || told(&partner.movement) == Some(Movement::Straight);
+        if told(&account.came_from) == Some(Origin::Opposite) && on_its_way && drives_on {
             return rule(Role::Initiator, "it turned across the way of one who came on");
         }
         return if both_turn || straight_from_turn_lane || came_to_flank {

@@ -127,6 +127,20 @@ fn as_column(
     let Some(column) = record.partner.known().and_then(column_sort) else { return unchanged };
     let is = |actor: Actor| story.world.actors[actor].kind.and_then(sort) == Some(column);
     let said = story.world.actors[partner].kind.and_then(sort);
+    // "the truck came back and its gate struck it": what stands does not strike, who came did.
+    let stands = story.world.actors[partner].kind.is_some_and(|kind| {
+        matches!(kind, Kind::Wall | Kind::Pole | Kind::Curb | Kind::Gate | Kind::Barrier | Kind::Sign | Kind::Chain)
+    });
+    // "She pushed a stroller, and its wheel touched it": it is she whom the column means.
+    let pushed = matches!(column, KindGroup::OnFoot | KindGroup::Cyclist)
+        && story.world.actors[partner].kind.is_some_and(|kind| kind.group() == KindGroup::Object);
+    if (stands || pushed) && story.frames[first].who == Some(partner) {
+        let sentence = story.frames[first].sentence;
+        let came = story.frames[..first].iter().rev().find(|frame| {
+            frame.sentence + 1 >= sentence && frame.act().is_some() && frame.happened() && frame.who.is_some_and(is)
+        });
+        return came.and_then(|frame| frame.who).map_or(unchanged, |actor| (first, actor));
+    }
     if said.is_none_or(|said| said == column) {
         return unchanged;
     }
@@ -161,6 +175,19 @@ fn column_sort(kind: PartnerKind) -> Option<KindGroup> {
 /// Whether the sentence of a frame says that it is one more event.
 fn goes_on(story: &Story, number: usize) -> bool {
     let sentence = story.sentences[story.frames[number].sentence];
+    // With what led to it told in between it is the same event, told in full.
+    let first = story.frames.iter().find(|frame| frame.is_contact()).map_or(0, |frame| frame.sentence);
+    let leads = |frame: &Frame| {
+        (first + 1..story.frames[number].sentence).contains(&frame.sentence)
+            && frame.act().is_some()
+            && frame.happened()
+    };
+    let again = story.tokens[sentence.first..sentence.end]
+        .iter()
+        .any(|token| matches!(token.text.as_str(), "again" | "second" | "another" | "third" | "times"));
+    if story.frames.iter().filter(|frame| leads(frame)).count() > 1 && !again {
+        return false;
+    }
     let words = &story.tokens[sentence.first..story.frames[number].first];
     words.iter().any(|token| matches!(token.text.as_str(), "then" | "again" | "subsequently"))
         || story.tokens[sentence.first..sentence.end]

@@ -2,12 +2,14 @@
 
 mod blame;
 mod contact;
+mod fallback;
 mod movement;
 mod origin;
 mod party;
 mod picture;
 mod place;
 mod scenario;
+mod state;
 mod types;
 
 use crate::chunk::Piece;
@@ -58,7 +60,7 @@ impl Reading<'_> {
         // "Before it set off, a van struck it".
         let until = frame.sentence == at.sentence
             && frame.joint == Some(crate::chunk::Joint::Before)
-            && at.joint != frame.joint
+            && (at.joint != frame.joint || at.sense == Sense::ContactMade)
             && !frame.is_contact();
         if until && frame.progress != crate::lexicon::Progress::Wished {
             return true;
@@ -77,7 +79,15 @@ impl Reading<'_> {
             && frame.joint == Some(crate::chunk::Joint::While)
             && frame.clause > at.clause
             && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
-        !(simultaneous || frame.described && frame.sentence == at.sentence)
+        // "It hit the vehicle, which was stopped": told again, with what was so then.
+        let retold = frame.act() == Some(Act::Hold)
+            && (frame.described || frame.joint == Some(crate::chunk::Joint::While))
+            && self.story.frames[number.saturating_sub(2)..number].iter().any(|other| {
+                other.sentence == frame.sentence
+                    && other.is_contact()
+                    && [(other.who, other.object), (other.object, other.who)].contains(&(at.who, at.object))
+            });
+        !(simultaneous || retold || frame.described && frame.sentence == at.sentence)
     }
 
     /// Whether a sentence behind the crash tells what had been before it: "The other car had run the light".
@@ -150,7 +160,9 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let record = &report.record;
     let text = record.narrative.as_str();
     let (make, company) = (own_make(record), company(record));
-    let own = Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle };
+    let partner = record.partner.known().and_then(partner_word);
+    let own =
+        Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle, partner };
     let story = story(text, own);
     let contacts = Contacts::find(&story, record);
     let reading = Reading { text, record, story, contacts };
@@ -220,6 +232,23 @@ pub fn account(incident: &Incident) -> Option<Account> {
 pub fn refold(account: &mut Account) {
     account.scenario = scenario::scenario(account);
     account.matrix = scenario::matrix(account);
+}
+
+/// What the reader calls the road user that the column names.
+fn partner_word(kind: PartnerKind) -> Option<&'static str> {
+    Some(match kind {
+        PartnerKind::PassengerCar => "car",
+        PartnerKind::Suv => "suv",
+        PartnerKind::Van => "van",
+        PartnerKind::PickupTruck => "pickup",
+        PartnerKind::HeavyTruck => "truck",
+        PartnerKind::Bus => "bus",
+        PartnerKind::Motorcycle => "motorcycle",
+        PartnerKind::Cyclist => "bicyclist",
+        PartnerKind::Pedestrian | PartnerKind::OtherNonMotorist => "pedestrian",
+        PartnerKind::Animal => "animal",
+        PartnerKind::FirstResponder | PartnerKind::FixedObject => return None,
+    })
 }
 
 /// Kind of the subject vehicle, by its make, where that makes trucks only.
@@ -467,9 +496,16 @@ fn door(reading: &Reading<'_>) -> Option<Fact<Striker>> {
         let words = &reading.story.tokens[..reading.story.sentences[frame.sentence].end];
         words.windows(2).any(|pair| pair[0].text == "door" && pair[1].text == "open")
     };
+    // "was struck by the door of a van that was parked".
+    let of_parked = |frame: &Frame| {
+        frames.iter().any(|other| {
+            frame.who.is_some() && other.who == frame.who && other.sense == Sense::Parked && other.happened()
+        })
+    };
     let (_, frame) = opened.or_else(|| {
         frames.iter().enumerate().find(|(_, frame)| {
-            frame.is_contact() && (open(&frame.with) || open(&frame.on) || door(&frame.with) && stands_open(frame))
+            let opens = door(&frame.with) && (stands_open(frame) || of_parked(frame));
+            frame.is_contact() && (open(&frame.with) || open(&frame.on) || opens)
         })
     })?;
     let owner = match frame.act() {

@@ -23,6 +23,12 @@ pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
     let thing =
         account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group) == Some(KindGroup::Object);
     sv.acts.retain(|fact| fact.act != Act::PullOut || !thing || column.is_none());
+    // "After it made a right turn": by the column it drove on then.
+    let turned = |fact: &ActFact| {
+        let frame = reading.story.frames.get(fact.step as usize);
+        fact.act == Act::Turn && frame.is_some_and(|frame| frame.joint == Some(crate::chunk::Joint::After))
+    };
+    sv.acts.retain(|fact| !(turned(fact) && column == Some(Movement::Straight)));
     account.sv.movement = movement(&sv, column, "SV Pre-Crash Movement");
     let drives =
         told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff));

@@ -1,6 +1,7 @@
 //! From where the partner and the others come, seen from the subject vehicle before any turn.
 
 use super::Reading;
+use super::fallback::{by_columns, by_side, square_front, zone_side};
 use super::party::has_zone;
 use crate::chunk::Spot;
 use crate::lexicon::{Relation, Sense};
@@ -8,13 +9,12 @@ use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
     Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
 };
-use recrash_model::template::{Movement, RoadType};
 use recrash_model::zones::ContactZone as Z;
 
 /// What is known of where somebody comes from.
-struct Clues<'a> {
-    reading: &'a Reading<'a>,
-    actor: Actor,
+pub(super) struct Clues<'a> {
+    pub(super) reading: &'a Reading<'a>,
+    pub(super) actor: Actor,
 }
 
 impl Clues<'_> {
@@ -28,7 +28,7 @@ impl Clues<'_> {
         known.relations.iter().filter(move |(_, sentence)| told(*sentence)).map(|(relation, _)| *relation)
     }
 
-    fn any(&self, relation: Relation) -> bool {
+    pub(super) fn any(&self, relation: Relation) -> bool {
         self.relations().any(|known| known == relation)
     }
 
@@ -82,8 +82,11 @@ pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact
     let kind = partner.kind.as_ref().map(|kind| kind.value);
     let Some(actor) = reading.contacts.partner else {
         let thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object);
+        let backs = told(&account.sv.state) == Some(ContactState::Reversing);
         return if thing && forward(account) {
             Some(Fact::by_rule(Origin::Ahead, "a thing that the subject vehicle drives into is ahead of it"))
+        } else if thing && backs && account.sv.zones.iter().all(|zone| zone.value.is_rear()) {
+            Some(Fact::by_rule(Origin::Behind, "a thing that the subject vehicle backs into is behind it"))
         } else {
             by_columns(reading, account)
         };
@@ -104,7 +107,7 @@ pub(crate) fn came_from(reading: &Reading<'_>, account: &Account) -> Option<Fact
     }
 }
 
-fn forward(account: &Account) -> bool {
+pub(super) fn forward(account: &Account) -> bool {
     told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff))
 }
 
@@ -190,6 +193,23 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let (first, end) = reading.window(number);
         let source = reading.words(first, end);
         match frame.out_of {
+            // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
+            Some(Spot::Stall)
+                if did(Act::Reverse)
+                    && square_front(account)
+                    && (at_curb(reading, actor) || clues.any(Relation::Ahead)) =>
+            {
+                return told_as(Origin::Ahead, source);
+            }
+            // Both go backwards, and meet at their rears.
+            Some(Spot::Stall)
+                if did(Act::Reverse)
+                    && told(&account.sv.state) == Some(ContactState::Reversing)
+                    && !account.sv.zones.is_empty()
+                    && account.sv.zones.iter().all(|zone| zone.value.is_rear()) =>
+            {
+                return told_as(Origin::Behind, source);
+            }
             Some(Spot::Stall) if at_curb(reading, actor) => {
                 return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
             }
@@ -207,7 +227,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             None => {}
         }
     }
-    let stall = in_stall(reading, actor);
+    let stall = in_stall(reading, actor).filter(|_| {
+        // Parked ahead of it, and backwards: no stall across.
+        !(did(Act::Reverse) && clues.any(Relation::Ahead) && square_front(account))
+    });
     if let (true, true, Some(source)) = (
         parked,
         did(Act::Turn) || did(Act::PullOut) || did(Act::SetOff) || did(Act::Reverse) || did(Act::Follow),
@@ -271,6 +294,23 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         && did(Act::PullOut)
         && (parked || did(Act::Hold) || frames().any(|(_, frame)| frame.act() == Some(Act::PullOut)));
     let crosses = matches!(turn, Some(2 | 6));
+    // "entered traffic from a stop sign on the right", "from a side street": no kerb.
+    let from_road = frames().find(|(number, frame)| {
+        let (first, end) = reading.window(*number);
+        let words = &reading.story.tokens[first..end.min(first + 14)];
+        let from = words.iter().position(|token| token.text == "from");
+        let road = |word: &str| matches!(word, "intersection" | "sign" | "street" | "avenue" | "road" | "alley");
+        let curb = |word: &str| matches!(word, "curb" | "side" | "parked" | "spot" | "space" | "stall" | "lane");
+        frame.act() == Some(Act::PullOut)
+            && from.is_some_and(|from| {
+                words[from..].iter().any(|token| road(&token.text))
+                    && !words[from..].iter().any(|token| curb(&token.text))
+            })
+    });
+    if let (Some((number, _)), Some(side), false) = (from_road, side.or_else(|| zone_side(account)), parked) {
+        let (first, end) = reading.window(number);
+        return told_as(Origin::Cross { side }, reading.words(first, end));
+    }
     if leaves_curb && (parked || !(behind_first(clues) || crosses)) {
         let source = clues.source(|frame| frame.act() == Some(Act::PullOut));
         return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
@@ -398,6 +438,23 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if ahead && side.is_none() {
         return told_as(Origin::Ahead, clues.has(Relation::Ahead));
     }
+    // Front on flank at a junction, from that side: across.
+    let only = |party: &recrash_model::account::Party, wanted: fn(Z) -> bool| {
+        !party.zones.is_empty() && party.zones.iter().all(|zone| wanted(zone.value))
+    };
+    let stops = account.place.features.iter().any(|feature| {
+        matches!(
+            feature.value,
+            recrash_model::account::RoadFeature::StopSign | recrash_model::account::RoadFeature::Signal
+        )
+    });
+    let flank = only(&account.sv, |zone| matches!(zone, Z::Left | Z::Right))
+        && account.partner.as_ref().is_some_and(|partner| only(partner, |zone| zone == Z::Front));
+    let across = flank && stops && !sv_stands && !moved_over && !did(Act::Pass) && !did(Act::Turn);
+    if let (true, Some(side)) = (across && zone_side(account) == side, side) {
+        let relation = if side == LeftRight::Left { Relation::Left } else { Relation::Right };
+        return told_as(Origin::Cross { side }, clues.has(relation));
+    }
     if let Some(side) = side.filter(|_| first_is_side(clues) || !did(Act::Pass)) {
         let kind = told(&account.partner.as_ref()?.kind);
         if kind.is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal)) {
@@ -417,6 +474,16 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     if let Some(side) = lane_side(account).or_else(|| changed_from(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "lanes of both"));
     }
+    // Who changes lanes into the leftmost one comes from the right.
+    let edge = account.sv.lane.as_ref().and_then(|lane| match lane.value {
+        LaneWord::Left | LaneWord::LeftTurn => Some(LeftRight::Right),
+        LaneWord::Right | LaneWord::RightTurn | LaneWord::Curb => Some(LeftRight::Left),
+        _ => None,
+    });
+    let into_ours = frames().any(|(_, frame)| frame.act() == Some(Act::LaneChange) && frame.object == Some(SUBJECT));
+    if let (true, Some(side)) = (into_ours && zone_side(account).is_none_or(|touched| Some(touched) == edge), edge) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "into the lane at the edge of the road"));
+    }
     // Both turn the same way, side by side.
     if reading.did(SUBJECT, Act::Turn)
         && did(Act::Turn)
@@ -428,6 +495,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         && let Some(side) = zone_side(account)
     {
         return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched, where it goes backwards"));
+    }
+    if let (true, Some(side)) = (on_side_street(reading, actor) && !did(Act::Pass), zone_side(account)) {
+        return Some(Fact::by_rule(Origin::Cross { side }, "the side that was touched by one on a road that crosses"));
     }
     // Who turns and is met by one of whom no direction is told: the side that was touched tells it.
     let turning =
@@ -507,16 +577,15 @@ fn at_curb(reading: &Reading<'_>, actor: Actor) -> bool {
     })
 }
 
-/// Whether the plain front of the subject vehicle is touched.
-fn square_front(account: &Account) -> bool {
-    has_zone(&account.sv, |zone| zone == Z::Front)
-}
-
 /// Whether the words put somebody on a road that crosses.
 fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
     let tokens = &reading.story.tokens;
-    reading.before(actor).any(|(number, _)| {
+    reading.before(actor).any(|(number, frame)| {
         let (first, end) = reading.window(number);
+        // "A coupe on the cross street ran the light": between its name and its verb.
+        let named = reading.story.world.actors[actor].kind_tokens.map_or(first, |(_, end)| end);
+        let sentence = reading.story.sentences[frame.sentence];
+        let first = if (sentence.first..first).contains(&named) { named } else { first };
         let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
         (first..end).any(|at| {
             let road = matches!(word(at + 1), "street" | "road" | "streets");
@@ -552,31 +621,6 @@ fn after_its_turn(account: &Account) -> Option<Compass> {
         },
         _ => Some(heading),
     }
-}
-
-/// Who moves over without a side told comes from the side that was touched, and who is parked stands there; an animal in the way is ahead.
-fn by_side(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
-    let partner = account.partner.as_ref()?;
-    let moved_over =
-        [Act::LaneChange, Act::Swerve, Act::Drift, Act::Pass, Act::Pushed].into_iter().any(|act| partner.did(act));
-    let parked = told(&partner.state) == Some(ContactState::Parked);
-    let swiped = clues.reading.contacts.first.is_some_and(|number| {
-        let frame = &clues.reading.story.frames[number];
-        clues.reading.story.tokens[frame.first].text.starts_with("sideswip")
-    });
-    let beside = moved_over || parked || swiped || clues.any(Relation::Beside);
-    if let (true, Some(side)) = (beside, zone_side(account)) {
-        return Some(Fact::by_rule(Origin::Beside { side }, "the side that was touched"));
-    }
-    let walks = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal));
-    let flank = !has_zone(&account.sv, |zone| zone.is_front() || zone.is_rear());
-    if let (true, true, Some(side)) = (walks, flank, zone_side(account)) {
-        return Some(Fact::by_rule(Origin::Cross { side }, "the side that somebody on foot touched"));
-    }
-    let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
-    let driven_over = has_zone(&account.sv, |zone| zone == Z::Bottom) && forward(account);
-    (animal && (driven_over || has_zone(&account.sv, |zone| zone.is_front())))
-        .then(|| Fact::by_rule(Origin::Ahead, "an animal that the front touches is ahead"))
 }
 
 /// The relation told first.
@@ -619,17 +663,6 @@ fn in_stall(reading: &Reading<'_>, actor: Actor) -> Option<Source> {
     })
 }
 
-/// Which side of the subject vehicle was touched.
-fn zone_side(account: &Account) -> Option<LeftRight> {
-    let left = has_zone(&account.sv, |zone| matches!(zone, Z::FrontLeft | Z::Left | Z::RearLeft));
-    let right = has_zone(&account.sv, |zone| matches!(zone, Z::FrontRight | Z::Right | Z::RearRight));
-    match (left, right) {
-        (true, false) => Some(LeftRight::Left),
-        (false, true) => Some(LeftRight::Right),
-        _ => None,
-    }
-}
-
 /// On which side the partner's lane lies.
 fn lane_side(account: &Account) -> Option<LeftRight> {
     let place = |lane: LaneWord| match lane {
@@ -660,91 +693,6 @@ fn changed_from(account: &Account) -> Option<LeftRight> {
     let from = change.side?.other();
     // Whoever moves over towards it touches it on that side.
     (zone_side(account) == Some(from)).then_some(from)
-}
-
-/// Where the words say nothing: by zones and movement columns, which tell front on rear and little else.
-fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fact<Origin>> {
-    let partner = account.partner.as_ref()?;
-    let sv_rear = has_zone(&account.sv, |zone| zone.is_rear());
-    let sv_front = has_zone(&account.sv, |zone| zone.is_front());
-    let cp_front = has_zone(partner, |zone| zone.is_front());
-    let cp_rear = has_zone(partner, |zone| zone.is_rear());
-    let rule = |value: Origin| Some(Fact::by_rule(value, "zones of both and the movement columns"));
-    if told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Object) {
-        return None;
-    }
-    let (cp, sv) = (reading.record.cp_movement.known(), reading.record.sv_movement.known());
-    match cp {
-        Some(Movement::Backing) if sv_front => return rule(Origin::Ahead),
-        Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay) if sv_front && cp_front => {
-            return rule(Origin::Opposite);
-        }
-        Some(Movement::Passing) => return rule(Origin::Behind),
-        _ => {}
-    }
-    if let (true, Some(side)) = (partner.did(Act::LaneChange), zone_side(account)) {
-        return rule(Origin::Beside { side });
-    }
-    // It moved over before one in the next lane: corner on corner.
-    let corner = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value != Z::Rear);
-    if let (true, true, Some(side)) = (account.sv.did(Act::LaneChange), corner && sv_rear, zone_side(account)) {
-        return rule(Origin::Beside { side });
-    }
-    if sv_rear && cp_front && !sv_front {
-        return rule(Origin::Behind);
-    }
-    // Told to touch its rear, and nothing told of the partner's own side or way.
-    let into_rear = sv_rear
-        && partner.zones.is_empty()
-        && account.sv.zones.iter().all(|zone| zone.value.is_rear() && zone.source.is_told());
-    let turns = [Act::Turn, Act::Reverse, Act::LaneChange, Act::Cross].into_iter().any(|act| partner.did(act));
-    if into_rear && !turns && told(&account.sv.state) != Some(ContactState::Reversing) {
-        return rule(Origin::Behind);
-    }
-    if sv_front && cp_rear && !sv_rear {
-        // Parked, it stands beside the lane that a corner leaves.
-        let corner = told(&partner.state) == Some(ContactState::Parked) && !square_front(account);
-        return rule(zone_side(account).filter(|_| corner).map_or(Origin::Ahead, |side| Origin::Beside { side }));
-    }
-    let side = zone_side(account)?;
-    // One way, side by side.
-    let over = |movement| {
-        matches!(
-            movement,
-            Some(
-                Movement::ChangingLanes
-                    | Movement::Merging
-                    | Movement::LaneDeparture
-                    | Movement::ParkingManeuver
-                    | Movement::EnteringTraffic
-                    | Movement::Parked
-                    | Movement::Stopped
-            )
-        )
-    };
-    if over(cp)
-        || matches!(sv, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing | Movement::LaneDeparture))
-    {
-        return rule(Origin::Beside { side });
-    }
-    let junction = reading.record.road.known() == Some(RoadType::Intersection);
-    if sv == Some(Movement::LeftTurn) && junction && cp == Some(Movement::Straight) && side == LeftRight::Right {
-        return rule(Origin::Opposite);
-    }
-    let flank = |party: &recrash_model::account::Party| {
-        !party.zones.is_empty() && !has_zone(party, |zone| zone.is_front() || zone.is_rear())
-    };
-    if junction && cp_front && flank(&account.sv) {
-        return rule(Origin::Cross { side });
-    }
-    if junction && sv_front && flank(partner) {
-        // Its right flank is met by who comes to it from its right: it came from the left.
-        let right = has_zone(partner, |zone| zone == Z::Right);
-        return rule(Origin::Cross { side: if right { LeftRight::Left } else { LeftRight::Right } });
-    }
-    let straight = |movement| matches!(movement, Some(Movement::Straight | Movement::Stopped | Movement::Parked));
-    (straight(cp) && straight(sv))
-        .then(|| Fact::by_rule(Origin::Beside { side }, "zones of both and the movement columns"))
 }
 
 /// Where somebody else is.

@@ -1,6 +1,7 @@
 //! One side: kind, acts, state at the contact, reasons to stand, lane, direction, zones, speeds, signals.
 
 use super::Reading;
+use super::state::sv_state;
 use crate::chunk::Spot;
 use crate::frame::{Frame, sided, zone_of};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
@@ -75,7 +76,13 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             continue;
         }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
+        let lane = reading.story.world.actors[actor].lane.and_then(|(lane, ..)| match lane {
+            LaneWord::LeftTurn => Some(LeftRight::Left),
+            LaneWord::RightTurn => Some(LeftRight::Right),
+            _ => None,
+        });
         let side = if sided(act) { frame.side.or_else(|| to_lane(reading, actor, frame, act)) } else { None };
+        let side = side.or(lane.filter(|_| act == Act::Turn));
         let after_contact = reading.is_after(number);
         let fact = ActFact {
             act,
@@ -229,7 +236,7 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
             Act::Reverse => ContactState::Reversing,
             Act::Follow | Act::Enter if stands && text.starts_with("continu") => continue,
             // "was stopped at a light, heading west".
-            Act::Follow
+            Act::Follow | Act::Turn
                 if stands && frame.form == crate::lexicon::Form::Ing && since == (frame.sentence, frame.clause) =>
             {
                 continue;
@@ -276,12 +283,28 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
         }
         state = Some((next, reading.of(frame)));
     }
+    // "had been waiting, jumped the light and hit it": who runs into another moves.
+    let hits = contact.map(|number| &reading.story.frames[number]).filter(|frame| {
+        let word = reading.story.tokens[frame.first].text.as_str();
+        let runs = ["hit", "struck", "ran", "drove", "crash", "slam", "ram", "plow", "collid", "smash"];
+        actor != SUBJECT
+            && frame.who == Some(actor)
+            && frame.object == Some(SUBJECT)
+            && frame.sense == Sense::Contact
+            && frame.with.is_none()
+            && !frame.passive
+            && runs.iter().any(|stem| word.starts_with(stem))
+    });
+    if let (Some(frame), Some((ContactState::Stopped, _))) = (hits, &state) {
+        state = Some((ContactState::Moving, reading.of(frame)));
+        standing = None;
+    }
     let state = state.map(|(value, source)| Fact { value, source });
     (state, standing.map(|(value, source)| Fact { value, source }))
 }
 
 /// Why somebody stood: named with the last thing that made it stand.
-fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReason>> {
+pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReason>> {
     let lexicon = Lexicon::get();
     let stands = |frame: &Frame| {
         matches!(frame.act(), Some(Act::Hold | Act::Stop | Act::Slow | Act::PullOver))
@@ -383,10 +406,14 @@ fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
     let Some(first) = reading.contacts.first else { return Vec::new() };
     let partner = reading.contacts.partner;
     let mut all: Vec<Fact<ContactZone>> = Vec::new();
-    for (number, frame) in reading.story.frames.iter().enumerate().skip(first) {
+    // What the crash told again leaves out stands where it was told first.
+    let frames = || reading.story.frames.iter().enumerate();
+    for (number, frame) in frames().skip(first).chain(frames().take(first)) {
         let pair = [frame.who, frame.object];
-        let ours =
-            frame.is_contact() && pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None));
+        let ours = frame.is_contact()
+            && (pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None))
+                // "causing a scrape on its door".
+                || frame.sentence == reading.story.frames[first].sentence && pair == [None, Some(SUBJECT)]);
         let same = number == first || (all.is_empty() && ours);
         if !same {
             continue;
@@ -434,7 +461,14 @@ fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) 
             Some(owner) => owner,
             None => SUBJECT,
         };
-        alone && frame.sense == Sense::Damage && frame.sentence == crash.sentence && whose == actor && !frame.negated
+        // "It made contact with a curb. This caused damage to its front right tire."
+        let next = frame.sentence == crash.sentence + 1 && {
+            let begins = &reading.story.tokens[reading.story.sentences[frame.sentence].first..];
+            let word = |at: usize| begins.get(at).map_or("", |token| token.text.as_str());
+            word(0) == "this" || word(0) == "the" && matches!(word(1), "contact" | "collision" | "impact")
+        };
+        let here = frame.sentence == crash.sentence || next;
+        alone && frame.sense == Sense::Damage && here && whose == actor && !frame.negated
     });
     if let Some((frame, zone)) = damage.and_then(|frame| Some((frame, frame.on.as_ref().and_then(zone_of)?))) {
         return Some(Fact { value: zone, source: reading.of(frame) });
@@ -657,107 +691,6 @@ pub(crate) fn refine(zones: &mut Vec<Fact<ContactZone>>, column: &[ContactZone],
     {
         zones.push(Fact::of_column(*ticked, name));
     }
-}
-
-/// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.
-fn sv_state(reading: &Reading<'_>, account: &mut Account) {
-    let record = reading.record;
-    let column = record.sv_movement.known();
-    let words = told(&account.sv.state);
-    let stopping = told(&account.sv.standing) == Some(Standing::Stopping);
-    let rolls = record.sv_speed_mps.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
-    let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
-    let value = match (words, column) {
-        // In the lane, for passengers.
-        (Some(ContactState::Parked), Some(Movement::Stopped))
-            if account.sv.reasons.iter().any(|reason| reason.value == StandReason::PickupDropoff) =>
-        {
-            Some(ContactState::Stopped)
-        }
-        (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
-        (None, Some(Movement::Parked)) => Some(ContactState::Parked),
-        (None, Some(Movement::Stopped)) => Some(ContactState::Stopped),
-        (None, Some(Movement::Backing)) => Some(ContactState::Reversing),
-        (None, _) if zero => Some(ContactState::Stopped),
-        (None, Some(_)) => Some(ContactState::Moving),
-        (None, None) if rolls || moves_at_contact(reading) => Some(ContactState::Moving),
-        // "was struck while stopping for a light", and no number says more.
-        (Some(ContactState::Stopped), None | Some(Movement::Straight))
-            if stopping && record.sv_speed_mps.is_none() && stops_at_contact(reading) =>
-        {
-            Some(ContactState::Moving)
-        }
-        // Slowing in words, standing in numbers: it had come to stand.
-        // Told to come to a stop, and still rolling in numbers.
-        (Some(ContactState::Stopped), _)
-            if rolls
-                && (stopping || moves_at_contact(reading))
-                && !account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact) =>
-        {
-            Some(ContactState::Moving)
-        }
-        // It moved into something.
-        (Some(ContactState::Stopped), Some(movement))
-            if rolls && moves_at_contact(reading) && movement != Movement::Stopped =>
-        {
-            Some(ContactState::Moving)
-        }
-        // "As it set off, a van struck it" is plain.
-        (Some(ContactState::SettingOff), Some(Movement::Stopped | Movement::Parked))
-            if zero && !moves_at_contact(reading) && !sets_off_at_contact(reading) =>
-        {
-            Some(ContactState::Stopped)
-        }
-        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
-            if zero && !moves_at_contact(reading) =>
-        {
-            Some(ContactState::Stopped)
-        }
-        _ => None,
-    };
-    if let Some(value) = value {
-        let name = if zero { "SV Precrash Speed (MPH)" } else { "SV Pre-Crash Movement" };
-        account.sv.state = Some(Fact::of_column(value, name));
-        if value.stands() {
-            account.sv.standing.get_or_insert_with(|| {
-                let how = if words == Some(ContactState::Moving) { Standing::Stopping } else { Standing::FromTheStart };
-                Fact::of_column(how, name)
-            });
-            if account.sv.reasons.is_empty() {
-                account.sv.reasons = reasons(reading, SUBJECT);
-            }
-        }
-    }
-    if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
-        account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
-    }
-}
-
-/// Whether the sentence of the contact says last of the subject vehicle that it was about to stop.
-fn stops_at_contact(reading: &Reading<'_>) -> bool {
-    let Some(contact) = reading.contacts.first else { return false };
-    let sentence = reading.story.frames[contact].sentence;
-    let last = reading.before(SUBJECT).filter(|(_, frame)| frame.happened()).last();
-    last.is_some_and(|(number, frame)| {
-        let while_it = number > contact && frame.joint == Some(crate::chunk::Joint::While);
-        frame.sentence == sentence && while_it && frame.act() == Some(Act::Stop)
-    })
-}
-
-/// Whether the sentence of the contact says that the subject vehicle sets off.
-fn sets_off_at_contact(reading: &Reading<'_>) -> bool {
-    let Some(contact) = reading.contacts.first else { return false };
-    let sentence = reading.story.frames[contact].sentence;
-    reading.before(SUBJECT).any(|(_, frame)| {
-        frame.sentence == sentence
-            && frame.happened()
-            && matches!(frame.act(), Some(Act::SetOff | Act::Follow | Act::Enter | Act::Turn))
-    })
-}
-
-/// Whether the words of the contact's own clause say that the subject vehicle moved into something.
-fn moves_at_contact(reading: &Reading<'_>) -> bool {
-    reading.contacts.first.is_some_and(|number| reading.story.frames[number].who == Some(SUBJECT))
 }
 
 fn kind_of(kind: PartnerKind) -> Kind {

@@ -366,7 +366,9 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
             // Left and right that weigh the same are told by nobody.
             None => {
                 let tie = way.mirrored().is_some_and(|mirrored| scene.weigh(mirrored) == weight);
-                (weight >= UNTOLD && !tie).then(|| Fact::by_rule(way.origin(), RULE))
+                let lane = [Way::Behind, Way::Ahead].into_iter().find(|lane| tie && scene.weigh(*lane) >= UNTOLD);
+                let way = lane.or((weight >= UNTOLD && !tie).then_some(way));
+                way.map(|way| Fact::by_rule(way.origin(), RULE))
             }
             Some(origin) => {
                 let left = scene.weigh(Way::Cross(LeftRight::Left)).max(scene.weigh(Way::Beside(LeftRight::Left)));

@@ -124,6 +124,16 @@ impl Parser<'_> {
                     taken.object = Some(actor);
                 }
             }
+            // "a bucket rolled under its front end".
+            "under"
+                if actor == SUBJECT
+                    && mention.piece.is_some()
+                    && self.frames[frame].who.is_some_and(|who| who != SUBJECT)
+                    && matches!(self.frames[frame].act(), Some(Act::Roll | Act::Fall | Act::Drift | Act::Follow)) =>
+            {
+                let who = self.frames[frame].who;
+                self.touch(frame, who, mention, placed, carry);
+            }
             "for"
                 if matches!(sense, Sense::Act(Act::Stop | Act::Hold))
                     && self.frames[frame].who == Some(SUBJECT)
@@ -215,12 +225,14 @@ impl Parser<'_> {
         let mut who = None;
         if let Some(frame) = carry.frame {
             // "made contact with the van ahead": the van.
-            if let (None, Some(last)) = (to, &carry.last)
+            // "made contact with a van behind it": the van.
+            let named = to == Some(SUBJECT) && relation == Relation::Behind;
+            if let (true, Some(last)) = (to.is_none() || named, &carry.last)
                 && self.frames[frame].is_contact()
                 && self.frames[frame].who == Some(SUBJECT)
                 && self.frames[frame].object == Some(last.actor)
                 && last.actor != SUBJECT
-                && matches!(relation, Relation::Ahead | Relation::Left | Relation::Right)
+                && (named || matches!(relation, Relation::Ahead | Relation::Left | Relation::Right))
             {
                 return self.note(last.actor, relation);
             }
@@ -249,6 +261,8 @@ impl Parser<'_> {
                     | Act::Pass
                     | Act::PullOut
                     | Act::Enter
+                    | Act::LaneChange
+                    | Act::Swerve
                     | Act::LoseControl
                     | Act::Fall
                     | Act::Roll
@@ -303,6 +317,12 @@ impl Parser<'_> {
         let side = matches!(self.tokens[placed.end - 1].text.as_str(), "left" | "right" | "ahead");
         let begins = indefinite && side && carry.frame.is_none() && carry.subject.is_none();
         let governs = governs && !possessed && !begins;
+        // "hit the van behind the front wheel": where on the van.
+        let part = matches!(next, Some(Chunk::Piece(piece)) if piece.owner.is_none() && !piece.its);
+        let touches = carry.frame.is_some_and(|frame| self.frames[frame].is_contact());
+        if part && touches && matches!(relation, Relation::Behind | Relation::Ahead) {
+            return;
+        }
         // "behind [XXX]", "next to the mall": places.
         let last = self.tokens[placed.end - 1].text.as_str();
         let needs_noun = matches!(last, "of" | "to" | "alongside" | "beside")

@@ -19,6 +19,10 @@ impl Parser<'_> {
                     None => continue,
                 },
                 Adjective::Doing if actor == SUBJECT && self.rolls(placed) => (Sense::Act(Act::Follow), None),
+                Adjective::Doing if actor == SUBJECT => match self.doing(placed) {
+                    Some((Act::Turn, Some(side))) => (Sense::Act(Act::Turn), Some(side)),
+                    _ => continue,
+                },
                 _ => continue,
             };
             let mut frame = self.frame(Some(actor), sense, Form::Past, placed, carry);

@@ -3,17 +3,18 @@
 mod adverbs;
 mod attach;
 mod build;
+mod joint;
 mod parser;
 mod pronoun;
 mod row;
 mod subject;
 
 use crate::chunk::{Joint, Piece, Spot};
-use crate::lexicon::{COMPANY, Form, Lexicon, Occupant, Part, Progress, Relation, Sense};
-use crate::token::{Sentence, Token};
+use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};
+use crate::token::{Sentence, Token, TokenKind};
 use crate::world::{Actor, SUBJECT, World};
 use parser::Parser;
-use recrash_model::account::{Act, Compass, Kind, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 /// One event.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,7 +127,12 @@ pub struct Own<'a> {
     pub company: &'a str,
     /// What the record calls the vehicle: it is meant by "the Volvo" where nobody was named before.
     pub vehicle: &'a str,
+    /// A word for the road user that the record says it crashed with: meant by a noun that nobody knows, where nobody else is named.
+    pub partner: Option<&'a str>,
 }
+
+/// Companies that report, and whose vehicles others drive too.
+const MAKERS: [&str; 3] = ["tesla", "rivian", "lucid"];
 
 /// Most tokens of a narrative that are read; the longest published one has a third of it.
 const MOST_TOKENS: usize = 6_000;
@@ -135,29 +141,61 @@ const MOST_TOKENS: usize = 6_000;
 pub fn story(text: &str, own: Own<'_>) -> Story {
     let mut tokens = crate::token::tokens(text);
     tokens.truncate(MOST_TOKENS);
+    // "V2", "Unit 2": another vehicle.
+    for at in (0..tokens.len()).rev() {
+        let number = tokens[at].text.strip_prefix('v').filter(|number| matches!(*number, "2" | "3" | "4" | "5"));
+        let unit = matches!(tokens[at].text.as_str(), "unit" | "party") && {
+            let next = tokens.get(at + 1).map_or("", |next| next.text.as_str());
+            matches!(next, "2" | "3" | "4" | "5")
+        };
+        if let Some(number) = number.map(str::to_owned) {
+            let middle = tokens[at].start + 1;
+            let end = std::mem::replace(&mut tokens[at].end, middle);
+            let token = Token { start: middle, end, text: number, kind: TokenKind::Number, capital: false };
+            tokens.insert(at + 1, token);
+        }
+        if unit
+            || tokens[at].text.len() == 2 && tokens[at].text.starts_with('v') && tokens[at].end == tokens[at].start + 1
+        {
+            "vehicle".clone_into(&mut tokens[at].text);
+            tokens[at].capital = false;
+        }
+    }
     for at in 0..tokens.len() {
         let named = tokens[at].capital && tokens[at].text.len() > 2 && tokens[at].text == own.company;
-        if named && Lexicon::get().longest(&tokens, at, |_| true).is_none() {
+        // "A Tesla struck it": of the company only in its own reports.
+        let make = |meaning: Meaning| matches!(meaning, Meaning::Make) && MAKERS.contains(&own.company);
+        if named && Lexicon::get().longest(&tokens, at, |meaning| !make(meaning)).is_none() {
             COMPANY.clone_into(&mut tokens[at].text);
         }
     }
     let sentences = crate::token::sentences(&tokens);
-    let lexicon = Lexicon::get();
-    let mut standing = Vec::new();
-    let mut parser =
-        Parser { tokens: &tokens, lexicon, world: World::new(own), frames: Vec::new(), sentence: 0, looks_back: false };
-    for (number, sentence) in sentences.iter().enumerate() {
-        let words = &tokens[sentence.first..sentence.end];
-        let drop = lexicon.is_standing(words) && !tells_contact(words);
-        standing.push(drop);
-        if drop {
-            continue;
+    let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
+    // "A gleeper struck it": who is meant is told by the record.
+    let alone =
+        world.actors.iter().skip(1).all(|known| known.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
+    if let Some(word) = own.partner.filter(|_| alone) {
+        for stranger in strangers(&tokens) {
+            let mut named = tokens.clone();
+            for token in named.iter_mut().filter(|token| token.text == stranger) {
+                word.clone_into(&mut token.text);
+            }
+            let read = best(&named, &sentences, own);
+            let meets = |frame: &Frame| {
+                let pair = [frame.who, frame.object];
+                let other = pair.into_iter().flatten().find(|actor| *actor != SUBJECT);
+                frame.is_contact()
+                    && pair.contains(&Some(SUBJECT))
+                    && other.is_some_and(|actor| {
+                        read.2.actors[actor].kind_tokens.is_some_and(|(_, end)| tokens[end - 1].text == stranger)
+                    })
+            };
+            if read.1.iter().any(meets) {
+                (standing, frames, world) = read;
+                break;
+            }
         }
-        (parser.sentence, parser.world.sentence) = (number, number);
-        parser.looks_back = looks_back(words) || could_not_avoid(words);
-        parser.read(*sentence);
     }
-    let (mut frames, world) = (parser.frames, parser.world);
     frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
     adverbs::apply(&mut frames, &tokens, &sentences);
     // "a sedan and a van collided": with each other.
@@ -184,13 +222,80 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     Story { tokens, sentences, standing, frames, world }
 }
 
+/// Nouns that nobody knows, and that may be a road user: "a gleeper was", "by a gleeper".
+fn strangers(tokens: &[Token]) -> Vec<String> {
+    let lexicon = Lexicon::get();
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let mut all: Vec<String> = Vec::new();
+    for (at, token) in tokens.iter().enumerate().skip(1) {
+        let unknown = token.kind == TokenKind::Word
+            && !token.capital
+            && token.text.len() > 3
+            && lexicon.longest(tokens, at, |_| true).is_none()
+            && ["a", "an", "another", "the", "one"].contains(&word(at - 1));
+        let acts = lexicon.longest(tokens, at + 1, |meaning| matches!(meaning, Meaning::Verb(..))).is_some()
+            || matches!(
+                word(at + 1),
+                "was" | "had" | "that" | "which" | "who" | "behind" | "in" | "on" | "from" | "also"
+            );
+        let done_by = at > 1 && matches!(word(at - 2), "by" | "with" | "into");
+        if unknown && (acts || done_by) && !all.contains(&token.text) {
+            all.push(token.text.clone());
+        }
+    }
+    all.truncate(6);
+    all
+}
+
+/// A narrative as its words tell it; where none tells a contact, a word that nobody knows may.
+fn best(tokens: &[Token], sentences: &[Sentence], own: Own<'_>) -> (Vec<bool>, Vec<Frame>, World) {
+    let read = parse(tokens, sentences, own, false);
+    if read.1.iter().any(Frame::is_contact) {
+        return read;
+    }
+    let guessed = parse(tokens, sentences, own, true);
+    if guessed.1.iter().any(Frame::is_contact) { guessed } else { read }
+}
+
+/// Which sentences are standing phrases, the frames of the others, and who is in them.
+fn parse(tokens: &[Token], sentences: &[Sentence], own: Own<'_>, guesses: bool) -> (Vec<bool>, Vec<Frame>, World) {
+    let lexicon = Lexicon::get();
+    let mut standing = Vec::new();
+    let (world, frames) = (World::new(own), Vec::new());
+    let mut parser = Parser { tokens, lexicon, world, frames, sentence: 0, looks_back: false, guesses };
+    for (number, sentence) in sentences.iter().enumerate() {
+        let words = &tokens[sentence.first..sentence.end];
+        let drop = lexicon.is_standing(words) && !tells_contact(words);
+        standing.push(drop);
+        if drop {
+            continue;
+        }
+        (parser.sentence, parser.world.sentence) = (number, number);
+        parser.looks_back = looks_back(words) || could_not_avoid(words);
+        parser.read(*sentence);
+    }
+    (standing, parser.frames, parser.world)
+}
+
 /// A sentence with a standing phrase in it may tell the crash all the same.
 fn tells_contact(words: &[Token]) -> bool {
     let tells = |phrase: &str| {
         let phrase: Vec<String> = phrase.split(' ').map(str::to_owned).collect();
         crate::lexicon::find(&phrase, words).is_some()
     };
-    tells("made contact") || tells("struck") || tells("collided") || tells("rear ended") || tells("collision involving")
+    let touches = |at: usize| {
+        let found = Lexicon::get().longest(words, at, |meaning| {
+            matches!(
+                meaning,
+                Meaning::Verb(
+                    Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::OpenDoorInto,
+                    Form::Past | Form::Ing
+                )
+            )
+        });
+        found.is_some() && !words[at].capital
+    };
+    tells("made contact") || tells("collision involving") || (0..words.len()).any(touches)
 }
 
 fn looks_back(words: &[Token]) -> bool {

@@ -2,13 +2,15 @@
 
 use super::Frame;
 use super::adverbs::goes_about;
-use super::row::{acts, another_finite, names_doer, next_is_verb, next_preposition, relation_behind, transitive};
+use super::row::{
+    acts, another_finite, looks_somewhere, names_doer, next_is_verb, next_preposition, relation_behind, transitive,
+};
 use super::sided;
 use crate::chunk::{Article, Chunk, Joint, Piece, Placed, Spot, chunks, is_determiner};
 use crate::lexicon::{Form, Lexicon, Occupant, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::{Actor, SUBJECT, World};
-use recrash_model::account::{Act, Kind, LeftRight};
+use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: &'a [Token],
@@ -17,6 +19,8 @@ pub(super) struct Parser<'a> {
     pub(super) frames: Vec<Frame>,
     pub(super) sentence: usize,
     pub(super) looks_back: bool,
+    /// Words that nobody knows may tell the contact: where no other words do.
+    pub(super) guesses: bool,
 }
 
 /// What is carried from chunk to chunk.
@@ -109,6 +113,18 @@ impl Parser<'_> {
         let placed = &all[at];
         let next = all.get(at + 1).map(|placed| &placed.chunk);
         match &placed.chunk {
+            // "its toolbox scratched the door": whose it is.
+            Chunk::Noun(noun)
+                if matches!(self.tokens[placed.first].text.as_str(), "its" | "their" | "his" | "her")
+                    && all[at + 1..]
+                        .iter()
+                        .find(|placed| !matches!(placed.chunk, Chunk::Word | Chunk::Piece(_)))
+                        .is_some_and(|placed| matches!(placed.chunk, Chunk::Verb(Sense::Contact, _)))
+                    && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Cargo) =>
+            {
+                let actor = self.its(carry);
+                self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
+            }
             Chunk::Noun(noun) => {
                 let hint = relation_behind(all, at, &self.world);
                 let actor = match self.apposed(noun, all, at, carry) {
@@ -162,6 +178,7 @@ impl Parser<'_> {
                 let actor = match &piece.owner {
                     Some(owner) => {
                         let actor = self.world.resolve(owner, (placed.first, placed.end), None);
+                        let actor = self.as_a_result(actor, placed.first);
                         self.attribute(owner, actor, placed, carry);
                         Some(actor)
                     }
@@ -281,6 +298,9 @@ impl Parser<'_> {
             Chunk::Word if self.touches_by_parts(&self.tokens[placed.first].text, all, at, carry) => {
                 self.verb(Sense::Contact, Form::Past, all, at, carry);
             }
+            Chunk::Word if self.guesses && self.may_touch(all, at, carry) => {
+                self.verb(Sense::Contact, Form::Past, all, at, carry);
+            }
             // "The AV misjudged a van's speed and turned": what it did to the van.
             Chunk::Word if self.does_something(all, at, carry) => self.verb(Sense::Other, Form::Past, all, at, carry),
             Chunk::Word => {
@@ -334,7 +354,7 @@ impl Parser<'_> {
     }
 
     /// Behind a clause that tells of a place the sentence goes on with whom it is about.
-    fn leave_place(&self, carry: &mut Carry) {
+    pub(super) fn leave_place(&self, carry: &mut Carry) {
         if std::mem::take(&mut carry.place) && carry.subject.is_none() {
             carry.subject = carry.main.clone();
             carry.has_verb = carry.main.is_some();
@@ -453,76 +473,6 @@ impl Parser<'_> {
         carry.fresh = false;
     }
 
-    fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
-        let next = behind
-            .iter()
-            .take(3)
-            .map(|placed| &placed.chunk)
-            .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
-        // "between the van and a parked car": the second of a pair, and no new clause.
-        let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
-        let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
-            // "and the van, coming from the left, hit it".
-            Chunk::Comma => !matches!(
-                behind.get(2).map(|placed| &placed.chunk),
-                Some(Chunk::Verb(_, Form::Ing) | Chunk::Not | Chunk::Relative)
-            ),
-            // "and the van then reversed" is a clause of its own.
-            Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
-            _ => false,
-        });
-        if joint == Joint::And && noun && (ends && carry.has_verb || std::mem::take(&mut carry.pair)) {
-            carry.preposition = Some("and");
-            return;
-        }
-        // "the van and the bus": nouns in a row.
-        let nouns = joint == Joint::And
-            && matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)))
-            && !carry.has_verb
-            && !carry.after_comma
-            && carry.subject.is_some();
-        if nouns {
-            carry.also = carry.subject.clone();
-            return;
-        }
-        carry.also = None;
-        self.leave_place(carry);
-        carry.clause += 1;
-        (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
-        if joint != Joint::And || !matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            carry.stranger = false;
-        }
-        if joint != Joint::And {
-            carry.joint = Some(joint);
-            (carry.progress, carry.negated) = (None, false);
-        }
-        if joint == Joint::And && matches!(next, Some(Chunk::Verb(..) | Chunk::Not | Chunk::Be)) {
-            // "did not slow down or stop" denies both.
-            let or = behind.first().is_some_and(|next| next.first > 0 && self.tokens[next.first - 1].text == "or");
-            carry.negated = or
-                && matches!(next, Some(Chunk::Verb(_, Form::Base)))
-                && carry.frame.is_some_and(|frame| self.frames[frame].negated);
-            carry.row = true;
-            if carry.relative {
-                // "a van that was behind it and struck it" goes on with the van.
-                carry.has_verb = true;
-            }
-            if !matches!(next, Some(Chunk::Verb(_, Form::Base))) {
-                carry.progress = None;
-            }
-            return;
-        }
-        (carry.progress, carry.negated) = (None, false);
-        carry.relative = false;
-        carry.fresh = true;
-        carry.frame = None;
-        carry.governed = false;
-        if joint != Joint::And && !matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_) | Chunk::Pronoun)) {
-            // "while stopped", "before turning": of whom the clause is about, or of who is named next.
-            carry.has_verb = carry.subject.is_some();
-        }
-    }
-
     fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
         if carry.place && carry.subject.is_none() {
             return;
@@ -543,6 +493,24 @@ impl Parser<'_> {
             all.get(at + 1).map(|placed| &placed.chunk),
             Some(Chunk::Word | Chunk::Preposition("on") | Chunk::Piece(_) | Chunk::Noun(_))
         );
+        // "remained consistent", "remained in autonomous mode": nobody stands.
+        let kept = word.starts_with("remain") && placed.end == placed.first + 1 && {
+            let next = |at: usize| self.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+            matches!(
+                next(0),
+                "consistent"
+                    | "constant"
+                    | "engaged"
+                    | "unchanged"
+                    | "upright"
+                    | "active"
+                    | "green"
+                    | "red"
+                    | "steady"
+                    | "the"
+            ) || next(0) == "in" && (1..4).any(|at| matches!(next(at), "mode" | "control" | "motion"))
+        };
+        let sense = if kept { Sense::Other } else { sense };
         // "a bicycle ridden by a courier" passes nobody.
         let ridden = sense == Sense::Act(Act::Pass) && matches!(word.as_str(), "ridden" | "driven");
         let next = all.get(at + 1).map(|placed| &placed.chunk);
@@ -574,7 +542,7 @@ impl Parser<'_> {
         let mut leads = false;
         if placed.end == placed.first + 1
             && let Some(progress) = self.lexicon.progress(&word)
-            && (next_is_verb(all, at) || matches!(sense, Sense::Other))
+            && (next_is_verb(all, at) || matches!(sense, Sense::Other) && !looks_somewhere(all, at))
         {
             // "before proceeding to turn": not done.
             let before = carry.joint == Some(Joint::Before) && carry.fresh && form == Form::Ing;
@@ -586,7 +554,8 @@ impl Parser<'_> {
             }
             if swallowed {
                 carry.began = false;
-                carry.lead_who = self.who_of(Sense::Act(Act::Follow), form, placed, carry, false);
+                carry.lead_who =
+                    self.who_of(Sense::Act(Act::Follow), form, placed, carry, false, another_finite(all, at));
                 carry.began = true;
                 carry.has_verb |= form != Form::Ing || carry.be;
                 return;
@@ -601,7 +570,8 @@ impl Parser<'_> {
         let sense = if both { Sense::ContactMade } else { sense };
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
-        let who = self.who_of(sense, form, placed, carry, purpose).filter(|_| !carry.stranger && !both);
+        let finite_behind = another_finite(all, at);
+        let who = self.who_of(sense, form, placed, carry, purpose, finite_behind).filter(|_| !carry.stranger && !both);
         let mut frame = self.frame(who.as_ref().map(|mention| mention.actor), sense, form, placed, carry);
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
@@ -614,7 +584,8 @@ impl Parser<'_> {
         frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject;
         frame.with = who.as_ref().and_then(|mention| mention.piece.clone());
         // "a van parked on the left began to move": the first verb describes, the second one tells.
-        let bare = placed.end == placed.first + 1;
+        // "double-parked" is one word as well.
+        let bare = placed.end == placed.first + 1 || sense == Sense::Act(Act::Park) && word != "pulled";
         let describes =
             matches!(sense, Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow);
         let described = bare
@@ -721,6 +692,9 @@ impl Parser<'_> {
             let mut twin = frame.clone();
             (twin.who, twin.with) = (Some(also.actor), also.piece.clone());
             self.frames.push(twin);
+        }
+        if let (Some(who), Some(Act::Hold | Act::Park | Act::Stop)) = (frame.who, frame.act()) {
+            self.world.actors[who].parked = true;
         }
         self.frames.push(frame);
         let number = self.frames.len() - 1;

@@ -24,6 +24,8 @@ impl Parser<'_> {
                 && frame.who == Some(actor)
                 && frame.object.is_none()
                 && !carry.fresh
+                // "clipping the rear sensors with its mirror".
+                && !(frame.on.is_some() && carry.preposition == Some("with"))
                 // "was hit by its front bumper".
                 || frame.is_contact() && frame.passive && frame.object == Some(actor) && frame.who.is_none()
         });
@@ -51,9 +53,26 @@ impl Parser<'_> {
         let stands = all[at + 1..].iter().take(2).any(|placed| {
             matches!(placed.chunk, Chunk::Verb(Sense::Act(Act::Hold | Act::Stop | Act::Park) | Sense::Parked, _))
         });
-        let last = self.frames.last().filter(|frame| frame.sentence == self.sentence && frame.is_contact())?;
+        let meets = |frame: &&crate::frame::Frame| {
+            frame.is_contact() || matches!(frame.sense, Sense::Approach | Sense::Act(Act::Pass)) && frame.happened()
+        };
+        let last = self.frames.last().filter(|frame| frame.sentence == self.sentence).filter(meets)?;
         let struck = !last.passive && last.object == Some(SUBJECT) && last.who != Some(SUBJECT);
         (carry.fresh && carry.joint == Some(Joint::While) && stands && struck).then_some(SUBJECT)
+    }
+
+    /// "A truck struck a parked truck, and as a result the truck touched it": of two of a kind the one that was struck.
+    pub(super) fn as_a_result(&self, actor: Actor, first: usize) -> Actor {
+        let Some(last) = self.frames.iter().rev().find(|frame| frame.is_contact() && !frame.aside) else {
+            return actor;
+        };
+        let Some(struck) = last.object.filter(|struck| *struck != SUBJECT && last.who == Some(actor)) else {
+            return actor;
+        };
+        let alike = self.world.actors[struck].kind == self.world.actors[actor].kind;
+        let words = &self.tokens[last.end.min(first)..first];
+        let follows = words.iter().any(|token| matches!(token.text.as_str(), "result" | "force" | "causing"));
+        if alike && follows { struck } else { actor }
     }
 
     /// Whose door was opened last.
@@ -73,7 +92,18 @@ impl Parser<'_> {
                 && transitive(frame.sense)
         });
         let place = matches!(carry.preposition, Some("toward" | "towards" | "past" | "around" | "against"));
-        if doer != Some(actor) || !(carry.relation.is_some() || place || takes && carry.preposition.is_none()) {
+        // "made contact with a van stopped behind it": it is the van that stands there.
+        let of_object = frame.zip(carry.last.as_ref()).is_some_and(|(frame, last)| {
+            carry.relation.is_some()
+                && frame.is_contact()
+                && frame.object == Some(last.actor)
+                && last.actor != actor
+                && last.piece.is_none()
+        });
+        if of_object
+            || doer != Some(actor)
+            || !(carry.relation.is_some() || place || takes && carry.preposition.is_none())
+        {
             return actor;
         }
         match actor {

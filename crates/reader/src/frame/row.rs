@@ -44,6 +44,38 @@ impl Parser<'_> {
             && carry.preposition.is_none()
     }
 
+    /// Whether a word that nobody knows stands where a contact is told: between the subject vehicle and another one, or in
+    /// "was ...ed by".
+    pub(super) fn may_touch(&self, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let token = &self.tokens[all[at].first];
+        let apart =
+            ["miss", "avoid", "notic", "observ", "clear", "own", "lease", "operat", "assist", "inspect", "view"];
+        let unknown = token.kind == TokenKind::Word
+            && !token.capital
+            && token.text.len() > 4
+            && token.text.ends_with("ed")
+            && !apart.iter().any(|stem| token.text.starts_with(stem))
+            && self.lexicon.longest(self.tokens, all[at].first, |_| true).is_none();
+        let Some(subject) = carry.subject.as_ref().filter(|_| unknown) else { return false };
+        let mut behind = all[at + 1..].iter().map(|placed| &placed.chunk);
+        let next = behind.next();
+        if carry.be {
+            let doer = matches!(behind.next(), Some(Chunk::Noun(noun)) if !noun.subject && noun.kind.is_some());
+            return subject.actor == SUBJECT && matches!(next, Some(Chunk::Preposition("by"))) && doer;
+        }
+        let preposition = matches!(next, Some(Chunk::Preposition("with" | "into" | "against" | "along" | "onto")));
+        let object = if preposition { behind.next() } else { next };
+        let touched = match object {
+            Some(Chunk::Piece(piece)) => piece
+                .owner
+                .as_ref()
+                .map_or(piece.its && preposition, |owner| owner.subject != (subject.actor == SUBJECT)),
+            Some(Chunk::Noun(noun)) => noun.subject != (subject.actor == SUBJECT) && noun.kind.is_some() | noun.subject,
+            _ => false,
+        };
+        touched && acts(self.world.actors[subject.actor].kind) && !carry.has_verb
+    }
+
     /// Whether a relative clause tells of a thing that the lexicon does not know: "the bracket that holds it".
     pub(super) fn of_a_word(&self, all: &[Placed], at: usize) -> bool {
         let Some(before) = at.checked_sub(2) else { return false };
@@ -236,6 +268,12 @@ pub(super) fn next_is_verb(all: &[Placed], at: usize) -> bool {
         }
     }
     false
+}
+
+/// "was looking at his phone": nothing that is wished.
+pub(super) fn looks_somewhere(all: &[Placed], at: usize) -> bool {
+    let next = all.get(at + 1).map(|placed| &placed.chunk);
+    matches!(next, Some(Chunk::Preposition(word)) if !matches!(*word, "to" | "for"))
 }
 
 /// Whether a finite verb stands behind in the same clause.

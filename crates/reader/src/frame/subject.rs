@@ -12,7 +12,7 @@ impl Parser<'_> {
     pub(super) fn doing(&self, placed: &Placed) -> Option<(Act, Option<LeftRight>)> {
         (placed.first..placed.end).find_map(|at| {
             let act = match self.tokens[at].text.as_str() {
-                "passing" | "overtaking" => Act::Pass,
+                "passing" | "overtaking" | "splitting" => Act::Pass,
                 "merging" => Act::LaneChange,
                 "turning" => Act::Turn,
                 "reversing" | "backing" => Act::Reverse,
@@ -123,6 +123,7 @@ impl Parser<'_> {
         placed: &Placed,
         carry: &Carry,
         purpose: bool,
+        finite_behind: bool,
     ) -> Option<Mention> {
         if carry.pushed && purpose {
             return carry.last.clone();
@@ -177,7 +178,9 @@ impl Parser<'_> {
         // "by crossing the line": who does the rest.
         let by = carry.preposition == Some("by");
         let participle = matches!(form, Form::Ing | Form::Past) && !carry.be && !purpose && !carry.began && !by;
-        let of_place = carry.governed && carry.frame.is_none() && form == Form::Past;
+        // "The van ahead of it stopped": the van, unless it has a verb of its own behind.
+        let waits = carry.subject.is_some() && !carry.has_verb && carry.joint.is_none_or(|joint| joint != Joint::And);
+        let of_place = carry.governed && carry.frame.is_none() && form == Form::Past && (finite_behind || !waits);
         if adjacent && participle && (carry.has_verb || of_place) && self.touches_last(sense, form, placed, carry) {
             return carry.last.clone();
         }

@@ -1,0 +1,125 @@
+//! State of the subject vehicle at the contact: the words held against the column speed and the movement column.
+
+use super::Reading;
+use super::party::reasons;
+use crate::world::SUBJECT;
+use recrash_model::account::{Account, Act, ContactState, Fact, StandReason, Standing, told};
+use recrash_model::template::Movement;
+
+/// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.
+pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
+    let record = reading.record;
+    let column = record.sv_movement.known();
+    let words = told(&account.sv.state);
+    let stopping = told(&account.sv.standing) == Some(Standing::Stopping);
+    let rolls = record.sv_speed_mps.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
+    let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
+    let value = match (words, column) {
+        // In the lane, for passengers.
+        (Some(ContactState::Parked), Some(Movement::Stopped))
+            if account.sv.reasons.iter().any(|reason| reason.value == StandReason::PickupDropoff) =>
+        {
+            Some(ContactState::Stopped)
+        }
+        (Some(ContactState::Stopped), Some(Movement::Parked)) => Some(ContactState::Parked),
+        (None, Some(Movement::Parked)) => Some(ContactState::Parked),
+        (None, Some(Movement::Stopped)) => Some(ContactState::Stopped),
+        (None, Some(Movement::Backing)) => Some(ContactState::Reversing),
+        (None, _) if zero => Some(ContactState::Stopped),
+        (None, Some(_)) => Some(ContactState::Moving),
+        (None, None) if rolls || moves_at_contact(reading) => Some(ContactState::Moving),
+        // "was struck while stopping for a light", and no number says more.
+        (Some(ContactState::Stopped), None | Some(Movement::Straight))
+            if stopping && record.sv_speed_mps.is_none() && stops_at_contact(reading) =>
+        {
+            Some(ContactState::Moving)
+        }
+        // It moved into something, and backwards by the column.
+        (Some(state), Some(Movement::Backing)) if state != ContactState::Reversing && moves_at_contact(reading) => {
+            Some(ContactState::Reversing)
+        }
+        // Slowing in words, standing in numbers: it had come to stand.
+        // Told to come to a stop, and still rolling in numbers.
+        (Some(ContactState::Stopped), _)
+            if rolls
+                && (stopping || moves_at_contact(reading))
+                && !account.sv.acts.iter().any(|fact| fact.act == Act::Hold && !fact.after_contact) =>
+        {
+            Some(ContactState::Moving)
+        }
+        // It moved into something.
+        (Some(ContactState::Stopped), Some(movement))
+            if rolls && moves_at_contact(reading) && movement != Movement::Stopped =>
+        {
+            Some(ContactState::Moving)
+        }
+        // "As it set off, a van struck it" is plain.
+        (Some(ContactState::SettingOff), Some(Movement::Stopped | Movement::Parked))
+            if zero && !moves_at_contact(reading) && !sets_off_at_contact(reading) =>
+        {
+            Some(ContactState::Stopped)
+        }
+        // "had pulled over", and no number says more.
+        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
+            if record.sv_speed_mps.is_none()
+                && !moves_at_contact(reading)
+                && account
+                    .sv
+                    .acts
+                    .iter()
+                    .rfind(|fact| !fact.after_contact)
+                    .is_some_and(|fact| matches!(fact.act, Act::PullOver | Act::Park)) =>
+        {
+            Some(if column == Some(Movement::Parked) { ContactState::Parked } else { ContactState::Stopped })
+        }
+        (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
+            if zero && !moves_at_contact(reading) =>
+        {
+            Some(ContactState::Stopped)
+        }
+        _ => None,
+    };
+    if let Some(value) = value {
+        let name = if zero { "SV Precrash Speed (MPH)" } else { "SV Pre-Crash Movement" };
+        account.sv.state = Some(Fact::of_column(value, name));
+        if value.stands() {
+            account.sv.standing.get_or_insert_with(|| {
+                let how = if words == Some(ContactState::Moving) { Standing::Stopping } else { Standing::FromTheStart };
+                Fact::of_column(how, name)
+            });
+            if account.sv.reasons.is_empty() {
+                account.sv.reasons = reasons(reading, SUBJECT);
+            }
+        }
+    }
+    if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
+        account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
+    }
+}
+
+/// Whether the sentence of the contact says last of the subject vehicle that it was about to stop.
+fn stops_at_contact(reading: &Reading<'_>) -> bool {
+    let Some(contact) = reading.contacts.first else { return false };
+    let sentence = reading.story.frames[contact].sentence;
+    let last = reading.before(SUBJECT).filter(|(_, frame)| frame.happened()).last();
+    last.is_some_and(|(number, frame)| {
+        let while_it = number > contact && frame.joint == Some(crate::chunk::Joint::While);
+        frame.sentence == sentence && while_it && frame.act() == Some(Act::Stop)
+    })
+}
+
+/// Whether the sentence of the contact says that the subject vehicle sets off.
+fn sets_off_at_contact(reading: &Reading<'_>) -> bool {
+    let Some(contact) = reading.contacts.first else { return false };
+    let sentence = reading.story.frames[contact].sentence;
+    reading.before(SUBJECT).any(|(_, frame)| {
+        frame.sentence == sentence
+            && frame.happened()
+            && matches!(frame.act(), Some(Act::SetOff | Act::Follow | Act::Enter | Act::Turn))
+    })
+}
+
+/// Whether the words of the contact's own clause say that the subject vehicle moved into something.
+pub(super) fn moves_at_contact(reading: &Reading<'_>) -> bool {
+    reading.contacts.first.is_some_and(|number| reading.story.frames[number].who == Some(SUBJECT))
+}
