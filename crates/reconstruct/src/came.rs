@@ -7,7 +7,9 @@ use crate::ground::Ground;
 use crate::kerb;
 use crate::lateral;
 use crate::others::Role;
-use crate::pace::{Pace, ROLLING_MPS, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, when};
+use crate::pace::{
+    Pace, ROLLING_MPS, STOOD_S, STOPPING_MPS2, ego_paces, first_time, next, partner_paces, time_before, when,
+};
 use crate::phases;
 use crate::side::{Turning, size_of as size_of_kind};
 use crate::things;
@@ -208,7 +210,9 @@ fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64, least_m: f64
         let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
         let half_m = (braking_m + pace.speed_mps * ROLLS_S).min(pace.driven_m);
         (half_m, (brakes_s - ROLLS_S).max(0.0))
-    } else if half_m < pace.driven_m && (drives || least_m > 0.0) {
+    } else if half_m < pace.driven_m && least_m > 0.0 {
+        (half_m, time_before(contact_s, pace, half_m))
+    } else if half_m < pace.driven_m && drives {
         (half_m, contact_s - half_m / speed_mps)
     } else {
         (pace.driven_m.max(1.0), first_time(&pace.acts))
@@ -224,7 +228,15 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         let least_m = if ground.drift.is_some() { DRIFTS_BY * by_m } else { 0.0 };
         let shift = shift(told.contact_s, aside, &pace, told.sv.speed_mps, least_m);
         // It leaves its line before it stops for good.
-        let at = if told.sv.state.stands() { 0 } else { pace.acts.len() };
+        let at = match told.sv.state.stands() {
+            true => 0,
+            // Acts begin in order.
+            false if ground.drift.is_some() => {
+                let from_s = first_time(std::slice::from_ref(&shift));
+                pace.acts.partition_point(|act| first_time(std::slice::from_ref(act)) <= from_s)
+            }
+            false => pace.acts.len(),
+        };
         match lead.as_mut().filter(|_| told.sv.state.stands()) {
             Some(lead) => lead.shifts(aside.to_t_m),
             None => pace.acts.insert(at, shift),

@@ -502,7 +502,7 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
         told.origin,
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
     );
-    let Some(touch) = first_touch(rollout).filter(|_| drives && on_road) else { return false };
+    let Some(touch) = first_touch(rollout).filter(|_| drives && on_road || told.edge.is_some()) else { return false };
     if (touch.time_s - told.contact_s).abs() > AS_STAGED_S {
         return true;
     }

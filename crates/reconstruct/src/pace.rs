@@ -12,6 +12,7 @@ use crate::touch::{Staging, size_of};
 use recrash_model::account::{ContactState, ControlDevice, Obeyed, Origin, Striker};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::rollout::STEP_S;
 use recrash_model::scenario::{Act, Deed, Trigger};
 use recrash_model::template::Movement;
 
@@ -84,7 +85,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);
     let usual = from_line(told, ground, sv_s_m)
         .or_else(|| before_who_waits(told))
-        .or_else(|| roadside::from_stand(told))
+        .or_else(|| roadside::slows_in_turn(told, past_line_m(told, ground, sv_s_m)))
         .unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
     let begins_s = match sv.state.stands() {
         true => contact_s - told.choices.stood_s,
@@ -301,6 +302,22 @@ pub(crate) fn first_time(acts: &[Act]) -> f64 {
             _ => None,
         })
         .unwrap_or(0.0)
+}
+
+/// When somebody has yet to drive so far to the contact. [s]
+pub(crate) fn time_before(contact_s: f64, pace: &Pace, left_m: f64) -> f64 {
+    let steps = (contact_s / STEP_S).round() as usize;
+    let (mut speed_mps, mut driven_m) = (pace.speed_mps, vec![0.0]);
+    for step in 0..steps {
+        let begun = pace.acts.iter().rfind(|act| first_time(std::slice::from_ref(act)) <= STEP_S * step as f64 + 1e-9);
+        if let Some(Deed::Speed { to_mps, rate_mps2 }) = begun.map(|act| act.deed.clone()) {
+            let by_mps = rate_mps2 * STEP_S;
+            speed_mps += (to_mps - speed_mps).clamp(-by_mps, by_mps);
+        }
+        driven_m.push(driven_m[step] + speed_mps * STEP_S);
+    }
+    let from = driven_m.iter().position(|driven| driven_m[steps] - driven <= left_m).unwrap_or(0);
+    STEP_S * from as f64
 }
 
 /// From a stand to a speed within a distance, or less.

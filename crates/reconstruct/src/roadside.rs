@@ -3,7 +3,7 @@
 
 use crate::came::sv_at_contact;
 use crate::ground::{Ground, LANE_M};
-use crate::pace::{Pace, STOOD_S, ego_paces, start_over};
+use crate::pace::{Pace, ego_paces, when};
 use crate::side::{Side, Turning};
 use crate::things::{self, Lies};
 use crate::told::{Aside, Told};
@@ -14,7 +14,7 @@ use recrash_model::account::{
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::ActorState;
-use recrash_model::scenario::{Size, StripKind};
+use recrash_model::scenario::{Deed, Size, StripKind};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use recrash_roads::{RoadPart, Scenario};
@@ -201,12 +201,42 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Sta
     found
 }
 
-/// Who stood, and turned then, has done so in most of the time that there is.
-pub(crate) fn from_stand(told: &Told) -> Option<Pace> {
-    let sv = &told.sv;
-    let turns = told.edge.is_some() && sv.stood_first && sv.turning != Turning::No;
-    let driven_m = sv.speed_mps * (told.contact_s - STOOD_S - 1.0) * 0.9;
-    turns.then(|| start_over(told.contact_s, sv.speed_mps, driven_m)).flatten()
+/// Speeds in a turn to what is met at the end of it, changes of speed, and how long somebody is seen before it sets off. [m/s, m/s^2, s]
+const TURNS_MPS: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
+const GAINS_MPS2: f64 = 1.6;
+const SLOWS_MPS2: f64 = 1.5;
+const SEEN_S: f64 = 1.0;
+
+/// Who turns to what it meets at the edge of the road that it enters, or across it, and is slow there, has been faster in its turn: it comes along, or
+/// from its stop line where it stood.
+pub(crate) fn slows_in_turn(told: &Told, past_line_m: Option<f64>) -> Option<Pace> {
+    let (sv, end_s) = (&told.sv, told.contact_s);
+    let turns = (told.edge.is_some() || told.stands_across()) && matches!(sv.turning, Turning::Left | Turning::Right);
+    let line_m = past_line_m.filter(|_| turns && sv.state == ContactState::Moving && sv.phases.is_empty())?;
+    let slows = |from_mps: f64| {
+        let over_s = (from_mps - sv.speed_mps) / SLOWS_MPS2;
+        let brake = when(end_s - over_s, Deed::Speed { to_mps: sv.speed_mps, rate_mps2: SLOWS_MPS2 });
+        (over_s, 0.5 * (from_mps + sv.speed_mps) * over_s, brake)
+    };
+    let faster = TURNS_MPS.into_iter().filter(|mps| *mps > sv.speed_mps);
+    if !sv.stood_first {
+        if sv.speed_mps * end_s > line_m {
+            return None;
+        }
+        return faster.into_iter().find_map(|from_mps| {
+            let (over_s, over_m, brake) = slows(from_mps);
+            let driven_m = from_mps * (end_s - over_s) + over_m;
+            (driven_m > line_m).then(|| Pace { speed_mps: from_mps, acts: vec![brake], driven_m })
+        });
+    }
+    faster.into_iter().find_map(|most_mps| {
+        let (over_s, over_m, brake) = slows(most_mps);
+        let gaining_s = most_mps / GAINS_MPS2;
+        let holds_m = line_m - over_m - 0.5 * most_mps * gaining_s;
+        let from_s = end_s - over_s - gaining_s - holds_m / most_mps;
+        let go = when(from_s, Deed::Speed { to_mps: most_mps, rate_mps2: GAINS_MPS2 });
+        (holds_m > 0.0 && from_s > SEEN_S).then(|| Pace { speed_mps: 0.0, acts: vec![go, brake], driven_m: line_m })
+    })
 }
 
 /// How the partner may face, against the road, and where it may be touched; `near`: its flank that is nearer to the ego, where it faces as the

@@ -2,7 +2,7 @@
 
 use crate::things::thing;
 use crate::ways::{before_contact, degrees_between, made, partner, story};
-use recrash_model::account::{Account, Fact, LaneWord, Striker};
+use recrash_model::account::{Account, Fact, LaneWord, Speed, SpeedMeaning, Striker};
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::scenario::{MapSpec, ObstacleKind, Place, ScenarioDraft, StripKind};
@@ -110,6 +110,17 @@ fn a_kerb_met_after_a_turn_is_that_of_the_road_entered() {
     assert!((heading_deg - 90.0).abs() < 1.0 && x_m > 3.0 && y_m > 15.0, "{object:?}");
     let met = shown.rollout.ego_track().states[before_contact(&shown)];
     assert!(degrees_between(met.heading, 90.0_f64.to_radians()) < 25.0, "{met:?}");
+}
+
+#[test]
+fn who_is_slow_at_the_end_of_a_turn_has_turned_before() {
+    let mut account = story(WIDE);
+    account.sv.speeds = vec![Fact::of_column(Speed { mps: 0.9, meaning: SpeedMeaning::Impact }, "made for this test")];
+    let shown = made(&account);
+    let states = &shown.rollout.ego_track().states;
+    let met = states[before_contact(&shown)];
+    assert!(states[0].heading.abs() < 0.01 && states[0].speed() > 2.0, "{:?}", states[0]);
+    assert!(met.speed() < 1.5 && degrees_between(met.heading, 90.0_f64.to_radians()) < 25.0, "{met:?}");
 }
 
 #[test]
