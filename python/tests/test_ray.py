@@ -189,6 +189,26 @@ def test_metadrive_workers_of_a_killed_node_are_done_without(killed_after_two, d
     assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
 
 
+@needs_metadrive
+def test_a_corpus_on_metadrive_is_that_of_one_machine(second_node, noted, tmp_path):
+    import recrash.ray
+
+    program, started = noted
+    options = {"ego": "metadrive-idm", "simulator": "metadrive", "python": program, "batch": 2}
+    options["where"] = "road = street and month = 1 and partner = suv"
+    table = recrash.ray.corpus(out=tmp_path / "on.parquet", **options)
+    workers = started()
+    assert len(workers) == 2
+    wait_until_gone(workers)
+    rows = table.to_pylist()
+    # Among them: one that is not told, and one that MetaDrive cannot hold, which fails alone.
+    assert any(row["scenario"] is None for row in rows)
+    assert any("cannot be held by MetaDrive" in (row["error"] or "") for row in rows)
+    assert len([row for row in rows if row["state_hash"]]) >= 2
+    assert rows == recrash.ray.corpus(out=tmp_path / "here.parquet", cluster=False, **options).to_pylist()
+    assert (tmp_path / "on.parquet").read_bytes() == (tmp_path / "here.parquet").read_bytes()
+
+
 def test_where_a_worker_has_no_metadrive_it_is_told(cluster, scenarios, tmp_path):
     import recrash.ray
 

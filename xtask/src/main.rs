@@ -22,6 +22,7 @@ usage: cargo xtask COMMAND
   docs       rustdoc, warnings denied
   python     the Python tests
   wheel      lint, types, tests, notebook and API pages of the Python package, in a wheel that it builds; and its sdist
+  wheel-size whether the release wheels in target/wheels are under 12 MB; `wheel` asks that too where one is there
   browser    makes a suite and clicks through its report in headless Chromium
   fuzz       20 s of fuzzing for each reader of untrusted files
   fuzz-keep  keeps what fuzzing found, as few inputs as reach the same code
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         "ci" => steps::ci(&mut tally),
         "fuzz-keep" => fuzz::keep(),
         "licences" => licences::write(),
+        "wheel-size" => wheel::sizes(),
         name => match steps::STEPS.iter().find(|(step, _)| *step == name) {
             Some((_, step)) => step(&mut tally),
             None => {
