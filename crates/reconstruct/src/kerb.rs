@@ -12,6 +12,7 @@ use recrash_model::account::{
 use recrash_model::math;
 use recrash_model::narrative::Side;
 use recrash_model::scenario::{Driveway, Place, StripKind};
+use recrash_model::template::Movement;
 
 /// Angles of who backs into a space at the kerb, to the road; its rear points to the kerb. [deg]
 const BACKS_IN_DEG: [f64; 7] = [25.0, 30.0, 20.0, 35.0, 12.0, 5.0, 0.0];
@@ -60,9 +61,10 @@ pub(crate) fn leaves_driveway(partner: &Party) -> bool {
 }
 
 impl Told {
-    /// Whether the ego is parked at the kerb. Whom somebody has to pass on the other side of the road is in its lane.
+    /// Whether the ego is parked at the kerb. Whom somebody from behind has to go round is in its lane.
     pub(crate) fn is_at_kerb(&self) -> bool {
-        let in_the_way = self.origin == Origin::Behind && self.cp.lane == Some(LaneWord::Opposing);
+        let goes_round = self.cp.lane == Some(LaneWord::Opposing) || self.cp.movement == Some(Movement::Passing);
+        let in_the_way = self.origin == Origin::Behind && goes_round && self.cp.state != ContactState::Reversing;
         let on_lane = self.sv.lane.is_some_and(|lane| lane != LaneWord::Curb);
         self.sv.state == ContactState::Parked && self.thing.is_none() && !on_lane && !in_the_way
     }

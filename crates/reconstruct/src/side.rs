@@ -111,7 +111,9 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         _ => ContactState::Moving,
     });
     // Who moves backwards moves.
-    let backs = state == ContactState::Moving && movement == Some(Movement::Backing) && !went_on(party);
+    let backs = state == ContactState::Moving
+        && (movement == Some(Movement::Backing) || parks_backing(party))
+        && !went_on(party);
     let state = if backs { ContactState::Reversing } else { state };
     if !state_told {
         assumed.push(format!("the {who} is {state:?} at the contact"));
@@ -208,6 +210,12 @@ fn slowed_after_its_stand(party: &Party) -> bool {
     };
     let stands = last(|act| matches!(act, Act::Hold | Act::SetOff | Act::Stop));
     last(|act| act == Act::Slow) > stands
+}
+
+/// Whether the last that is told of somebody is that it reversed, and parked.
+fn parks_backing(party: &Party) -> bool {
+    let acts: Vec<Act> = party.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+    acts.ends_with(&[Act::Reverse, Act::Park])
 }
 
 /// Whether somebody is told to have driven on, forwards, after it had backed.

@@ -4,6 +4,7 @@ use super::Reading;
 use super::fallback::{by_columns, by_side, square_front, zone_side};
 use super::party::has_zone;
 use crate::chunk::Spot;
+use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
@@ -68,12 +69,24 @@ pub(crate) fn ahead(reading: &Reading<'_>, account: &Account) -> Option<Fact<boo
     let Some(Origin::Beside { .. }) = told(&account.came_from) else { return None };
     let actor = reading.contacts.partner?;
     let leaves = |act: Act| matches!(act, Act::LaneChange | Act::Swerve | Act::Drift | Act::Pass | Act::Turn);
+    let places = |relation: &Relation| matches!(relation, Relation::Ahead | Relation::Behind);
     let on_its_line = reading.before(actor).take_while(|(_, frame)| !frame.act().is_some_and(leaves));
     let mut seen =
-        on_its_line.flat_map(|(number, frame)| frame.relations.iter().map(move |(relation, _)| (number, relation)));
-    let (number, relation) = seen.find(|(_, relation)| matches!(relation, Relation::Ahead | Relation::Behind))?;
+        on_its_line.flat_map(|(number, frame)| frame.relations.iter().map(move |(relation, _)| (number, *relation)));
+    let told_on_its_line = seen.find(|(_, relation)| places(relation));
+    // Whoever changes lanes in front of it was ahead, and so was whom it came near.
+    let changes = || reading.before(actor).find(|(_, frame)| frame.act() == Some(Act::LaneChange) && frame.happened());
+    let cuts_in = || {
+        let (number, frame) = changes()?;
+        frame.relations.iter().any(|(relation, _)| *relation == Relation::Ahead).then_some((number, Relation::Ahead))
+    };
+    let neared = || {
+        let near = |frame: &Frame| frame.sense == Sense::Approach && frame.happened() && frame.object == Some(actor);
+        reading.before(SUBJECT).find(|(_, frame)| near(frame)).map(|(number, _)| (number, Relation::Ahead))
+    };
+    let (number, relation) = told_on_its_line.or_else(cuts_in).or_else(neared)?;
     let (first, end) = reading.window(number);
-    Some(Fact { value: *relation == Relation::Ahead, source: reading.words(first, end) })
+    Some(Fact { value: relation == Relation::Ahead, source: reading.words(first, end) })
 }
 
 /// From where the partner came.
