@@ -221,7 +221,7 @@ fn between_lines(staging: &Staging, pace: &Pace, arm_m: f64, lines: [(f64, f64);
 const LEAST_BY_RADIUS_M: f64 = 7.0;
 
 /// Radius of a turn: of the line that the rear axle drives on. [m]
-const TURN_M: f64 = 8.0;
+pub(crate) const TURN_M: f64 = 8.0;
 
 /// Who has turned into the ego's road meets it so far behind its turn, or farther. [m]
 const BEHIND_TURN_M: f64 = 1.0;

@@ -214,7 +214,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
         // It slows with the ego that it follows.
         ContactState::Moving if told.sv.slowed_from.is_some() && follows && usual.driven_m < ego_m + 5.0 => {
             let from_mps = (ego.speed_mps + FOLLOWS_BY_MPS).max(cp.speed_mps);
-            let braking_s = contact_s - first_time(&ego.acts);
+            // It brakes after the ego does.
+            let braking_s = (contact_s - first_time(&ego.acts) - BRAKES_LATER_S).max(LEAST_BRAKING_S);
             let brake =
                 Deed::Speed { to_mps: cp.speed_mps, rate_mps2: ((from_mps - cp.speed_mps) / braking_s).max(0.05) };
             let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + cp.speed_mps) * braking_s;
@@ -409,6 +410,10 @@ fn gains(contact_s: f64, speed_mps: f64) -> Pace {
 
 /// Who gained speed before the contact gained so much, at most half of it. [m/s]
 pub(crate) const GAINS_MPS: f64 = 3.0;
+
+/// Who follows an ego that slows brakes so long after it, for so long at least. [s]
+const BRAKES_LATER_S: f64 = 0.6;
+const LEAST_BRAKING_S: f64 = 0.4;
 
 /// Who follows an ego that slows is faster than it by so much before. [m/s]
 const FOLLOWS_BY_MPS: f64 = 1.0;

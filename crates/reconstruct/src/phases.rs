@@ -41,8 +41,9 @@ const MOST_PHASES: usize = 4;
 pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun).collect();
     acts.sort_by_key(|fact| fact.step);
-    let mut list: Vec<Phase> = Vec::new();
+    let (mut list, mut went_on): (Vec<Phase>, bool) = (Vec::new(), false);
     for fact in acts {
+        went_on |= fact.act == Act::Slow && !list.is_empty();
         let phase = match fact.act {
             Act::Stop | Act::Hold => Phase::Stands,
             Act::SetOff
@@ -61,10 +62,12 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
             Act::Reverse => Phase::Reverses,
             _ => continue,
         };
-        // Who came to a stop came along before.
-        if list.is_empty() && fact.act == Act::Stop {
+        // Who came to a stop came along before; so did who stood, went on and slowed for it.
+        let goes_on = list.last() == Some(&Phase::Stands) && went_on && fact.act == Act::Stop;
+        if list.is_empty() && fact.act == Act::Stop || goes_on {
             list.push(Phase::Drives);
         }
+        went_on = false;
         if list.last() != Some(&phase) {
             list.push(phase);
         }

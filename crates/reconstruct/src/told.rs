@@ -464,7 +464,9 @@ impl Told {
                         && (self.sv.movement == Some(Movement::Passing)
                             || self.ahead == Some(true) && self.cp.turning == Turning::No) =>
                 {
-                    self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.5).max(0.4));
+                    // Of an ego that slows, as fast as that is at the end: it came faster.
+                    let slower = if self.sv.slowed_from.is_some() { sv } else { sv - 2.5 };
+                    self.cp.speed_mps = self.cp.speed_mps.min(slower.max(0.4));
                 }
                 // Who turns across from beside came up beside it, and slowed for its turn.
                 Origin::Beside { .. } if matches!(self.cp.turning, Turning::Left | Turning::Right) => {

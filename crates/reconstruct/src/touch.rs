@@ -6,7 +6,7 @@ use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::kerb;
-use crate::lateral::is_on_foot;
+use crate::lateral::{TURN_M, is_on_foot};
 use crate::roadside;
 use crate::side::{Side, Slant, Turning};
 use crate::things;
@@ -116,7 +116,8 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         let face_on = told.scrapes() && is_face_on(told, sv, cp);
                         let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
                         let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
-                        let worse = [(face_on, FACE_ON), (swings, SWINGS), (late, LATE)];
+                        let squeezed = told.turns_from_beside() && aside_before_m(sv, cp, came) < BESIDE_M;
+                        let worse = [(face_on, FACE_ON), (swings, SWINGS), (late, LATE), (squeezed, SQUEEZED)];
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
                         let cost = (off + worse, trial);
                         let (ground, door) = (ground.clone(), None);
@@ -147,6 +148,16 @@ const FACE_ON: u32 = 2;
 const SWINGS: u32 = 2;
 const SWINGS_RAD: f64 = 0.35;
 
+/// And of who turns across from beside, that it was nearer to the ego's line than this before its turn. [m]
+const SQUEEZED: u32 = 1;
+const BESIDE_M: f64 = 2.4;
+
+/// How far beside the ego's line somebody came along that turned to this pose. [m]
+fn aside_before_m(sv: Pose, cp: Pose, came: f64) -> f64 {
+    let turn = math::wrap_angle(cp.heading - came);
+    (cp.position.y - turn.signum() * TURN_M * (1.0 - math::cos(turn)) - sv.position.y).abs()
+}
+
 /// The same of it, that the ego has turned by more than this. [rad]
 const LATE: u32 = 1;
 const EARLY_RAD: f64 = 0.6;
@@ -174,6 +185,11 @@ fn follows(told: &Told, ground: &Ground, (sv_s_m, sv): (f64, Pose)) -> Option<(f
 }
 
 impl Told {
+    /// Whether the partner turns across the ego's way from the lane beside it.
+    fn turns_from_beside(&self) -> bool {
+        matches!(self.origin, Origin::Beside { .. }) && matches!(self.cp.turning, Turning::Left | Turning::Right)
+    }
+
     /// Whether the partner comes behind an ego that turns, by the same way.
     fn turns_behind(&self) -> bool {
         let turns = match self.sv.turning {

@@ -75,10 +75,11 @@ pub(crate) fn ahead(reading: &Reading<'_>, account: &Account) -> Option<Fact<boo
         on_its_line.flat_map(|(number, frame)| frame.relations.iter().map(move |(relation, _)| (number, *relation)));
     let told_on_its_line = seen.find(|(_, relation)| places(relation));
     // Whoever changes lanes in front of it was ahead, and so was whom it came near.
-    let changes = || reading.before(actor).find(|(_, frame)| frame.act() == Some(Act::LaneChange) && frame.happened());
     let cuts_in = || {
-        let (number, frame) = changes()?;
-        frame.relations.iter().any(|(relation, _)| *relation == Relation::Ahead).then_some((number, Relation::Ahead))
+        let changes = |frame: &Frame| matches!(frame.act(), Some(Act::LaneChange | Act::Enter)) && frame.happened();
+        let in_front = |frame: &Frame| frame.relations.iter().any(|(relation, _)| *relation == Relation::Ahead);
+        let found = reading.before(actor).find(|(_, frame)| changes(frame) && in_front(frame));
+        found.map(|(number, _)| (number, Relation::Ahead))
     };
     let neared = || {
         let near = |frame: &Frame| frame.sense == Sense::Approach && frame.happened() && frame.object == Some(actor);
@@ -223,6 +224,10 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             {
                 return told_as(Origin::Behind, source);
             }
+            // Out of the space behind it, or a row of them there.
+            Some(Spot::Stall) if parked && behind_first(clues) && !did(Act::Reverse) => {
+                return told_as(Origin::Behind, source);
+            }
             Some(Spot::Stall) if at_curb(reading, actor) => {
                 return told_as(Origin::Parked { side: side.or_else(|| zone_side(account)) }, source);
             }
@@ -249,7 +254,18 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         did(Act::Turn) || did(Act::PullOut) || did(Act::SetOff) || did(Act::Reverse) || did(Act::Follow),
         stall,
     ) {
+        if behind_first(clues) && !did(Act::Reverse) {
+            return told_as(Origin::Behind, source);
+        }
         return told_as(Origin::Stall { side: side.or_else(|| zone_side(account)) }, source);
+    }
+    // It stood in a driveway, and came out of it backwards.
+    if parked
+        && did(Act::Reverse)
+        && let Some(source) = stood_in(reading, actor, &["driveway", "driveways"])
+    {
+        let across = clues.any(Relation::Opposite).then_some(LeftRight::Left);
+        return told_as(Origin::Driveway { side: side.or(across).or_else(|| zone_side(account)) }, source);
     }
     // It was ahead in one lane, and the subject vehicle left that lane.
     if let (Some(Relation::Ahead), Some(change)) =
@@ -665,12 +681,15 @@ fn lead_of_subject(reading: &Reading<'_>, actor: Actor) -> bool {
 
 /// The words that place somebody in a stall.
 fn in_stall(reading: &Reading<'_>, actor: Actor) -> Option<Source> {
+    stood_in(reading, actor, &["stall", "stalls", "space", "spot", "carport", "spaces"])
+}
+
+/// Where it stood in a place of one of these names.
+fn stood_in(reading: &Reading<'_>, actor: Actor, names: &[&str]) -> Option<Source> {
     let tokens = &reading.story.tokens;
     reading.before(actor).find_map(|(number, frame)| {
         let (first, end) = reading.window(number);
-        let at = (first..end).find(|&at| {
-            matches!(tokens[at].text.as_str(), "stall" | "stalls" | "space" | "spot" | "carport" | "spaces")
-        })?;
+        let at = (first..end).find(|&at| names.contains(&tokens[at].text.as_str()))?;
         (frame.sense == Sense::Parked || frame.act() == Some(Act::Hold) || frame.sense == Sense::Face)
             .then(|| reading.words(frame.first, at + 1))
     })

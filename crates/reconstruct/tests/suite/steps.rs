@@ -206,3 +206,26 @@ fn who_turns_behind_the_ego_comes_by_its_way() {
     // As the lane turns, and no sharper.
     assert!(turned(states.len() - 6) < 35.0, "{}", turned(states.len() - 6));
 }
+
+#[test]
+fn who_stood_went_on_and_came_to_a_stop_again_does() {
+    let account = story(
+        "The AV was stopped at a red light. When the light turned green the AV approached the intersection, braked for a pedestrian and came \
+         to a stop. A van approached from behind and the front of the van made contact with the rear of the stationary AV.",
+    );
+    let speeds = speeds(&made(&account));
+    let fastest = speeds.iter().copied().fold(0.0, f64::max);
+    assert!(speeds[0] == 0.0 && fastest > 1.0 && speeds[speeds.len() - 1] == 0.0, "{speeds:?}");
+    assert!(missed(&account, |less| without_acts(less, &[Act::Slow])).contains(&CheckKind::SvState));
+}
+
+#[test]
+fn who_cuts_in_front_of_the_ego_was_ahead_of_it() {
+    let account = story(
+        "The AV was traveling in the right lane and slowing for traffic when a sedan in the left lane changed lanes in front of the AV. The \
+         front left of the AV made contact with the right side of the sedan.",
+    );
+    let shown = made(&account);
+    let states = partner(&shown).0;
+    assert!(states[0].x > shown.rollout.ego_track().states[0].x, "{:?}", states[0]);
+}
