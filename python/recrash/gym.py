@@ -66,6 +66,8 @@ _MODES = {
     AutoresetMode.SAME_STEP: "same_step",
     AutoresetMode.DISABLED: "disabled",
 }
+#: How episodes end, by the batch's code; 0 has not.
+_BY_CODE = np.array([None, *ENDINGS], object)
 #: How pictures for people are coloured: off the road, road, route; then somebody, something; the ego.
 _GROUND = np.array([[44, 62, 50], [90, 90, 96], [126, 126, 134]], np.uint8)
 
@@ -348,20 +350,19 @@ class CrashVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return core.observations(self._copy), rewards, terminated, truncated, infos
 
     def _ended(self, ended: NDArray[np.bool_]) -> dict[str, Any]:
-        batch, slots = self._core.batch, np.flatnonzero(ended)
+        batch = self._core.batch
         returns = batch.episode_returns.copy()
         if self._core.custom is not None:
             returns = np.where(ended, self._totals, 0.0)
             self._totals[ended] = 0.0
-        endings: NDArray[Any] = np.full(self.num_envs, None, object)
-        endings[slots] = [ENDINGS[code - 1] for code in batch.endings[slots]]
+        endings = _BY_CODE[batch.endings]
         episode = {"r": returns, "_r": ended, "l": batch.episode_steps.copy(), "_l": ended}
         found: dict[str, Any] = {"ending": endings, "_ending": ended, "episode": episode, "_episode": ended}
         if self._core.judges:
             runs: NDArray[Any] = np.full(self.num_envs, None, object)
             findings: NDArray[Any] = np.full(self.num_envs, None, object)
             failed, delta_v = np.zeros(self.num_envs, bool), np.zeros(self.num_envs)
-            for slot in slots:
+            for slot in np.flatnonzero(ended):
                 run = batch.judged(int(slot))
                 if run is not None:
                     runs[slot], findings[slot] = run, run.finding_kinds

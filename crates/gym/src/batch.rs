@@ -11,13 +11,17 @@ use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
 use recrash_model::seed::Seed;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Fewer slots than this are not worth another thread.
 const GRAIN: usize = 16;
 
 /// A thread takes its share in about so many turns, so that none waits long for the last.
 const TURNS: usize = 32;
+
+/// So long threads stay awake for the next step: to be woken takes a tenth of a step of a thousand slots.
+const AWAKE: Duration = Duration::from_micros(200);
 
 /// What happens when an episode has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -189,7 +193,30 @@ pub struct Batch {
     sums: Vec<f64>,
     settings: Settings,
     slots: Vec<Slot>,
-    pool: Option<ThreadPool>,
+    /// Every slot can go on, whatever ends: it need not be looked for one that cannot.
+    runs_on: bool,
+    pool: Option<Pool>,
+}
+
+/// Threads beside the caller's.
+#[derive(Debug)]
+struct Pool {
+    threads: ThreadPool,
+    /// How many steps have begun.
+    turns: Arc<AtomicUsize>,
+}
+
+impl Pool {
+    /// Its threads wait a moment for the next step before they sleep.
+    fn stay_awake(&self) {
+        let (turns, now) = (Arc::clone(&self.turns), self.turns.load(Ordering::Acquire));
+        self.threads.spawn_broadcast(move |_| {
+            let begun = Instant::now();
+            while turns.load(Ordering::Acquire) == now && begun.elapsed() < AWAKE {
+                std::thread::yield_now();
+            }
+        });
+    }
 }
 
 impl Batch {
@@ -209,11 +236,12 @@ impl Batch {
             0 | 1 => None,
             threads => {
                 let built = rayon::ThreadPoolBuilder::new().num_threads(threads - 1).build();
-                Some(built.map_err(|_| BatchError::Threads(threads))?)
+                let threads = built.map_err(|_| BatchError::Threads(threads))?;
+                Some(Pool { threads, turns: Arc::default() })
             }
         };
         let sums = (1..=scenes.len()).map(|number| number as f64).collect();
-        Ok(Self { scenes, sums, settings, slots, pool })
+        Ok(Self { scenes, sums, settings, slots, runs_on: false, pool })
     }
 
     /// The scenes.
@@ -317,15 +345,18 @@ impl Batch {
     pub fn step(&mut self, actions: Actions<'_>, outputs: Outputs<'_>) -> Result<(), BatchError> {
         self.check(&outputs)?;
         self.check_actions(actions)?;
-        let begins = self.settings.autoreset == Autoreset::NextStep;
-        if let Some(slot) = self.slots.iter().position(|slot| slot.ended && !(begins && slot.is_begun())) {
-            return Err(BatchError::Ended { slot });
+        if !self.runs_on {
+            let begins = self.settings.autoreset == Autoreset::NextStep;
+            if let Some(slot) = self.slots.iter().position(|slot| slot.ended && !(begins && slot.is_begun())) {
+                return Err(BatchError::Ended { slot });
+            }
+            self.runs_on = self.settings.autoreset != Autoreset::Disabled;
         }
         let shared = Shared { scenes: &self.scenes, sums: &self.sums, settings: &self.settings };
         let all = Part { slots: &mut self.slots, actions, outputs };
         match &self.pool {
             Some(pool) if all.slots.len() > GRAIN => {
-                let threads = pool.current_num_threads() + 1;
+                let threads = pool.threads.current_num_threads() + 1;
                 let grain = (all.slots.len() / (TURNS * threads)).max(GRAIN);
                 let rest = Mutex::new(Some(all));
                 let busy = AtomicUsize::new(threads - 1);
@@ -336,7 +367,8 @@ impl Batch {
                 };
                 // The caller's thread does not wait until another is awake; and it begins at the other end, so that a slot
                 // mostly stays with the thread that has its memory at hand.
-                pool.in_place_scope(|scope| {
+                pool.turns.fetch_add(1, Ordering::Release);
+                pool.threads.in_place_scope(|scope| {
                     (1..threads).for_each(|_| {
                         scope.spawn(|_| {
                             let _until_here = Busy(&busy);
@@ -349,6 +381,7 @@ impl Batch {
                         std::thread::yield_now();
                     }
                 });
+                pool.stay_awake();
             }
             _ => all.step(&shared),
         }
