@@ -3,7 +3,7 @@
 use crate::control;
 use crate::door::Opening;
 use crate::extras;
-use crate::ground::Ground;
+use crate::ground::{Ground, LANE_M};
 use crate::kerb;
 use crate::lateral;
 use crate::others::Role;
@@ -423,19 +423,29 @@ fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
         return None;
     }
     let (met_m, beside_m) = ground.beside(cp.position);
-    // Who comes behind it comes along its lane.
-    let beside_m =
-        if told.origin == Origin::Behind { beside_m.clamp(-FOLLOWS_BESIDE_M, FOLLOWS_BESIDE_M) } else { beside_m };
-    [3.0, 5.0, 8.0].into_iter().find_map(|joins_m| {
+    // Who comes behind it comes along its lane, and who turns beside it along the next one.
+    let abreast = matches!(told.origin, Origin::Beside { .. }) && told.cp.turning == told.sv.turning;
+    let beside_m = match told.origin {
+        Origin::Behind => beside_m.clamp(-FOLLOWS_BESIDE_M, FOLLOWS_BESIDE_M),
+        _ if abreast => beside_m.signum() * beside_m.abs().max(LANE_M),
+        _ => beside_m,
+    };
+    let joins: &[f64] = if abreast { &[12.0, 9.0, 15.0, 6.0] } else { &[3.0, 5.0, 8.0] };
+    joins.iter().find_map(|&joins_m| {
         let last_m = met_m - joins_m;
         let mut join = Course::begin(arm_m);
         if !join.curve(ground.pose(last_m, beside_m), cp, false) {
             return None;
         }
-        let begin_m = last_m - (pace.driven_m - join.length_m());
         let turn_m = (last_m - ground.first_m()).max(0.0);
         let steps = (turn_m / PIECE_M).ceil() as usize;
         let on_way = (0..=steps).map(|step| last_m - turn_m * (1.0 - step as f64 / steps.max(1) as f64));
+        // Beside the middle of the lane the turn is shorter, or longer.
+        let mut turn = Course::begin(arm_m);
+        let mut pieces = on_way.clone().map(|s_m| ground.pose(s_m, beside_m));
+        let first = pieces.next().unwrap_or(cp);
+        let turns_m = if pieces.all(|pose| turn.curve(first, pose, false)) { turn.length_m() } else { turn_m };
+        let begin_m = last_m - turn_m - (pace.driven_m - join.length_m() - turns_m);
         let on_way = on_way.filter(|s_m| *s_m > begin_m + 0.5).map(|s_m| ground.pose(s_m, beside_m));
         (begin_m < last_m - 1.0).then(|| (ground.pose(begin_m, beside_m), on_way.chain([cp]).collect()))
     })

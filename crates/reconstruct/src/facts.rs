@@ -240,7 +240,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         [(CheckKind::SvLane, &told.sv, Some(ego_track)), (CheckKind::CpLane, &told.cp, touch.track)]
     {
         if let (Some(word), Some(track)) = (side.lane, track) {
-            held(kind, lane_words(word).to_owned(), lane(word, scenario, [ego_track, track], touch.time_s));
+            held(kind, lane_words(word).to_owned(), lane((told, word), scenario, [ego_track, track], touch.time_s));
         }
     }
     for (kind, side, track) in
@@ -294,9 +294,16 @@ fn lane_words(word: LaneWord) -> &'static str {
     }
 }
 
-/// Whether somebody begins in the told lane of its road; on the opposite side it is when they touch.
-fn lane(word: LaneWord, scenario: &Scenario, [ego, track]: [&ActorTrack; 2], time_s: f64) -> (CheckResult, String) {
+/// Whether somebody begins in the told lane of its road; on the opposite side it is when they touch. Where both are told to be in a lane
+/// for the same turn, side by side, there are two.
+fn lane(
+    (told, word): (&Told, LaneWord),
+    scenario: &Scenario,
+    [ego, track]: [&ActorTrack; 2],
+    time_s: f64,
+) -> (CheckResult, String) {
     let network = scenario.network();
+    let turn_lanes = if told.turns_abreast() { 2 } else { 1 };
     // Who is told to be on the opposite side went there.
     let at = if word == LaneWord::Opposing { ((time_s * 10.0) as usize).min(track.states.len() - 1) } else { 0 };
     let first = &track.states[at];
@@ -307,8 +314,10 @@ fn lane(word: LaneWord, scenario: &Scenario, [ego, track]: [&ActorTrack; 2], tim
     let number = lanes.iter().position(|lane| *lane == id).unwrap_or(0);
     let last = lanes.len() - 1;
     let shown = match word {
-        LaneWord::Left | LaneWord::LeftTurn => number == 0,
-        LaneWord::Right | LaneWord::RightTurn => number == last,
+        LaneWord::Left => number == 0,
+        LaneWord::Right => number == last,
+        LaneWord::LeftTurn => number < turn_lanes,
+        LaneWord::RightTurn => number + turn_lanes > last,
         LaneWord::Center => number > 0 && number < last,
         LaneWord::Opposing => {
             let heading = network.lane(id).heading(0.0) - ego.states[0].heading;

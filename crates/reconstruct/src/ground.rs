@@ -16,6 +16,10 @@ pub(crate) const LANE_M: f64 = 3.4;
 /// Length of the ego's road before a junction, and of a street on each side of the contact. [m]
 const APPROACH_M: f64 = 320.0;
 
+/// Whose turn is over has turned by so much; places to try are so far behind that. [rad, m]
+const TURNED_RAD: f64 = 1.3;
+const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
+
 /// From a junction's centre to where its arms begin. [m]
 const CORNER_M: f64 = 13.0;
 
@@ -78,6 +82,15 @@ impl Ground {
             .find(|s_m| (self.sv_pose(*s_m).position.y - centre_y_m).abs() >= corner_m(self.lanes))
             .unwrap_or(APPROACH_M);
         Self { places: behind_m.iter().map(|behind_m| entry_m - 0.5 * ego_m + behind_m).collect(), ..self }
+    }
+
+    /// The same, with the places first at which the ego's turn is over.
+    fn after_turn(mut self) -> Self {
+        let turned = |s_m: &f64| self.sv_pose(*s_m).heading.abs() > TURNED_RAD;
+        let over_m = (0..120).map(|step| APPROACH_M + 0.5 * f64::from(step)).find(turned);
+        let places = over_m.iter().flat_map(|over_m| AFTER_TURN_M.map(|behind_m| over_m + behind_m));
+        self.places = places.chain(self.places.iter().copied()).collect();
+        self
     }
 
     /// The same, with an ego that drifts.
@@ -238,6 +251,14 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
         LaneWord::Center => Some(lanes / 2),
         _ => None,
     };
+    // Of two lanes that turn the ego's is the other one.
+    if told.turns_abreast() {
+        match (told.sv.lane, told.origin) {
+            (Some(LaneWord::LeftTurn), Origin::Beside { side: LeftRight::Left }) if lanes > 1 => return Some(1),
+            (Some(LaneWord::RightTurn), Origin::Beside { side: LeftRight::Right }) => return lanes.checked_sub(2),
+            _ => {}
+        }
+    }
     if let Some(word) = told.sv.lane {
         return number(word);
     }
@@ -353,7 +374,8 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }]
     };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes } };
-    with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true)
+    let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
+    if told.sv.turned { ground.after_turn() } else { ground }
 }
 
 /// Lanes in the ego's direction, the ego's, 0 is the leftmost, and those of who comes towards it.

@@ -23,9 +23,11 @@ const PARKS_MPS: f64 = 5.0;
 /// Who passes is faster by this. [m/s]
 const FASTER_MPS: f64 = 0.3;
 
-/// Who turns has turned by more than this at the contact, or by more where it is to meet the other head-on; straight on is less than that, and who turns round has turned by more. [deg]
+/// Who turns has turned by more than this at the contact, or by more where it is to meet the other head-on, or has all but done it;
+/// straight on is less than that, and who turns round has turned by more. [deg]
 const TURNS_DEG: f64 = 20.0;
 const TURNS_WIDE_DEG: f64 = 60.0;
+const TURNED_DEG: f64 = 50.0;
 const STRAIGHT_DEG: f64 = 50.0;
 const ROUND_DEG: f64 = 60.0;
 
@@ -191,7 +193,11 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
             (fits, turned_words(turned))
         }
     };
-    let least = if side.turns_wide { TURNS_WIDE_DEG } else { TURNS_DEG };
+    let least = match (side.turned, side.turns_wide) {
+        (true, _) => TURNED_DEG,
+        (false, true) => TURNS_WIDE_DEG,
+        (false, false) => TURNS_DEG,
+    };
     let turns = match side.turning {
         Turning::Left => turned > least,
         Turning::Right => turned < -least,

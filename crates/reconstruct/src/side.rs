@@ -55,6 +55,8 @@ pub(crate) struct Side {
     pub(crate) turning: Turning,
     /// It goes to turn where the other one it runs into turns or stands: it may have begun to.
     pub(crate) turns_later: bool,
+    /// Its turn was over, or all but over.
+    pub(crate) turned: bool,
     /// It turns all the way into the road that the other is on, to meet it head-on.
     pub(crate) turns_wide: bool,
     /// To which side it moves out of its line, where told.
@@ -174,6 +176,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         gains,
         stopped_aside,
         turns_later: false,
+        turned: turning != Turning::No && party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done),
         turns_wide: false,
         dodges: false,
         slants: None,

@@ -44,6 +44,9 @@ const AFTER_MPS: f64 = 5.2;
 /// Who sets off behind an ego that moves is faster than it by so much. [m/s]
 const SETS_OFF_FASTER_MPS: f64 = 1.0;
 
+/// Who turns beside an ego that turns is faster than it by so much. [m/s]
+const ABREAST_MPS: f64 = 1.0;
+
 /// Speed in a turn, usual and at most. [m/s]
 const TURNS_MPS: f64 = 5.0;
 const FASTEST_TURN_MPS: f64 = 7.0;
@@ -467,6 +470,10 @@ impl Told {
                     // Of an ego that slows, as fast as that is at the end: it came faster.
                     let slower = if self.sv.slowed_from.is_some() { sv } else { sv - 2.5 };
                     self.cp.speed_mps = self.cp.speed_mps.min(slower.max(0.4));
+                }
+                // Who turns beside an ego that turns is hardly faster.
+                Origin::Beside { .. } if self.sv.turning != Turning::No && self.cp.turning == self.sv.turning => {
+                    self.cp.speed_mps = sv + ABREAST_MPS;
                 }
                 // Who turns across from beside came up beside it, and slowed for its turn.
                 Origin::Beside { .. } if matches!(self.cp.turning, Turning::Left | Turning::Right) => {

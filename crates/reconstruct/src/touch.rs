@@ -13,7 +13,7 @@ use crate::things;
 use crate::told::Told;
 use crate::trailer::{self, Rig};
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::{ContactState, CrashType, LeftRight, Origin};
+use recrash_model::account::{ContactState, CrashType, LaneWord, LeftRight, Origin};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -158,6 +158,9 @@ fn aside_before_m(sv: Pose, cp: Pose, came: f64) -> f64 {
     (cp.position.y - turn.signum() * TURN_M * (1.0 - math::cos(turn)) - sv.position.y).abs()
 }
 
+/// How far somebody has turned whose turn is over. [deg]
+const OVER_DEG: [f64; 5] = [90.0, 80.0, 72.0, 100.0, 60.0];
+
 /// The same of it, that the ego has turned by more than this. [rad]
 const LATE: u32 = 1;
 const EARLY_RAD: f64 = 0.6;
@@ -188,6 +191,12 @@ impl Told {
     /// Whether the partner turns across the ego's way from the lane beside it.
     fn turns_from_beside(&self) -> bool {
         matches!(self.origin, Origin::Beside { .. }) && matches!(self.cp.turning, Turning::Left | Turning::Right)
+    }
+
+    /// Whether both are side by side in lanes for the same turn.
+    pub(crate) fn turns_abreast(&self) -> bool {
+        let beside = matches!(self.origin, Origin::Beside { .. });
+        beside && self.sv.lane == self.cp.lane && matches!(self.sv.lane, Some(LaneWord::LeftTurn | LaneWord::RightTurn))
     }
 
     /// Whether the partner comes behind an ego that turns, by the same way.
@@ -295,14 +304,12 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             }
         }
         Turning::Left | Turning::Round => {
-            for off in [40.0, 60.0, 25.0, 75.0, 90.0, 12.0, 120.0] {
-                list.push((came, came + degrees(off)));
-            }
+            let over = if told.cp.turned { &OVER_DEG[..] } else { &[40.0, 60.0, 25.0, 75.0, 90.0, 12.0, 120.0] };
+            list.extend(over.iter().map(|off| (came, came + degrees(*off))));
         }
         Turning::Right => {
-            for off in [40.0, 60.0, 25.0, 75.0, 90.0, 12.0] {
-                list.push((came, came - degrees(off)));
-            }
+            let over = if told.cp.turned { &OVER_DEG[..] } else { &[40.0, 60.0, 25.0, 75.0, 90.0, 12.0] };
+            list.extend(over.iter().map(|off| (came, came - degrees(*off))));
         }
     };
     if told.lies.is_some() {
@@ -346,10 +353,15 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
                 (false, _) => vec![0.0],
                 (true, true) if goes_on => vec![0.0, behind, sv_heading],
                 (true, true) => vec![behind, sv_heading, 0.0],
+                (true, false) if told.sv.turned => vec![sv_heading, 0.0],
                 (true, false) => vec![0.0, sv_heading],
             };
-            if told.cp.turning == Turning::No {
-                list.extend(bases.iter().flat_map(|base| aside.iter().map(move |off| (0.0, base + degrees(*off)))));
+            // Who turned beside it goes as it does.
+            let abreast = told.sv.turned && told.cp.turning == told.sv.turning;
+            if told.cp.turning == Turning::No || abreast {
+                // Along the road that the ego has turned into, or along its way.
+                let came = |base: f64| if told.sv.turned && !abreast && !follows { base } else { 0.0 };
+                list.extend(bases.iter().flat_map(|base| aside.iter().map(move |off| (came(*base), base + degrees(*off)))));
             } else {
                 turned(0.0, &mut list);
             }

@@ -99,6 +99,9 @@ pub struct ActFact {
     pub after_contact: bool,
     /// It was begun or attempted, and the contact came before it was done.
     pub begun: bool,
+    /// It is told to have been done, or all but done, before what is told next.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub done: bool,
     /// Where it stands.
     pub source: Source,
 }

@@ -2,7 +2,7 @@
 
 use super::Reading;
 use super::state::sv_state;
-use crate::chunk::Spot;
+use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided, zone_of};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
 use crate::token::TokenKind;
@@ -90,6 +90,7 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             step: number as u32,
             after_contact,
             begun: frame.progress == Progress::Tried,
+            done: is_done(reading, frame),
             source: reading.of(frame),
         };
         let in_passing = frame.aside && all.iter().any(|known| known.act == act);
@@ -101,10 +102,8 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             {
                 last.side = last.side.or(side);
                 // The last word on it is that it was done.
-                let done =
-                    matches!(&fact.source, Source::Words { text, .. } if text.to_lowercase().starts_with("complet"));
-                if done {
-                    last.source = fact.source;
+                if fact.done {
+                    (last.done, last.source) = (true, fact.source);
                 }
             }
             _ if in_passing => {}
@@ -112,6 +111,12 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         }
     }
     all
+}
+
+/// "completed its left turn", "after it had turned".
+fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let first = reading.story.tokens.get(frame.first).map(|token| token.text.as_str()).unwrap_or_default();
+    frame.joint == Some(Joint::After) || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
 }
 
 fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> Option<Act> {
