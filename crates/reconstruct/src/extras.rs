@@ -239,7 +239,9 @@ impl Scene<'_> {
             return Some(ActorPlan { course, acts, ..ActorPlan::standing(at(0.0)) });
         }
         // Behind whom the ego moves up, that one has moved up before.
-        let Some((up_s, up_m)) = self.moved_up() else { return Some(ActorPlan::standing(at(0.0))) };
+        let Some((up_s, up_m)) = self.moved_up().filter(|_| !extra.parked) else {
+            return Some(ActorPlan::standing(at(0.0)));
+        };
         let speed_mps = 0.9 * (GOES_MPS2 * up_m).sqrt();
         let stop = Deed::Stop { rate_mps2: GOES_MPS2, at_m: Some(up_m) };
         let acts = vec![when(up_s, Deed::Speed { to_mps: speed_mps, rate_mps2: GOES_MPS2 }), next(stop)];

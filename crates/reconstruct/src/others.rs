@@ -88,6 +88,8 @@ pub(crate) struct Extra {
     pub(crate) kind: Kind,
     /// Who stands ahead drives on before the ego or the partner does.
     pub(crate) goes: bool,
+    /// Is told to be parked.
+    pub(crate) parked: bool,
     /// It does so before the ego moves between two stops.
     pub(crate) first: bool,
     /// On which side of the ego it is, or from which it comes, where told.
@@ -147,31 +149,49 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         let Some(role) = story.role(told, other).filter(|role| is_drawn(told, *role)) else { continue };
         let kind = other.kind.value;
         let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
-        let goes = role == Role::Lead && sets_off(told) || drives_on.is_some();
+        let parked = other.acts.iter().any(|fact| text(&fact.source).contains("parked"));
+        let goes = role == Role::Lead && sets_off(told) && !parked || drives_on.is_some();
         let first = drives_on == Some(true);
         match list.iter_mut().find(|extra| extra.role == role) {
             Some(known) if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind)) => {
                 known.of.push(number);
                 known.goes |= goes;
+                known.parked |= parked;
                 known.first |= first;
             }
             Some(_) => {}
             None => {
                 let side = story.side(role, told, other);
-                list.push(Extra { role, of: vec![number], kind, goes, first, side });
+                list.push(Extra { role, of: vec![number], kind, goes, parked, first, side });
             }
         }
     }
     let blocked = told.reasons.contains(&StandReason::BlockedJunction) && told.sv.state == ContactState::Stopped;
     if blocked && told.thing.is_none() && list.iter().all(|extra| extra.role != Role::Beyond) {
         let kind = Kind::Vehicle;
-        list.push(Extra { role: Role::Beyond, of: Vec::new(), kind, goes: false, first: false, side: None });
+        list.push(Extra {
+            role: Role::Beyond,
+            of: Vec::new(),
+            kind,
+            goes: false,
+            parked: false,
+            first: false,
+            side: None,
+        });
     }
     let queue = told.reasons.iter().any(|reason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle));
     if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
         list.insert(
             0,
-            Extra { role: Role::Lead, of: Vec::new(), kind: Kind::Vehicle, goes: false, first: false, side: None },
+            Extra {
+                role: Role::Lead,
+                of: Vec::new(),
+                kind: Kind::Vehicle,
+                goes: false,
+                parked: false,
+                first: false,
+                side: None,
+            },
         );
     }
     list

@@ -594,7 +594,8 @@ fn stood_before(sv: &Party, partner: &Party) -> bool {
         matches!(act, Act::Reverse | Act::SetOff | Act::PullOut | Act::Enter | Act::Turn | Act::Pass | Act::LaneChange)
     };
     let begun = steps(partner, begins).into_iter().min();
-    let last = steps(sv, |_| true).into_iter().max();
+    // That it stood yet is told when it is struck.
+    let last = steps(sv, |act| act != Act::Hold).into_iter().max();
     told(&sv.standing) == Some(Standing::FromTheStart) || last.is_some() && begun.is_some() && last < begun
 }
 

@@ -13,7 +13,7 @@ use crate::things;
 use crate::told::Told;
 use crate::trailer::{self, Rig};
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::{ContactState, CrashType, LaneWord, LeftRight, Origin};
+use recrash_model::account::{ContactState, CrashType, LaneWord, LeftRight, Origin, Striker};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -117,7 +117,14 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
                         let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
                         let squeezed = told.turns_from_beside() && aside_before_m(sv, cp, came) < BESIDE_M;
-                        let worse = [(face_on, FACE_ON), (swings, SWINGS), (late, LATE), (squeezed, SQUEEZED)];
+                        let other_way = told.is_struck_otherwise((sv_seen, cp_seen));
+                        let worse = [
+                            (face_on, FACE_ON),
+                            (swings, SWINGS),
+                            (late, LATE),
+                            (squeezed, SQUEEZED),
+                            (other_way, OTHER_WAY),
+                        ];
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
                         let cost = (off + worse, trial);
                         let (ground, door) = (ground.clone(), None);
@@ -147,6 +154,9 @@ fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
 const FACE_ON: u32 = 2;
 const SWINGS: u32 = 2;
 const SWINGS_RAD: f64 = 0.35;
+
+/// Of who strikes the other with parts that nobody tells, that the other one's front does.
+const OTHER_WAY: u32 = 1;
 
 /// And of who turns across from beside, that it was nearer to the ego's line than this before its turn. [m]
 const SQUEEZED: u32 = 1;
@@ -191,6 +201,17 @@ impl Told {
     /// Whether the partner turns across the ego's way from the lane beside it.
     fn turns_from_beside(&self) -> bool {
         matches!(self.origin, Origin::Beside { .. }) && matches!(self.cp.turning, Turning::Left | Turning::Right)
+    }
+
+    /// Whether the front of the one who is told to have been struck meets a flank of the one who is told to have struck it.
+    fn is_struck_otherwise(&self, (sv_seen, cp_seen): (ContactZone, ContactZone)) -> bool {
+        let flank = |zone: ContactZone| matches!(zone, ContactZone::Left | ContactZone::Right);
+        let drives = |side: &Side| side.state == ContactState::Moving;
+        match self.striker {
+            Some(Striker::Cp) if drives(&self.cp) && self.cp.zones.is_empty() => sv_seen.is_front() && flank(cp_seen),
+            Some(Striker::Sv) if drives(&self.sv) && self.sv.zones.is_empty() => cp_seen.is_front() && flank(sv_seen),
+            _ => false,
+        }
     }
 
     /// Whether both are side by side in lanes for the same turn.
@@ -361,7 +382,9 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
             if told.cp.turning == Turning::No || abreast {
                 // Along the road that the ego has turned into, or along its way.
                 let came = |base: f64| if told.sv.turned && !abreast && !follows { base } else { 0.0 };
-                list.extend(bases.iter().flat_map(|base| aside.iter().map(move |off| (came(*base), base + degrees(*off)))));
+                list.extend(
+                    bases.iter().flat_map(|base| aside.iter().map(move |off| (came(*base), base + degrees(*off)))),
+                );
             } else {
                 turned(0.0, &mut list);
             }

@@ -129,6 +129,14 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     if frame.progress == Progress::Wished {
         return None;
     }
+    // "When the light turned green, a car that was facing south proceeded": it stood.
+    let moved = || {
+        let before = frame.who.into_iter().flat_map(|who| reading.before(who)).take_while(|(other, _)| *other < number);
+        before.filter(|(_, frame)| frame.happened()).filter_map(|(_, frame)| frame.act()).last()
+    };
+    if frame.sense == Sense::Face && turned_green(reading, frame) && moved().is_none() {
+        return Some(Act::Hold);
+    }
     let act = frame.act()?;
     let headline =
         reading.story.frames.iter().any(|other| other.sentence == frame.sentence && other.sense == Sense::Headline);
@@ -144,11 +152,28 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     };
     let keeps = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
     let goes_on = keeps.starts_with("continu") || keeps.starts_with("remain");
+    // "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.
+    let with_subject = || {
+        let sets_off = |other: &Frame| {
+            other.who == Some(SUBJECT) && other.sentence == frame.sentence && other.act() == Some(Act::SetOff)
+        };
+        let behind = |other: &Frame| other.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
+        let own =
+            || reading.story.frames.iter().filter(|other| other.who == frame.who && other.sentence == frame.sentence);
+        let goes = ["proceed", "start", "beg", "mov"].iter().any(|start| keeps.starts_with(start));
+        let waits = frame.who != Some(SUBJECT) && goes && own().any(behind) && turned_green(reading, frame);
+        waits && reading.story.frames.iter().any(sets_off)
+    };
     // "proceeded forward out of a stall".
     let comes_out = matches!(frame.out_of, Some(Spot::Stall | Spot::Driveway | Spot::Curb));
     match act {
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Some(Act::PullOut),
         Act::Follow if !goes_on && frame.sense != Sense::Approach && stood().is_some() => Some(Act::SetOff),
+        Act::Follow if with_subject() => Some(Act::SetOff),
+        // Who came along and was "beginning to enter" did not stand.
+        Act::SetOff if keeps.chars().take(24).collect::<String>().contains("enter") && moved() == Some(Act::Follow) => {
+            Some(Act::Enter)
+        }
         // "passed through the junction" passes nobody.
         Act::Pass
             if frame.object.is_some_and(|object| {
@@ -170,6 +195,14 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         }
         _ => Some(act),
     }
+}
+
+/// Whether the sentence tells that a light turned green.
+fn turned_green(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let sentence = reading.story.sentences[frame.sentence];
+    let words = &reading.story.tokens[sentence.first..sentence.end];
+    let turns = |word: &str| ["turned", "turn", "turns", "changed", "became"].contains(&word);
+    words.windows(4).any(|words| turns(&words[0].text) && words[1..].iter().any(|word| word.text == "green"))
 }
 
 /// What somebody did who did not stop or yield where it should.

@@ -5,6 +5,9 @@ use crate::lexicon::Lexicon;
 use recrash_model::account::{Fact, Place, PlaceKind, RoadFeature};
 use recrash_model::template::RoadType;
 
+/// Words behind a garage or a lot that name the way into it.
+const WAYS_IN: [&str; 4] = ["entrance", "entry", "driveway", "gate"];
+
 /// What words and columns tell of the place.
 pub(crate) fn place(reading: &Reading<'_>) -> Place {
     let lexicon = Lexicon::get();
@@ -22,7 +25,9 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
             }
         }
         for (kind, at, length) in lexicon.places(words) {
-            if place.kind.is_none() {
+            // Somebody turns into it.
+            let way_in = words.get(at + length).is_some_and(|next| WAYS_IN.contains(&next.text.as_str()));
+            if place.kind.is_none() && !(way_in && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot)) {
                 place.kind = Some(reading.told(kind, sentence.first + at, sentence.first + at + length));
             }
         }
