@@ -26,8 +26,8 @@ pub use contradiction::narrative_contradictions;
 pub use expectation::expectation;
 pub use expressible::inexpressible;
 pub use parameters::parameters;
-pub use rules::Rules;
 pub use rules::telling::tell;
+pub use rules::{Rules, can_stage};
 
 use recrash_model::account::Account;
 use recrash_model::metrics::{Check, Metrics};
@@ -45,7 +45,7 @@ pub struct Brief<'a> {
     pub scenario_id: &'a str,
     /// The template it must keep.
     pub template: Template,
-    /// The pick first, then the other reports of its incident.
+    /// The pick first, then the other reports of its incident; none where no record is of the template, and `untold` says so.
     pub records: &'a [&'a CrashRecord],
     /// Why the pick's own crash is not told, where that is known: then one is invented.
     pub untold: Option<&'a str>,

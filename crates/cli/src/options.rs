@@ -62,6 +62,9 @@ pub struct ChoiceArgs {
     /// Scenarios to make, 1 to 20000, or all: one for every crash that can be told. [default: 20]
     #[arg(long, help_heading = "Selection", value_name = "N|all", value_parser = budget)]
     pub budget: Option<Budget>,
+    /// Also invent a crash for every template of the profile that no record is of; with a profile that goes by templates.
+    #[arg(long, help_heading = "Selection")]
+    pub invent: bool,
     /// How the picks are chosen: stratified (every template first), kmeans (the paper's), k-center (no record far from
     /// its pick) or facility-location (near on average). [default: stratified]
     #[arg(long, help_heading = "Selection", value_name = "NAME", value_parser = strategy)]
@@ -220,6 +223,7 @@ impl ChoiceArgs {
                 Some(Budget::All) => None,
                 Some(Budget::AtMost(budget)) => Some(budget),
             },
+            invent: self.invent || base.invent,
             strategy: self.strategy.unwrap_or(base.strategy),
             weighting: self.weighting.unwrap_or(base.weighting),
             template_weight: self.template_weight.unwrap_or(base.template_weight),

@@ -101,6 +101,10 @@ pub struct Cluster {
     pub members: Vec<usize>,
     /// Distance from the pick to its farthest member, in the clustering space.
     pub radius: f64,
+    /// No record is of this template: its crash is invented, and it has no members. The pick, the record of the most alike template,
+    /// lends the surroundings alone.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub invented: bool,
 }
 
 /// A record's place on the cluster map: the first two principal components of the clustering space.

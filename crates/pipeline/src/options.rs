@@ -43,6 +43,9 @@ pub struct Options {
     pub profile: String,
     /// Scenarios to make, at most; all that can be told where not given.
     pub budget: Option<usize>,
+    /// Also invents a crash for every template of the profile that no record is of.
+    #[serde(default)]
+    pub invent: bool,
     /// How the picks are chosen.
     pub strategy: Strategy,
     /// How much one record counts in sharing out the picks.
@@ -103,6 +106,7 @@ impl Default for Options {
             mapping: None,
             profile: "open".into(),
             budget: Some(20),
+            invent: false,
             strategy: Strategy::Stratified,
             weighting: Weighting::default(),
             template_weight: default_template_weight(),
@@ -159,6 +163,7 @@ impl Options {
         option("searcher", self.searcher.clone(), default.searcher);
         option("aim", self.aim.name().into(), default.aim.name().into());
         option("seed", self.seed.to_string(), default.seed.to_string());
+        words.extend(self.invent.then(|| "--invent".to_owned()));
         words.join(" ")
     }
 

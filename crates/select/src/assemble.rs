@@ -71,6 +71,7 @@ fn cluster(records: &RecordSet, space: &ClusteringSpace, number: usize, group: &
         pick_index,
         members: group.members.iter().map(|&row| space.positions[row]).collect(),
         radius: group.members.iter().map(to_pick).fold(0.0, f64::max),
+        invented: false,
     }
 }
 

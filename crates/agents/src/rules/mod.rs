@@ -29,10 +29,16 @@ use recrash_model::narrative::Narrative;
 use recrash_model::profile::SystemProfile;
 use recrash_model::record::CrashRecord;
 use recrash_model::scenario::ScenarioDraft;
+use recrash_model::template::Template;
 
 /// The built-in rules. See `docs/models/rules.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rules;
+
+/// Whether the rules can stage a crash of this template.
+pub fn can_stage(template: &Template) -> bool {
+    !staging::stagings(template).is_empty()
+}
 
 impl Rules {
     /// What the rules say happened in a record, whether or not it can be retold: for judging them by labels.

@@ -27,19 +27,20 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
         let scenario_id = brief.scenario_id.to_owned();
         return Err(AgentError::TemplateUnknown { scenario_id, template: brief.template, known: KNOWN });
     }
-    let Some(&pick) = brief.records.first() else {
-        return Err(AgentError::NoRecord { scenario_id: brief.scenario_id.to_owned() });
-    };
-    let pick = read(pick);
+    let pick = brief.records.first().map(|record| read(record));
     let mut diagnostics = Vec::new();
-    let retold = brief.untold.map_or_else(|| retell(&pick, brief, ways), |why| Err(why.to_owned()));
+    let retold = match (&pick, brief.untold) {
+        (_, Some(why)) => Err(why.to_owned()),
+        (Some(pick), None) => retell(pick, brief, ways),
+        (None, None) => return Err(brief.no_record()),
+    };
     let (told, origin) = match retold {
         Ok(told) => (told, Origin::Own),
         Err(why) => {
             let reason = format!("{why}; a plausible course of the same template takes its place");
             let message = format!("{}: {reason}", brief.scenario_id);
             diagnostics.push(Diagnostic::new(Severity::Note, "narrative.invented", Location::default(), message));
-            (invent(&pick, brief, ways), Origin::Invented { reason })
+            (invent(pick.as_ref(), brief, ways), Origin::Invented { reason })
         }
     };
     let value = written(told, origin, brief, Author::Rules, &mut diagnostics);
@@ -127,15 +128,15 @@ fn retell(reading: &Reading, brief: &Brief, ways: &[Staging]) -> Result<Told, St
     Ok(Told { staging, approach, facts })
 }
 
-/// A staging of the template chosen by the seed, with what of the pick does not depend on the conflict.
-fn invent(pick: &Reading, brief: &Brief, ways: &[Staging]) -> Told {
+/// A staging of the template chosen by the seed, with what of the pick, where there is one, does not depend on the conflict.
+fn invent(pick: Option<&Reading>, brief: &Brief, ways: &[Staging]) -> Told {
     let mut rng = brief.seed.child(brief.scenario_id).child("alternative").rng();
-    let by_zones = if pick.collision.is_none() { from_zones(pick, ways) } else { None };
+    let by_zones = pick.filter(|pick| pick.collision.is_none()).and_then(|pick| from_zones(pick, ways));
     let (staging, why) = match by_zones {
         Some(staging) => (staging, "the contact areas suggest this side"),
         None => (ways[rng.below(ways.len())], "chosen among the approaches of the template"),
     };
-    let facts = pick.facts.iter().filter(|fact| survives(&fact.value)).cloned().collect();
+    let facts = pick.map_or(&[][..], |pick| &pick.facts).iter().filter(|fact| survives(&fact.value)).cloned().collect();
     let source = FactSource::Assumed { why: why.to_owned() };
     let approach = Fact { value: FactValue::Approach { approach: staging.approach }, source };
     Told { staging, approach, facts }

@@ -45,6 +45,39 @@ fn a_mistyped_folder_is_not_made_and_named_records_begin_a_suite() {
 }
 
 #[test]
+fn templates_without_records_are_invented_when_asked_for_and_count_for_nothing() {
+    let place = Place::new();
+    let all = ["--profile", "paper", "--tune-budget", "1"];
+    let run = |out: &str, more: &[&str]| json(&place, &[&["run", "--out", out], &all[..], more].concat());
+    let (plain, with) = (run("plain", &[]), run("with", &["--invent"]));
+    let cases = |summary: &Value| summary["cases"].as_array().unwrap().clone();
+    let (plain_cases, with_cases) = (cases(&plain), cases(&with));
+    // What records tell is as it was.
+    assert_eq!(with_cases[..plain_cases.len()], plain_cases[..]);
+    let selection = |out: &str| -> Value {
+        serde_json::from_slice(&std::fs::read(place.path(out).join("2-selection.json")).unwrap()).unwrap()
+    };
+    let (chosen, more) = (selection("plain"), selection("with"));
+    assert_eq!(chosen["coverage"], more["coverage"], "an invented crash covers nothing");
+    let missing = chosen["coverage"]["holes_possible"].as_array().unwrap();
+    let invented = &with_cases[plain_cases.len()..];
+    assert_eq!(invented.len(), missing.len(), "one for each template that no record is of");
+    for (case, template) in invented.iter().zip(missing) {
+        let id = case["id"].as_str().unwrap();
+        assert!(id.starts_with("invented-") && case["template"] == *template, "{id}");
+        assert_eq!((case["origin"]["is"].as_str(), &case["told"]), (Some("invented"), &Value::Null), "{id}");
+        assert_eq!((&case["failure"], &case["account"]), (&Value::Null, &Value::Null), "{id}");
+        let scenario = std::fs::read(place.path("with/4-scenarios").join(format!("{id}.json"))).unwrap();
+        let scenario: Value = serde_json::from_slice(&scenario).unwrap();
+        let records = scenario["source"]["records"].as_array().map_or(0, Vec::len);
+        assert_eq!((records, scenario["source"]["origin"]["is"].as_str()), (0, Some("invented")), "{id}");
+    }
+    let (code, _, error) = place.run(&["run", "--profile", "open", "--invent", "--out", "accounts"]);
+    assert!(code == 3 && error.contains("by their accounts and invents none"), "{code}: {error}");
+    assert!(!place.path("accounts/2-selection.json").exists());
+}
+
+#[test]
 fn every_option_of_the_choice_reaches_it() {
     let place = place_with_records();
     let base = json(&place, &["select"]);

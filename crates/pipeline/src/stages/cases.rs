@@ -53,11 +53,14 @@ impl Cases {
 
     /// The account of a cluster's pick, in a suite that goes by accounts.
     pub fn account(&self, cluster: &Cluster) -> Option<&Account> {
-        self.accounts.as_ref()?.of(&cluster.pick)
+        self.accounts.as_ref()?.of(&cluster.pick).filter(|_| !cluster.invented)
     }
 
-    /// Where the records of a case stand: the pick first, then the other reports of its incident.
+    /// Where the records of a case stand: the pick first, then the other reports of its incident; none of a template without records.
     pub fn shown(&self, cluster: &Cluster) -> Vec<usize> {
+        if cluster.invented {
+            return Vec::new();
+        }
         let records = &self.records.records;
         let pick = &records[cluster.pick_index];
         let same = |record: &CrashRecord| {
@@ -125,6 +128,9 @@ impl Cases {
 
     /// Why the pick's own crash is not told, where it is not.
     fn untold(&self, cluster: &Cluster) -> Option<&str> {
+        if cluster.invented {
+            return Some("no record is of this template");
+        }
         self.records.untold.get(&cluster.pick_index).map(String::as_str)
     }
 

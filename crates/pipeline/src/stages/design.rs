@@ -42,7 +42,9 @@ fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     refuse_contradictions(&narrative, &brief)?;
     let cast = &suite.options().cast;
     let (name, repairs) = (&cast.design, Repairs::default());
-    let model = suite.models().filter(|_| name != RULES).map(|models| models.model(name, cast, &repairs));
+    // There is nothing to read of a template without records.
+    let model =
+        suite.models().filter(|_| name != RULES && !cluster.invented).map(|models| models.model(name, cast, &repairs));
     let by_model = model.as_ref().map(|agent| Designer { name, agent, tries: cast.repairs + 1 });
     let by_rules = Designer { name: RULES, agent: &Rules, tries: MAX_DESIGNS };
     let designers: Vec<Designer> = by_model.into_iter().chain([by_rules]).collect();

@@ -7,6 +7,7 @@
 mod cases;
 mod design;
 mod failures;
+pub(crate) mod invent;
 mod narrate;
 mod own;
 mod records;

@@ -186,7 +186,7 @@ fn read_case<'a>(suite: &Suite, cases: &Cases, cluster: &'a Cluster) -> Result<C
         false => made(Stage::Narrate).then(|| store.read_json(&names::narrative(id))).transpose()?,
     };
     let narrative = narrative.zip(log);
-    let reading = cases.records.records[cluster.pick_index].reading.as_ref();
+    let reading = cases.records.records[cluster.pick_index].reading.as_ref().filter(|_| !cluster.invented);
     let account = reading.map(|reading| AccountRow {
         incident: reading.incident.clone(),
         reports: reading.reports,

@@ -1,6 +1,6 @@
 //! The second stage: records to picks; and studies of the choice.
 
-use super::{StageReport, StageWork, cases};
+use super::{StageReport, StageWork, cases, invent};
 use crate::embedding::{Embeds, KeptRows, for_strategy};
 use crate::error::PipelineError;
 use crate::files::store::{sha256, to_compact_json, to_json};
@@ -74,8 +74,10 @@ impl<'a> Choice<'a> {
             weighting: chosen.weighting,
             restarts: chosen.restarts,
         };
+        invent::check(suite)?;
         let profile = cases::text_of(suite.profile());
-        let inputs = vec![records, profile, format!("{options:?}"), embeds.fingerprint().to_owned()];
+        let mut inputs = vec![records, profile, format!("{options:?}"), embeds.fingerprint().to_owned()];
+        inputs.extend(chosen.invent.then(|| "with invented ones".to_owned()));
         Ok(Self { suite, embeds, remarks, options, inputs })
     }
 
@@ -122,7 +124,7 @@ impl Choice<'_> {
             let others = cluster.members.iter().filter(|&&at| at != cluster.pick_index);
             std::iter::once(&cluster.pick_index).chain(others).map(|&at| names[at].clone()).collect()
         };
-        let groups = selection.clusters.iter().map(of).collect();
+        let groups = selection.clusters.iter().filter(|cluster| !cluster.invented).map(of).collect();
         Groups { format: GROUPS_FORMAT.to_owned(), chosen_by: self.chosen_by(), groups }
     }
 
@@ -170,7 +172,10 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         let earlier = choice.earlier(&records);
         let options = choice.within(&records);
         let outcome = select_onward(&records, work.suite.profile(), &options, &embedding, &earlier);
-        let Outcome { value, diagnostics } = outcome.map_err(bad_choice)?;
+        let Outcome { mut value, mut diagnostics } = outcome.map_err(bad_choice)?;
+        if work.suite.options().invent {
+            diagnostics.extend(invent::add(&mut value, &records));
+        }
         let mut files = vec![
             (names::SELECTION.into(), to_json(&value)),
             (names::SELECTION_REMARKS.into(), to_json(&diagnostics)),

@@ -56,7 +56,7 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let seed = case_seed(suite, cluster).child("tune");
     let search = || recrash_search::tune(id, &parameters, options, seed, |values| scoring.score(values), enough);
     let cast = &suite.options().cast;
-    let (log, agent): (TuneLog, AgentLog) = match suite.models().filter(|_| cast.tune != RULES) {
+    let (log, agent): (TuneLog, AgentLog) = match suite.models().filter(|_| cast.tune != RULES && !cluster.invented) {
         None => (search(), AgentLog::rules()),
         Some(models) => {
             let (name, repairs) = (&cast.tune, Repairs::default());

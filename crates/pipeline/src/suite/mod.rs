@@ -581,6 +581,7 @@ fn hash_all(inputs: &[String]) -> String {
 /// One of them is not there.
 pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
     suite.options().searcher.parse::<Searcher>().map_err(PipelineError::bad_input)?;
+    crate::stages::invent::check(suite)?;
     let cast = &suite.options().cast;
     let staged_by = [&cast.design, &cast.tune].into_iter().find(|name| *name != RULES);
     if let (Tells::Accounts, Some(model)) = (suite.profile().records.tells, staged_by) {

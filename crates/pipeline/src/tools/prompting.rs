@@ -109,7 +109,16 @@ fn find(request: &PromptRequest, cases: &Cases) -> Result<Cluster, PipelineError
         })?;
         let (pick, members) = (record.id.clone(), vec![pick_index]);
         let scenario_id = format!("00-{}", record.id.report_id);
-        return Ok(Cluster { number: 0, scenario_id, template, pick, pick_index, members, radius: 0.0 });
+        return Ok(Cluster {
+            number: 0,
+            scenario_id,
+            template,
+            pick,
+            pick_index,
+            members,
+            radius: 0.0,
+            invented: false,
+        });
     }
     let wanted = |cluster: &&Cluster| request.scenario.as_ref().is_none_or(|id| cluster.scenario_id == *id);
     clusters.iter().find(wanted).cloned().ok_or_else(|| {

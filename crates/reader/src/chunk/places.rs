@@ -84,6 +84,11 @@ impl Chunker<'_> {
                     return Some((LaneWord::Center, 5));
                 }
                 ["lane", "from", "left" | "right", ..] => return Some((LaneWord::Center, 4)),
+                ["lane", "from", "the", "leftmost" | "rightmost", ..]
+                | ["from", "the", "leftmost" | "rightmost", "lane", ..] => {
+                    return Some((LaneWord::Center, 5));
+                }
+                ["from", "leftmost" | "rightmost", "lane", ..] => return Some((LaneWord::Center, 4)),
                 ["to", "the", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 5)),
                 ["to" | "from", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 4)),
                 ["leftmost" | "rightmost", "lane", ..] => return Some((LaneWord::Center, 3)),

@@ -137,6 +137,7 @@ fn selection(seed: Seed) -> Selection {
                 pick_index: own[0],
                 members: own,
                 radius: 0.8 + 0.1 * part as f64,
+                invented: false,
             });
         }
     }
