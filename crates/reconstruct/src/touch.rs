@@ -227,11 +227,9 @@ impl Told {
             Turning::Right => Movement::RightTurn,
             Turning::No | Turning::Round => return false,
         };
-        // Behind an ego that has turned and stands, it goes straight on again.
-        let same = self
-            .cp
-            .movement
-            .is_none_or(|movement| movement == turns || self.sv.state.stands() && movement == Movement::Straight);
+        // Behind an ego that has turned it goes straight on again.
+        let over = self.sv.turned || self.sv.state.stands();
+        let same = self.cp.movement.is_none_or(|movement| movement == turns || over && movement == Movement::Straight);
         let moves = matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff);
         same && moves && self.origin == Origin::Behind && self.thing.is_none() && self.rig.is_none()
     }
@@ -243,6 +241,7 @@ impl Told {
             && self.origin == Origin::Behind
             && self.cp.movement == Some(Movement::Straight)
             && !self.sv.state.stands()
+            && !self.sv.turned
     }
 
     /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.

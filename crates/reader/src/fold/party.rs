@@ -157,11 +157,13 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         let sets_off = |other: &Frame| {
             other.who == Some(SUBJECT) && other.sentence == frame.sentence && other.act() == Some(Act::SetOff)
         };
-        let behind = |other: &Frame| other.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
-        let own =
-            || reading.story.frames.iter().filter(|other| other.who == frame.who && other.sentence == frame.sentence);
+        let behind = |who: Actor| {
+            let relations = &reading.story.world.actors[who].relations;
+            relations.iter().any(|(relation, sentence)| *relation == Relation::Behind && *sentence == frame.sentence)
+        };
         let goes = ["proceed", "start", "beg", "mov"].iter().any(|start| keeps.starts_with(start));
-        let waits = frame.who != Some(SUBJECT) && goes && own().any(behind) && turned_green(reading, frame);
+        let other = frame.who.filter(|who| *who != SUBJECT);
+        let waits = goes && other.is_some_and(behind) && turned_green(reading, frame);
         waits && reading.story.frames.iter().any(sets_off)
     };
     // "proceeded forward out of a stall".

@@ -131,6 +131,7 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("cp_kind", name(&partner.kind)),
         ("cp_state", name(&partner.state)),
         ("cp_movement", name(&partner.movement)),
+        ("cp_lane", name(&partner.lane)),
         ("cp_acts", acts(partner)),
         ("cp_zones", zones(partner)),
         ("cp_ran", if ran { "yes".to_owned() } else { "no".to_owned() }),

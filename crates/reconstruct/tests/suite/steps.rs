@@ -1,6 +1,8 @@
 //! What is told of the steps before the contact, one after the other, is drawn; and a rollout without one does not pass for it.
 
-use crate::ways::{degrees_between, made, missed, partner, partner_without_acts, speeds, story, without_acts};
+use crate::ways::{
+    before_contact, degrees_between, made, missed, partner, partner_without_acts, speeds, story, without_acts,
+};
 use recrash_model::account::{Account, Act, LeftRight};
 use recrash_model::metrics::CheckKind;
 
@@ -228,4 +230,44 @@ fn who_cuts_in_front_of_the_ego_was_ahead_of_it() {
     let shown = made(&account);
     let states = partner(&shown).0;
     assert!(states[0].x > shown.rollout.ego_track().states[0].x, "{:?}", states[0]);
+}
+
+const TURN_OVER: &str = "The AV was traveling north on Elm Street and made a left turn onto Oak Street. As the AV was completing the left turn, it \
+                         began slowing and a sedan traveling behind the AV made contact with the rear of the AV with its front.";
+
+const BACKED_OUT: &str = "The AV pulled over to the right curb of Elm Street. While the AV waited for its passenger, a sedan began reversing out \
+                          of a driveway on the right and the rear of the sedan made contact with the right side of the stationary AV.";
+
+const TURNED_ABREAST: &str = "The AV was traveling north in the rightmost left turn lane and made a left turn onto Oak Street. A sedan turning left \
+                              in the leftmost left turn lane next to the AV crossed into the lane of the AV and the front right of the \
+                              sedan made contact with the left side of the AV.";
+
+#[test]
+fn a_turn_that_is_all_but_done_has_been_driven() {
+    let account = story(TURN_OVER);
+    assert!(account.sv.acts.iter().any(|fact| fact.act == Act::Turn && fact.done), "{:?}", account.sv.acts);
+    let turned = |account: &Account| {
+        let shown = made(account);
+        let states = &shown.rollout.ego_track().states;
+        degrees_between(states[before_contact(&shown)].heading, states[0].heading)
+    };
+    assert!(turned(&account) > 60.0, "{}", turned(&account));
+    // Not told to be over it may be met on its way.
+    let mut account = account;
+    account.sv.acts.iter_mut().for_each(|fact| fact.done = false);
+    assert!(turned(&account) < 60.0, "{}", turned(&account));
+}
+
+#[test]
+fn who_backs_out_towards_an_ego_that_waits_does_so_while_it_stands() {
+    let shown = made(&story(BACKED_OUT));
+    let stood = speeds(&shown).iter().position(|speed| *speed == 0.0).expect("it stands");
+    let backs = partner(&shown).0.iter().position(|state| state.speed() < 0.0).expect("it backs");
+    assert!(stood < backs, "stands from step {stood}, backs from step {backs}");
+}
+
+#[test]
+fn two_in_lanes_for_one_turn_are_side_by_side() {
+    let shown = made(&story(TURNED_ABREAST));
+    assert_eq!(shown.draft.ego.lane, 1, "the second from the left");
 }
