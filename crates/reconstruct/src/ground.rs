@@ -20,6 +20,9 @@ const APPROACH_M: f64 = 320.0;
 const TURNED_RAD: f64 = 1.3;
 const AFTER_TURN_M: [f64; 4] = [0.0, 3.0, 6.0, 10.0];
 
+/// Places of who has yet to turn, from where the junction begins. [m]
+const BEFORE_TURN_M: [f64; 3] = [-5.0, -2.0, -9.0];
+
 /// From a junction's centre to where its arms begin. [m]
 const CORNER_M: f64 = 13.0;
 
@@ -355,6 +358,9 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     let places = if crossing || told.sv.turning != Turning::No {
         let mut all = inside(at_line);
         let waits = told.sv.state == ContactState::Stopped && told.origin == Origin::Behind;
+        if told.sv.turns_later {
+            all.extend(inside(&BEFORE_TURN_M));
+        }
         all.extend(if waits && told.sv.turning == Turning::Right {
             // It has begun to turn.
             inside(&[6.0, 10.0, 14.0, 3.0, 18.0, 22.0, 28.0])

@@ -199,6 +199,7 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         (false, false) => TURNS_DEG,
     };
     let turns = match side.turning {
+        Turning::Left | Turning::Right if side.turns_later => turned.abs() < STRAIGHT_DEG,
         Turning::Left => turned > least,
         Turning::Right => turned < -least,
         Turning::No | Turning::Round => true,

@@ -13,7 +13,7 @@ use crate::touch::side_of;
 use crate::trailer::{self, Rig};
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, CrashType, FirstContact, Kind, KindGroup, LeftRight, Origin, Party, PlaceKind,
-    Striker, Untold, told,
+    Source, Striker, Untold, told,
 };
 use recrash_model::account::{StandReason, Standing};
 use recrash_model::kinds::PartnerKind;
@@ -251,6 +251,13 @@ impl Told {
         }
         if things::lies_before_turn(self, sv) {
             (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
+        }
+        // Whose turn no words tell has yet to begin it where it is hit from behind.
+        let unsaid = sv.movement.as_ref().is_some_and(|movement| !matches!(movement.source, Source::Words { .. }))
+            && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
+        let slows = self.sv.slowed_from.is_some() || self.sv.state == ContactState::Stopped;
+        if unsaid && slows && self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear {
+            self.sv.turns_later = matches!(self.sv.turning, Turning::Left | Turning::Right);
         }
         // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
         let follows = self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear;

@@ -3,8 +3,9 @@
 use crate::ways::{
     before_contact, degrees_between, made, missed, partner, partner_without_acts, speeds, story, without_acts,
 };
-use recrash_model::account::{Account, Act, LeftRight};
+use recrash_model::account::{Account, Act, Fact, LeftRight};
 use recrash_model::metrics::CheckKind;
+use recrash_model::template::Movement;
 
 const STOPPED_AHEAD: &str = "The AV was traveling north behind a sedan. The sedan came to a stop and the AV came to a stop behind it. The \
                              sedan then reversed and the rear of the sedan made contact with the front of the stationary AV.";
@@ -270,4 +271,24 @@ fn who_backs_out_towards_an_ego_that_waits_does_so_while_it_stands() {
 fn two_in_lanes_for_one_turn_are_side_by_side() {
     let shown = made(&story(TURNED_ABREAST));
     assert_eq!(shown.draft.ego.lane, 1, "the second from the left");
+}
+
+const YET_TO_TURN: &str = "The AV was traveling in the right lane of Elm Street and was slowing for the intersection of Oak Street when the front of a \
+                           sedan following the AV made contact with the rear of the AV.";
+
+#[test]
+fn a_turn_that_only_a_column_tells_is_yet_to_come_where_one_is_hit_from_behind() {
+    let mut account = story(YET_TO_TURN);
+    account.sv.movement = Some(Fact::of_column(Movement::RightTurn, "SV Pre-Crash Movement"));
+    let shown = made(&account);
+    let states = &shown.rollout.ego_track().states;
+    assert!(degrees_between(states[before_contact(&shown)].heading, states[0].heading) < 10.0);
+    assert_eq!(shown.draft.ego.route, ["own-", "right+"], "it goes there");
+    // Whose turn the words tell has begun it.
+    let mut account =
+        story(&YET_TO_TURN.replace("was slowing for the intersection of", "was slowing while turning right onto"));
+    account.sv.movement = Some(Fact::of_column(Movement::RightTurn, "SV Pre-Crash Movement"));
+    let shown = made(&account);
+    let states = &shown.rollout.ego_track().states;
+    assert!(degrees_between(states[before_contact(&shown)].heading, states[0].heading) > 10.0);
 }
