@@ -37,7 +37,10 @@ pub fn paraphrase(brief: &Brief) -> Result<Outcome<Narrative>, AgentError> {
     let (told, origin) = match retold {
         Ok(told) => (told, Origin::Own),
         Err(why) => {
-            let reason = format!("{why}; a plausible course of the same template takes its place");
+            let reason = match &pick {
+                Some(_) => format!("{why}; a plausible course of the same template takes its place"),
+                None => format!("{why}; this is a plausible course of it"),
+            };
             let message = format!("{}: {reason}", brief.scenario_id);
             diagnostics.push(Diagnostic::new(Severity::Note, "narrative.invented", Location::default(), message));
             (invent(pick.as_ref(), brief, ways), Origin::Invented { reason })

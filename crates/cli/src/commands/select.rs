@@ -166,7 +166,8 @@ fn picks(selection: &Selection) {
     title("Picks");
     let mut rows = table(&["scenario", "record", "cluster of"]);
     for cluster in &selection.clusters {
-        rows.add_row(vec![Cell::new(&cluster.scenario_id), Cell::new(&cluster.pick), number(cluster.members.len())]);
+        let pick = if cluster.invented { "none: invented".to_owned() } else { cluster.pick.to_string() };
+        rows.add_row(vec![Cell::new(&cluster.scenario_id), Cell::new(pick), number(cluster.members.len())]);
     }
     println!("{rows}");
 }

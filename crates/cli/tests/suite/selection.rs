@@ -72,6 +72,9 @@ fn templates_without_records_are_invented_when_asked_for_and_count_for_nothing()
         let records = scenario["source"]["records"].as_array().map_or(0, Vec::len);
         assert_eq!((records, scenario["source"]["origin"]["is"].as_str()), (0, Some("invented")), "{id}");
     }
+    // The page calls no pick what nobody picked.
+    let page = std::fs::read_to_string(place.path("with/report.html")).unwrap();
+    assert!(page.contains(&format!("{} picks.", plain_cases.len())), "picks on the page");
     let (code, _, error) = place.run(&["run", "--profile", "open", "--invent", "--out", "accounts"]);
     assert!(code == 3 && error.contains("by their accounts and invents none"), "{code}: {error}");
     assert!(!place.path("accounts/2-selection.json").exists());

@@ -19,7 +19,7 @@ pub fn section(context: &Context) -> Markup {
                 h1 #records-title { "Records and coverage" }
                 p.lead {
                     (thousands(context.summary.rows)) " rows, " (thousands(context.summary.usable)) " usable records in "
-                    (selection.coverage.templates_observed) " templates, " (selection.clusters.len()) " picks."
+                    (selection.coverage.templates_observed) " templates, " (selection.clusters.iter().filter(|cluster| !cluster.invented).count()) " picks."
                 }
             }
             .columns {

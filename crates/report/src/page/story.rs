@@ -46,7 +46,7 @@ pub fn story(case: Case) -> Markup {
 fn told(narrative: &Narrative, pick: Option<&RecordRef>) -> Markup {
     html! {
         @if let Some(reason) = narrative.origin.reason() {
-            p.banner role="note" { (icon::bang()) span { strong { (words::capital(narrative.origin.label())) ". " } "It takes the record's place: " (words::clean(reason, 400)) } }
+            p.banner role="note" { (icon::bang()) span { strong { (words::capital(narrative.origin.label())) ". " } @if pick.is_some() { "It takes the record's place: " } (words::clean(reason, 400)) } }
         }
         blockquote.narrative dir="auto" { (words::clean(&narrative.text, LONGEST_TEXT)) }
         p.muted { "Written by " (words::name(&narrative.author)) ". Point at a fact to see the words it came from." }
