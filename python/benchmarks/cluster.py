@@ -1,4 +1,4 @@
-"""Ray against the plain way on one machine: a million rollouts, and 1,000 tests with a Python ego.
+"""Ray against the plain command on one machine: a million rollouts, and 1,000 tests with a Python ego.
 
     python benchmarks/cluster.py --rollouts 1000000
 
@@ -10,12 +10,15 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import inspect
+import json
 import os
 import platform
 import resource
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -40,33 +43,32 @@ class Steady:
         return (-4.0 if min(gaps, default=1e4) < 225.0 else 0.3), -0.1 * me["route_t_m"]
 
 
-def spent_by(pids: set[int]) -> float:
-    """Processor time of processes that are there, with that of their ended children. [s]"""
-    total = 0
-    for pid in pids:
-        try:
-            fields = Path(f"/proc/{pid}/stat").read_text().rsplit(") ", 1)[1].split()
-        except OSError:
-            continue
-        total += sum(int(field) for field in fields[11:15])
-    return total / TICKS
+class Watched:
+    """Processor time of this process and of all that it starts: looked at often, because Ray does not wait for its dead."""
 
+    def __init__(self) -> None:
+        self.seen: dict[int, int] = {}
+        threading.Thread(target=self._watch, daemon=True).start()
 
-def of_ray() -> set[int]:
-    """Processes of the cluster on this machine that this process has started, and this process."""
-    parents = {}
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                parents[int(entry.name)] = int((entry / "stat").read_text().rsplit(") ", 1)[1].split()[1])
-            except OSError:
-                continue
-    found, waiting = set(), [os.getpid()]
-    while waiting:
-        pid = waiting.pop()
-        found.add(pid)
-        waiting += [child for child, parent in parents.items() if parent == pid and child not in found]
-    return found
+    def _watch(self) -> None:
+        while True:
+            self.look()
+            time.sleep(0.05)
+
+    def look(self) -> float:
+        """What they took so far. [s]"""
+        parents, used = {}, {}
+        for entry in Path("/proc").iterdir():
+            if entry.name.isdigit():
+                with contextlib.suppress(OSError):
+                    fields = (entry / "stat").read_text().rsplit(") ", 1)[1].split()
+                    parents[int(entry.name)], used[int(entry.name)] = int(fields[1]), int(fields[11]) + int(fields[12])
+        waiting = [os.getpid()]
+        while waiting:
+            pid = waiting.pop()
+            self.seen[pid] = used[pid]
+            waiting += [child for child, parent in parents.items() if parent == pid]
+        return sum(self.seen.values()) / TICKS
 
 
 def measured(name: str, work: Callable[[], object], spent: Callable[[], float]) -> tuple[float, float]:
@@ -135,7 +137,7 @@ def main() -> None:
     options = {"vary": vary, "ego": "idm", "seed": 1}
     # Workers are started: that is once for a cluster, and not for a sweep.
     cluster.sweep([crash], 4 * cores, batch=1, **options)
-    spent = lambda: spent_by(of_ray())  # noqa: E731
+    spent = Watched().look
     out = folder / "ray.parquet"
     on = measured(
         f"Ray, {arguments.rollouts:,} rollouts", lambda: cluster.sweep([crash], arguments.rollouts, out=out, **options), spent
@@ -147,22 +149,38 @@ def main() -> None:
         wall, processor = on[0] / plain[0] - 1, on[1] / plain[1] - 1
         print(f"overhead by the wall: {wall:+.1%}, by processor time: {processor:+.1%} (asked for: 15 % at most)\n")
 
-    points = recrash._recrash.Points(recrash.read().reconstruct()[0], [], "idm", None, 1)
-    suite, number = [], 0
-    while len(suite) < arguments.tests:
+    # Where the ego was parked there is nothing to test.
+    driven = [scenario for scenario in recrash.read().reconstruct()[0] if "handover_s" in scenario.to_dict()["ego"]]
+    points = recrash._recrash.Points(driven, [], "idm", None, 1)
+    suite, paths, number = folder / "suite", list[Path](), 0
+    suite.mkdir(exist_ok=True)
+    while len(paths) < arguments.tests:
         # What is sampled does not always fit a scenario.
         with contextlib.suppress(recrash.InputError):
-            suite.append(points.scenario(number))
+            scenario = points.scenario(number)
+            paths.append(suite / f"{len(paths):06}.json")
+            paths[-1].write_text(scenario.to_json())
         number += 1
+    (folder / "steady.py").write_text(inspect.getsource(Steady))
+    words = ["freeze", suite, "--out", folder / "frozen", "--quiet"]
+    subprocess.run([sys.executable, "-m", "recrash", *map(str, words)], check=True)
+    words = ["test", folder / "frozen", "--ego", f"py:{folder / 'steady.py'}:Steady", "--out", folder / "results.json"]
+    command = [sys.executable, "-m", "recrash", *map(str, words), "--threads", str(cores), "--quiet"]
+    what = f"{len(paths):,} tests, Python ego"
+    plain = measured(f"command, {what}", lambda: subprocess.run(command, check=False), of_children)
+    cluster.test(paths[: 8 * cores], Steady, batch=1)
+    tables: list[pyarrow.Table] = []
+    on = measured(f"Ray, {what}", lambda: tables.append(cluster.test(paths, Steady)), spent)
+    tests = json.loads((folder / "results.json").read_text())["tests"]
+    hashes = [test["runs"][0]["outcome"]["state_hash"] for test in tests]
+    print(f"rows equal: {sorted(hashes) == sorted(tables[0]['state_hash'].to_pylist())}")
+    wall, processor = on[0] / plain[0] - 1, on[1] / plain[1] - 1
+    print(f"overhead by the wall: {wall:+.1%}, by processor time: {processor:+.1%} (asked for: 15 % at most)\n")
+
     rows: list[object] = []
-    own = lambda: time.process_time()  # noqa: E731
-    alone = measured(
-        f"one process, {len(suite):,} tests, Python ego", lambda: rows.append(recrash.test(suite, Steady).to_dicts()), own
-    )
-    cluster.test(suite[: 8 * cores], Steady, batch=1)
-    many = measured(f"Ray, {len(suite):,} tests, Python ego", lambda: rows.append(cluster.test(suite, Steady).to_pylist()), spent)
-    print(f"rows equal: {rows[0] == rows[1]}")
-    print(f"times one process by the wall: {alone[0] / many[0]:.2f}; by processor time: {many[1] / alone[1] - 1:+.1%}")
+    alone = measured(f"one process, {what}", lambda: rows.append(recrash.test(paths, Steady).to_dicts()), time.process_time)
+    print(f"rows equal: {rows[0] == tables[0].to_pylist()}")
+    print(f"Ray over one process by processor time: {on[1] / alone[1] - 1:+.1%}")
     ray.shutdown()
 
 
