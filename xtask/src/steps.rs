@@ -58,8 +58,7 @@ fn lint(_: &mut Tally) -> Result {
     cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
     // Without language models: a build that docs/language-models.md offers.
     let without_live = ["--no-default-features", "--features", "parquet"];
-    let alone = ["clippy", "--package", "recrash-cli", "--all-targets"];
-    cargo(&[&alone[..], &without_live, &["--", "-D", "warnings"]].concat(), &[])
+    cargo(&[&["clippy", "--package", "recrash-cli"], &without_live[..], &["--", "-D", "warnings"]].concat(), &[])
 }
 
 /// What tests need and cargo does not bring: `.venv`, a Python with MetaDrive, and what drives the browser.
@@ -114,7 +113,7 @@ fn python(tally: &mut Tally) -> Result {
     counted(&mut command, tally)
 }
 
-/// The report of a fresh suite, in a browser.
+/// The reports of fresh suites, by templates and by accounts, in a browser.
 fn browser(tally: &mut Tally) -> Result {
     if !browser_folder().join("node_modules").is_dir() {
         return missing(tally, "browser", "what drives it is not there; `cargo xtask prepare` gets it");
@@ -123,9 +122,13 @@ fn browser(tally: &mut Tally) -> Result {
     if !chromium.iter().any(|path| Path::new(path).exists()) {
         return missing(tally, "browser", "Chromium is not installed (Debian's package chromium)");
     }
-    let suite = target().join("browser-suite");
-    run(Command::new(built()?).args(["run", "--quiet", "--profile", "paper", "--out"]).arg(&suite))?;
-    run(Command::new("node").arg(browser_folder().join("check.mjs")).arg(suite.join("report.html")))
+    for profile in ["paper", "open"] {
+        let suite = target().join(format!("browser-{profile}"));
+        let words = ["run", "--quiet", "--profile", profile, "--budget", "20", "--tune-budget", "20", "--out"];
+        run(Command::new(built()?).args(words).arg(&suite))?;
+        run(Command::new("node").arg(browser_folder().join("check.mjs")).arg(suite.join("report.html")))?;
+    }
+    Ok(())
 }
 
 /// What cannot run here: an error in CI, a named skip elsewhere.

@@ -1,16 +1,7 @@
 //! Suites that go by accounts, as a user of them meets them.
 
-use crate::common::Place;
+use crate::common::{Place, TOLD};
 use serde_json::Value;
-
-const RUN: [&str; 9] = ["run", "--profile", "open", "--budget", "12", "--tune-budget", "6", "--seed", "3"];
-
-fn made() -> Place {
-    let place = Place::new();
-    let (code, _, remarks) = place.run(&RUN);
-    assert_eq!(code, 0, "{remarks}");
-    place
-}
 
 fn json(place: &Place, file: &str) -> Value {
     serde_json::from_slice(&std::fs::read(place.path(file)).unwrap()).unwrap()
@@ -22,7 +13,7 @@ fn cases(place: &Place) -> Vec<Value> {
 
 #[test]
 fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let summary = json(&place, "suite/summary.json");
     let accounts = &summary["accounts"];
     let (told, readable) = (accounts["told"].as_u64().unwrap(), accounts["readable"].as_u64().unwrap());
@@ -48,13 +39,13 @@ fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
 
 #[test]
 fn a_second_run_does_nothing_and_any_number_of_threads_gives_the_same_bytes() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let first = std::fs::read(place.path("suite/summary.json")).unwrap();
-    let (code, _, remarks) = place.run(&RUN);
+    let (code, _, remarks) = place.run(&TOLD);
     assert_eq!(code, 0, "{remarks}");
     assert_eq!(std::fs::read(place.path("suite/summary.json")).unwrap(), first);
     let again = Place::new();
-    let (code, _, remarks) = again.run(&[&RUN[..], &["--threads", "1"]].concat());
+    let (code, _, remarks) = again.run(&[&TOLD[..], &["--threads", "1"]].concat());
     assert_eq!(code, 0, "{remarks}");
     for file in ["summary.json", "results.csv", "junit.xml", "1-accounts.json"] {
         let read = |place: &Place| std::fs::read(place.path(&format!("suite/{file}"))).unwrap();
@@ -64,7 +55,7 @@ fn a_second_run_does_nothing_and_any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn an_edited_account_is_kept_and_what_no_scene_shows_is_told() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let standing = cases(&place).into_iter().find(|case| case["crash_type"] == "front_to_rear").expect("there is one");
     let id = standing["id"].as_str().unwrap();
     let file = format!("suite/3-narratives/{id}.account.json");
@@ -73,7 +64,7 @@ fn an_edited_account_is_kept_and_what_no_scene_shows_is_told() {
     account["crash_type"]["value"] = "head_on".into();
     account["came_from"]["value"] = "opposite".into();
     std::fs::write(place.path(&file), serde_json::to_string_pretty(&account).unwrap()).unwrap();
-    let (code, shown, remarks) = place.run(&RUN);
+    let (code, shown, remarks) = place.run(&TOLD);
     assert_eq!(code, 0, "{remarks}");
     assert_eq!(json(&place, &file)["crash_type"]["value"], "head_on", "the edit is kept");
     let after = cases(&place).into_iter().find(|case| case["id"] == *id).unwrap();
@@ -84,7 +75,7 @@ fn an_edited_account_is_kept_and_what_no_scene_shows_is_told() {
 
 #[test]
 fn an_edited_scenario_that_is_not_as_told_ends_with_exit_code_5() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let id = cases(&place)
         .into_iter()
         .find(|case| !case["tuned"].is_null() && case["crash_type"] != "single_vehicle")
@@ -136,18 +127,18 @@ fn a_model_reads_there_and_does_nothing_else() {
 
 #[test]
 fn an_account_that_somebody_spoiled_stops_its_case_alone_until_it_is_mended() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let id = cases(&place)[0]["id"].as_str().unwrap().to_owned();
     let file = place.path(&format!("suite/3-narratives/{id}.account.json"));
     let whole = std::fs::read(&file).unwrap();
     std::fs::write(&file, &whole[..whole.len() / 2]).unwrap();
-    let (code, _, remarks) = place.run(&RUN);
+    let (code, _, remarks) = place.run(&TOLD);
     assert_eq!(code, 0, "{remarks}");
     let failed: Vec<bool> = cases(&place).iter().map(|case| case["failure"].is_object()).collect();
     assert_eq!(failed.iter().filter(|failed| **failed).count(), 1, "{remarks}");
     assert!(failed[0] && remarks.contains(&format!("{id}.account.json")), "{remarks}");
     std::fs::write(&file, whole).unwrap();
-    let (code, _, remarks) = place.run(&RUN);
+    let (code, _, remarks) = place.run(&TOLD);
     assert_eq!(code, 0, "{remarks}");
     assert!(cases(&place).iter().all(|case| case["failure"].is_null()), "{remarks}");
 }

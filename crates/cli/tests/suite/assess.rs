@@ -1,15 +1,7 @@
 //! What of a corpus a suite covers, and how bad its failures are.
 
-use crate::common::Place;
+use crate::common::{Place, SMALL, TOLD};
 use serde_json::Value;
-
-fn made() -> Place {
-    let place = Place::new();
-    let (code, _, remarks) =
-        place.run(&["run", "--profile", "open", "--budget", "12", "--tune-budget", "1", "--seed", "3"]);
-    assert_eq!(code, 0, "{remarks}");
-    place
-}
 
 fn told(place: &Place, arguments: &[&str]) -> Value {
     let (code, shown, remarks) = place.run(&[arguments, &["--json"]].concat());
@@ -23,7 +15,7 @@ fn incidents(cells: &Value) -> u64 {
 
 #[test]
 fn every_readable_incident_stands_in_its_cell_and_only_own_crashes_told_count_as_covered() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let corpus = told(&place, &["coverage", "suite"]);
     let summary: Value = serde_json::from_slice(&std::fs::read(place.path("suite/summary.json")).unwrap()).unwrap();
     let all = &corpus["all"];
@@ -57,7 +49,7 @@ fn every_readable_incident_stands_in_its_cell_and_only_own_crashes_told_count_as
 
 #[test]
 fn evidence_of_a_suite_counts_what_of_the_corpus_it_holds_and_the_checker_counts_again() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let (code, _, remarks) = place.run(&["evidence", "suite", "--out", "evidence", "--quiet"]);
     assert_eq!(code, 0, "{remarks}");
     let check = || std::process::Command::new("python3").arg(place.path("evidence/check.py")).output().unwrap();
@@ -85,7 +77,7 @@ fn evidence_of_a_suite_counts_what_of_the_corpus_it_holds_and_the_checker_counts
 
 #[test]
 fn failures_are_ranked_by_severity_with_what_their_records_report() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let severity = told(&place, &["severity", "suite"]);
     let failures = severity["failures"].as_array().unwrap();
     let harm = |failure: &Value| {
@@ -133,7 +125,7 @@ fn a_search_that_aims_at_severity_keeps_no_milder_contact_than_the_first() {
 
 #[test]
 fn what_cannot_be_told_is_refused_with_its_remedy() {
-    let place = made();
+    let place = Place::made(&TOLD);
     let (code, _, remarks) = place.run(&["coverage", "suite", "--table", "eu"]);
     assert!(code == 2 && remarks.contains("eu-2022-1426"), "{code} {remarks}");
     let (code, _, remarks) = place.run(&["coverage", "suite", "--csv", "suite/summary.json"]);
@@ -141,9 +133,7 @@ fn what_cannot_be_told_is_refused_with_its_remedy() {
     let (code, _, remarks) = place.run(&["run", "--aim", "harm", "--out", "other"]);
     assert!(code == 2 && remarks.contains("severity"), "{code} {remarks}");
 
-    let templates = Place::new();
-    let (code, _, remarks) = templates.run(&["run", "--budget", "3", "--tune-budget", "1"]);
-    assert_eq!(code, 0, "{remarks}");
+    let templates = Place::made(&SMALL);
     for command in ["coverage", "severity"] {
         let (code, _, remarks) = templates.run(&[command, "suite"]);
         assert!(code == 3 && remarks.contains("goes by templates"), "{code} {remarks}");

@@ -1,8 +1,8 @@
 //! Language models by batch file: the run stops for each stage, goes on with the answers, repairs what cannot be used, lets
 //! the rules take over where nothing helps, and replays from the ledger with the same bytes.
 
-use crate::common::recrash;
 use crate::common::scripted::ScriptedModel;
+use crate::common::{copy, recrash};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -68,7 +68,7 @@ fn outcomes(out: &Path, role: &str) -> Vec<String> {
 #[test]
 fn good_answers_are_taken_at_once_and_replay_gives_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path(), &SMALL);
+    let model = ScriptedModel::new(&SMALL);
     let batch = folder.path().join("batch");
     // Paraphrase, design, and rounds of tuning where the design is no contact yet.
     let stops = run_to_the_end(&model, &batch, str::to_owned);
@@ -107,7 +107,7 @@ fn answers_that_cannot_be_used_are_repaired() {
         |good| good.replace("\"report\":", "\"more\":").replace("\"duration_s\":", "\"duration_s\": \"long\", \"x\":"),
     ];
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path(), &SMALL);
+    let model = ScriptedModel::new(&SMALL);
     for (number, mangle) in spoilt.into_iter().enumerate() {
         let out = folder.path().join(number.to_string());
         run_to_the_end(&model, &out, mangle);
@@ -120,7 +120,7 @@ fn answers_that_cannot_be_used_are_repaired() {
 #[test]
 fn json_in_prose_is_found() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path(), &SMALL);
+    let model = ScriptedModel::new(&SMALL);
     let out = folder.path().join("suite");
     run_to_the_end(&model, &out, |good| format!("Sure! Here it is:\n```json\n{good}\n```\nAnything else?"));
     assert!(outcomes(&out, "narrated").iter().all(|o| o == "first answer"));
@@ -227,16 +227,19 @@ const TAMPERED: [(&str, Tamper, &[u64]); 33] = [
 #[test]
 fn every_tampered_file_of_answers_ends_and_each_bad_line_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    let model = ScriptedModel::new(&TINY[..2]);
+    let begun = folder.path().join("begun");
+    assert_eq!(run_tiny(&begun, "batch", &[]).0, WAITS);
     for (number, (name, tamper, told)) in TAMPERED.into_iter().enumerate() {
         let out = folder.path().join(format!("suite-{number}"));
-        let mut stops = 0;
+        copy(&begun, &out);
+        let spoil = || std::fs::write(out.join("responses.jsonl"), tamper(&good_lines(&model, &out))).unwrap();
+        spoil();
+        let mut stops = 1;
         loop {
             let (code, shown) = run_tiny(&out, "batch", &[]);
-            if stops > 0 {
-                for line in told {
-                    assert!(shown.contains(&format!("responses.jsonl, line {line}: ")), "{name}: {line} of {shown}");
-                }
+            for line in told {
+                assert!(shown.contains(&format!("responses.jsonl, line {line}: ")), "{name}: {line} of {shown}");
             }
             if code == 0 {
                 break;
@@ -245,8 +248,7 @@ fn every_tampered_file_of_answers_ends_and_each_bad_line_is_told() {
             stops += 1;
             // A batch for the narratives and one for the designs, and no question is put twice.
             assert!(stops <= 2, "{name}: asked for ever");
-            let good = good_lines(&model, &out);
-            std::fs::write(out.join("responses.jsonl"), tamper(&good)).unwrap();
+            spoil();
         }
         let summary = summary(&out);
         assert_eq!(summary["cases"].as_array().unwrap().len(), 2, "{name}");
@@ -257,7 +259,7 @@ fn every_tampered_file_of_answers_ends_and_each_bad_line_is_told() {
 #[test]
 fn a_question_without_a_usable_answer_is_asked_as_often_as_answers_are_repaired() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    let model = ScriptedModel::new(&TINY[..2]);
     let out = folder.path().join("suite");
     let extra = ["--repairs", "1", "--design", "rules"];
     for spoilt in 0..2 {
@@ -288,7 +290,7 @@ fn run_tiny_over(out: &Path, extra: &[&str]) -> (i32, String) {
 #[test]
 fn damaged_pending_questions_are_written_again_and_the_answers_taken_in() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    let model = ScriptedModel::new(&TINY[..2]);
     let out = folder.path().join("suite");
     let mut stops = 0;
     while run_tiny(&out, "batch", &[]).0 == WAITS {
@@ -313,7 +315,7 @@ fn damaged_pending_questions_are_written_again_and_the_answers_taken_in() {
 #[test]
 fn what_was_changed_in_the_ledger_does_not_replay() {
     let folder = tempfile::tempdir().unwrap();
-    let model = ScriptedModel::new(folder.path(), &TINY[..2]);
+    let model = ScriptedModel::new(&TINY[..2]);
     let out = folder.path().join("suite");
     while run_tiny(&out, "batch", &[]).0 == WAITS {
         good_lines(&model, &out);

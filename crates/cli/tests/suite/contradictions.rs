@@ -1,14 +1,13 @@
 //! A narrative that was edited so that it contradicts its template is refused before its scenario runs.
 
-use crate::common::recrash;
+use crate::common::{Place, SMALL, recrash};
 use serde_json::Value;
 
 #[test]
 fn an_edited_narrative_that_contradicts_its_template_is_refused_with_what_is_wrong() {
-    let folder = tempfile::tempdir().unwrap();
-    let suite = folder.path().join("suite");
+    let place = Place::made(&SMALL);
+    let suite = place.path("suite");
     let out = suite.to_str().unwrap();
-    recrash(&["run", "--quiet", "--budget", "2", "--tune-budget", "1", "--out", out]).assert().success();
     let narratives = std::fs::read_dir(suite.join("3-narratives")).unwrap().map(|entry| entry.unwrap().path());
     let file = narratives.filter(|path| !path.to_string_lossy().contains(".agent.")).min().unwrap();
     let mut narrative: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();

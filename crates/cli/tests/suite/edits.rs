@@ -4,13 +4,7 @@ use crate::common::{Place, driving_ego};
 use serde_json::Value;
 use std::path::PathBuf;
 
-const SMALL: [&str; 6] = ["run", "--quiet", "--budget", "3", "--tune-budget", "4"];
-
-fn suite() -> Place {
-    let place = Place::new();
-    run(&place, &SMALL);
-    place
-}
+const THREE: [&str; 6] = ["run", "--quiet", "--budget", "3", "--tune-budget", "4"];
 
 fn run(place: &Place, words: &[&str]) -> String {
     let (code, out, error) = place.run(words);
@@ -50,7 +44,7 @@ fn hash_of(run: &PathBuf) -> Value {
 
 #[test]
 fn an_edited_narrative_scenario_and_tuned_file_survive_a_run_which_goes_on_from_them() {
-    let place = suite();
+    let place = Place::made(&THREE);
     let (narrative, scenario, tuned) = (
         files(&place, "3-narratives")[0].clone(),
         files(&place, "4-scenarios")[1].clone(),
@@ -65,7 +59,7 @@ fn an_edited_narrative_scenario_and_tuned_file_survive_a_run_which_goes_on_from_
     ];
     let page = place.path("suite/report.html");
     for _ in 0..2 {
-        run(&place, &SMALL);
+        run(&place, &THREE);
         for (file, bytes) in [&narrative, &scenario, &tuned].into_iter().zip(&edited) {
             assert_eq!(&std::fs::read(file).unwrap(), bytes, "{}", file.display());
         }
@@ -79,7 +73,7 @@ fn an_edited_narrative_scenario_and_tuned_file_survive_a_run_which_goes_on_from_
         assert_eq!(marked.count(), 3, "{told}");
         assert!(std::fs::read_to_string(&page).unwrap().contains("edited by hand"));
     }
-    run(&place, &[&SMALL[..], &["--discard-edits"]].concat());
+    run(&place, &[&THREE[..], &["--discard-edits"]].concat());
     for (file, bytes) in [&narrative, &scenario, &tuned].into_iter().zip(&edited) {
         assert_ne!(&std::fs::read(file).unwrap(), bytes, "{}", file.display());
     }
@@ -88,10 +82,10 @@ fn an_edited_narrative_scenario_and_tuned_file_survive_a_run_which_goes_on_from_
 
 #[test]
 fn an_edit_that_is_no_scenario_stops_its_case_alone_and_is_kept() {
-    let place = suite();
+    let place = Place::made(&THREE);
     let scenario = files(&place, "4-scenarios")[0].clone();
     std::fs::write(&scenario, "{\"format\": 3").unwrap();
-    let (code, _, error) = place.run(&SMALL);
+    let (code, _, error) = place.run(&THREE);
     assert_eq!(code, 0, "the others go on: {error}");
     assert_eq!(std::fs::read(&scenario).unwrap(), b"{\"format\": 3");
     let summary = read(&place.path("suite/summary.json"));
@@ -101,7 +95,7 @@ fn an_edit_that_is_no_scenario_stops_its_case_alone_and_is_kept() {
 
 #[test]
 fn an_edited_case_that_leaves_the_suite_leaves_its_edit_there() {
-    let place = suite();
+    let place = Place::made(&THREE);
     let all = files(&place, "4-scenarios");
     let edited: Vec<Vec<u8>> = all.iter().map(|file| edit(file, "/ego/target_speed_mps", 4.321.into())).collect();
     let (code, _, error) = place.run(&["run", "--budget", "1", "--tune-budget", "4"]);
@@ -114,38 +108,38 @@ fn an_edited_case_that_leaves_the_suite_leaves_its_edit_there() {
 
 #[test]
 fn a_run_edited_by_hand_is_made_again_by_a_run_and_refused_by_a_report() {
-    let place = suite();
+    let place = Place::made(&THREE);
     let file = files(&place, "7-tuned-runs")[0].clone();
     let made = std::fs::read(&file).unwrap();
     edit(&file, "/judgement/findings", serde_json::json!([]));
     let (code, _, error) = place.run(&["report", "--quiet"]);
     assert_eq!(code, 2, "{error}");
     assert!(error.contains("changed by hand") && error.contains("recrash triage"), "{error}");
-    run(&place, &SMALL);
+    run(&place, &THREE);
     assert_eq!(std::fs::read(&file).unwrap(), made);
 }
 
 #[test]
 fn a_suite_of_other_records_or_of_another_profile_is_replaced_only_when_told() {
-    let place = suite();
+    let place = Place::made(&THREE);
     std::fs::write(place.path("mine.csv"), recrash_records::SAMPLE_CSV).unwrap();
     let profile = include_str!("../../../../profiles/paper.toml").replace("name = \"paper\"", "name = \"other\"");
     std::fs::write(place.path("other.toml"), profile).unwrap();
     let saved = std::fs::read(place.path("suite/suite.json")).unwrap();
     for more in [["--records", "mine.csv"], ["--profile", "other.toml"]] {
-        let words = [&SMALL[..], &more].concat();
+        let words = [&THREE[..], &more].concat();
         let (code, _, error) = place.run(&words);
         assert_eq!(code, 2, "{error}");
         assert!(error.contains("--replace"), "{error}");
         assert_eq!(std::fs::read(place.path("suite/suite.json")).unwrap(), saved);
     }
-    run(&place, &[&SMALL[..], &["--records", "mine.csv", "--replace"]].concat());
+    run(&place, &[&THREE[..], &["--records", "mine.csv", "--replace"]].concat());
     // And back: real records are not replaced by the sample either.
-    let (code, _, error) = place.run(&SMALL);
+    let (code, _, error) = place.run(&THREE);
     assert_eq!(code, 2, "{error}");
     // A second file beside the first is welcome.
     std::fs::write(place.path("more.csv"), recrash_records::SAMPLE_CSV).unwrap();
-    run(&place, &[&SMALL[..], &["--records", "mine.csv", "--records", "more.csv"]].concat());
+    run(&place, &[&THREE[..], &["--records", "mine.csv", "--records", "more.csv"]].concat());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Exports and imports as a user meets them: folders, exit codes, and the way there and back.
 
-use crate::common::recrash;
+use crate::common::{Place, recrash};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ const USAGE: i32 = 2;
 /// Input that cannot be used.
 const BAD_INPUT: i32 = 3;
 
-const SMALL: [&str; 6] = ["--budget", "4", "--tune-budget", "12", "--seed", "5"];
+const FOUR: [&str; 8] = ["run", "--quiet", "--budget", "4", "--tune-budget", "12", "--seed", "5"];
 
 /// A scenario in the paper's own dialect.
 const DIALECT: &str = r#"{"id": "dialect", "map_type": "X", "ego_turn": "straight", "lead_turn": "straight",
@@ -19,19 +19,16 @@ const DIALECT: &str = r#"{"id": "dialect", "map_type": "X", "ego_turn": "straigh
 
 /// A small suite, and a folder for what is made of it.
 struct Case {
-    folder: tempfile::TempDir,
+    place: Place,
 }
 
 impl Case {
     fn with_suite() -> Self {
-        let case = Self { folder: tempfile::tempdir().unwrap() };
-        let suite = case.path("suite");
-        recrash(&["run", "--quiet", "--out", suite.to_str().unwrap()]).args(SMALL).assert().success();
-        case
+        Self { place: Place::made(&FOUR) }
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
+        self.place.path(name)
     }
 
     /// The tuned scenarios, by id.
@@ -43,14 +40,14 @@ impl Case {
 
     /// Runs the command in this folder; gives its exit code and what it printed.
     fn run(&self, arguments: &[&str]) -> (i32, String) {
-        let output = recrash(arguments).current_dir(self.folder.path()).output().unwrap();
+        let output = recrash(arguments).current_dir(self.place.folder()).output().unwrap();
         let shown = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
         assert!(!shown.contains("panicked"), "{shown}");
         (output.status.code().unwrap(), shown)
     }
 
     fn json(&self, arguments: &[&str]) -> Value {
-        let output = recrash(arguments).arg("--json").current_dir(self.folder.path()).output().unwrap();
+        let output = recrash(arguments).arg("--json").current_dir(self.place.folder()).output().unwrap();
         serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}: {output:?}"))
     }
 }
@@ -106,7 +103,7 @@ fn a_damaged_scenario_is_named_and_the_rest_is_exported() {
 
 #[test]
 fn an_unknown_format_and_a_folder_that_is_no_suite_are_refused() {
-    let case = Case { folder: tempfile::tempdir().unwrap() };
+    let case = Case { place: Place::new() };
     let (code, shown) = case.run(&["export", "suite", "--to", "opendrive"]);
     assert_eq!(code, USAGE);
     assert!(
@@ -121,7 +118,7 @@ fn an_unknown_format_and_a_folder_that_is_no_suite_are_refused() {
 
 #[test]
 fn a_target_with_files_in_it_is_left_alone() {
-    let case = Case { folder: tempfile::tempdir().unwrap() };
+    let case = Case { place: Place::new() };
     std::fs::write(case.path("dialect.json"), DIALECT).unwrap();
     std::fs::create_dir_all(case.path("exports/scenic")).unwrap();
     std::fs::write(case.path("exports/scenic/mine.txt"), "mine").unwrap();
@@ -161,7 +158,7 @@ fn an_interrupted_export_goes_on() {
 
 #[test]
 fn the_papers_dialect_is_imported_and_run() {
-    let case = Case { folder: tempfile::tempdir().unwrap() };
+    let case = Case { place: Place::new() };
     std::fs::write(case.path("theirs.json"), DIALECT).unwrap();
     let (code, shown) = case.run(&["import", "theirs.json", "--simulate"]);
     assert_eq!(code, 0, "{shown}");
@@ -180,7 +177,7 @@ fn the_papers_dialect_is_imported_and_run() {
 
 #[test]
 fn what_cannot_be_imported_says_where_and_why() {
-    let case = Case { folder: tempfile::tempdir().unwrap() };
+    let case = Case { place: Place::new() };
     let cases: [(&str, &[u8], &[&str]); 6] = [
         ("cut.xosc", b"<?xml version=\"1.0\"?>\n<OpenSCENARIO>\n  <FileHeader", &["line 3"]),
         (

@@ -22,12 +22,8 @@ const TUNED: [&str; 10] =
 
 /// The model, with the rules' suite made once for all tests.
 fn model() -> Arc<ScriptedModel> {
-    static MODEL: OnceLock<(Arc<ScriptedModel>, tempfile::TempDir)> = OnceLock::new();
-    let made = MODEL.get_or_init(|| {
-        let folder = tempfile::tempdir().unwrap();
-        (Arc::new(ScriptedModel::new(folder.path(), &OPTIONS)), folder)
-    });
-    Arc::clone(&made.0)
+    static MODEL: OnceLock<Arc<ScriptedModel>> = OnceLock::new();
+    Arc::clone(MODEL.get_or_init(|| Arc::new(ScriptedModel::new(&OPTIONS))))
 }
 
 /// A server that lets `fault` answer first, and answers well where it does not.
@@ -275,7 +271,7 @@ fn a_narrative_that_gives_orders_is_data_and_so_is_a_model_that_follows_them() {
         .unwrap();
     let mut options = OPTIONS.to_vec();
     options.extend(["--records", records.to_str().unwrap()]);
-    let model = ScriptedModel::new(elsewhere.0.path(), &options);
+    let model = ScriptedModel::new(&options);
     let server = Server::start(move |request| {
         let mut answer: Value = serde_json::from_str(&model.answer(request.messages())).unwrap();
         if request.is("Design") {
@@ -685,8 +681,8 @@ fn a_planted_key_is_in_no_file_however_it_is_written_and_whoever_tells_it() {
     const PLANTED: [(&str, &str); 3] =
         [("RECRASH_API_KEY", "sk-plant/ed+key-0123456789"), ("SOME_API_KEY", "k9/zQ"), ("OTHER_TOKEN", "tk_55512345")];
     const FOUR: [&str; 6] = ["--budget", "4", "--tune-budget", "1", "--seed", "5"];
-    let (folder, elsewhere) = (Folder::new(), Folder::new());
-    let model = ScriptedModel::new(elsewhere.0.path(), &FOUR);
+    let folder = Folder::new();
+    let model = ScriptedModel::new(&FOUR);
     let told: Vec<String> = PLANTED.iter().flat_map(|(_, key)| written(key)).collect();
     let say = told.join(" ");
     let server = Server::start(move |request| {

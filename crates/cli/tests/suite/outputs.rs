@@ -1,6 +1,6 @@
 //! What commands write outside a suite: never in the place of something that is read, of another output or of a device.
 
-use crate::common::Place;
+use crate::common::{Place, SMALL};
 use recrash_records::SAMPLE_CSV;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ for line in sys.stdin:
 
 /// A place with every kind of input, and a small suite.
 fn place() -> Place {
-    let place = Place::new();
+    let place = Place::made(&SMALL);
     let crossing = std::fs::read(repository().join("crates/pipeline/benches/crossing.json")).unwrap();
     std::fs::write(place.path("a.json"), crossing).unwrap();
     std::fs::write(place.path("a.csv"), SAMPLE_CSV).unwrap();
@@ -35,8 +35,7 @@ fn place() -> Place {
     std::fs::write(place.path("map.toml"), include_str!("../../../../docs/mappings/crss.toml")).unwrap();
     std::fs::write(place.path("mine.toml"), include_str!("../../../../profiles/paper.toml")).unwrap();
     std::fs::create_dir(place.path("sub")).unwrap();
-    let (code, _, error) = place.run(&["run", "--quiet", "--budget", "2", "--tune-budget", "4", "--out", "s"]);
-    assert_eq!(code, 0, "{error}");
+    std::fs::rename(place.path("suite"), place.path("s")).unwrap();
     place
 }
 

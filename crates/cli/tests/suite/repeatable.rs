@@ -1,32 +1,35 @@
 //! The same command gives the same bytes: for any number of threads, twice, and after a kill at any moment.
 
-use crate::common::recrash;
+use crate::common::{Place, recrash};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-const SMALL: [&str; 6] = ["--budget", "6", "--tune-budget", "24", "--seed", "5"];
+const SMALL: [&str; 6] = ["--budget", "5", "--tune-budget", "12", "--seed", "5"];
 
 fn run(out: &Path, extra: &[&str]) {
     let out = out.to_str().unwrap();
     recrash(&["run", "--quiet", "--out", out]).args(SMALL).args(extra).assert().success();
 }
 
+/// A place with a suite that nobody disturbed.
+fn undisturbed() -> Place {
+    Place::made(&[&["run", "--quiet", "--threads", "2"], &SMALL[..]].concat())
+}
+
 #[test]
 fn one_thread_and_two_threads_write_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    let (one, two) = (folder.path().join("one"), undisturbed());
     run(&one, &["--threads", "1"]);
-    run(&two, &["--threads", "2"]);
-    assert_same_files(&one, &two);
+    assert_same_files(&one, &two.path("suite"));
 }
 
 #[test]
 fn a_second_run_does_nothing_and_changes_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("suite");
-    run(&out, &[]);
+    let place = undisturbed();
+    let out = place.path("suite");
     let before = files(&out);
     let output = recrash(&["run", "--out", out.to_str().unwrap()]).args(SMALL).assert().success();
     let shown = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
@@ -36,9 +39,8 @@ fn a_second_run_does_nothing_and_changes_nothing() {
 
 #[test]
 fn another_seed_writes_other_scenarios_and_leaves_none_of_the_old() {
-    let folder = tempfile::tempdir().unwrap();
-    let (changed, fresh) = (folder.path().join("changed"), folder.path().join("fresh"));
-    run(&changed, &[]);
+    let place = undisturbed();
+    let (changed, fresh) = (place.path("suite"), place.path("fresh"));
     for out in [&changed, &fresh] {
         let other = ["--budget", "4", "--tune-budget", "24", "--seed", "6"];
         recrash(&["run", "--quiet", "--out", out.to_str().unwrap()]).args(other).assert().success();
@@ -67,8 +69,8 @@ fn kill_when(out: &Path, file: &str) {
 #[test]
 fn a_run_killed_in_any_stage_goes_on_and_ends_with_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let undisturbed = folder.path().join("undisturbed");
-    run(&undisturbed, &[]);
+    let place = undisturbed();
+    let undisturbed = place.path("suite");
     let narrative = files(&undisturbed).keys().find(|name| name.starts_with("3-narratives/")).unwrap().clone();
     let id = narrative.trim_start_matches("3-narratives/").trim_end_matches(".json").to_owned();
     let moments = [
@@ -99,9 +101,8 @@ fn a_run_killed_in_any_stage_goes_on_and_ends_with_the_same_bytes() {
 
 #[test]
 fn stages_one_by_one_give_what_run_gives() {
-    let folder = tempfile::tempdir().unwrap();
-    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
-    run(&whole, &[]);
+    let place = undisturbed();
+    let (whole, parts) = (place.path("suite"), place.path("parts"));
     let out = parts.to_str().unwrap();
     recrash(&["records", "--quiet", "--out", out]).assert().success();
     recrash(&["select", "--quiet", "--out", out]).args(SMALL).assert().success();

@@ -1,7 +1,7 @@
 //! A suite from a stranger is data: whatever is in it, nothing outside it changes and no program starts.
 #![cfg(unix)]
 
-use crate::common::Place;
+use crate::common::{Place, SMALL, copy};
 use serde_json::Value;
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -15,7 +15,7 @@ const COMMANDS: [&[&str]; 9] = [
     &["tune"],
     &["triage"],
     &["report"],
-    &["run", "--budget", "2", "--tune-budget", "2"],
+    &SMALL,
     &["export", "suite", "--to", "openscenario"],
     &["sweep", "suite", "-n", "2", "--out", "out.parquet"],
 ];
@@ -114,9 +114,7 @@ fn state(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 #[test]
 fn a_hostile_suite_changes_nothing_outside_itself_and_runs_nothing() {
-    let made = Place::new();
-    let (code, _, error) = made.run(&["run", "--quiet", "--budget", "2", "--tune-budget", "2"]);
-    assert_eq!(code, 0, "{error}");
+    let made = Place::made(&SMALL);
     for (form, spoil) in FORMS {
         for command in COMMANDS {
             let place = Place::new();
@@ -134,23 +132,9 @@ fn a_hostile_suite_changes_nothing_outside_itself_and_runs_nothing() {
     }
 }
 
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
-        let target = to.join(entry.file_name());
-        if entry.file_type().unwrap().is_dir() {
-            copy(&entry.path(), &target);
-        } else {
-            fs::copy(entry.path(), target).unwrap();
-        }
-    }
-}
-
 #[test]
 fn a_program_that_the_suite_names_starts_when_the_caller_trusts_it() {
-    let place = Place::new();
-    let (code, _, error) = place.run(&["run", "--quiet", "--budget", "1", "--tune-budget", "1"]);
-    assert_eq!(code, 0, "{error}");
+    let place = Place::made(&SMALL);
     let ran = place.path("ran");
     ego(&place.path("suite"), &format!("cmd:touch {}", ran.display()));
     let (code, _, error) = place.run(&["simulate", "--quiet"]);

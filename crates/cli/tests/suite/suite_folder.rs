@@ -1,15 +1,12 @@
 //! What a suite's folder may count on: one run at a time, nothing left behind, nothing touched that is not its own.
 
-use crate::common::{Place, driving_ego};
+use crate::common::{Place, SMALL, driving_ego};
 use std::path::Path;
 
 /// A place with a small suite in `suite/`, and the words that make it again.
 fn small_suite(more: &[&str]) -> (Place, Vec<String>) {
-    let place = Place::new();
-    let words = [&["run", "--quiet", "--budget", "2", "--tune-budget", "4"], more].concat();
-    let (code, _, error) = place.run(&words);
-    assert_eq!(code, 0, "{error}");
-    (place, words.into_iter().map(str::to_owned).collect())
+    let words = [&SMALL, more].concat();
+    (Place::made(&words), words.into_iter().map(str::to_owned).collect())
 }
 
 fn run_again(place: &Place, words: &[String]) -> (i32, String) {

@@ -1,7 +1,7 @@
 //! What people see: clean text whoever wrote it, tables as wide as the terminal, and an end without a panic where nobody
 //! looks.
 
-use crate::common::{Place, recrash};
+use crate::common::{Place, SMALL, recrash};
 use recrash_records::SAMPLE_CSV;
 use std::fs::File;
 use std::process::{Output, Stdio};
@@ -112,9 +112,7 @@ fn scenarios(place: &Place, columns: Option<&str>) -> Vec<String> {
 
 #[test]
 fn the_table_of_scenarios_keeps_to_the_width_of_the_terminal() {
-    let place = Place::new();
-    let (code, _, error) = place.run(&["run", "--quiet", "--budget", "4", "--tune-budget", "20"]);
-    assert_eq!(code, 0, "{error}");
+    let place = Place::made(&SMALL);
     let summary = std::fs::read(place.path("suite/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
     let id = summary["cases"][0]["id"].as_str().unwrap().to_owned();

@@ -51,20 +51,22 @@ fn by_kind(context: &Context) -> Markup {
     let ran = context.summary.ran;
     let share = |n: usize| if ran == 0 { 0.0 } else { n as f64 / ran as f64 };
     html! {
-        table.plain {
-            caption.hidden-text { "Number of scenarios with a finding of each kind" }
-            thead { tr { th scope="col" { "Finding" } th scope="col" { "What it means" } th.right scope="col" { "As designed" } td {} th.right scope="col" { "After tuning" } td {} } }
-            tbody { @for kind in KINDS {
-                @let before = cases.iter().filter(|case| has(case.before.as_ref(), kind)).count();
-                @let after = cases.iter().filter(|case| has(case.last_run(), kind)).count();
-                @let class = if kind.is_failure() { "bad" } else { "odd" };
-                tr {
-                    th scope="row" { (parts::finding_chip(kind)) }
-                    td.muted { (meaning(kind, context)) }
-                    td.right.number { (before) } td.bar-cell { (parts::bar(share(before), class)) }
-                    td.right.number { (after) } td.bar-cell { (parts::bar(share(after), class)) }
-                }
-            } }
+        .table-wrap {
+            table.plain {
+                caption.hidden-text { "Number of scenarios with a finding of each kind" }
+                thead { tr { th scope="col" { "Finding" } th scope="col" { "What it means" } th.right scope="col" { "As designed" } td {} th.right scope="col" { "After tuning" } td {} } }
+                tbody { @for kind in KINDS {
+                    @let before = cases.iter().filter(|case| has(case.before.as_ref(), kind)).count();
+                    @let after = cases.iter().filter(|case| has(case.last_run(), kind)).count();
+                    @let class = if kind.is_failure() { "bad" } else { "odd" };
+                    tr {
+                        th scope="row" { (parts::finding_chip(kind)) }
+                        td.muted { (meaning(kind, context)) }
+                        td.right.number { (before) } td.bar-cell { (parts::bar(share(before), class)) }
+                        td.right.number { (after) } td.bar-cell { (parts::bar(share(after), class)) }
+                    }
+                } }
+            }
         }
         p.muted { "Scenarios with at least one finding of the kind, of " (ran) " that ran." }
     }

@@ -91,17 +91,22 @@ fn road_types(context: &Context) -> Markup {
 fn movements(context: &Context) -> Markup {
     let tables = &context.suite.selection.tables;
     let most = tables.movements.iter().flat_map(|(_, row)| row).copied().max().unwrap_or(0);
+    let by_sv = |column: usize| tables.movements.iter().map(|(_, row)| row[column]).sum::<usize>();
+    let sv: Vec<usize> = (0..tables.sv_movements.len()).filter(|column| by_sv(*column) > 0).collect();
+    let cp = || tables.movements.iter().filter(|(_, row)| row.iter().any(|n| *n > 0));
+    let nobody = tables.sv_movements.len() - sv.len() + tables.movements.len() - cp().count();
     html! {
-        table.matrix {
+        .table-wrap { table.matrix.small[sv.len() > 4] {
             caption { "Rows: crash partner (CP). Columns: subject vehicle (SV)." }
-            thead { tr { td {} @for sv in &tables.sv_movements { th scope="col" { "SV " (sv.label().to_lowercase()) } } } }
-            tbody { @for (cp, row) in &tables.movements {
+            thead { tr { td {} @for column in &sv { th scope="col" { "SV " (tables.sv_movements[*column].label().to_lowercase()) } } } }
+            tbody { @for (cp, row) in cp() {
                 tr {
                     th scope="row" { "CP " (cp.label().to_lowercase()) }
-                    @for n in row { td.number.(heat(*n, most)) { (thousands(*n)) } }
+                    @for n in sv.iter().map(|column| row[*column]) { td.number.(heat(n, most)) { (thousands(n)) } }
                 }
             } }
-        }
+        } }
+        @if nobody > 0 { p.muted { "Left out: " (words::count(nobody, "movement")) " of SV or CP that no record has." } }
     }
 }
 

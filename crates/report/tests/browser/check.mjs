@@ -52,6 +52,8 @@ const check = (holds, what) => {
 
 const browser = await chromium
   .launch({
+    // Bars take their room, as on most screens.
+    ignoreDefaultArgs: ['--hide-scrollbars'],
     executablePath: options.chromium,
     args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
   })
@@ -291,7 +293,7 @@ async function checkReplay(page, section) {
   }
   check((await section.locator('.play').getAttribute('aria-label')) === 'Play', 'the replay does not open paused');
   await page.keyboard.press('Home');
-  for (const [at] of events) {
+  for (const [at] of events.filter(([at]) => at > 0)) {
     await page.keyboard.press('.');
     check(Math.abs((await time(section)) - at) < 0.11, `the key of the next event goes to ${await time(section)} s, not to ${at} s`);
   }

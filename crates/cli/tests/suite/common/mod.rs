@@ -4,7 +4,14 @@ pub mod scripted;
 pub mod server;
 
 use assert_cmd::Command;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock};
+
+/// Makes a small suite that goes by templates.
+pub const SMALL: [&str; 6] = ["run", "--quiet", "--budget", "2", "--tune-budget", "4"];
+/// Makes one that goes by accounts.
+pub const TOLD: [&str; 9] = ["run", "--profile", "open", "--budget", "12", "--tune-budget", "6", "--seed", "3"];
 
 /// The command. Where nothing else is said its suites go by templates, as the published method does; those that go by
 /// accounts have tests of their own.
@@ -49,6 +56,23 @@ impl Place {
         Self { folder: tempfile::tempdir().unwrap() }
     }
 
+    /// A place where a command has been run. It runs once for all tests that ask for it, and each gets a copy.
+    pub fn made(arguments: &[&str]) -> Self {
+        type Made = BTreeMap<Vec<String>, Arc<OnceLock<Place>>>;
+        static MADE: Mutex<Made> = Mutex::new(Made::new());
+        let words: Vec<String> = arguments.iter().map(|word| (*word).to_owned()).collect();
+        let made = Arc::clone(MADE.lock().unwrap().entry(words).or_default());
+        let first = made.get_or_init(|| {
+            let place = Self { folder: tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap() };
+            let (code, _, error) = place.run(arguments);
+            assert_eq!(code, 0, "{arguments:?}: {error}");
+            place
+        });
+        let place = Self::new();
+        copy(first.folder(), place.folder());
+        place
+    }
+
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
@@ -85,5 +109,18 @@ impl Place {
         let (code, shown, error) = self.run(&arguments);
         assert_eq!(code, 0, "{error}");
         serde_json::from_str(&shown).unwrap()
+    }
+}
+
+/// Copies what a folder holds.
+pub fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let target = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).unwrap();
+        }
     }
 }

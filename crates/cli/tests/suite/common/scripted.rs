@@ -1,28 +1,30 @@
 //! A model that plays from a script: it answers with what the reader and the rules made of the same crash.
 
-use super::recrash;
+use super::{Place, recrash};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// The model, with a suite that the rules made.
 pub struct ScriptedModel {
-    rules: PathBuf,
+    rules: Place,
     /// The accounts that the built-in reader makes of the sample.
-    accounts: Vec<Value>,
+    accounts: &'static [Value],
 }
 
 impl ScriptedModel {
     /// Makes the suite that it answers from.
-    pub fn new(folder: &Path, options: &[&str]) -> Self {
-        let rules = folder.join("rules");
-        recrash(&["run", "--quiet", "--out", rules.to_str().unwrap()]).args(options).assert().success();
-        let read = recrash(&["read", "--json"]).output().unwrap();
-        let read: Value = serde_json::from_slice(&read.stdout).unwrap();
-        Self { rules, accounts: read["accounts"].as_array().unwrap().clone() }
+    pub fn new(options: &[&str]) -> Self {
+        static ACCOUNTS: OnceLock<Value> = OnceLock::new();
+        let read = ACCOUNTS.get_or_init(|| {
+            let read = recrash(&["read", "--json"]).output().unwrap();
+            serde_json::from_slice(&read.stdout).unwrap()
+        });
+        let rules = Place::made(&[&["run", "--quiet"], options].concat());
+        Self { rules, accounts: read["accounts"].as_array().unwrap() }
     }
 
     fn read(&self, file: String) -> Value {
-        serde_json::from_slice(&std::fs::read(self.rules.join(file)).unwrap()).unwrap()
+        serde_json::from_slice(&std::fs::read(self.rules.path("suite").join(file)).unwrap()).unwrap()
     }
 
     /// A good answer to a conversation.
