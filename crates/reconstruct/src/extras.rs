@@ -70,6 +70,9 @@ const BACKS_TO_M: f64 = -0.2;
 const BACKS_MPS: f64 = 1.5;
 const BACKS_MPS2: f64 = 1.5;
 
+/// An ego that comes back into its lane has begun to when it has left its line by so much. [m]
+const RETURNS_M: f64 = 0.1;
+
 /// Who hides somebody who comes across stands so far short of it; the sine of the least angle across. [m, -]
 const HIDES_M: f64 = 0.8;
 const ACROSS: f64 = 0.7;
@@ -513,6 +516,14 @@ impl Scene<'_> {
     /// Whom the ego goes round: where it has left its line, ahead of it there, or beside it.
     fn obstacle(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> ActorPlan {
         let line_m = self.told.sv_aside().map(|aside| aside.from_t_m);
+        // In the lane into which the ego comes back, before that.
+        if let Some(aside) = self.told.sv_aside().filter(|_| extra.behind) {
+            let leaves = |step: &usize| (self.at(*step).1 - aside.from_t_m).abs() > RETURNS_M;
+            let from = (0..self.until).find(leaves).unwrap_or(self.until);
+            let pose =
+                self.ground.pose(self.at(from).0 - self.front_m() - 0.5 * length_m, aside.to_t_m.signum() * LANE_M);
+            return ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()));
+        }
         let (s_m, t_m) = match line_m {
             Some(line_m) => {
                 let left = (0..self.until).find(|step| (self.at(*step).1 - line_m).abs() > BESIDE_M);

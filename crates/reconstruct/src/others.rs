@@ -102,6 +102,8 @@ pub(crate) struct Extra {
     pub(crate) first: bool,
     /// The ego stands or slows for it, or it is not told that somebody else is the reason.
     pub(crate) awaited: bool,
+    /// The ego has gone round it, and is back in its lane.
+    pub(crate) behind: bool,
     /// On which side of the ego it is, or from which it comes, where told.
     pub(crate) side: Option<LeftRight>,
 }
@@ -117,6 +119,7 @@ impl Extra {
             parked: false,
             first: false,
             awaited: true,
+            behind: false,
             side: None,
         }
     }
@@ -149,6 +152,14 @@ pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
 /// Who threw the partner at the ego, where told.
 pub(crate) fn pusher(account: &Account) -> Option<Kind> {
     account.others.iter().find(|other| other.touched_partner).map(|other| other.kind.value)
+}
+
+/// Whether who touched the partner first is told to stand, and to do nothing else.
+pub(crate) fn pusher_stands(account: &Account) -> bool {
+    let stands = |fact: &ActFact| matches!(fact.act, Act::Park | Act::Hold);
+    let touched = account.others.iter().find(|other| other.touched_partner);
+    let before = touched.map(|other| before_contact(other).map(stands).collect::<Vec<_>>());
+    before.is_some_and(|list| !list.is_empty() && list.into_iter().all(|stands| stands))
 }
 
 /// Two others than the ego who touch, whom nobody had touched before and of whom it is not told. Who throws the partner does so.
@@ -192,7 +203,8 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             None => {
                 let side = story.side(role, told, other);
                 let awaited = story.is_near(other) || other.several;
-                list.push(Extra { role, of: vec![number], kind, goes, parked, first, awaited, side });
+                let behind = role == Role::Obstacle && story.is_back(other);
+                list.push(Extra { role, of: vec![number], kind, goes, parked, first, awaited, behind, side });
             }
         }
     }
@@ -363,14 +375,31 @@ impl Story<'_> {
         told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
     }
 
-    /// Whether the ego is told to pass somebody.
-    fn goes_by(&self, other: &Other) -> bool {
+    /// The step at which the ego is told to pass somebody.
+    fn passes_at(&self, other: &Other) -> Option<u32> {
         let passes = |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && !fact.begun;
-        let passed = self.account.sv.acts.iter().filter(passes).filter_map(|fact| span(&fact.source));
-        let named = span(&other.kind.source);
-        named.is_some_and(|(named, _)| {
-            passed.into_iter().any(|(start, end)| (start..=end + PASSES_WITHIN).contains(&named))
-        })
+        let acts = before_contact(other).map(|fact| &fact.source);
+        let named: Vec<usize> =
+            [&other.kind.source].into_iter().chain(acts).filter_map(|source| Some(span(source)?.0)).collect();
+        let of = |fact: &&ActFact| {
+            let within =
+                |(start, end): (usize, usize)| named.iter().any(|at| (start..=end + PASSES_WITHIN).contains(at));
+            span(&fact.source).is_some_and(within)
+        };
+        self.account.sv.acts.iter().filter(passes).find(of).map(|fact| fact.step)
+    }
+
+    /// Whether the ego has passed somebody, and is told to have come back into its lane then.
+    fn is_back(&self, other: &Other) -> bool {
+        let Some(passed) = self.passes_at(other) else { return false };
+        let changes = |fact: &&ActFact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun;
+        let changes: Vec<&ActFact> = self.account.sv.acts.iter().filter(changes).collect();
+        match changes.as_slice() {
+            [.., last] if last.step > passed => true,
+            // "It merged to the right, and merged back to the left after passing the truck."
+            [.., one, last] => one.side.is_some() && last.side == one.side.map(LeftRight::other),
+            _ => false,
+        }
     }
 
     /// Whether somebody was about to change lanes.
@@ -421,9 +450,17 @@ impl Story<'_> {
                 (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
             };
         }
+        if stands && !other.several && self.is_back(other) && told.sv_aside().is_some() {
+            return Some(Role::Obstacle);
+        }
         // In the next lane, whether or not the ego slows as it goes by.
-        let beside = matches!(place, Some(Origin::Beside { .. })) || place.is_none() && self.goes_by(other);
-        if stands && beside && told.sv_aside().is_none() && !did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Drift]) {
+        let beside = matches!(place, Some(Origin::Beside { .. })) || place.is_none() && self.passes_at(other).is_some();
+        if stands
+            && beside
+            && told.sv_aside().is_none()
+            && !self.is_back(other)
+            && !did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Drift])
+        {
             return Some(Role::Beside);
         }
         if did(&[Act::Reverse]) && matches!(place, Some(Origin::Beside { .. })) && (near || reacts) {
@@ -495,6 +532,7 @@ impl Story<'_> {
             .or(Some(LeftRight::Right)),
             // Who changes to its right comes from the left.
             _ if role == Role::Merger => self.came_from(other),
+            _ if role == Role::Obstacle && self.is_back(other) => None,
             _ => passed.filter(|_| matches!(role, Role::Obstacle | Role::Beside)),
         }
     }

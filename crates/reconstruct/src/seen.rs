@@ -106,7 +106,9 @@ impl<'a> Seen<'a> {
         let number = self.rollout.actors.iter().position(|track| track.id == "pusher");
         let as_told = |number: usize| {
             let kind = self.told.pusher.and_then(Kind::partner_kind);
-            kind.is_none_or(|kind| kind == self.rollout.actors[number].kind)
+            let track = &self.rollout.actors[number];
+            let stood = Self::mps(track, 0) < STANDS_MPS;
+            kind.is_none_or(|kind| kind == track.kind) && (stood || !self.told.pusher_stands)
         };
         let touches = |number: usize| {
             self.rollout.events.iter().any(|event| match event.kind {
@@ -285,7 +287,8 @@ impl<'a> Seen<'a> {
         let in_line = left_m.abs() < 0.5 * LANE_M && (left_m - ego_left_m).abs() > 0.8;
         let by = left_m.abs() >= 0.5 * LANE_M && left_m.abs() < 1.5 * LANE_M;
         let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > ego_left_m));
-        let near = self.beside(track, self.until).0.abs() < CROSSING_M;
+        let (ahead_m, _) = self.beside(track, self.until);
+        let near = ahead_m.abs() < CROSSING_M && (ahead_m < 0.0 || !extra.behind);
         self.stays(track) && ahead.dot(way) > 0.0 && near && (in_line || by) && side
     }
 }

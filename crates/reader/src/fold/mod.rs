@@ -500,7 +500,9 @@ fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFac
     let after = contact.is_some_and(|sentence| first >= story.sentences[sentence].end);
     // The crash, told before the story that tells it again.
     let again_told = |frame: &Frame| {
-        frame.is_contact() && contact.is_some_and(|sentence| sentence > frame.sentence) && !inside(&["traffic"])
+        frame.is_contact()
+            && contact.is_some_and(|sentence| sentence > frame.sentence)
+            && !inside(&["traffic", "another"])
     };
     let headline = story.frames.iter().any(|frame| {
         let sentence = story.sentences[frame.sentence];

@@ -52,6 +52,15 @@ const MAKES_ROOM: &str = "The AV was traveling east in the left lane when an SUV
 const EMERGES: &str = "The AV was traveling east on Elm Street with vehicles parked at the curb in both directions. A dog entered the street from the left \
                        and the front of the AV made contact with the dog.";
 
+const ROUND_AND_BACK: &str = "The AV was traveling north and navigated around a double-parked truck stopped in the right lane. After re-entering the right lane, \
+                              the AV came to a stop behind a van. The van reversed and the rear of the van made contact with the front of the AV.";
+const STRUCK_PARKED: &str = "The AV was traveling west on Elm Street in the center lane when a sedan traveling west in the right lane ahead of the AV made \
+                             contact with a van parked at the curb. The sedan then moved into the lane of the AV, and the left side of the sedan made \
+                             contact with the front right of the AV.";
+const PULLS_OUT: &str = "The AV was parked in the right lane on Elm Street. A sedan that was stopped behind the AV began to change lanes to the left lane. As \
+                         the sedan crossed the lane line, the front of a pickup truck made contact with the left side of the sedan, causing the front right \
+                         side of the sedan to then make contact with the rear left side of the AV.";
+
 fn told(text: &str) -> Account {
     let whole = if text.contains("made contact") { text.to_owned() } else { format!("{text} {STRUCK}") };
     story(&whole)
@@ -350,4 +359,32 @@ fn an_animal_crosses_a_street_and_comes_out_behind_who_is_parked_there() {
     let out = animal.iter().find(|state| state.y < parked.1.y).expect("it comes across");
     let short_m = out.x - parked.1.x - 0.5 * parked.0.length_m;
     assert!((0.0..3.0).contains(&short_m), "{short_m}");
+}
+
+#[test]
+fn whom_the_ego_has_gone_round_stands_in_the_lane_to_which_it_came_back() {
+    let shown = shown_but(ROUND_AND_BACK, "obstacle", |truck| moved(&mut truck.plan, 60.0, 0.0));
+    let (truck, ego) = (track(&shown, "obstacle").states[0], shown.rollout.ego_track());
+    let (began, met) = (ego.states[0], ego.states[before_contact(&shown)]);
+    assert!(truck.x > began.x && truck.x < met.x && truck.y < began.y - 2.5, "{truck:?}");
+}
+
+#[test]
+fn whom_the_partner_strikes_first_stands_where_it_is_told_to_be_parked() {
+    let shown = shown_but(STRUCK_PARKED, "pusher", |van| moved(&mut van.plan, 0.0, -6.0));
+    let (van, (states, met)) = (track(&shown, "pusher"), partner(&shown));
+    let last = before_contact(&shown);
+    assert_eq!(van.kind, PartnerKind::Van);
+    assert!(van.states[..last - 4].iter().all(|state| state.speed() == 0.0), "it stands");
+    assert!(van.states[0].y < met.y - 1.0 && states[last].speed() > 1.0, "on the side away from the ego");
+}
+
+#[test]
+fn who_pulls_out_from_behind_is_struck_on_its_way() {
+    let shown = made(&story(PULLS_OUT));
+    assert!(shown.is_true(), "{:?}", shown.verdict);
+    let (states, met) = partner(&shown);
+    let ego = shown.rollout.ego_track().states[0];
+    assert!(states[0].speed() == 0.0 && (states[0].y - ego.y).abs() < 1.5 && met.y > ego.y + 1.0, "{:?}", states[0]);
+    assert_eq!(track(&shown, "pusher").kind, PartnerKind::PickupTruck);
 }
