@@ -385,6 +385,10 @@ fn who_pulls_out_from_behind_is_struck_on_its_way() {
     assert!(shown.is_true(), "{:?}", shown.verdict);
     let (states, met) = partner(&shown);
     let ego = shown.rollout.ego_track().states[0];
-    assert!(states[0].speed() == 0.0 && (states[0].y - ego.y).abs() < 1.5 && met.y > ego.y + 1.0, "{:?}", states[0]);
+    assert!(
+        states[0].speed() == 0.0 && (states[0].y - ego.y).abs() < 1.5 && met.y > states[0].y + 1.5,
+        "{:?}, {met:?}",
+        states[0]
+    );
     assert_eq!(track(&shown, "pusher").kind, PartnerKind::PickupTruck);
 }
