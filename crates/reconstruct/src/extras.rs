@@ -18,6 +18,7 @@ use recrash_model::vehicle::VehicleSpec;
 /// From the ego's front to who stands ahead, and to who crosses on foot, also between the two. [m]
 const LEAD_GAP_M: f64 = 2.5;
 const WALKER_GAP_M: f64 = 3.0;
+const CROSSER_GAP_M: f64 = 2.0;
 const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
 
 /// An ego that slows for somebody could stop before it, braking so, and has this much room besides. [m/s^2, m]
@@ -72,6 +73,10 @@ const BACKS_MPS2: f64 = 1.5;
 
 /// An ego that comes back into its lane has begun to when it has left its line by so much. [m]
 const RETURNS_M: f64 = 0.1;
+
+/// Who drives in the next lane is so far ahead of the ego, and its course goes on so far. [m]
+const ABREAST_M: f64 = 3.0;
+const BEYOND_M: f64 = 160.0;
 
 /// Who hides somebody who comes across stands so far short of it; the sine of the least angle across. [m, -]
 const HIDES_M: f64 = 0.8;
@@ -150,6 +155,7 @@ impl Scene<'_> {
             Role::Merger => vec![self.merger(extra, length_m)],
             Role::Beside => vec![self.stands_beside(extra, length_m)],
             Role::Backer => vec![self.backer(extra, (length_m, width_m))],
+            Role::Abreast => vec![self.abreast(extra)],
         };
         let name = |number: usize| if number == 0 { String::new() } else { format!("-{}", number + 1) };
         let actor = |(number, plan): (usize, ActorPlan)| Actor {
@@ -332,12 +338,15 @@ impl Scene<'_> {
     fn crosser(&self, extra: &Extra) -> Option<ActorPlan> {
         let (step, _) = self.stops();
         let lane_m = CROSSING_LANES_M[usize::from(extra.side == Some(LeftRight::Right))];
-        let room_m = self.ground.first_m() + lane_m - self.at(step).0 - self.front_m();
-        if !self.ground.junction || room_m < WALKER_GAP_M {
-            return None;
-        }
         let line = self.ground.sv_pose(self.ground.first_m());
         let ahead = Vec2::from_heading(line.heading);
+        // An ego that waits in its turn has turned away from the lane.
+        let ego = self.ego.states[step].pose();
+        let front = ego.position + Vec2::from_heading(ego.heading) * self.front_m();
+        let room_m = lane_m - ahead.dot(front - line.position);
+        if !self.ground.junction || room_m < CROSSER_GAP_M {
+            return None;
+        }
         let way = if extra.side == Some(LeftRight::Right) { ahead.left() } else { ahead.left() * -1.0 };
         let from = line.position + ahead * lane_m - way * (CROSSES_MPS * self.clears_s());
         Some(straight_plan(from, way, (CROSSES_MPS, self.told.contact_s)))
@@ -481,12 +490,28 @@ impl Scene<'_> {
         let there = |track: &ActorTrack| {
             let state = &track.states[self.until.min(track.states.len() - 1)];
             let (at_m, beside_m) = self.ground.beside(state.position());
-            let on_side = beside_m * t_m > 0.0 && beside_m.abs() > 0.3 * LANE_M;
+            let on_side = beside_m * t_m > 0.0 && beside_m.abs() > 0.6 * LANE_M;
             on_side.then_some((at_m + 0.5 * track.length_m + ROOM_M + 0.5 * length_m).max(s_m))
         };
         let stands_m = self.hides_m(t_m, length_m).or_else(|| self.partner.and_then(there)).unwrap_or(s_m);
         let pose = self.ground.pose(stands_m, t_m);
         ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()))
+    }
+
+    /// Who drives in the next lane as the ego does, a little ahead.
+    fn abreast(&self, extra: &Extra) -> ActorPlan {
+        let (s_m, t_m) = self.at(0);
+        let t_m = t_m + if extra.side == Some(LeftRight::Left) { -LANE_M } else { LANE_M };
+        let place = |s_m: f64| {
+            let pose = self.ground.pose(s_m, t_m);
+            Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+        };
+        ActorPlan {
+            speed_mps: self.recorded.speed_mps,
+            course: vec![Leg::Curve { to: place(self.at(self.until).0 + ABREAST_M + BEYOND_M), reverse: false }],
+            acts: self.recorded.acts.clone(),
+            ..ActorPlan::standing(place(s_m + ABREAST_M))
+        }
     }
 
     /// Who backs out of a space beside the road into the ego's lane, ahead of where that is at the contact.

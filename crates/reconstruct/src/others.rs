@@ -3,6 +3,7 @@
 use crate::phases::Phase;
 use crate::side::Turning;
 use crate::told::Told;
+use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, Source, StandReason,
 };
@@ -40,6 +41,8 @@ pub(crate) enum Role {
     Beside,
     /// Backs into the ego's lane from the side, ahead of it.
     Backer,
+    /// Drives in the next lane as the ego does.
+    Abreast,
 }
 
 impl Role {
@@ -60,6 +63,7 @@ impl Role {
             Self::Beyond => "beyond",
             Self::Beside => "beside",
             Self::Backer => "backer",
+            Self::Abreast => "abreast",
         }
     }
 }
@@ -77,6 +81,7 @@ impl Extra {
             Role::Oncoming => "one comes by from ahead",
             Role::Beside => "one stands in the next lane",
             Role::Backer => "one backs into its lane ahead",
+            Role::Abreast => "one drives in the next lane",
             Role::Kerb => "parked at the kerb",
             Role::Obstacle => "one stands that it goes round",
             Role::Passed => "one stands that the partner goes round",
@@ -260,7 +265,7 @@ fn is_drawn(told: &Told, role: Role) -> bool {
     let drives = matches!(told.sv.state, ContactState::Stopped | ContactState::Moving | ContactState::SettingOff);
     match role {
         Role::Kerb | Role::Beside => true,
-        Role::Obstacle | Role::Oncoming | Role::Merger | Role::Backer => drives,
+        Role::Obstacle | Role::Oncoming | Role::Merger | Role::Backer | Role::Abreast => drives,
         Role::Passed => told.thing.is_none(),
         // Ahead of a partner that is ahead itself, and stands or backs there.
         Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
@@ -375,6 +380,29 @@ impl Story<'_> {
         told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
     }
 
+    /// Whether a partner that goes the ego's way is told to pass between it and another one.
+    fn is_between(&self, told: &Told) -> bool {
+        if !matches!(told.origin, Origin::Behind | Origin::Beside { .. }) {
+            return false;
+        }
+        let between =
+            |fact: &ActFact| fact.act == Act::Pass && !fact.after_contact && text(&fact.source).contains("between");
+        self.account.partner.as_ref().is_some_and(|partner| partner.acts.iter().any(between))
+    }
+
+    /// Whether somebody is told to drive, and to do nothing else.
+    fn only_drives(&self, other: &Other) -> bool {
+        before_contact(other).all(|fact| matches!(fact.act, Act::Follow | Act::Enter | Act::SetOff | Act::Slow))
+    }
+
+    /// Whether somebody who drives in the next lane has room there, beside an ego that keeps its own.
+    fn keeps_abreast(&self, told: &Told, place: Option<Origin>) -> bool {
+        let Some(Origin::Beside { side }) = place else { return false };
+        let free = told.comes_from_side() != Some(side) && told.origin != Origin::Beside { side };
+        let drives = matches!(told.sv.state, ContactState::Moving | ContactState::SettingOff);
+        free && drives && is_straight(told)
+    }
+
     /// The step at which the ego is told to pass somebody.
     fn passes_at(&self, other: &Other) -> Option<u32> {
         let passes = |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && !fact.begun;
@@ -437,6 +465,9 @@ impl Story<'_> {
         if stands && !other.several && !near && self.is_passed(told) {
             return Some(Role::Passed);
         }
+        if stands && !other.several && self.is_between(told) {
+            return Some(Role::Beside);
+        }
         let parked = said(&["parked"]) || before_contact(other).any(|fact| text(&fact.source).contains("park"));
         if parked && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
             let double = said(&["double"]) || before_contact(other).any(|fact| text(&fact.source).contains("double"));
@@ -462,6 +493,10 @@ impl Story<'_> {
             && !did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Drift])
         {
             return Some(Role::Beside);
+        }
+        let drives = did(&[Act::Follow, Act::Enter, Act::SetOff]) && self.only_drives(other);
+        if drives && self.keeps_abreast(told, place) {
+            return Some(Role::Abreast);
         }
         if did(&[Act::Reverse]) && matches!(place, Some(Origin::Beside { .. })) && (near || reacts) {
             return Some(Role::Backer);
@@ -533,6 +568,10 @@ impl Story<'_> {
             // Who changes to its right comes from the left.
             _ if role == Role::Merger => self.came_from(other),
             _ if role == Role::Obstacle && self.is_back(other) => None,
+            // On the side where the partner touches the ego.
+            _ if role == Role::Beside && self.is_between(told) => {
+                side_of(&told.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
+            }
             _ => passed.filter(|_| matches!(role, Role::Obstacle | Role::Beside)),
         }
     }

@@ -132,6 +132,7 @@ impl<'a> Seen<'a> {
                 Role::Oncoming => self.comes_by(extra, track),
                 Role::Beside => self.stands_beside(extra, track),
                 Role::Backer => self.backs_out(extra, track),
+                Role::Abreast => self.drives_beside(extra, track),
                 Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
                 Role::Obstacle => self.is_passed(extra, track),
                 Role::Passed => self.partner_passes(track),
@@ -241,6 +242,17 @@ impl<'a> Seen<'a> {
         let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
         let next = (0.5 * LANE_M..1.8 * LANE_M).contains(&left_m.abs());
         self.stays(track) && side && next && ahead_m.abs() < BESIDE_M + 0.5 * track.length_m
+    }
+
+    /// Whether somebody is in the next lane on the told side where the ego is touched, and has come along beside it.
+    fn drives_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let side = |left_m: f64| extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        let next = |step: usize| {
+            let (ahead_m, left_m) = self.beside(track, step);
+            let aside = (0.5 * LANE_M..1.8 * LANE_M).contains(&left_m.abs());
+            side(left_m) && aside && ahead_m.abs() < BESIDE_M + 0.5 * track.length_m
+        };
+        !self.stays(track) && next(0) && next(self.until)
     }
 
     /// Whether somebody goes backwards into the ego's lane, from the told side, and is ahead of it there.

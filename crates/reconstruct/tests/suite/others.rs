@@ -61,6 +61,13 @@ const PULLS_OUT: &str = "The AV was parked in the right lane on Elm Street. A se
                          the sedan crossed the lane line, the front of a pickup truck made contact with the left side of the sedan, causing the front right \
                          side of the sedan to then make contact with the rear left side of the AV.";
 
+const BETWEEN: &str = "The AV was stopped in the lane on Elm Street for a passenger drop-off. A cyclist traveling north behind the AV passed between the AV and a \
+                       van that was parked, and the cyclist made contact with the rear left side of the AV.";
+const ABREAST: &str = "The AV was traveling north in the center lane when a tire came off a van traveling in the right lane. The tire rolled into the lane of \
+                       the AV and the front of the AV made contact with the tire.";
+const IN_ITS_TURN: &str = "The AV was traveling north on Elm Street and was making a right turn onto Oak Street. The AV advanced and came to a stop to yield \
+                           to cross traffic.";
+
 fn told(text: &str) -> Account {
     let whole = if text.contains("made contact") { text.to_owned() } else { format!("{text} {STRUCK}") };
     story(&whole)
@@ -391,4 +398,29 @@ fn who_pulls_out_from_behind_is_struck_on_its_way() {
         states[0]
     );
     assert_eq!(track(&shown, "pusher").kind, PartnerKind::PickupTruck);
+}
+
+#[test]
+fn who_is_passed_between_stands_on_the_side_that_is_touched() {
+    let shown = shown_but(BETWEEN, "beside", |van| moved(&mut van.plan, 0.0, -6.8));
+    let (van, (states, _)) = (track(&shown, "beside"), partner(&shown));
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    let between = states[before_contact(&shown)].y;
+    assert!(van.kind == PartnerKind::Van && van.states[0].y > between && between > ego.y, "{between}");
+}
+
+#[test]
+fn who_drives_in_the_next_lane_stays_there_beside_the_ego() {
+    let shown = shown_but(ABREAST, "abreast", stands_from_the_start);
+    let (van, last) = (track(&shown, "abreast"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[last];
+    assert!((van.states[last].y - ego.y + 3.4).abs() < 0.3 && (van.states[last].x - ego.x).abs() < 8.0);
+    assert!(van.states[last].speed() > 5.0);
+}
+
+#[test]
+fn crossing_traffic_goes_by_an_ego_that_waits_in_its_turn() {
+    let shown = shown_but(IN_ITS_TURN, "crosser", stands_from_the_start);
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    assert!(ego.heading.to_degrees() < -5.0, "{ego:?}");
 }
