@@ -514,6 +514,11 @@ impl Story<'_> {
         let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside || across;
         let turns = told.sv.turning != Turning::No || because(StandReason::StopSign);
         let passes = turns && (because(StandReason::Yield) || did(&[Act::Follow]));
+        // Crossing traffic that has not cleared the junction.
+        let held = other.several && crosses && did(&[Act::Hold]) && told.sv.state == ContactState::Stopped;
+        if held && (told.place == PlaceKind::Intersection || told.is_controlled()) && !beside && !queue {
+            return Some(Role::Blocker);
+        }
         let for_turn =
             told.sv.turning != Turning::No && said(&["cross"]) || across && (acts_not || did(&[Act::Follow]));
         let for_turn = for_turn && !because(StandReason::BlockedJunction);

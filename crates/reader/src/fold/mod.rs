@@ -11,6 +11,7 @@ mod place;
 mod scenario;
 mod state;
 mod types;
+mod whereabouts;
 
 use crate::chunk::Piece;
 use crate::frame::{Frame, Own, Story, story};
@@ -443,7 +444,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         }
         all.push(Other {
             kind: reading.told(kind, first, end),
-            place: origin::place_of(reading, actor),
+            place: whereabouts::place_of(reading, actor),
             several: known.several,
             acts,
             touched_partner,
@@ -479,7 +480,8 @@ fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFac
     let of_way = is(first.checked_sub(1), &["of"]) && is(first.checked_sub(2), &way) && inside(&["traffic"]);
     // "The signal for traffic", "in heavy traffic", "to merge into traffic".
     let before = |of: &[&str]| is(first.checked_sub(1), of);
-    let signal = (first.saturating_sub(2)..first).any(|at| is(Some(at), &["signal", "signals", "light", "lights"]));
+    let signal =
+        (first.saturating_sub(2)..first).any(|at| is(Some(at), &["signal", "signals", "light", "lights", "green"]));
     let heavy = inside(&["heavy", "light", "moderate"]) && before(&["in", "with", "by", "to"]);
     let any_traffic = inside(&["traffic"])
         && acts.is_empty()

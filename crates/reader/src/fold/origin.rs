@@ -59,7 +59,7 @@ impl Clues<'_> {
         }
     }
 
-    fn has(&self, relation: Relation) -> Source {
+    pub(super) fn has(&self, relation: Relation) -> Source {
         self.source(|frame| frame.relations.iter().any(|(known, _)| *known == relation))
     }
 }
@@ -653,7 +653,7 @@ fn after_its_turn(account: &Account) -> Option<Compass> {
 }
 
 /// The relation told first.
-fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
+pub(super) fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
     clues.relations().find(|relation| *relation != Relation::Same)
 }
 
@@ -696,7 +696,7 @@ fn stood_in(reading: &Reading<'_>, actor: Actor, names: &[&str]) -> Option<Sourc
 }
 
 /// Lanes from left to right.
-fn lane_place(lane: LaneWord) -> Option<i32> {
+pub(super) fn lane_place(lane: LaneWord) -> Option<i32> {
     match lane {
         LaneWord::LeftTurn => Some(0),
         LaneWord::Left => Some(1),
@@ -729,58 +729,4 @@ fn changed_from(account: &Account) -> Option<LeftRight> {
     let from = change.side?.other();
     // Whoever moves over towards it touches it on that side.
     (zone_side(account) == Some(from)).then_some(from)
-}
-
-/// Where somebody else is: as told; else in its lane, beside that of the subject vehicle, or by the directions of the two.
-pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
-    let clues = Clues { reading, actor };
-    let relation = first_relation(&clues);
-    let value = match relation {
-        Some(Relation::Behind) => Some(Origin::Behind),
-        Some(Relation::Ahead) => Some(Origin::Ahead),
-        Some(Relation::Left) => Some(Origin::Beside { side: LeftRight::Left }),
-        Some(Relation::Right) => Some(Origin::Beside { side: LeftRight::Right }),
-        Some(Relation::Opposite) => Some(Origin::Opposite),
-        Some(Relation::Same | Relation::Beside) | None => None,
-    };
-    let told = value.zip(relation).map(|(value, relation)| Fact { value, source: clues.has(relation) });
-    told.or_else(|| in_other_lane(&clues)).or_else(|| by_directions(&clues))
-}
-
-/// Somebody in another lane than the subject vehicle, where that keeps its own.
-fn in_other_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
-    let reading = clues.reading;
-    let (own, _, _) = reading.story.world.actors[SUBJECT].lane?;
-    if reading.did(SUBJECT, Act::LaneChange) || reading.did(SUBJECT, Act::Turn) {
-        return None;
-    }
-    let beside = |side: LeftRight| Origin::Beside { side };
-    if let Some((lane, first, end)) = reading.story.world.actors[clues.actor].lane {
-        let side = match lane_place(lane)? - lane_place(own)? {
-            0 => return None,
-            difference if difference < 0 => LeftRight::Left,
-            _ => LeftRight::Right,
-        };
-        return Some(reading.told(beside(side), first, end));
-    }
-    // In the adjacent lane: of the leftmost one on the right.
-    let side = match own {
-        LaneWord::Left | LaneWord::LeftTurn => LeftRight::Right,
-        LaneWord::Right | LaneWord::RightTurn => LeftRight::Left,
-        _ => return None,
-    };
-    clues.any(Relation::Beside).then(|| Fact { value: beside(side), source: clues.has(Relation::Beside) })
-}
-
-/// Somebody who is told to go the other way, or across.
-fn by_directions(clues: &Clues<'_>) -> Option<Fact<Origin>> {
-    let actors = &clues.reading.story.world.actors;
-    let ((own, ..), (other, first, end)) = (actors[SUBJECT].heading?, actors[clues.actor].heading?);
-    let value = match own.eighths_to(other) {
-        2 => Origin::Cross { side: LeftRight::Left },
-        4 => Origin::Opposite,
-        6 => Origin::Cross { side: LeftRight::Right },
-        _ => return None,
-    };
-    Some(clues.reading.told(value, first, end))
 }

@@ -424,3 +424,11 @@ fn crossing_traffic_goes_by_an_ego_that_waits_in_its_turn() {
     let ego = shown.rollout.ego_track().states[before_contact(&shown)];
     assert!(ego.heading.to_degrees() < -5.0, "{ego:?}");
 }
+
+#[test]
+fn crossing_traffic_that_stands_in_the_junction_is_across_it() {
+    let text = "The AV was stopped facing north on Elm Street at a red light at the intersection with Oak Street. When the light turned green, cross \
+                traffic remained stopped in the intersection and the AV remained stationary.";
+    let shown = shown_but(text, "blocker", |blocker| moved(&mut blocker.plan, 0.0, 14.0));
+    assert!(degrees_between(track(&shown, "blocker").states[0].heading, 0.0) > 80.0);
+}
