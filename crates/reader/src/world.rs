@@ -490,6 +490,7 @@ fn introduces(announced: Kind, said: Kind) -> bool {
         || announced.group() == KindGroup::Object;
     announced == said
         || said == Kind::Vehicle
+        || announced == Kind::SemiTrailerTruck && said == Kind::HeavyTruck
         || (same_kind(announced, said)
             && (generic || !matches!(said, Kind::HeavyTruck | Kind::PassengerCar | Kind::Object)))
 }

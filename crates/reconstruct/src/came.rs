@@ -46,6 +46,10 @@ const THROW_M: f64 = 1.0;
 /// Who is pushed while it rolls towards an ego that stands does so at this speed. [m/s]
 const PUSHED_ROLLING_MPS: f64 = 2.0;
 
+/// The partner grazes who stands so long before the contact, with so much of its width. [s, m]
+const GRAZES_S: f64 = 0.25;
+const GRAZES_M: f64 = 0.05;
+
 /// Who touches the partner on its way is faster than it by so much. [m/s]
 const NUDGE_MPS: f64 = 2.0;
 
@@ -329,7 +333,8 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     if stands {
         return (actors, Vec::new());
     }
-    actors.extend((told.pushed && told.thing.is_none()).then(|| nudger(told, staging)));
+    let toucher = if told.pusher_stands { grazed } else { nudger };
+    actors.extend((told.pushed && told.thing.is_none()).then(|| toucher(told, staging)));
     (actors, Vec::new())
 }
 
@@ -349,6 +354,20 @@ fn nudger(told: &Told, staging: &Staging) -> Actor {
         course: vec![Leg::Curve { to: place(touches + way * beyond_m(speed_mps)), reverse: false }],
         ..ActorPlan::standing(place(start))
     };
+    Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan }
+}
+
+/// Who stands at the kerb, and whom the partner grazes on its way, on the side away from the ego.
+fn grazed(told: &Told, staging: &Staging) -> Actor {
+    let (kind, size, length_m) = pusher(told);
+    let width_m = size.map_or(VehicleSpec::of(kind).width_m, |size| size.width_m);
+    let (partner_m, wide_m) = size_of(&told.cp);
+    let along = Vec2::from_heading(staging.cp.heading);
+    let to_ego = along.cross(staging.sv.position - staging.cp.position).signum();
+    let ahead_m = 0.5 * (partner_m + length_m) - told.cp.speed_mps * GRAZES_S;
+    let beside_m = 0.5 * (width_m + wide_m) - GRAZES_M;
+    let point = staging.cp.position + along * ahead_m - along.left() * (to_ego * beside_m);
+    let plan = ActorPlan::standing(Place::at(point.x, point.y, staging.cp.heading.to_degrees()));
     Actor { id: "pusher".to_owned(), kind, size, mass_kg: None, parts: Vec::new(), plan }
 }
 

@@ -7,7 +7,7 @@ use crate::pace::{first_time, next, when};
 use crate::side::{Turning, size_of as size_of_kind};
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{ContactState, ControlDevice, LeftRight};
+use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -18,6 +18,7 @@ use recrash_model::vehicle::VehicleSpec;
 /// From the ego's front to who stands ahead, and to who crosses on foot, also between the two. [m]
 const LEAD_GAP_M: f64 = 2.5;
 const WALKER_GAP_M: f64 = 3.0;
+const CROSSER_GAP_M: f64 = 2.0;
 const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
 
 /// An ego that slows for somebody could stop before it, braking so, and has this much room besides. [m/s^2, m]
@@ -63,6 +64,23 @@ const PASSED_BESIDE_M: f64 = 3.0;
 /// Who changes into the ego's lane is no slower, and takes so long. [m/s, s]
 const MERGES_MPS: f64 = 5.0;
 const MERGES_S: f64 = 3.5;
+
+/// Who backs out of a space does so over this way, to where its rear is so far from the middle of the ego's lane. [m, m/s, m/s^2]
+const BACKS_OUT_M: f64 = 4.0;
+const BACKS_TO_M: f64 = -0.2;
+const BACKS_MPS: f64 = 1.5;
+const BACKS_MPS2: f64 = 1.5;
+
+/// An ego that comes back into its lane has begun to when it has left its line by so much. [m]
+const RETURNS_M: f64 = 0.1;
+
+/// Who drives in the next lane is so far ahead of the ego, and its course goes on so far. [m]
+const ABREAST_M: f64 = 3.0;
+const BEYOND_M: f64 = 160.0;
+
+/// Who hides somebody who comes across stands so far short of it; the sine of the least angle across. [m, -]
+const HIDES_M: f64 = 0.8;
+const ACROSS: f64 = 0.7;
 
 /// Slower than this is standing. [m/s]
 pub(crate) const STANDS_MPS: f64 = 0.1;
@@ -135,6 +153,9 @@ impl Scene<'_> {
             Role::Blocker => self.blocker(length_m).into_iter().collect(),
             Role::Beyond => self.beyond(length_m).into_iter().collect(),
             Role::Merger => vec![self.merger(extra, length_m)],
+            Role::Beside => vec![self.stands_beside(extra, length_m)],
+            Role::Backer => vec![self.backer(extra, (length_m, width_m))],
+            Role::Abreast => vec![self.abreast(extra)],
         };
         let name = |number: usize| if number == 0 { String::new() } else { format!("-{}", number + 1) };
         let actor = |(number, plan): (usize, ActorPlan)| Actor {
@@ -317,12 +338,15 @@ impl Scene<'_> {
     fn crosser(&self, extra: &Extra) -> Option<ActorPlan> {
         let (step, _) = self.stops();
         let lane_m = CROSSING_LANES_M[usize::from(extra.side == Some(LeftRight::Right))];
-        let room_m = self.ground.first_m() + lane_m - self.at(step).0 - self.front_m();
-        if !self.ground.junction || room_m < WALKER_GAP_M {
-            return None;
-        }
         let line = self.ground.sv_pose(self.ground.first_m());
         let ahead = Vec2::from_heading(line.heading);
+        // An ego that waits in its turn has turned away from the lane.
+        let ego = self.ego.states[step].pose();
+        let front = ego.position + Vec2::from_heading(ego.heading) * self.front_m();
+        let room_m = lane_m - ahead.dot(front - line.position);
+        if !self.ground.junction || room_m < CROSSER_GAP_M {
+            return None;
+        }
         let way = if extra.side == Some(LeftRight::Right) { ahead.left() } else { ahead.left() * -1.0 };
         let from = line.position + ahead * lane_m - way * (CROSSES_MPS * self.clears_s());
         Some(straight_plan(from, way, (CROSSES_MPS, self.told.contact_s)))
@@ -382,7 +406,8 @@ impl Scene<'_> {
         ];
         let told = |side: LeftRight| extra.side.is_none_or(|told| told == side);
         let plan = |(_, _, t_m, turned_deg): (LeftRight, bool, f64, f64)| {
-            let pose = self.ground.pose(s_m, t_m);
+            let hides_m = self.hides_m(t_m, length_m).filter(|_| turned_deg != 90.0);
+            let pose = self.ground.pose(hides_m.unwrap_or(s_m), t_m);
             ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
         };
         sides.into_iter().filter(|(side, is, ..)| *is && told(*side)).map(plan).collect()
@@ -413,9 +438,13 @@ impl Scene<'_> {
     /// Who changes into the ego's lane ahead of it, out of the lane beside it, and is there at the contact.
     fn merger(&self, extra: &Extra, length_m: f64) -> ActorPlan {
         let (s_m, t_m) = self.at(self.until);
+        // In the lane that the ego leaves to make room.
+        let t_m = self.told.sv_aside().map_or(t_m, |aside| aside.from_t_m);
         let speed_mps = self.mps(self.until).max(MERGES_MPS);
         let met_m = s_m + self.front_m() + self.stops().1 + 0.5 * length_m + ROUND_AHEAD_M;
-        let from_m = if extra.side == Some(LeftRight::Right) { LANE_M } else { -LANE_M };
+        let leftmost = matches!(self.told.sv.lane, Some(LaneWord::Left | LaneWord::LeftTurn));
+        let usual = if leftmost { LeftRight::Right } else { LeftRight::Left };
+        let from_m = if extra.side.unwrap_or(usual) == LeftRight::Right { LANE_M } else { -LANE_M };
         let over_m = speed_mps * MERGES_S;
         let place = |s_m: f64| {
             let pose = self.ground.pose(s_m, t_m + from_m);
@@ -431,9 +460,95 @@ impl Scene<'_> {
         }
     }
 
+    /// Where a partner that comes across passes a line beside the ego's way. [m]
+    fn crossing_m(&self, t_m: f64) -> Option<f64> {
+        let track = self.partner?;
+        let at = |step: usize| self.ground.beside(track.states[step].position());
+        let last = self.until.min(track.states.len() - 1);
+        let across = |step: usize| {
+            let (s_m, now_m) = at(step);
+            let turned = math::wrap_angle(track.states[step].heading - self.ground.pose(s_m, 0.0).heading);
+            (at(step - 1).1 - t_m) * (now_m - t_m) <= 0.0 && math::sin(turned).abs() > ACROSS
+        };
+        (1..=last).find(|step| across(*step)).map(|step| at(step).0)
+    }
+
+    /// Who hides a partner that comes across stands short of where that comes out. [m]
+    fn hides_m(&self, t_m: f64, length_m: f64) -> Option<f64> {
+        let (partner_m, wide_m) = size_of(&self.told.cp);
+        let half_m = 0.5 * partner_m.min(wide_m.max(1.0));
+        Some(self.crossing_m(t_m)? - half_m - HIDES_M - 0.5 * length_m)
+    }
+
+    /// Who stands in the next lane where the ego is at the contact; ahead of a partner that is there too, and short of where one
+    /// comes across.
+    fn stands_beside(&self, extra: &Extra, length_m: f64) -> ActorPlan {
+        let usual = self.told.comes_from_side().unwrap_or(LeftRight::Right);
+        let side = extra.side.unwrap_or(usual);
+        let t_m = if side == LeftRight::Right { LANE_M } else { -LANE_M };
+        let (s_m, _) = self.at(self.until);
+        let there = |track: &ActorTrack| {
+            let state = &track.states[self.until.min(track.states.len() - 1)];
+            let (at_m, beside_m) = self.ground.beside(state.position());
+            let on_side = beside_m * t_m > 0.0 && beside_m.abs() > 0.6 * LANE_M;
+            on_side.then_some((at_m + 0.5 * track.length_m + ROOM_M + 0.5 * length_m).max(s_m))
+        };
+        let stands_m = self.hides_m(t_m, length_m).or_else(|| self.partner.and_then(there)).unwrap_or(s_m);
+        let pose = self.ground.pose(stands_m, t_m);
+        ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()))
+    }
+
+    /// Who drives in the next lane as the ego does, a little ahead.
+    fn abreast(&self, extra: &Extra) -> ActorPlan {
+        let (s_m, t_m) = self.at(0);
+        let t_m = t_m + if extra.side == Some(LeftRight::Left) { -LANE_M } else { LANE_M };
+        let place = |s_m: f64| {
+            let pose = self.ground.pose(s_m, t_m);
+            Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+        };
+        ActorPlan {
+            speed_mps: self.recorded.speed_mps,
+            course: vec![Leg::Curve { to: place(self.at(self.until).0 + ABREAST_M + BEYOND_M), reverse: false }],
+            acts: self.recorded.acts.clone(),
+            ..ActorPlan::standing(place(s_m + ABREAST_M))
+        }
+    }
+
+    /// Who backs out of a space beside the road into the ego's lane, ahead of where that is at the contact.
+    fn backer(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> ActorPlan {
+        let right = if extra.side == Some(LeftRight::Left) { -1.0 } else { 1.0 };
+        let (step, room_m) = self.stops();
+        let s_m = self.at(step).0.max(self.at(self.until).0) + self.front_m() + room_m + LEAD_GAP_M + 0.5 * width_m;
+        let way = self.ground.pose(s_m, 0.0);
+        let out = Vec2::from_heading(way.heading).left() * -right;
+        let place = |t_m: f64| {
+            let point = way.position + out * (t_m + 0.5 * length_m);
+            Place::at(point.x, point.y, way.heading.to_degrees() - 90.0 * right)
+        };
+        let over_s = BACKS_OUT_M / BACKS_MPS + 1.0;
+        let begins_s = (0.1 * step as f64 - over_s).max(0.5);
+        let acts = vec![
+            when((begins_s * 10.0).round() / 10.0, Deed::Speed { to_mps: BACKS_MPS, rate_mps2: BACKS_MPS2 }),
+            next(Deed::Stop { rate_mps2: BACKS_MPS2, at_m: Some(BACKS_OUT_M) }),
+        ];
+        ActorPlan {
+            course: vec![Leg::Curve { to: place(BACKS_TO_M - 1.0), reverse: true }],
+            acts,
+            ..ActorPlan::standing(place(BACKS_TO_M + BACKS_OUT_M))
+        }
+    }
+
     /// Whom the ego goes round: where it has left its line, ahead of it there, or beside it.
     fn obstacle(&self, extra: &Extra, (length_m, width_m): (f64, f64)) -> ActorPlan {
         let line_m = self.told.sv_aside().map(|aside| aside.from_t_m);
+        // In the lane into which the ego comes back, before that.
+        if let Some(aside) = self.told.sv_aside().filter(|_| extra.behind) {
+            let leaves = |step: &usize| (self.at(*step).1 - aside.from_t_m).abs() > RETURNS_M;
+            let from = (0..self.until).find(leaves).unwrap_or(self.until);
+            let pose =
+                self.ground.pose(self.at(from).0 - self.front_m() - 0.5 * length_m, aside.to_t_m.signum() * LANE_M);
+            return ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees()));
+        }
         let (s_m, t_m) = match line_m {
             Some(line_m) => {
                 let left = (0..self.until).find(|step| (self.at(*step).1 - line_m).abs() > BESIDE_M);

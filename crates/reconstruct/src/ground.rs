@@ -7,6 +7,7 @@ use crate::told::{Aside, Told};
 use crate::touch::size_of;
 use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_roads::{LanePath, RoadNetwork};
 
@@ -128,7 +129,7 @@ fn straight(id: &str, start: RoadStart, length_m: f64, right: Vec<Strip>, left: 
 
 /// The road for an account.
 pub(crate) fn ground_for(told: &Told) -> Ground {
-    let crossing = matches!(told.origin, Origin::Cross { .. })
+    let crossing = matches!(told.origin, Origin::Cross { .. }) && !told.crosses_street()
         || told.sv.turning != Turning::No && told.sv.turning != Turning::Round
         || told.cp.turning != Turning::No;
     // Aisles cross where somebody turns.
@@ -183,6 +184,13 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let at_kerb = told.is_at_kerb() && !lot && told.place != PlaceKind::Highway && !one_way;
     let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
     Ground { stands_m, ..ground }
+}
+
+impl Told {
+    /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
+    fn crosses_street(&self) -> bool {
+        matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street
+    }
 }
 
 /// From where the road begins that the ego turns into to the ego's front, where it meets what stands at the edge of that road, or across

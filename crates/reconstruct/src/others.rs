@@ -3,6 +3,7 @@
 use crate::phases::Phase;
 use crate::side::Turning;
 use crate::told::Told;
+use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, Source, StandReason,
 };
@@ -36,6 +37,12 @@ pub(crate) enum Role {
     Blocker,
     /// Stands behind the junction, in the ego's lane: there is no room for it.
     Beyond,
+    /// Stands in the next lane, where the ego goes by or stands.
+    Beside,
+    /// Backs into the ego's lane from the side, ahead of it.
+    Backer,
+    /// Drives in the next lane as the ego does.
+    Abreast,
 }
 
 impl Role {
@@ -54,6 +61,9 @@ impl Role {
             Self::Merger => "merger",
             Self::Blocker => "blocker",
             Self::Beyond => "beyond",
+            Self::Beside => "beside",
+            Self::Backer => "backer",
+            Self::Abreast => "abreast",
         }
     }
 }
@@ -69,6 +79,9 @@ impl Extra {
             Role::Animal => "an animal crosses",
             Role::Crosser => "one comes along the crossing road",
             Role::Oncoming => "one comes by from ahead",
+            Role::Beside => "one stands in the next lane",
+            Role::Backer => "one backs into its lane ahead",
+            Role::Abreast => "one drives in the next lane",
             Role::Kerb => "parked at the kerb",
             Role::Obstacle => "one stands that it goes round",
             Role::Passed => "one stands that the partner goes round",
@@ -92,14 +105,38 @@ pub(crate) struct Extra {
     pub(crate) parked: bool,
     /// It does so before the ego moves between two stops.
     pub(crate) first: bool,
+    /// The ego stands or slows for it, or it is not told that somebody else is the reason.
+    pub(crate) awaited: bool,
+    /// The ego has gone round it, and is back in its lane.
+    pub(crate) behind: bool,
     /// On which side of the ego it is, or from which it comes, where told.
     pub(crate) side: Option<LeftRight>,
+}
+
+impl Extra {
+    /// One of whom only a reason to stand tells.
+    fn of_reason(role: Role) -> Self {
+        Self {
+            role,
+            of: Vec::new(),
+            kind: Kind::Vehicle,
+            goes: false,
+            parked: false,
+            first: false,
+            awaited: true,
+            behind: false,
+            side: None,
+        }
+    }
 }
 
 /// Who is named no farther behind the words that the ego slowed or stood is whom it did so for; of who is on foot, and of animals, nor
 /// farther before them. [byte]
 const NAMED_WITHIN: usize = 70;
 const NAMED_BEFORE: usize = 160;
+
+/// Who is named no farther behind the words that the ego passed is whom it passed. [byte]
+const PASSES_WITHIN: usize = 12;
 
 /// Why the ego stood. A crossing where nobody else is told of is nobody that it stood for, and the partner is not one of the others.
 pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
@@ -120,6 +157,14 @@ pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
 /// Who threw the partner at the ego, where told.
 pub(crate) fn pusher(account: &Account) -> Option<Kind> {
     account.others.iter().find(|other| other.touched_partner).map(|other| other.kind.value)
+}
+
+/// Whether who touched the partner first is told to stand, and to do nothing else.
+pub(crate) fn pusher_stands(account: &Account) -> bool {
+    let stands = |fact: &ActFact| matches!(fact.act, Act::Park | Act::Hold);
+    let touched = account.others.iter().find(|other| other.touched_partner);
+    let before = touched.map(|other| before_contact(other).map(stands).collect::<Vec<_>>());
+    before.is_some_and(|list| !list.is_empty() && list.into_iter().all(|stands| stands))
 }
 
 /// Two others than the ego who touch, whom nobody had touched before and of whom it is not told. Who throws the partner does so.
@@ -162,37 +207,19 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             Some(_) => {}
             None => {
                 let side = story.side(role, told, other);
-                list.push(Extra { role, of: vec![number], kind, goes, parked, first, side });
+                let awaited = story.is_near(other) || other.several;
+                let behind = role == Role::Obstacle && story.is_back(other);
+                list.push(Extra { role, of: vec![number], kind, goes, parked, first, awaited, behind, side });
             }
         }
     }
     let blocked = told.reasons.contains(&StandReason::BlockedJunction) && told.sv.state == ContactState::Stopped;
     if blocked && told.thing.is_none() && list.iter().all(|extra| extra.role != Role::Beyond) {
-        let kind = Kind::Vehicle;
-        list.push(Extra {
-            role: Role::Beyond,
-            of: Vec::new(),
-            kind,
-            goes: false,
-            parked: false,
-            first: false,
-            side: None,
-        });
+        list.push(Extra::of_reason(Role::Beyond));
     }
     let queue = told.reasons.iter().any(|reason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle));
     if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
-        list.insert(
-            0,
-            Extra {
-                role: Role::Lead,
-                of: Vec::new(),
-                kind: Kind::Vehicle,
-                goes: false,
-                parked: false,
-                first: false,
-                side: None,
-            },
-        );
+        list.insert(0, Extra::of_reason(Role::Lead));
     }
     list
 }
@@ -214,12 +241,31 @@ pub(crate) fn choices(wanted: &[Extra]) -> Vec<Vec<Extra>> {
     list
 }
 
+impl Told {
+    /// From which side the partner comes across.
+    pub(crate) fn comes_from_side(&self) -> Option<LeftRight> {
+        match self.origin {
+            Origin::Cross { side } => Some(side),
+            Origin::Parked { side }
+            | Origin::Driveway { side }
+            | Origin::Stall { side }
+            | Origin::Sidewalk { side } => side,
+            _ => None,
+        }
+    }
+
+    /// Whether the partner comes out of a space beside the road.
+    fn comes_from_aside(&self) -> bool {
+        matches!(self.origin, Origin::Driveway { .. } | Origin::Stall { .. } | Origin::Parked { .. })
+    }
+}
+
 /// Whether one with this part can be drawn in this crash.
 fn is_drawn(told: &Told, role: Role) -> bool {
     let drives = matches!(told.sv.state, ContactState::Stopped | ContactState::Moving | ContactState::SettingOff);
     match role {
-        Role::Kerb => true,
-        Role::Obstacle => drives,
+        Role::Kerb | Role::Beside => true,
+        Role::Obstacle | Role::Oncoming | Role::Merger | Role::Backer | Role::Abreast => drives,
         Role::Passed => told.thing.is_none(),
         // Ahead of a partner that is ahead itself, and stands or backs there.
         Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
@@ -260,7 +306,7 @@ impl Story<'_> {
     /// What the ego did for somebody: where the words stand. That it stood when it was struck, said with its name, is nothing of that.
     fn reactions(&self) -> impl Iterator<Item = (usize, usize)> {
         let reacts = |fact: &&ActFact| {
-            let acts = matches!(fact.act, Act::Slow | Act::Stop | Act::Hold | Act::Swerve);
+            let acts = matches!(fact.act, Act::Slow | Act::Stop | Act::Hold | Act::Swerve | Act::Drift);
             let named = ["the ", "a ", "its "].iter().any(|article| text(&fact.source).starts_with(article));
             acts && !fact.after_contact && !named
         };
@@ -268,10 +314,20 @@ impl Story<'_> {
         acts.chain(self.account.sv.reasons.iter().map(|fact| &fact.source)).filter_map(span)
     }
 
-    /// Whether somebody is named with the words that the ego slowed or stood.
+    /// Whether somebody is named with the words that the ego slowed or stood, or what it did is told with them: the headline may have
+    /// named it.
     fn is_near(&self, other: &Other) -> bool {
-        let Some((named, _)) = span(&other.kind.source) else { return false };
-        self.reactions().any(|(start, end)| (start..=end + NAMED_WITHIN).contains(&named))
+        let acts = before_contact(other).map(|fact| &fact.source).filter(|_| self.is_of_headline(other));
+        let named: Vec<usize> =
+            [&other.kind.source].into_iter().chain(acts).filter_map(|source| Some(span(source)?.0)).collect();
+        let near = |(start, end): (usize, usize)| named.iter().any(|at| (start..=end + NAMED_WITHIN).contains(at));
+        self.reactions().any(near)
+    }
+
+    /// Whether somebody is named before all that the ego is told to have done.
+    fn is_of_headline(&self, other: &Other) -> bool {
+        let begins = self.account.sv.acts.iter().filter_map(|fact| span(&fact.source)).map(|(start, _)| start).min();
+        span(&other.kind.source).zip(begins).is_some_and(|((named, _), begins)| named < begins)
     }
 
     /// Whether somebody on foot, or an animal, is whom the ego slowed or stood for.
@@ -305,7 +361,7 @@ impl Story<'_> {
 
     fn role(&self, told: &Told, other: &Other) -> Option<Role> {
         // Who throws the partner is drawn there; and who comes afterwards is not.
-        let later = !other.acts.is_empty() && other.acts.iter().all(|fact| fact.after_contact);
+        let later = !other.acts.is_empty() && other.acts.iter().all(|fact| fact.after_contact) && !self.is_near(other);
         if other.touched_partner || later {
             return None;
         }
@@ -324,21 +380,100 @@ impl Story<'_> {
         told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
     }
 
+    /// Whether a partner that goes the ego's way is told to pass between it and another one.
+    fn is_between(&self, told: &Told) -> bool {
+        if !matches!(told.origin, Origin::Behind | Origin::Beside { .. }) {
+            return false;
+        }
+        let between =
+            |fact: &ActFact| fact.act == Act::Pass && !fact.after_contact && text(&fact.source).contains("between");
+        self.account.partner.as_ref().is_some_and(|partner| partner.acts.iter().any(between))
+    }
+
+    /// Whether somebody is told to drive, and to do nothing else.
+    fn only_drives(&self, other: &Other) -> bool {
+        before_contact(other).all(|fact| matches!(fact.act, Act::Follow | Act::Enter | Act::SetOff | Act::Slow))
+    }
+
+    /// Whether somebody who drives in the next lane has room there, beside an ego that keeps its own.
+    fn keeps_abreast(&self, told: &Told, place: Option<Origin>) -> bool {
+        let Some(Origin::Beside { side }) = place else { return false };
+        let free = told.comes_from_side() != Some(side) && told.origin != Origin::Beside { side };
+        let drives = matches!(told.sv.state, ContactState::Moving | ContactState::SettingOff);
+        free && drives && is_straight(told)
+    }
+
+    /// The step at which the ego is told to pass somebody.
+    fn passes_at(&self, other: &Other) -> Option<u32> {
+        let passes = |fact: &&ActFact| fact.act == Act::Pass && !fact.after_contact && !fact.begun;
+        let acts = before_contact(other).map(|fact| &fact.source);
+        let named: Vec<usize> =
+            [&other.kind.source].into_iter().chain(acts).filter_map(|source| Some(span(source)?.0)).collect();
+        let of = |fact: &&ActFact| {
+            let within =
+                |(start, end): (usize, usize)| named.iter().any(|at| (start..=end + PASSES_WITHIN).contains(at));
+            span(&fact.source).is_some_and(within)
+        };
+        self.account.sv.acts.iter().filter(passes).find(of).map(|fact| fact.step)
+    }
+
+    /// Whether the ego has passed somebody, and is told to have come back into its lane then.
+    fn is_back(&self, other: &Other) -> bool {
+        let Some(passed) = self.passes_at(other) else { return false };
+        let changes = |fact: &&ActFact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun;
+        let changes: Vec<&ActFact> = self.account.sv.acts.iter().filter(changes).collect();
+        match changes.as_slice() {
+            [.., last] if last.step > passed => true,
+            // "It merged to the right, and merged back to the left after passing the truck."
+            [.., one, last] => one.side.is_some() && last.side == one.side.map(LeftRight::other),
+            _ => false,
+        }
+    }
+
+    /// Whether somebody was about to change lanes.
+    fn merges_yet(&self, other: &Other) -> bool {
+        other.acts.iter().any(|fact| fact.act == Act::LaneChange && fact.begun && !fact.after_contact)
+    }
+
+    /// Whether the ego moves over in its lane, or out of it, away from the side from which somebody comes.
+    fn makes_room(&self, told: &Told, other: &Other) -> bool {
+        let away = told.sv.aside.map(LeftRight::other).filter(|_| told.sv.turning == Turning::No);
+        away.is_some() && away == self.came_from(other)
+    }
+
+    /// From which side somebody changes lanes.
+    fn came_from(&self, other: &Other) -> Option<LeftRight> {
+        let changes =
+            before_contact(other).find(|fact| matches!(fact.act, Act::LaneChange | Act::PullOut | Act::Swerve));
+        match other.place.as_ref().map(|fact| fact.value) {
+            Some(Origin::Beside { side }) => Some(side),
+            _ => changes.and_then(|fact| fact.side).map(LeftRight::other),
+        }
+    }
+
     fn vehicle(&self, told: &Told, other: &Other) -> Option<Role> {
         let words = text(&other.kind.source);
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
         let did = |acts: &[Act]| before_contact(other).any(|fact| acts.contains(&fact.act));
         let place = other.place.as_ref().map(|fact| fact.value);
+        // Of traffic without a deed it is told because the ego waits for it.
+        let acts_not = before_contact(other).next().is_none();
         let near = self.is_near(other);
+        let reacts = self.reactions().next().is_some();
         let because = |reason: StandReason| told.reasons.contains(&reason);
         let stands = did(&[Act::Hold, Act::Stop, Act::Park]) && !did(&[Act::SetOff, Act::Follow, Act::Reverse]);
         if stands && !other.several && !near && self.is_passed(told) {
             return Some(Role::Passed);
         }
+        if stands && !other.several && self.is_between(told) {
+            return Some(Role::Beside);
+        }
         let parked = said(&["parked"]) || before_contact(other).any(|fact| text(&fact.source).contains("park"));
         if parked && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
             let double = said(&["double"]) || before_contact(other).any(|fact| text(&fact.source).contains("double"));
-            let blocks = near && (because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || double);
+            let waits =
+                because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || place == Some(Origin::Ahead);
+            let blocks = near && (waits || double);
             return match (other.several, goes_round(told) && told.thing.is_none_or(|thing| thing != other.kind.value)) {
                 (true, _) => Some(Role::Kerb),
                 (false, true) => Some(Role::Obstacle),
@@ -346,28 +481,63 @@ impl Story<'_> {
                 (false, false) => (!did(&[Act::Park])).then_some(Role::Kerb),
             };
         }
+        if stands && !other.several && self.is_back(other) && told.sv_aside().is_some() {
+            return Some(Role::Obstacle);
+        }
+        // In the next lane, whether or not the ego slows as it goes by.
+        let beside = matches!(place, Some(Origin::Beside { .. })) || place.is_none() && self.passes_at(other).is_some();
+        if stands
+            && beside
+            && told.sv_aside().is_none()
+            && !self.is_back(other)
+            && !did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Drift])
+        {
+            return Some(Role::Beside);
+        }
+        let drives = did(&[Act::Follow, Act::Enter, Act::SetOff]) && self.only_drives(other);
+        if drives && self.keeps_abreast(told, place) {
+            return Some(Role::Abreast);
+        }
+        if did(&[Act::Reverse]) && matches!(place, Some(Origin::Beside { .. })) && (near || reacts) {
+            return Some(Role::Backer);
+        }
         if place == Some(Origin::Opposite) || said(&["oncoming", "opposing"]) {
             let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park]);
             // Of who turns across it, it is told only because that waits for it.
-            let waits = near || other.several && told.sv.turning == Turning::Left;
-            return (waits && only_passes).then_some(Role::Oncoming);
+            let waits = near || other.several && (told.sv.turning == Turning::Left || acts_not);
+            return (only_passes && (waits || did(&[Act::Follow]))).then_some(Role::Oncoming);
         }
         let queue = because(StandReason::Queue) || because(StandReason::LeadVehicle);
         let ahead = place == Some(Origin::Ahead) || said(&["lead", "preceding"]);
         let beside = matches!(place, Some(Origin::Beside { .. }));
-        let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside;
+        let across = matches!(place, Some(Origin::Cross { .. }));
+        let crosses = said(&["cross", "bound traffic", "approaching traffic"]) || beside || across;
         let turns = told.sv.turning != Turning::No || because(StandReason::StopSign);
         let passes = turns && (because(StandReason::Yield) || did(&[Act::Follow]));
-        let waits = near || other.several && told.sv.turning != Turning::No && said(&["cross"]);
+        // Crossing traffic that has not cleared the junction.
+        let held = other.several && crosses && did(&[Act::Hold]) && told.sv.state == ContactState::Stopped;
+        if held && (told.place == PlaceKind::Intersection || told.is_controlled()) && !beside && !queue {
+            return Some(Role::Blocker);
+        }
+        let for_turn =
+            told.sv.turning != Turning::No && said(&["cross"]) || across && (acts_not || did(&[Act::Follow]));
+        let for_turn = for_turn && !because(StandReason::BlockedJunction);
+        let waits = near || other.several && for_turn;
         if waits && !ahead && !queue && other.several && (crosses || passes || because(StandReason::Yield)) {
-            let turns_left = told.sv.turning == Turning::Left && !because(StandReason::StopSign) && !said(&["cross"]);
-            let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]);
+            let turns_left =
+                told.sv.turning == Turning::Left && !because(StandReason::StopSign) && !said(&["cross"]) && !across;
+            let junction = told.place == PlaceKind::Intersection || turns || said(&["cross"]) || across;
             return junction.then_some(if turns_left { Role::Oncoming } else { Role::Crosser });
         }
         let leaves = did(&[Act::LaneChange, Act::Enter, Act::PullOut, Act::Cross, Act::Reverse, Act::Pass, Act::Drift]);
-        let reacts = self.reactions().next().is_some();
-        let merges = did(&[Act::LaneChange, Act::PullOut]) && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
-        if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && is_straight(told) {
+        let pulls_out = did(&[Act::PullOut]) && !told.comes_from_aside();
+        let came_over = did(&[Act::LaneChange])
+            || pulls_out
+            || beside && did(&[Act::Swerve, Act::SetOff])
+            || self.merges_yet(other);
+        let merges = came_over && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
+        let keeps_lane = is_straight(told) || self.makes_room(told, other);
+        if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && keeps_lane {
             return Some(Role::Merger);
         }
         let junction = told.place == PlaceKind::Intersection || told.is_controlled();
@@ -392,9 +562,8 @@ impl Story<'_> {
     fn side(&self, role: Role, told: &Told, other: &Other) -> Option<LeftRight> {
         let passes = self.account.sv.acts.iter().find(|fact| fact.act == Act::Pass && !fact.after_contact);
         let passed = passes.and_then(|fact| fact.side).or(told.sv.aside).map(LeftRight::other);
-        let changes = before_contact(other).find(|fact| matches!(fact.act, Act::LaneChange | Act::PullOut));
         match other.place.as_ref().map(|fact| fact.value) {
-            Some(Origin::Beside { side }) => Some(side),
+            Some(Origin::Beside { side } | Origin::Cross { side }) => Some(side),
             // One that is parked is where the partner comes from, or on the right.
             _ if role == Role::Kerb && !other.several => match told.origin {
                 Origin::Parked { side } | Origin::Driveway { side } | Origin::Sidewalk { side } => side,
@@ -402,8 +571,13 @@ impl Story<'_> {
             }
             .or(Some(LeftRight::Right)),
             // Who changes to its right comes from the left.
-            _ if role == Role::Merger => changes.and_then(|fact| fact.side).map(LeftRight::other),
-            _ => passed.filter(|_| role == Role::Obstacle),
+            _ if role == Role::Merger => self.came_from(other),
+            _ if role == Role::Obstacle && self.is_back(other) => None,
+            // On the side where the partner touches the ego.
+            _ if role == Role::Beside && self.is_between(told) => {
+                side_of(&told.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right })
+            }
+            _ => passed.filter(|_| matches!(role, Role::Obstacle | Role::Beside)),
         }
     }
 }

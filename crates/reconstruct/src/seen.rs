@@ -20,6 +20,12 @@ const BRAKES_MPS2: f64 = 2.0;
 /// Who is parked beside the way is no farther off, ahead or behind. [m]
 const PARKED_M: f64 = 40.0;
 
+/// An ego that is slower than this waits as it rolls. [m/s]
+const CREEPS_MPS: f64 = 0.6;
+
+/// Who stands in the next lane is no farther ahead or behind. [m]
+const BESIDE_M: f64 = 10.0;
+
 /// Who slowed has lost so much. [m/s]
 const SLOWED_MPS: f64 = 0.8;
 
@@ -72,9 +78,9 @@ impl<'a> Seen<'a> {
             StandReason::Queue | StandReason::LeadVehicle => is(Role::Lead),
             StandReason::Pedestrian => is(Role::Walker),
             StandReason::Animal => is(Role::Animal),
-            StandReason::Yield => {
-                [Role::Walker, Role::Crosser, Role::Oncoming, Role::Lead, Role::Merger].into_iter().any(is)
-            }
+            StandReason::Yield => [Role::Walker, Role::Crosser, Role::Oncoming, Role::Lead, Role::Merger, Role::Backer]
+                .into_iter()
+                .any(is),
             StandReason::BlockedJunction => is(Role::Beyond) || is(Role::Blocker),
             StandReason::BlockedPath => is(Role::Lead) || is(Role::Obstacle),
             StandReason::Parked => self.told.sv.state == ContactState::Parked,
@@ -100,7 +106,9 @@ impl<'a> Seen<'a> {
         let number = self.rollout.actors.iter().position(|track| track.id == "pusher");
         let as_told = |number: usize| {
             let kind = self.told.pusher.and_then(Kind::partner_kind);
-            kind.is_none_or(|kind| kind == self.rollout.actors[number].kind)
+            let track = &self.rollout.actors[number];
+            let stood = Self::mps(track, 0) < STANDS_MPS;
+            kind.is_none_or(|kind| kind == track.kind) && (stood || !self.told.pusher_stands)
         };
         let touches = |number: usize| {
             self.rollout.events.iter().any(|event| match event.kind {
@@ -121,7 +129,10 @@ impl<'a> Seen<'a> {
                 Role::Slower => self.slows_ahead(track),
                 Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.is_on_side(extra, track),
                 Role::Crosser => self.crosses(track, CROSSING_M) && self.is_on_side(extra, track),
-                Role::Oncoming => self.comes_by(track),
+                Role::Oncoming => self.comes_by(extra, track),
+                Role::Beside => self.stands_beside(extra, track),
+                Role::Backer => self.backs_out(extra, track),
+                Role::Abreast => self.drives_beside(extra, track),
                 Role::Kerb => self.is_parked(track) && self.is_on_side(extra, track),
                 Role::Obstacle => self.is_passed(extra, track),
                 Role::Passed => self.partner_passes(track),
@@ -152,7 +163,7 @@ impl<'a> Seen<'a> {
         let now_mps = Self::mps(self.ego, step);
         let was = (0..step).any(|before| Self::mps(self.ego, before) > now_mps + SLOWED_MPS);
         let will = (step..=self.until).any(|later| Self::mps(self.ego, later) < now_mps - SLOWED_MPS);
-        now_mps < STANDS_MPS || was || will
+        now_mps < CREEPS_MPS || was || will
     }
 
     /// Whether somebody stands ahead where the ego stands or slows, and drives on before it does, where told.
@@ -196,14 +207,14 @@ impl<'a> Seen<'a> {
         extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0))
     }
 
-    /// Whether somebody comes towards the ego, and passes it on its left while it stands or slows.
-    fn comes_by(&self, track: &ActorTrack) -> bool {
+    /// Whether somebody comes towards the ego, and passes it on its left while it stands or slows, where it is told to wait for it.
+    fn comes_by(&self, extra: &Extra, track: &ActorTrack) -> bool {
         let last = self.until.min(track.states.len() - 1);
         (1..=last).any(|step| {
             let ((ahead_m, left_m), (before_m, _)) = (self.beside(track, step), self.beside(track, step - 1));
             let facing = math::wrap_angle(track.states[step].heading - self.ego.states[0].heading).abs();
             let by = ahead_m <= 0.0 && before_m > 0.0 && facing > 2.0;
-            by && (1.5..4.0 * LANE_M).contains(&left_m) && self.gives_way(step)
+            by && (1.5..4.0 * LANE_M).contains(&left_m) && (self.gives_way(step) || !extra.awaited)
         })
     }
 
@@ -223,6 +234,34 @@ impl<'a> Seen<'a> {
         let facing = math::wrap_angle(track.states[0].heading - self.ego.states[self.until].heading).abs();
         let stands = self.stays(track) && (across == (0.8..2.4).contains(&facing));
         stands && (0.0..PARKED_M).contains(&ahead_m) && left_m.abs() < LANE_M
+    }
+
+    /// Whether somebody stands in the next lane on the told side where the ego is touched.
+    fn stands_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        let next = (0.5 * LANE_M..1.8 * LANE_M).contains(&left_m.abs());
+        self.stays(track) && side && next && ahead_m.abs() < BESIDE_M + 0.5 * track.length_m
+    }
+
+    /// Whether somebody is in the next lane on the told side where the ego is touched, and has come along beside it.
+    fn drives_beside(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let side = |left_m: f64| extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > 0.0));
+        let next = |step: usize| {
+            let (ahead_m, left_m) = self.beside(track, step);
+            let aside = (0.5 * LANE_M..1.8 * LANE_M).contains(&left_m.abs());
+            side(left_m) && aside && ahead_m.abs() < BESIDE_M + 0.5 * track.length_m
+        };
+        !self.stays(track) && next(0) && next(self.until)
+    }
+
+    /// Whether somebody goes backwards into the ego's lane, from the told side, and is ahead of it there.
+    fn backs_out(&self, extra: &Extra, track: &ActorTrack) -> bool {
+        let (ahead_m, left_m) = self.beside(track, self.until);
+        let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (self.beside(track, 0).1 > 0.0));
+        let backs = (0..=self.until).any(|step| track.states[step.min(track.states.len() - 1)].speed() < -STANDS_MPS);
+        let comes = left_m.abs() < LANE_M + 0.5 * track.length_m && left_m.abs() + 1.0 < self.beside(track, 0).1.abs();
+        backs && side && comes && (0.0..AHEAD_M + self.stopping_m(self.until) + PARKED_M).contains(&ahead_m)
     }
 
     /// Whether the partner goes round somebody who stands in the line on which it came.
@@ -245,7 +284,9 @@ impl<'a> Seen<'a> {
         let was = |step: usize| self.beside(track, step).1;
         let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (was(0) > 0.0));
         let beside = (0..self.until).any(|step| was(step).abs() > 0.7 * LANE_M);
-        (0.0..CROSSING_M).contains(&ahead_m) && left_m.abs() < 0.4 * LANE_M && beside && side
+        // In the lane that the ego may have left to make room.
+        let lane_m = if self.told.sv_aside().is_some() { 1.3 } else { 0.4 } * LANE_M;
+        (0.0..CROSSING_M).contains(&ahead_m) && left_m.abs() < lane_m && beside && side
     }
 
     /// Whether the ego goes round somebody who stands: it came along its line, and leaves that to the other side; or it goes by.
@@ -258,7 +299,8 @@ impl<'a> Seen<'a> {
         let in_line = left_m.abs() < 0.5 * LANE_M && (left_m - ego_left_m).abs() > 0.8;
         let by = left_m.abs() >= 0.5 * LANE_M && left_m.abs() < 1.5 * LANE_M;
         let side = extra.side.is_none_or(|side| (side == LeftRight::Left) == (left_m > ego_left_m));
-        let near = self.beside(track, self.until).0.abs() < CROSSING_M;
+        let (ahead_m, _) = self.beside(track, self.until);
+        let near = ahead_m.abs() < CROSSING_M && (ahead_m < 0.0 || !extra.behind);
         self.stays(track) && ahead.dot(way) > 0.0 && near && (in_line || by) && side
     }
 }

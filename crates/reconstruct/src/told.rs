@@ -89,6 +89,8 @@ pub(crate) struct Told {
     /// Somebody threw the partner at the subject vehicle; and who, where told.
     pub(crate) pushed: bool,
     pub(crate) pusher: Option<Kind>,
+    /// Who touched the partner first is told to stand: the partner ran into it.
+    pub(crate) pusher_stands: bool,
     /// Who was pushed is told to have come along or slowed, and not to have stood.
     pub(crate) pushed_rolling: bool,
     /// So many of the others are told to have touched the partner first.
@@ -202,6 +204,7 @@ impl Told {
                 || crash_type == CrashType::Secondary
                 || account.others.iter().any(|other| other.touched_partner),
             pusher: others::pusher(account),
+            pusher_stands: others::pusher_stands(account),
             pushed_rolling,
             throwers: account.others.iter().filter(|other| other.touched_partner).count().min(1),
             trailer_of: kind.filter(|_| trailer::touches(partner)),
@@ -396,7 +399,10 @@ impl Told {
 
     /// Whether somebody throws the partner at the ego from behind: both stood in one lane, or came along it.
     pub(crate) fn is_thrown(&self) -> bool {
-        self.pushed && self.origin == Origin::Behind && self.thing.is_none() && self.cp.state != ContactState::Reversing
+        let changes =
+            matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging)) && self.cp.stood_first;
+        let behind = self.origin == Origin::Behind && self.cp.state != ContactState::Reversing;
+        self.pushed && behind && self.thing.is_none() && !changes
     }
 
     /// Speed at the contact of somebody who drives, by the posted speed, or the usual one of such a place: who comes up behind

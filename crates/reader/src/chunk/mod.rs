@@ -336,6 +336,10 @@ impl Chunker<'_> {
         if next == "go" && at > self.first && self.text(at - 1) == "stop" {
             return None;
         }
+        // "To then make contact": one clause.
+        if self.text(at) == "then" && at > self.first && self.text(at - 1) == "to" {
+            return None;
+        }
         Some(match self.text(at) {
             "and" | "then" | "but" | "however" | "subsequently" | "or" => (Joint::And, 1),
             "when" | "as" | "while" | "whereupon" | "during" => (Joint::While, 1),

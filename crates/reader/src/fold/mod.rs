@@ -11,11 +11,12 @@ mod place;
 mod scenario;
 mod state;
 mod types;
+mod whereabouts;
 
 use crate::chunk::Piece;
 use crate::frame::{Frame, Own, Story, story};
 use crate::lexicon::{Lexicon, Occupant, Sense};
-use crate::world::{Actor, SUBJECT};
+use crate::world::{Actor, SUBJECT, same_kind};
 use contact::Contacts;
 use recrash_model::account::{
     ACCOUNT_FORMAT, Account, Act, ActFact, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker, told,
@@ -436,18 +437,33 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         }
         let touched_partner = reading.contacts.touched_partner(story, actor);
         let again = known.sentence.is_some_and(|last| first < story.sentences[last].first);
-        if !touched_partner && is_nobody(reading, (first, end), &acts, again) {
+        let nobody =
+            is_nobody(reading, (first, end), &acts, again) || acts.is_empty() && is_named_before(reading, actor, kind);
+        if !touched_partner && nobody {
             continue;
         }
         all.push(Other {
             kind: reading.told(kind, first, end),
-            place: origin::place_of(reading, actor),
+            place: whereabouts::place_of(reading, actor),
             several: known.several,
             acts,
             touched_partner,
         });
     }
     all
+}
+
+/// Whether somebody of whom no act is told is the partner, as the first sentence of the story named it: that tells the crash, and the
+/// story tells it again; or a trailer, which somebody else pulls.
+fn is_named_before(reading: &Reading<'_>, actor: Actor, kind: Kind) -> bool {
+    let story = &reading.story;
+    let partner = reading.contacts.partner.and_then(|partner| story.world.actors[partner].kind);
+    let same = partner.is_some_and(|partner| same_kind(partner, kind) || same_kind(kind, partner));
+    let meets = |frame: &Frame| {
+        let pair = [frame.who, frame.object];
+        frame.is_contact() && pair.contains(&Some(SUBJECT)) && pair.contains(&Some(actor))
+    };
+    same && story.frames.iter().any(meets) || kind == Kind::Trailer
 }
 
 /// Whether a noun of which no act is told before the contact names nobody who was there: "a lane of traffic", "a passenger pickup", a
@@ -462,13 +478,21 @@ fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFac
         || is(Some(end), &["pickup", "pick"]);
     let way = ["lane", "lanes", "flow", "direction", "side", "light", "lights", "rules"];
     let of_way = is(first.checked_sub(1), &["of"]) && is(first.checked_sub(2), &way) && inside(&["traffic"]);
+    // "The signal for traffic", "in heavy traffic", "to merge into traffic".
+    let before = |of: &[&str]| is(first.checked_sub(1), of);
+    let signal =
+        (first.saturating_sub(2)..first).any(|at| is(Some(at), &["signal", "signals", "light", "lights", "green"]));
+    let heavy = inside(&["heavy", "light", "moderate"]) && before(&["in", "with", "by", "to"]);
+    let any_traffic = inside(&["traffic"])
+        && acts.is_empty()
+        && (before(&["for"]) && signal || heavy || before(&["into", "directing"]) || is(Some(end), &["conditions"]));
     let adjective =
         is(Some(end), &["crosswalk", "crosswalks", "signal", "signals", "light", "lights", "control", "officer"])
             || inside(&["pedestrian"]) && (inside(&["traffic"]) || is(Some(end), &["traffic"]));
     let capital = |at: usize| story.tokens.get(at).is_some_and(|token| token.capital);
     let street = end == first + 1 && capital(first) && capital(end) && first > 0;
     let involved = inside(&["involved"]) || is(Some(end), &["involved"]) || is(first.checked_sub(1), &["both"]);
-    if pickup || of_way || adjective || street || involved {
+    if pickup || of_way || any_traffic || adjective || street || involved {
         return true;
     }
     if again || acts.iter().any(|fact| !fact.after_contact) {
@@ -476,9 +500,15 @@ fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFac
     }
     let contact = reading.contacts.first.map(|number| story.frames[number].sentence);
     let after = contact.is_some_and(|sentence| first >= story.sentences[sentence].end);
+    // The crash, told before the story that tells it again.
+    let again_told = |frame: &Frame| {
+        frame.is_contact()
+            && contact.is_some_and(|sentence| sentence > frame.sentence)
+            && !inside(&["traffic", "another"])
+    };
     let headline = story.frames.iter().any(|frame| {
         let sentence = story.sentences[frame.sentence];
-        frame.sense == Sense::Headline && (sentence.first..sentence.end).contains(&first)
+        (frame.sense == Sense::Headline || again_told(frame)) && (sentence.first..sentence.end).contains(&first)
     });
     after || headline
 }

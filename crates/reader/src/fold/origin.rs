@@ -59,7 +59,7 @@ impl Clues<'_> {
         }
     }
 
-    fn has(&self, relation: Relation) -> Source {
+    pub(super) fn has(&self, relation: Relation) -> Source {
         self.source(|frame| frame.relations.iter().any(|(known, _)| *known == relation))
     }
 }
@@ -653,7 +653,7 @@ fn after_its_turn(account: &Account) -> Option<Compass> {
 }
 
 /// The relation told first.
-fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
+pub(super) fn first_relation(clues: &Clues<'_>) -> Option<Relation> {
     clues.relations().find(|relation| *relation != Relation::Same)
 }
 
@@ -695,9 +695,9 @@ fn stood_in(reading: &Reading<'_>, actor: Actor, names: &[&str]) -> Option<Sourc
     })
 }
 
-/// On which side the partner's lane lies.
-fn lane_side(account: &Account) -> Option<LeftRight> {
-    let place = |lane: LaneWord| match lane {
+/// Lanes from left to right.
+pub(super) fn lane_place(lane: LaneWord) -> Option<i32> {
+    match lane {
         LaneWord::LeftTurn => Some(0),
         LaneWord::Left => Some(1),
         LaneWord::Center => Some(2),
@@ -705,9 +705,13 @@ fn lane_side(account: &Account) -> Option<LeftRight> {
         LaneWord::RightTurn | LaneWord::Bus => Some(4),
         LaneWord::Bike | LaneWord::Curb | LaneWord::Shoulder => Some(5),
         LaneWord::Opposing => None,
-    };
-    let own = place(account.sv.lane.as_ref()?.value)?;
-    let other = place(account.partner.as_ref()?.lane.as_ref()?.value)?;
+    }
+}
+
+/// On which side the partner's lane lies.
+fn lane_side(account: &Account) -> Option<LeftRight> {
+    let own = lane_place(account.sv.lane.as_ref()?.value)?;
+    let other = lane_place(account.partner.as_ref()?.lane.as_ref()?.value)?;
     match other - own {
         0 => None,
         difference if difference < 0 => Some(LeftRight::Left),
@@ -725,19 +729,4 @@ fn changed_from(account: &Account) -> Option<LeftRight> {
     let from = change.side?.other();
     // Whoever moves over towards it touches it on that side.
     (zone_side(account) == Some(from)).then_some(from)
-}
-
-/// Where somebody else is.
-pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
-    let clues = Clues { reading, actor };
-    let relation = first_relation(&clues)?;
-    let value = match relation {
-        Relation::Behind => Origin::Behind,
-        Relation::Ahead => Origin::Ahead,
-        Relation::Left => Origin::Beside { side: LeftRight::Left },
-        Relation::Right => Origin::Beside { side: LeftRight::Right },
-        Relation::Opposite => Origin::Opposite,
-        Relation::Same | Relation::Beside => return None,
-    };
-    Some(Fact { value, source: clues.has(relation) })
 }

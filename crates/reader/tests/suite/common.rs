@@ -57,12 +57,15 @@ fn name<T: Serialize>(fact: &Option<Fact<T>>) -> String {
 }
 
 fn origin(account: &Account) -> String {
-    let Some(from) = &account.came_from else { return String::new() };
+    account.came_from.as_ref().map(|from| place(&from.value)).unwrap_or_default()
+}
+
+fn place(from: &Origin) -> String {
     let sided = |name: &str, side: &Option<recrash_model::account::LeftRight>| match side {
         Some(side) => format!("{name}_{}", coded(side)),
         None => name.to_owned(),
     };
-    match &from.value {
+    match from {
         Origin::Beside { side } => sided("beside", &Some(*side)),
         Origin::Cross { side } => sided("cross", &Some(*side)),
         Origin::Stall { side } => sided("stall", side),
@@ -99,6 +102,8 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         sv.speeds.iter().map(|fact| format!("{:.1} {}", fact.value.mps, coded(&fact.value.meaning))).collect();
     let signal = sv.controls.iter().find(|control| control.value.device == ControlDevice::Signal);
     let others: Vec<String> = account.others.iter().map(|other| coded(&other.kind.value)).collect();
+    let other_places: Vec<String> =
+        account.others.iter().filter_map(|other| Some(place(&other.place.as_ref()?.value))).collect();
     let matrix =
         account.matrix.as_ref().map(|fact| format!("{} {}", coded(&fact.value.object), coded(&fact.value.event)));
     let ran = partner.did(Act::RunRed) || partner.did(Act::RunStop);
@@ -120,6 +125,7 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("place", name(&account.place.kind)),
         ("feature", feature.map(|feature| coded(&feature)).unwrap_or_default()),
         ("others", others.join(" ")),
+        ("other_places", other_places.join(" ")),
         ("sv_state", name(&sv.state)),
         ("standing", name(&sv.standing)),
         ("reason", sv.reasons.first().map(|reason| coded(&reason.value)).unwrap_or_default()),

@@ -40,6 +40,34 @@ const OVERTAKEN: &str = "The AV was pulling out of a parking space at the right 
                          passed the second vehicle and changed lanes to the right, and the front right of the van made contact with the \
                          front left of the AV.";
 
+const GOES_BY: &str = "The AV was traveling south in the left lane on Elm Street when it began to slow as it passed a bus that was stopped in the right lane.";
+const BACKS_OUT: &str = "The AV was traveling east when a sedan in a parking space on the right reversed out into the lane of the AV, and the AV slowed to \
+                         a stop to yield to the sedan.";
+const BUS_BY: &str =
+    "The AV was traveling east on Elm Street when a bus that was traveling west approached in the oncoming direction.";
+const FOR_CLEARANCE: &str = "The AV was stopped facing south on Elm Street at a stop sign at the intersection with Oak Street, waiting for westbound traffic \
+                             to clear.";
+const MAKES_ROOM: &str = "The AV was traveling east in the left lane when an SUV in the right lane merged into the left lane in front of the AV. The AV \
+                          maneuvered to the left and the front left of the AV made contact with the median curb.";
+const EMERGES: &str = "The AV was traveling east on Elm Street with vehicles parked at the curb in both directions. A dog entered the street from the left \
+                       and the front of the AV made contact with the dog.";
+
+const ROUND_AND_BACK: &str = "The AV was traveling north and navigated around a double-parked truck stopped in the right lane. After re-entering the right lane, \
+                              the AV came to a stop behind a van. The van reversed and the rear of the van made contact with the front of the AV.";
+const STRUCK_PARKED: &str = "The AV was traveling west on Elm Street in the center lane when a sedan traveling west in the right lane ahead of the AV made \
+                             contact with a van parked at the curb. The sedan then moved into the lane of the AV, and the left side of the sedan made \
+                             contact with the front right of the AV.";
+const PULLS_OUT: &str = "The AV was parked in the right lane on Elm Street. A sedan that was stopped behind the AV began to change lanes to the left lane. As \
+                         the sedan crossed the lane line, the front of a pickup truck made contact with the left side of the sedan, causing the front right \
+                         side of the sedan to then make contact with the rear left side of the AV.";
+
+const BETWEEN: &str = "The AV was stopped in the lane on Elm Street for a passenger drop-off. A cyclist traveling north behind the AV passed between the AV and a \
+                       van that was parked, and the cyclist made contact with the rear left side of the AV.";
+const ABREAST: &str = "The AV was traveling north in the center lane when a tire came off a van traveling in the right lane. The tire rolled into the lane of \
+                       the AV and the front of the AV made contact with the tire.";
+const IN_ITS_TURN: &str = "The AV was traveling north on Elm Street and was making a right turn onto Oak Street. The AV advanced and came to a stop to yield \
+                           to cross traffic.";
+
 fn told(text: &str) -> Account {
     let whole = if text.contains("made contact") { text.to_owned() } else { format!("{text} {STRUCK}") };
     story(&whole)
@@ -265,4 +293,142 @@ fn words_that_name_nobody_bring_nobody() {
         assert!(quiet, "{:?}", account.others);
         assert!(made(&account).rollout.actors.iter().all(|track| !matches!(track.id.as_str(), "walker" | "crosser")));
     }
+}
+
+#[test]
+fn whom_the_ego_passes_in_its_lane_stands_in_the_next_one() {
+    let shown = shown_but(GOES_BY, "beside", |bus| moved(&mut bus.plan, 0.0, 3.4));
+    let (bus, ego) = (track(&shown, "beside"), shown.rollout.ego_track().states[before_contact(&shown)]);
+    assert_eq!(bus.kind, PartnerKind::Bus);
+    assert!(
+        (bus.states[0].y - ego.y + 3.4).abs() < 0.5 && (bus.states[0].x - ego.x).abs() < 8.0,
+        "{:?}",
+        bus.states[0]
+    );
+}
+
+#[test]
+fn who_backs_out_does_so_from_the_told_side_and_ahead_of_the_ego() {
+    let shown = shown_but(BACKS_OUT, "backer", stands_from_the_start);
+    let (backer, last) = (track(&shown, "backer"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[last];
+    assert!(
+        backer.states[0].y < ego.y - 5.0 && backer.states[last].y > backer.states[0].y + 3.0,
+        "{:?}",
+        backer.states[last]
+    );
+    assert!(backer.states[last].x > ego.x + 3.0 && backer.states.iter().any(|state| state.speed() < -1.0));
+    shown_reason(BACKS_OUT, "backer");
+}
+
+#[test]
+fn who_comes_towards_the_ego_passes_it_though_nobody_waits() {
+    let shown = shown_but(BUS_BY, "oncoming", stands_from_the_start);
+    let (bus, last) = (track(&shown, "oncoming"), before_contact(&shown));
+    assert!(bus.kind == PartnerKind::Bus && degrees_between(bus.states[last].heading, 0.0) > 170.0);
+}
+
+#[test]
+fn traffic_of_the_crossing_direction_comes_from_its_side() {
+    let shown = shown_but(FOR_CLEARANCE, "crosser", stands_from_the_start);
+    let (crosser, ego) = (track(&shown, "crosser"), shown.rollout.ego_track().states[0]);
+    assert!(crosser.states[0].y > ego.y + 10.0, "westbound, of one who faces south: from the left");
+}
+
+#[test]
+fn whom_the_ego_makes_room_for_is_in_the_lane_that_it_leaves() {
+    let shown = shown_but(MAKES_ROOM, "merger", |merger| {
+        merger.plan.acts.retain(|act| !matches!(act.deed, Deed::Shift { .. }));
+    });
+    let (merger, last) = (track(&shown, "merger"), before_contact(&shown));
+    let began = shown.rollout.ego_track().states[0];
+    assert!(
+        merger.states[0].y < began.y - 2.5 && (merger.states[last].y - began.y).abs() < 1.7,
+        "{:?}",
+        merger.states[last]
+    );
+}
+
+#[test]
+fn an_animal_crosses_a_street_and_comes_out_behind_who_is_parked_there() {
+    let account = story(EMERGES);
+    let shown = made(&account);
+    let roads = match &shown.draft.map {
+        recrash_model::scenario::MapSpec::G(map) => map.roads.len(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(roads, 1, "no road crosses it");
+    let (animal, _) = partner(&shown);
+    let ego = shown.rollout.ego_track();
+    let parked = shown.rollout.actors.iter().filter(|track| track.id.starts_with("kerb"));
+    let parked =
+        parked.map(|track| (track, track.states[0])).find(|(_, at)| at.y > ego.states[0].y).expect("on the left");
+    let out = animal.iter().find(|state| state.y < parked.1.y).expect("it comes across");
+    let short_m = out.x - parked.1.x - 0.5 * parked.0.length_m;
+    assert!((0.0..3.0).contains(&short_m), "{short_m}");
+}
+
+#[test]
+fn whom_the_ego_has_gone_round_stands_in_the_lane_to_which_it_came_back() {
+    let shown = shown_but(ROUND_AND_BACK, "obstacle", |truck| moved(&mut truck.plan, 60.0, 0.0));
+    let (truck, ego) = (track(&shown, "obstacle").states[0], shown.rollout.ego_track());
+    let (began, met) = (ego.states[0], ego.states[before_contact(&shown)]);
+    assert!(truck.x > began.x && truck.x < met.x && truck.y < began.y - 2.5, "{truck:?}");
+}
+
+#[test]
+fn whom_the_partner_strikes_first_stands_where_it_is_told_to_be_parked() {
+    let shown = shown_but(STRUCK_PARKED, "pusher", |van| moved(&mut van.plan, 0.0, -6.0));
+    let (van, (states, met)) = (track(&shown, "pusher"), partner(&shown));
+    let last = before_contact(&shown);
+    assert_eq!(van.kind, PartnerKind::Van);
+    assert!(van.states[..last - 4].iter().all(|state| state.speed() == 0.0), "it stands");
+    assert!(van.states[0].y < met.y - 1.0 && states[last].speed() > 1.0, "on the side away from the ego");
+}
+
+#[test]
+fn who_pulls_out_from_behind_is_struck_on_its_way() {
+    let shown = made(&story(PULLS_OUT));
+    assert!(shown.is_true(), "{:?}", shown.verdict);
+    let (states, met) = partner(&shown);
+    let ego = shown.rollout.ego_track().states[0];
+    assert!(
+        states[0].speed() == 0.0 && (states[0].y - ego.y).abs() < 1.5 && met.y > states[0].y + 1.5,
+        "{:?}, {met:?}",
+        states[0]
+    );
+    assert_eq!(track(&shown, "pusher").kind, PartnerKind::PickupTruck);
+}
+
+#[test]
+fn who_is_passed_between_stands_on_the_side_that_is_touched() {
+    let shown = shown_but(BETWEEN, "beside", |van| moved(&mut van.plan, 0.0, -6.8));
+    let (van, (states, _)) = (track(&shown, "beside"), partner(&shown));
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    let between = states[before_contact(&shown)].y;
+    assert!(van.kind == PartnerKind::Van && van.states[0].y > between && between > ego.y, "{between}");
+}
+
+#[test]
+fn who_drives_in_the_next_lane_stays_there_beside_the_ego() {
+    let shown = shown_but(ABREAST, "abreast", stands_from_the_start);
+    let (van, last) = (track(&shown, "abreast"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[last];
+    assert!((van.states[last].y - ego.y + 3.4).abs() < 0.3 && (van.states[last].x - ego.x).abs() < 8.0);
+    assert!(van.states[last].speed() > 5.0);
+}
+
+#[test]
+fn crossing_traffic_goes_by_an_ego_that_waits_in_its_turn() {
+    let shown = shown_but(IN_ITS_TURN, "crosser", stands_from_the_start);
+    let ego = shown.rollout.ego_track().states[before_contact(&shown)];
+    assert!(ego.heading.to_degrees() < -5.0, "{ego:?}");
+}
+
+#[test]
+fn crossing_traffic_that_stands_in_the_junction_is_across_it() {
+    let text = "The AV was stopped facing north on Elm Street at a red light at the intersection with Oak Street. When the light turned green, cross \
+                traffic remained stopped in the intersection and the AV remained stationary.";
+    let shown = shown_but(text, "blocker", |blocker| moved(&mut blocker.plan, 0.0, 14.0));
+    assert!(degrees_between(track(&shown, "blocker").states[0].heading, 0.0) > 80.0);
 }

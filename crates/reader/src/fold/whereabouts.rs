@@ -1,0 +1,85 @@
+//! Where others than the two are, seen from the subject vehicle.
+
+use super::Reading;
+use super::origin::{Clues, first_relation, lane_place};
+use crate::frame::Frame;
+use crate::lexicon::Relation;
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, Fact, LaneWord, LeftRight, Origin};
+
+/// Where somebody else is: as told; else in its lane, beside that of the subject vehicle, or by the directions of the two.
+pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
+    let clues = Clues { reading, actor };
+    let relation = first_relation(&clues);
+    let value = match relation {
+        Some(Relation::Behind) => Some(Origin::Behind),
+        Some(Relation::Ahead) => Some(Origin::Ahead),
+        Some(Relation::Left) => Some(Origin::Beside { side: LeftRight::Left }),
+        Some(Relation::Right) => Some(Origin::Beside { side: LeftRight::Right }),
+        Some(Relation::Opposite) => Some(Origin::Opposite),
+        Some(Relation::Same | Relation::Beside) | None => None,
+    };
+    let told = value.zip(relation).map(|(value, relation)| Fact { value, source: clues.has(relation) });
+    told.or_else(|| in_queue(&clues)).or_else(|| in_other_lane(&clues)).or_else(|| by_directions(&clues))
+}
+
+/// The queue in which the subject vehicle stands is ahead of it.
+fn in_queue(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let story = &clues.reading.story;
+    let (first, end) = story.world.actors[clues.actor].kind_tokens?;
+    let from = first.checked_sub(2)?;
+    let queue = ["queue", "line"].contains(&story.tokens[from].text.as_str()) && story.tokens[from + 1].text == "of";
+    let stands = |frame: &Frame| {
+        let sentence = story.sentences[frame.sentence];
+        let stands = matches!(frame.act(), Some(Act::Hold | Act::Stop)) && frame.who == Some(SUBJECT);
+        stands
+            && frame.first < first
+            && first < sentence.end
+            && !story.frames.iter().any(|other| between(frame, other, first))
+    };
+    let held = queue && story.frames.iter().any(stands);
+    held.then(|| clues.reading.told(Origin::Ahead, from, end))
+}
+
+/// Whether a frame of somebody else stands between another frame and a token.
+fn between(frame: &Frame, other: &Frame, token: usize) -> bool {
+    other.who != frame.who && other.first > frame.first && other.first < token
+}
+
+/// Somebody in another lane than the subject vehicle, where that keeps its own.
+fn in_other_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let reading = clues.reading;
+    let (own, _, _) = reading.story.world.actors[SUBJECT].lane?;
+    if reading.did(SUBJECT, Act::LaneChange) || reading.did(SUBJECT, Act::Turn) {
+        return None;
+    }
+    let beside = |side: LeftRight| Origin::Beside { side };
+    if let Some((lane, first, end)) = reading.story.world.actors[clues.actor].lane {
+        let side = match lane_place(lane)? - lane_place(own)? {
+            0 => return None,
+            difference if difference < 0 => LeftRight::Left,
+            _ => LeftRight::Right,
+        };
+        return Some(reading.told(beside(side), first, end));
+    }
+    // In the adjacent lane: of the leftmost one on the right.
+    let side = match own {
+        LaneWord::Left | LaneWord::LeftTurn => LeftRight::Right,
+        LaneWord::Right | LaneWord::RightTurn => LeftRight::Left,
+        _ => return None,
+    };
+    clues.any(Relation::Beside).then(|| Fact { value: beside(side), source: clues.has(Relation::Beside) })
+}
+
+/// Somebody who is told to go the other way, or across.
+fn by_directions(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let actors = &clues.reading.story.world.actors;
+    let ((own, ..), (other, first, end)) = (actors[SUBJECT].heading?, actors[clues.actor].heading?);
+    let value = match own.eighths_to(other) {
+        2 => Origin::Cross { side: LeftRight::Left },
+        4 => Origin::Opposite,
+        6 => Origin::Cross { side: LeftRight::Right },
+        _ => return None,
+    };
+    Some(clues.reading.told(value, first, end))
+}
