@@ -6,7 +6,7 @@ use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::kerb;
-use crate::lateral::{TURN_M, is_on_foot};
+use crate::lateral::{is_on_foot, turn_m};
 use crate::roadside;
 use crate::side::{Side, Slant, Turning};
 use crate::things;
@@ -116,9 +116,12 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         let face_on = told.scrapes() && is_face_on(told, sv, cp);
                         let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
                         let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
-                        let squeezed = told.turns_from_beside() && aside_before_m(sv, cp, came) < BESIDE_M;
+                        let squeezed = told.turns_from_beside() && aside_before_m(told, sv, cp, came) < BESIDE_M;
                         let other_way = told.is_struck_otherwise((sv_seen, cp_seen));
+                        // Who turns across an oncoming partner meets it in that one's lane.
+                        let before = told.sv.turning == Turning::Left && told.is_met_on_wrong_side(ground, cp);
                         let worse = [
+                            (before, BEFORE_LANE),
                             (face_on, FACE_ON),
                             (swings, SWINGS),
                             (late, LATE),
@@ -155,6 +158,9 @@ const FACE_ON: u32 = 2;
 const SWINGS: u32 = 2;
 const SWINGS_RAD: f64 = 0.35;
 
+/// Of an oncoming partner, that the ego, which turns, has not come to its lane.
+const BEFORE_LANE: u32 = 3;
+
 /// Of who strikes the other with parts that nobody tells, that the other one's front does.
 const OTHER_WAY: u32 = 1;
 
@@ -163,9 +169,9 @@ const SQUEEZED: u32 = 1;
 const BESIDE_M: f64 = 2.4;
 
 /// How far beside the ego's line somebody came along that turned to this pose. [m]
-fn aside_before_m(sv: Pose, cp: Pose, came: f64) -> f64 {
+fn aside_before_m(told: &Told, sv: Pose, cp: Pose, came: f64) -> f64 {
     let turn = math::wrap_angle(cp.heading - came);
-    (cp.position.y - turn.signum() * TURN_M * (1.0 - math::cos(turn)) - sv.position.y).abs()
+    (cp.position.y - turn.signum() * turn_m(told) * (1.0 - math::cos(turn)) - sv.position.y).abs()
 }
 
 /// How far somebody has turned whose turn is over. [deg]
@@ -367,8 +373,8 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
                 Turning::Right => Some(1.0),
                 Turning::No | Turning::Round => None,
             };
-            let goes_on =
-                told.cp.movement == Some(Movement::Straight) && outer.is_some() && side_of(&told.sv.zones) == outer;
+            let goes_on = told.passes_from_behind()
+                || told.cp.movement == Some(Movement::Straight) && outer.is_some() && side_of(&told.sv.zones) == outer;
             let bases = match (sv_heading.abs() > 0.02, follows) {
                 (false, _) => vec![0.0],
                 (true, true) if goes_on => vec![0.0, behind, sv_heading],
