@@ -1,8 +1,10 @@
 //! Sides, sequence and bends of manoeuvres: where somebody passes, when it acts, and how hard it turns.
 
 use crate::ways::{before_contact, made, partner, speeds, story};
+use recrash_model::account::Fact;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, STEP_S};
+use recrash_model::template::Movement;
 use recrash_reconstruct::Reconstruction;
 
 /// When something is first so. [steps]
@@ -114,4 +116,16 @@ fn who_swerves_from_somebody_swerves_away() {
     ));
     let ego = ego(&shown);
     assert!(ego[ego.len() - 1].y - ego[0].y > 0.5, "{:?}", ego[ego.len() - 1]);
+}
+
+#[test]
+fn an_ego_that_changes_lanes_goes_to_the_told_side() {
+    let mut account = story(
+        "The AV was traveling in the rightmost lane and changed lanes to the right. A sedan behind the AV approached, and the front of the \
+         sedan made contact with the rear of the AV.",
+    );
+    account.sv.movement = Some(Fact::by_rule(Movement::ChangingLanes, "made for this test"));
+    let shown = made(&account);
+    let ego = ego(&shown);
+    assert!(ego[ego.len() - 1].y - ego[0].y < -0.8, "{:?}", ego[ego.len() - 1]);
 }
