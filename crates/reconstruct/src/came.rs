@@ -410,10 +410,27 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
         return (plan, begin);
     }
     let straight = || Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
-    let begin = fitted(true).or_else(|| fitted(false)).unwrap_or_else(straight);
+    // What is long cannot whip round: it comes straight.
+    let whips = |begin: &Pose| {
+        let mut course = Course::begin(arm_m);
+        reverse && course.curve(*begin, staging.cp, reverse) && is_tight(&course, size_of(cp).0)
+    };
+    let fitted = fitted(true).or_else(|| fitted(false)).filter(|begin| !whips(begin));
+    let begin = fitted.unwrap_or_else(straight);
     let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
     let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
     (plan, begin)
+}
+
+/// What is longer than this bends its line no tighter than by so much of its length. [m]
+const LONG_M: f64 = 6.0;
+const LONG_LENGTHS: f64 = 0.5;
+
+/// Whether a line bends tighter than somebody so long can.
+fn is_tight(course: &Course, length_m: f64) -> bool {
+    let steps = (course.length_m() / PIECE_M * 10.0).ceil() as usize;
+    let at = |step: usize| course.spot(course.length_m() * step as f64 / steps.max(1) as f64);
+    length_m > LONG_M && (0..=steps).any(|step| at(step).curvature.abs() * LONG_LENGTHS * length_m > 1.0)
 }
 
 /// Who turns with the ego, behind it or beside it, comes by its way: where it begins, and the poses that it drives by to the contact.

@@ -176,10 +176,13 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
     let (ego_lead, ego) = ego_paces(told, &staging.ground, staging.sv_s_m);
     let ego_m = ego.driven_m + ego_lead.as_ref().map_or(0.0, Lead::driven_m);
     let ego_backs_s = ego_lead.as_ref().and_then(|lead| lead.backs_s);
+    let ego_moves_s = ego_lead.as_ref().and_then(Lead::sets_off_s).unwrap_or_else(|| first_time(&ego.acts));
+    let ego_backs_s = ego_backs_s.filter(|_| told.backs_first == Some(Striker::Cp));
+    let before_s = if told.backs_early { Some(ego_moves_s) } else { ego_backs_s };
     let last = things::pace(told)
         .or_else(|| beside_from_line(told, staging))
         .or_else(|| lateral::from_kerb(told, staging))
-        .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, ego_backs_s)));
+        .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, before_s)));
     let stands = cp.state.stands();
     if last.speed_mps > 0.0 && !stands {
         return (None, last);
@@ -222,7 +225,7 @@ fn last_pace(told: &Told) -> Pace {
 }
 
 /// How the partner's speed comes to what it is at the contact, from its last stand where it stood.
-fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pace, f64, Option<f64>)) -> Pace {
+fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, f64, Option<f64>)) -> Pace {
     let (cp, contact_s) = (&told.cp, told.contact_s);
     let usual = last_pace(told);
     if told.waits_behind() && told.sv.state == ContactState::Moving && ego.speed_mps == 0.0 {
@@ -259,10 +262,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
                 _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M,
                 _ => REVERSES_M,
             };
-            // Who backed before the ego did backs for longer.
-            let ego_backs_s = ego_backs_s.filter(|_| told.backs_first == Some(Striker::Cp));
-            let ego_brakes_s = told.backs_early.then(|| first_time(&ego.acts));
-            let backing_s = ego_backs_s.or(ego_brakes_s).map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
+            // Who backed before the ego did something backs for longer.
+            let backing_s = before_s.map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
             start_over(
                 contact_s,
                 cp.speed_mps,

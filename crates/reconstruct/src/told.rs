@@ -114,7 +114,7 @@ pub(crate) struct Told {
     pub(crate) stood_before: bool,
     /// The partner backs: it began to when the ego had set off.
     pub(crate) backs_late: bool,
-    /// The partner backs: it began to before the ego stopped.
+    /// The partner backs: it began to before the ego stopped, or moved up to where it stands.
     pub(crate) backs_early: bool,
     /// Who of the two backed first, where both did.
     pub(crate) backs_first: Option<Striker>,
@@ -630,13 +630,14 @@ fn steps(party: &Party, of: fn(Act) -> bool) -> Vec<u32> {
     before.map(|fact| fact.step).collect()
 }
 
-/// Whether the partner that backs began to after the ego had set off; and whether before the ego stopped for it.
+/// Whether the partner that backs began to after the ego had set off; and whether before the ego stopped for it, or moved up.
 fn backs_behind(sv: &Party, partner: &Party) -> (bool, bool) {
     let first = |party: &Party, of: fn(Act) -> bool| steps(party, of).into_iter().min();
     let Some(backs) = first(partner, |act| act == Act::Reverse) else { return (false, false) };
     let sets_off = steps(sv, |act| act == Act::SetOff).into_iter().max();
     let stops = first(sv, |act| matches!(act, Act::Stop | Act::Hold));
-    (sets_off.is_some_and(|at| at < backs), stops.is_some_and(|at| at > backs))
+    let early = sets_off.is_some_and(|at| at > backs) || stops.is_some_and(|at| at > backs);
+    (sets_off.is_some_and(|at| at < backs), early)
 }
 
 /// Whether one that stood at the contact did so before the partner began to do something: nothing is told of it behind that.

@@ -115,6 +115,10 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
                         let face_on = told.scrapes() && is_face_on(told, sv, cp);
                         let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
+                        // Who keeps its lane behind an ego that leaves its own does not turn with that.
+                        let turned = math::wrap_angle(heading - came).abs() > KEEPS_RAD;
+                        let off_m = (cp.position.y - ground.sv_pose(sv_s_m).position.y).abs();
+                        let leaves = told.keeps_straight_behind() && (turned || off_m > KEEPS_M);
                         let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
                         let squeezed = told.turns_from_beside() && aside_before_m(told, sv, cp, came) < BESIDE_M;
                         let other_way = told.is_struck_otherwise((sv_seen, cp_seen));
@@ -124,6 +128,8 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                             (before, BEFORE_LANE),
                             (face_on, FACE_ON),
                             (swings, SWINGS),
+                            (leaves, LEAVES),
+                            (told.goes_right_way(cp), RIGHT_WAY),
                             (late, LATE),
                             (squeezed, SQUEEZED),
                             (other_way, OTHER_WAY),
@@ -163,6 +169,16 @@ const BEFORE_LANE: u32 = 3;
 
 /// Of who strikes the other with parts that nobody tells, that the other one's front does.
 const OTHER_WAY: u32 = 1;
+
+/// Of who keeps its lane behind an ego that leaves its own, that it is at more than this to its way, or farther beside it. [rad, m]
+const LEAVES: u32 = 1;
+const KEEPS_RAD: f64 = 0.08;
+const KEEPS_M: f64 = 1.2;
+
+/// Of who goes the wrong way along a crossing road, that it is on the side where that is the right one, or nearer to the
+/// middle than this. [m]
+const RIGHT_WAY: u32 = 1;
+const RIGHT_SIDE_M: f64 = 1.8;
 
 /// And of who turns across from beside, that it was nearer to the ego's line than this before its turn. [m]
 const SQUEEZED: u32 = 1;
@@ -248,6 +264,19 @@ impl Told {
             && self.cp.movement == Some(Movement::Straight)
             && !self.sv.state.stands()
             && !self.sv.turned
+    }
+
+    /// Whether a partner that is told to go the wrong way along a crossing road is on the side of it where its way is the right one.
+    fn goes_right_way(&self, cp: Pose) -> bool {
+        let wrong_way = self.cp.movement == Some(Movement::WrongWay);
+        matches!(self.origin, Origin::Cross { side } if wrong_way && sign(side) * cp.position.x < RIGHT_SIDE_M)
+    }
+
+    /// Whether the partner drives straight on behind an ego that leaves its lane.
+    fn keeps_straight_behind(&self) -> bool {
+        let drives = |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No;
+        let straight = self.cp.movement.is_none_or(|movement| movement == Movement::Straight) && !self.cp.dodges;
+        self.origin == Origin::Behind && drives(&self.sv) && drives(&self.cp) && straight && self.sv_aside().is_some()
     }
 
     /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.

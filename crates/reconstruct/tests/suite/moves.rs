@@ -129,3 +129,40 @@ fn an_ego_that_changes_lanes_goes_to_the_told_side() {
     let ego = ego(&shown);
     assert!(ego[ego.len() - 1].y - ego[0].y < -0.8, "{:?}", ego[ego.len() - 1]);
 }
+
+#[test]
+fn who_keeps_its_lane_behind_an_ego_that_leaves_it_comes_straight() {
+    let mut account = story(
+        "The AV was traveling in the rightmost lane and changed lanes to the right. A sedan behind the AV approached, and the front of the \
+         sedan made contact with the rear of the AV.",
+    );
+    account.sv.movement = Some(Fact::by_rule(Movement::ChangingLanes, "made for this test"));
+    let shown = made(&account);
+    let ((states, met), ego) = (partner(&shown), ego(&shown));
+    assert!(states.iter().all(|state| (state.y - met.y).abs() < 0.3 && (state.y - ego[0].y).abs() < 1.3), "{met:?}");
+}
+
+#[test]
+fn who_backs_already_does_so_before_the_ego_moves_up() {
+    let shown = made(&story(
+        "The AV was traveling east when it slowed to a stop to yield to a truck that was reversing ahead of the AV. The AV proceeded \
+         forward before coming to a stop. The truck continued to reverse and the rear of the truck made contact with the front of \
+         the stationary AV.",
+    ));
+    let speeds = speeds(&shown);
+    let backs = first(partner(&shown).0, |state| state.speed() < -0.1);
+    let moves_up = speeds.windows(2).rposition(|pair| pair[0] == 0.0 && pair[1] > 0.0).expect("it moves up");
+    assert!(backs < moves_up, "{backs} and {moves_up}");
+}
+
+#[test]
+fn what_is_long_does_not_whip_round() {
+    let shown = made(&story(
+        "The AV was stopped facing east. A semi-trailer truck facing south was reversing from the right, and the rear left of the \
+         semi-trailer truck made contact with the right side of the stationary AV.",
+    ));
+    let (states, _) = partner(&shown);
+    let most_rad =
+        states.windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading).abs()).fold(0.0, f64::max);
+    assert!(most_rad / STEP_S < 0.4, "{most_rad}");
+}
