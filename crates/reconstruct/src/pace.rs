@@ -409,17 +409,24 @@ fn slows(contact_s: f64, side: &Side) -> Pace {
     Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
 }
 
-/// From a stand up to more than its speed at the contact, and down to that: so far, or as far as that takes.
+/// From a stand up to more than its speed at the contact, and down to that: so far, by less where that takes farther, or as far as the
+/// usual takes.
 fn starts_and_slows(contact_s: f64, speed_mps: f64, driven_m: f64) -> Option<Pace> {
-    let from_mps = speed_mps + STARTS_AND_SLOWS_MPS;
-    let gaining_s = (from_mps / STARTS_MPS2 * 10.0).ceil() / 10.0;
-    let braking_s = (STARTS_AND_SLOWS_MPS / SLOWS_MPS2 * 10.0).ceil() / 10.0;
-    let least_m = 0.5 * from_mps * gaining_s + 0.5 * (from_mps + speed_mps) * braking_s;
+    let by_less = [1.0, 0.75, 0.5].map(|share| share * STARTS_AND_SLOWS_MPS);
+    let least = |by_mps: f64| {
+        let from_mps = speed_mps + by_mps;
+        let gaining_s = (from_mps / STARTS_MPS2 * 10.0).ceil() / 10.0;
+        let braking_s = (by_mps / SLOWS_MPS2 * 10.0).ceil() / 10.0;
+        let least_m = 0.5 * from_mps * gaining_s + 0.5 * (from_mps + speed_mps) * braking_s;
+        (from_mps, gaining_s, braking_s, least_m)
+    };
+    let fits = by_less.into_iter().find(|by_mps| least(*by_mps).3 <= driven_m).unwrap_or(STARTS_AND_SLOWS_MPS);
+    let (from_mps, gaining_s, braking_s, least_m) = least(fits);
     let keeps_s = ((driven_m.max(least_m) - least_m) / from_mps * 10.0).round() / 10.0;
     let begins_s = contact_s - gaining_s - keeps_s - braking_s;
     let acts = vec![
         when(begins_s, Deed::Speed { to_mps: from_mps, rate_mps2: from_mps / gaining_s }),
-        when(contact_s - braking_s, Deed::Speed { to_mps: speed_mps, rate_mps2: STARTS_AND_SLOWS_MPS / braking_s }),
+        when(contact_s - braking_s, Deed::Speed { to_mps: speed_mps, rate_mps2: fits / braking_s }),
     ];
     let driven_m = least_m + from_mps * keeps_s;
     (begins_s > 1.0).then_some(Pace { speed_mps: 0.0, acts, driven_m })

@@ -136,11 +136,11 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         Some(Movement::Stopped) if who == "ego" => turned_before_its_stop(party),
         _ => Turning::No,
     };
-    // The last before the contact is the one that led to it.
+    // The last before the contact is the one that led to it. Who enters a lane beside its own does so to a side.
     let aside = party
         .acts
         .iter()
-        .filter(|fact| leaves_line(fact.act) && !fact.after_contact)
+        .filter(|fact| (leaves_line(fact.act) || fact.act == Act::Enter) && !fact.after_contact)
         .filter_map(|fact| fact.side)
         .next_back();
     // It stood where it did something after it, or held its place.

@@ -81,10 +81,8 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             LaneWord::RightTurn => Some(LeftRight::Right),
             _ => None,
         });
-        let turn_lane = into_turn_lane(reading, actor, frame, act);
-        let act = if turn_lane.is_some() { Act::LaneChange } else { act };
-        let to_lane = || turn_lane.or_else(|| to_lane(reading, actor, frame, act));
-        let side = if sided(act) { frame.side.or_else(to_lane) } else { None };
+        let side = if sided(act) { frame.side.or_else(|| to_lane(reading, actor, frame, act)) } else { None };
+        let side = side.or_else(|| into_turn_lane(reading, actor, frame, act));
         let side = side.or(lane.filter(|_| act == Act::Turn));
         let after_contact = reading.is_after(number);
         let fact = ActFact {

@@ -166,3 +166,16 @@ fn what_is_long_does_not_whip_round() {
         states.windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading).abs()).fold(0.0, f64::max);
     assert!(most_rad / STEP_S < 0.4, "{most_rad}");
 }
+
+#[test]
+fn who_set_off_and_brakes_in_the_junction_set_off_at_its_line() {
+    let shown = made(&story(
+        "The AV was stopped at a red light at an intersection. After the light turned green, the AV proceeded into the intersection. A car \
+         from the right ran a red light, the AV braked, and the front of the car made contact with the front right of the AV.",
+    ));
+    let ego = ego(&shown);
+    let most_mps = ego.iter().map(ActorState::speed).fold(0.0, f64::max);
+    assert!(most_mps > ego[ego.len() - 1].speed() + 1.0, "it brakes");
+    // The junction's arms begin 13 m from its middle, and the box is 4.5 m long.
+    assert!(ego[0].x > -17.0, "{:?}", ego[0]);
+}
