@@ -196,6 +196,10 @@ pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option
 const ASIDE_S: f64 = 4.0;
 const ASIDE_M: (f64, f64) = (14.0, 60.0);
 
+/// The same of who swerves from somebody. [s, m]
+const SWERVES_S: f64 = 1.6;
+const SWERVES_M: f64 = 8.0;
+
 /// Who drove on after it had changed lanes has done so for so long. [s]
 const DRIVES_ON_S: f64 = 1.5;
 
@@ -203,8 +207,10 @@ const DRIVES_ON_S: f64 = 1.5;
 const DRIFTS_BY: f64 = 5.0;
 
 /// The move out of the ego's line, half done at the contact, or done before it.
-fn shift(contact_s: f64, aside: Aside, pace: &Pace, speed_mps: f64, least_m: f64) -> Act {
-    let half_m = (0.5 * ASIDE_S * speed_mps).clamp(0.5 * ASIDE_M.0, 0.5 * ASIDE_M.1).max(least_m);
+fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
+    let (contact_s, speed_mps) = (told.contact_s, told.sv.speed_mps);
+    let (over_s, from_m) = if told.sv.reacts { (SWERVES_S, SWERVES_M) } else { (ASIDE_S, ASIDE_M.0) };
+    let half_m = (0.5 * over_s * speed_mps).clamp(0.5 * from_m, 0.5 * ASIDE_M.1).max(least_m);
     let drives = pace.speed_mps > 0.0;
     let (half_m, from_s) = if aside.done {
         (half_m, (contact_s - DRIVES_ON_S - 2.0 * half_m / speed_mps.max(0.1)).max(0.0))
@@ -230,16 +236,15 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
     if let Some(aside) = aside {
         let by_m = (aside.to_t_m - aside.from_t_m).abs();
         let least_m = if ground.drift.is_some() { DRIFTS_BY * by_m } else { 0.0 };
-        let shift = shift(told.contact_s, aside, &pace, told.sv.speed_mps, least_m);
+        let shift = shift(told, aside, &pace, least_m);
         // It leaves its line before it stops for good.
         let at = match told.sv.state.stands() {
             true => 0,
             // Acts begin in order.
-            false if ground.drift.is_some() => {
+            false => {
                 let from_s = first_time(std::slice::from_ref(&shift));
                 pace.acts.partition_point(|act| first_time(std::slice::from_ref(act)) <= from_s)
             }
-            false => pace.acts.len(),
         };
         match lead.as_mut().filter(|_| told.sv.state.stands()) {
             Some(lead) => lead.shifts(aside.to_t_m),
@@ -424,10 +429,27 @@ fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Pl
         return (plan, begin);
     }
     let straight = || Pose { position: staging.cp.position - motion(staging.cp.heading) * pace.driven_m, ..staging.cp };
-    let begin = fitted(true).or_else(|| fitted(false)).unwrap_or_else(straight);
+    // What is long cannot whip round: it comes straight.
+    let whips = |begin: &Pose| {
+        let mut course = Course::begin(arm_m);
+        reverse && course.curve(*begin, staging.cp, reverse) && is_tight(&course, size_of(cp).0)
+    };
+    let fitted = fitted(true).or_else(|| fitted(false)).filter(|begin| !whips(begin));
+    let begin = fitted.unwrap_or_else(straight);
     let course = vec![Leg::Curve { to: at(staging.cp), reverse }, Leg::Curve { to: at(beyond), reverse }];
     let plan = ActorPlan { speed_mps: pace.speed_mps, course, acts: pace.acts, ..ActorPlan::standing(at(begin)) };
     (plan, begin)
+}
+
+/// What is longer than this bends its line no tighter than by so much of its length. [m]
+const LONG_M: f64 = 6.0;
+const LONG_LENGTHS: f64 = 0.5;
+
+/// Whether a line bends tighter than somebody so long can.
+fn is_tight(course: &Course, length_m: f64) -> bool {
+    let steps = (course.length_m() / PIECE_M * 10.0).ceil() as usize;
+    let at = |step: usize| course.spot(course.length_m() * step as f64 / steps.max(1) as f64);
+    length_m > LONG_M && (0..=steps).any(|step| at(step).curvature.abs() * LONG_LENGTHS * length_m > 1.0)
 }
 
 /// Who turns with the ego, behind it or beside it, comes by its way: where it begins, and the poses that it drives by to the contact.

@@ -481,9 +481,10 @@ fn first_touch(rollout: &Rollout) -> Option<Touch<'_>> {
 /// Who turns back by more than this on its way swings. [deg]
 const MOST_BACK_DEG: f64 = 30.0;
 
-/// Nothing that is longer than this on wheels drives a tighter circle, by a step of this. [m, m, rad]
+/// Nothing that is longer than this on wheels drives a tighter circle, or feels more sideways, by a step of this. [m, m, m/s^2, rad]
 const WHEELED_M: f64 = 2.5;
 const TIGHTEST_M: f64 = 4.5;
+const SIDEWAYS_MPS2: f64 = 6.0;
 const SKIDS_RAD: f64 = 0.03;
 
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
@@ -522,7 +523,8 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     let turns = || track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
     let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M;
     let tighter = |(turn, state): (f64, &ActorState)| {
-        wheels && turn.abs() > SKIDS_RAD + state.velocity().length() * STEP_S / TIGHTEST_M
+        let speed_mps = state.velocity().length().max(0.1);
+        wheels && turn.abs() > SKIDS_RAD + STEP_S * (speed_mps / TIGHTEST_M).min(SIDEWAYS_MPS2 / speed_mps)
     };
     if turns().zip(&track.states).any(tighter) {
         return true;

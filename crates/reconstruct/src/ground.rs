@@ -102,6 +102,11 @@ impl Ground {
         Self { drift: Some(drift), ..self.clone() }
     }
 
+    /// Where the middle of the nearest lane of those is who come towards the ego. [m]
+    pub(crate) fn opposing_y_m(&self) -> f64 {
+        self.sv_pose(0.0).position.y + self.opposing_m
+    }
+
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
         self.pose(s_m, 0.0)
     }

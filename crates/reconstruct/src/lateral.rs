@@ -1,10 +1,10 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
-use crate::ground::LANE_M;
+use crate::ground::{Ground, LANE_M};
 use crate::pace::{Pace, start_over};
 use crate::side::Turning;
 use crate::told::Told;
-use crate::touch::Staging;
+use crate::touch::{Staging, size_of};
 use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, Party};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -59,8 +59,10 @@ impl Told {
             (Some(cp), Some(sv)) => cp != sv,
             _ => false,
         };
+        // Who changes lanes to pass has not come back where it touches no front.
+        let pulls_out = self.cp.passes && !self.sv.zones.iter().any(|zone| zone.is_front());
         self.origin == Origin::Behind
-            && self.cp.movement == Some(Movement::Passing)
+            && (self.cp.movement == Some(Movement::Passing) || pulls_out)
             && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff)
             && self.cp.turning == Turning::No
             && !own_lane
@@ -73,6 +75,18 @@ impl Told {
             && self.cp.state == ContactState::Moving
             && !self.cp.stood_first
             && !self.is_thrown()
+    }
+
+    /// Whether an oncoming partner that drives straight on touches an ego that stands on the ego's side of the road. Nobody tells that it
+    /// left its own: it does so late.
+    pub(crate) fn is_met_on_wrong_side(&self, ground: &Ground, cp: Pose) -> bool {
+        self.origin == Origin::Opposite
+            && self.cp.turning == Turning::No
+            && self.sv.state.stands()
+            && self.thing.is_none()
+            && self.door.is_none()
+            && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+            && cp.position.y < ground.opposing_y_m() - 0.5 * LANE_M
     }
 
     /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.
@@ -115,8 +129,8 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     if told.comes_along_kerb() && staging.ground.stands_m > 0.0 {
         return Some(0.0);
     }
-    if told.comes_over {
-        return Some(staging.ground.opposing_m.max(staging.cp.position.y));
+    if told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp) {
+        return Some(staging.ground.opposing_y_m().max(staging.cp.position.y));
     }
     kerb_y_m(told, staging)
         .or_else(|| told.cp_from_left_m().map(|from_left_m| staging.cp.position.y + from_left_m))
@@ -143,9 +157,10 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
             Movement::ChangingLanes | Movement::Merging | Movement::CrossingIntoOpposingLane | Movement::LaneDeparture
         )
     );
-    let leaves = leaves || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind();
-    if !(leaves || told.cp.dodges || told.comes_over) || told.cp.state != ContactState::Moving || pace.speed_mps == 0.0
-    {
+    let leaves = leaves && !told.passes_from_behind()
+        || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind();
+    let over = told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp);
+    if !(leaves || told.cp.dodges || over) || told.cp.state != ContactState::Moving || pace.speed_mps == 0.0 {
         return None;
     }
     let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
@@ -160,7 +175,7 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
 
 /// Who passes has come out of the ego's lane so far before the contact, and does so on so much of its way at most. [m]
 const OUT_M: f64 = 6.0;
-const COMES_OUT_M: f64 = 16.0;
+const COMES_OUT_M: f64 = 24.0;
 
 /// Who comes from behind the ego and passes it comes out of its lane, goes along beside it, and then comes too near: where it begins, and
 /// the poses that it drives by.
@@ -171,7 +186,9 @@ pub(crate) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     let cp = staging.cp;
     let comes_in = math::wrap_angle(cp.heading - staging.cp_came);
     let out_y_m = cp.position.y - 0.5 * OUT_M * comes_in;
-    let own_y_m = if told.comes_along_kerb() { 0.0 } else { staging.sv.position.y };
+    // An ego that turns came along its line.
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    let own_y_m = if told.comes_along_kerb() || turns { 0.0 } else { staging.sv.position.y };
     let back_m = (pace.driven_m - 0.5).min(OUT_M + COMES_OUT_M);
     let bends_m = (4.0 * LEAST_BY_RADIUS_M * (out_y_m - own_y_m).abs()).sqrt();
     if back_m - OUT_M < bends_m {
@@ -220,8 +237,17 @@ fn between_lines(staging: &Staging, pace: &Pace, arm_m: f64, lines: [(f64, f64);
 /// No bend of who comes out to pass is tighter. [m]
 const LEAST_BY_RADIUS_M: f64 = 7.0;
 
-/// Radius of a turn: of the line that the rear axle drives on. [m]
-pub(crate) const TURN_M: f64 = 8.0;
+/// Least radius of a turn, of the line that the rear axle drives on, and that in lengths of who is long; and what it feels sideways at
+/// most in a wider one. [m, 1, m/s^2]
+const TURN_M: f64 = 8.0;
+const TURN_LENGTHS: f64 = 0.75;
+const TURN_MPS2: f64 = 4.0;
+
+/// Radius of the partner's turn. [m]
+pub(crate) fn turn_m(told: &Told) -> f64 {
+    let cp = &told.cp;
+    TURN_M.max(TURN_LENGTHS * size_of(cp).0).max(cp.speed_mps * cp.speed_mps / TURN_MPS2)
+}
 
 /// Who has turned into the ego's road meets it so far behind its turn, or farther. [m]
 const BEHIND_TURN_M: f64 = 1.0;
@@ -237,7 +263,7 @@ pub(crate) fn turns_in(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     if let Some(found) = into_the_road(told, staging, pace, arm_m) {
         return Some(found);
     }
-    let bends = bend_before(cp, staging.cp_came, TURN_M.min(pace.driven_m / turn.abs()), arm_m);
+    let bends = bend_before(cp, staging.cp_came, turn_m(told).min(pace.driven_m / turn.abs()), arm_m);
     by_bend(bends, vec![cp], pace, arm_m)
 }
 
@@ -278,7 +304,7 @@ fn into_the_road(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
         LeftRight::Right => 0.5 * LANE_M,
     };
     let turned = Pose { heading: math::PI, ..cp };
-    let bends = bend_before(turned, staging.cp_came, TURN_M, arm_m);
+    let bends = bend_before(turned, staging.cp_came, turn_m(told), arm_m);
     let behind_m = lane_m - bends.position.x;
     if behind_m < BEHIND_TURN_M {
         return None;

@@ -83,8 +83,11 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
         false => told.choices.stood_s,
     };
     let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);
+    let stood_s = comes_over_line(told, ground, sv_s_m).map_or(stood_s, |most_s| stood_s.min(most_s));
+    let stood_s = if told.backs_early { LEAST_STOOD_S } else { stood_s };
     let usual = from_line(told, ground, sv_s_m)
         .or_else(|| before_who_waits(told))
+        .or_else(|| before_who_backs(told))
         .or_else(|| roadside::slows_in_turn(told, past_line_m(told, ground, sv_s_m)))
         .unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
     let begins_s = match sv.state.stands() {
@@ -117,6 +120,16 @@ fn before_who_waits(told: &Told) -> Option<Pace> {
     start_over(contact_s, sv.speed_mps, sv.speed_mps * (moving_s - 0.5 * sv.speed_mps / SETS_OFF_MPS2))
 }
 
+/// Who sets off before the partner backs.
+fn before_who_backs(told: &Told) -> Option<Pace> {
+    let speed_mps = told.sv.speed_mps;
+    if !told.backs_late || !(told.sv.stood_first || told.sv.state == ContactState::SettingOff) {
+        return None;
+    }
+    let moving_s = 0.5 * told.cp.speed_mps / SETS_OFF_MPS2 + REVERSES_M / told.cp.speed_mps + BACKS_EARLIER_S;
+    start_over(told.contact_s, speed_mps, speed_mps * (moving_s - 0.5 * speed_mps / SETS_OFF_MPS2))
+}
+
 /// Who waited behind somebody sets off so long after it. [s]
 const FOLLOWS_S: f64 = 0.5;
 
@@ -124,6 +137,18 @@ const FOLLOWS_S: f64 = 0.5;
 fn past_line_m(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
     ground.junction.then(|| sv_s_m - (ground.first_m() - 0.5 * size_of(&told.sv).0 - AT_LINE_M))
 }
+
+/// How long an ego that has come to a stop in a junction may have stood there, so that it is seen to come over its stop line. [s]
+fn comes_over_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<f64> {
+    let past_m = past_line_m(told, ground, sv_s_m).filter(|past_m| *past_m > 0.0)?;
+    let rolling_mps = told.choices.rolling_mps;
+    let most_s = told.contact_s - 0.5 * rolling_mps / STOPPING_MPS2 - (past_m + BEFORE_LINE_M) / rolling_mps;
+    (most_s > LEAST_STOOD_S).then_some(most_s)
+}
+
+/// It comes along for so long before its stop line at least, and has stood for so long. [m, s]
+const BEFORE_LINE_M: f64 = 3.0;
+const LEAST_STOOD_S: f64 = 1.2;
 
 impl Told {
     /// Whether the partner stood behind the ego and set off then.
@@ -151,10 +176,13 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
     let (ego_lead, ego) = ego_paces(told, &staging.ground, staging.sv_s_m);
     let ego_m = ego.driven_m + ego_lead.as_ref().map_or(0.0, Lead::driven_m);
     let ego_backs_s = ego_lead.as_ref().and_then(|lead| lead.backs_s);
+    let ego_moves_s = ego_lead.as_ref().and_then(Lead::sets_off_s).unwrap_or_else(|| first_time(&ego.acts));
+    let ego_backs_s = ego_backs_s.filter(|_| told.backs_first == Some(Striker::Cp));
+    let before_s = if told.backs_early { Some(ego_moves_s) } else { ego_backs_s };
     let last = things::pace(told)
         .or_else(|| beside_from_line(told, staging))
         .or_else(|| lateral::from_kerb(told, staging))
-        .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, ego_backs_s)));
+        .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, before_s)));
     let stands = cp.state.stands();
     if last.speed_mps > 0.0 && !stands {
         return (None, last);
@@ -197,7 +225,7 @@ fn last_pace(told: &Told) -> Pace {
 }
 
 /// How the partner's speed comes to what it is at the contact, from its last stand where it stood.
-fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pace, f64, Option<f64>)) -> Pace {
+fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, f64, Option<f64>)) -> Pace {
     let (cp, contact_s) = (&told.cp, told.contact_s);
     let usual = last_pace(told);
     if told.waits_behind() && told.sv.state == ContactState::Moving && ego.speed_mps == 0.0 {
@@ -207,7 +235,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
         }
     }
     let same_way = matches!(told.origin, Origin::Behind | Origin::Ahead);
-    let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. }) && told.ahead != Some(true);
+    let follows = matches!(told.origin, Origin::Behind | Origin::Beside { .. });
+    let follows = follows && told.ahead != Some(true) && !told.sv.reacts;
     let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
         ContactState::Moving if told.brakes_late() => slows(contact_s, cp),
@@ -233,9 +262,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, ego_backs_s): (&Pac
                 _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M,
                 _ => REVERSES_M,
             };
-            // Who backed before the ego did backs for longer.
-            let ego_backs_s = ego_backs_s.filter(|_| told.backs_first == Some(Striker::Cp));
-            let backing_s = ego_backs_s.map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
+            // Who backed before the ego did something backs for longer.
+            let backing_s = before_s.map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
             start_over(
                 contact_s,
                 cp.speed_mps,
@@ -371,26 +399,34 @@ fn pace(contact_s: f64, side: &Side, rolling_mps: f64, stood_s: f64) -> Pace {
 
 /// It brakes down to its speed at the contact.
 fn slows(contact_s: f64, side: &Side) -> Pace {
+    let (usual_mps, rate_mps2) = if side.reacts { (REACTS_BY_MPS, REACTS_MPS2) } else { (SLOWS_BY_MPS, SLOWS_MPS2) };
     let told_mps = side.slowed_from.and_then(|slowed| slowed.0).filter(|from| *from > side.speed_mps + 1.0);
-    let from_mps = told_mps.unwrap_or(side.speed_mps + SLOWS_BY_MPS).min(side.speed_mps + MOST_SLOWED_MPS);
+    let from_mps = told_mps.unwrap_or(side.speed_mps + usual_mps).min(side.speed_mps + MOST_SLOWED_MPS);
     let by_mps = from_mps - side.speed_mps;
-    let braking_s = (by_mps / SLOWS_MPS2 * 10.0).ceil() / 10.0;
+    let braking_s = (by_mps / rate_mps2 * 10.0).ceil() / 10.0;
     let brake = Deed::Speed { to_mps: side.speed_mps, rate_mps2: by_mps / braking_s };
     let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + side.speed_mps) * braking_s;
     Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
 }
 
-/// From a stand up to more than its speed at the contact, and down to that: so far, or as far as that takes.
+/// From a stand up to more than its speed at the contact, and down to that: so far, by less where that takes farther, or as far as the
+/// usual takes.
 fn starts_and_slows(contact_s: f64, speed_mps: f64, driven_m: f64) -> Option<Pace> {
-    let from_mps = speed_mps + STARTS_AND_SLOWS_MPS;
-    let gaining_s = (from_mps / STARTS_MPS2 * 10.0).ceil() / 10.0;
-    let braking_s = (STARTS_AND_SLOWS_MPS / SLOWS_MPS2 * 10.0).ceil() / 10.0;
-    let least_m = 0.5 * from_mps * gaining_s + 0.5 * (from_mps + speed_mps) * braking_s;
+    let by_less = [1.0, 0.75, 0.5].map(|share| share * STARTS_AND_SLOWS_MPS);
+    let least = |by_mps: f64| {
+        let from_mps = speed_mps + by_mps;
+        let gaining_s = (from_mps / STARTS_MPS2 * 10.0).ceil() / 10.0;
+        let braking_s = (by_mps / SLOWS_MPS2 * 10.0).ceil() / 10.0;
+        let least_m = 0.5 * from_mps * gaining_s + 0.5 * (from_mps + speed_mps) * braking_s;
+        (from_mps, gaining_s, braking_s, least_m)
+    };
+    let fits = by_less.into_iter().find(|by_mps| least(*by_mps).3 <= driven_m).unwrap_or(STARTS_AND_SLOWS_MPS);
+    let (from_mps, gaining_s, braking_s, least_m) = least(fits);
     let keeps_s = ((driven_m.max(least_m) - least_m) / from_mps * 10.0).round() / 10.0;
     let begins_s = contact_s - gaining_s - keeps_s - braking_s;
     let acts = vec![
         when(begins_s, Deed::Speed { to_mps: from_mps, rate_mps2: from_mps / gaining_s }),
-        when(contact_s - braking_s, Deed::Speed { to_mps: speed_mps, rate_mps2: STARTS_AND_SLOWS_MPS / braking_s }),
+        when(contact_s - braking_s, Deed::Speed { to_mps: speed_mps, rate_mps2: fits / braking_s }),
     ];
     let driven_m = least_m + from_mps * keeps_s;
     (begins_s > 1.0).then_some(Pace { speed_mps: 0.0, acts, driven_m })
@@ -423,6 +459,10 @@ const FOLLOWS_BY_MPS: f64 = 1.0;
 const SLOWS_BY_MPS: f64 = 4.0;
 const MOST_SLOWED_MPS: f64 = 12.0;
 const SLOWS_MPS2: f64 = 2.5;
+
+/// The same of who brakes hard because another turns across its way. [m/s, m/s^2]
+const REACTS_BY_MPS: f64 = 3.0;
+const REACTS_MPS2: f64 = 5.0;
 
 /// Who stood before a junction, and is in it at the contact, sets off from its stop line.
 fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {

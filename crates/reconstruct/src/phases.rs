@@ -1,6 +1,6 @@
 //! What somebody did before the last thing that it does: it came and stood, moved up and stood again, or reversed first.
 
-use crate::pace::{Pace, when};
+use crate::pace::{Pace, first_time, when};
 use recrash_model::account::{Act, ActFact, ContactState, Party, Standing, Striker};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::rollout::{ActorState, ActorTrack};
@@ -200,6 +200,12 @@ impl Lead {
     /// How far it goes, back and forth. [m]
     pub(crate) fn driven_m(&self) -> f64 {
         self.stretches.iter().map(|(length_m, reverse)| if *reverse { -length_m } else { *length_m }).sum()
+    }
+
+    /// When it last sets off.
+    pub(crate) fn sets_off_s(&self) -> Option<f64> {
+        let goes = |act: &&scenario::Act| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
+        self.acts.iter().rfind(goes).map(|act| first_time(std::slice::from_ref(act)))
     }
 
     /// It leaves its line on its last way, of which half is done where that ends.

@@ -45,6 +45,8 @@ pub(crate) struct Side {
     pub(crate) stands_from_start: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
+    /// It brakes, or swerves, for the turn that the other has begun: late and hard.
+    pub(crate) reacts: bool,
     /// It is told to have gained speed while it drove, and to be under way at the contact.
     pub(crate) gains: bool,
     /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
@@ -65,6 +67,8 @@ pub(crate) struct Side {
     pub(crate) stopped_aside: Option<Act>,
     /// It changed lanes on its way, and goes straight on since.
     pub(crate) changed_lanes: bool,
+    /// It changed lanes to pass.
+    pub(crate) passes: bool,
     /// It is told to have dodged or drifted that way while it drove on.
     pub(crate) dodges: bool,
     /// It backs into a space at the kerb.
@@ -132,11 +136,11 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         Some(Movement::Stopped) if who == "ego" => turned_before_its_stop(party),
         _ => Turning::No,
     };
-    // The last before the contact is the one that led to it.
+    // The last before the contact is the one that led to it. Who enters a lane beside its own does so to a side.
     let aside = party
         .acts
         .iter()
-        .filter(|fact| leaves_line(fact.act) && !fact.after_contact)
+        .filter(|fact| (leaves_line(fact.act) || fact.act == Act::Enter) && !fact.after_contact)
         .filter_map(|fact| fact.side)
         .next_back();
     // It stood where it did something after it, or held its place.
@@ -170,10 +174,14 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     let gains = gained_last(party) && state == ContactState::Moving && !stood_first && phases.is_empty();
     let changed_lanes = matches!(movement, None | Some(Movement::Straight))
         && party.acts.iter().any(|fact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun);
+    let passes = movement == Some(Movement::ChangingLanes)
+        && party.acts.iter().any(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
     Side {
         aside,
         changed_lanes,
+        passes,
         gains,
+        reacts: false,
         stopped_aside,
         turns_later: false,
         turned: turning != Turning::No && party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done),

@@ -114,6 +114,10 @@ pub(crate) struct Told {
     pub(crate) ahead: Option<bool>,
     /// The ego stood already when the partner began what it did.
     pub(crate) stood_before: bool,
+    /// The partner backs: it began to when the ego had set off.
+    pub(crate) backs_late: bool,
+    /// The partner backs: it began to before the ego stopped, or moved up to where it stands.
+    pub(crate) backs_early: bool,
     /// Who of the two backed first, where both did.
     pub(crate) backs_first: Option<Striker>,
     /// When they touch. [s]
@@ -182,6 +186,12 @@ impl Told {
         let pushed_rolling = (partner.did(Act::Follow) || partner.did(Act::Slow))
             && !(partner.did(Act::Stop) || partner.did(Act::Hold) || cp.state.stands());
         let sv_reverses = sv.state == ContactState::Reversing;
+        let (backs_late, backs_early) = backs_behind(&account.sv, partner);
+        let (backs_late, backs_early) = match (cp.state, sv.state) {
+            (ContactState::Reversing, ContactState::Moving | ContactState::SettingOff) => (backs_late, false),
+            (ContactState::Reversing, ContactState::Stopped) => (false, backs_early),
+            _ => (false, false),
+        };
         let mut this = Self {
             crash_type,
             place,
@@ -220,6 +230,8 @@ impl Told {
             extras: Vec::new(),
             ahead: told(&account.ahead),
             stood_before: stood_before(&account.sv, partner),
+            backs_late,
+            backs_early,
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
             contact_s: CONTACT_S,
             choices: Choices::default(),
@@ -236,6 +248,7 @@ impl Told {
 
     /// What the acts tell of the ways beside the movements.
     fn courses(&mut self, sv: &Party, partner: &Party) {
+        self.reactions(sv, partner);
         let drives_on =
             |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
         self.sv.dodges = (drives_on(&self.sv) || self.sv.stopped_aside.is_some()) && self.sv_aside().is_some();
@@ -290,6 +303,26 @@ impl Told {
                     None => Turning::No,
                 };
             }
+        }
+    }
+
+    /// What the ego did because of the partner: when, and to which side.
+    fn reactions(&mut self, sv: &Party, partner: &Party) {
+        if self.sv.state != ContactState::Moving || self.thing.is_some() {
+            return;
+        }
+        let turns = steps(partner, |act| act == Act::Turn).into_iter().min();
+        let reacts = steps(sv, |act| matches!(act, Act::Slow | Act::Swerve | Act::Drift)).into_iter().min();
+        let turning = matches!(self.cp.turning, Turning::Left | Turning::Right);
+        self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
+        // Who swerves from somebody that comes at it does so away from it.
+        let swerves = !steps(sv, |act| act == Act::Swerve).is_empty();
+        let straight = matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture));
+        if swerves && straight && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
+            self.sv.aside = match self.origin {
+                Origin::Beside { side } | Origin::Cross { side } => Some(side.other()),
+                _ => side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Right } else { LeftRight::Left }),
+            };
         }
     }
 
@@ -597,12 +630,24 @@ impl Told {
     }
 }
 
+/// Steps of the story in which somebody did such things before the contact.
+fn steps(party: &Party, of: fn(Act) -> bool) -> Vec<u32> {
+    let before = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun && of(fact.act));
+    before.map(|fact| fact.step).collect()
+}
+
+/// Whether the partner that backs began to after the ego had set off; and whether before the ego stopped for it, or moved up.
+fn backs_behind(sv: &Party, partner: &Party) -> (bool, bool) {
+    let first = |party: &Party, of: fn(Act) -> bool| steps(party, of).into_iter().min();
+    let Some(backs) = first(partner, |act| act == Act::Reverse) else { return (false, false) };
+    let sets_off = steps(sv, |act| act == Act::SetOff).into_iter().max();
+    let stops = first(sv, |act| matches!(act, Act::Stop | Act::Hold));
+    let early = sets_off.is_some_and(|at| at > backs) || stops.is_some_and(|at| at > backs);
+    (sets_off.is_some_and(|at| at < backs), early)
+}
+
 /// Whether one that stood at the contact did so before the partner began to do something: nothing is told of it behind that.
 fn stood_before(sv: &Party, partner: &Party) -> bool {
-    let steps = |party: &Party, of: fn(Act) -> bool| -> Vec<u32> {
-        let before = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun && of(fact.act));
-        before.map(|fact| fact.step).collect()
-    };
     let begins = |act: Act| {
         matches!(act, Act::Reverse | Act::SetOff | Act::PullOut | Act::Enter | Act::Turn | Act::Pass | Act::LaneChange)
     };

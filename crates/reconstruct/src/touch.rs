@@ -6,7 +6,7 @@ use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, ground_for};
 use crate::kerb;
-use crate::lateral::{TURN_M, is_on_foot};
+use crate::lateral::{is_on_foot, turn_m};
 use crate::roadside;
 use crate::side::{Side, Slant, Turning};
 use crate::things;
@@ -115,12 +115,21 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
                         let face_on = told.scrapes() && is_face_on(told, sv, cp);
                         let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
+                        // Who keeps its lane behind an ego that leaves its own does not turn with that.
+                        let turned = math::wrap_angle(heading - came).abs() > KEEPS_RAD;
+                        let off_m = (cp.position.y - ground.sv_pose(sv_s_m).position.y).abs();
+                        let leaves = told.keeps_straight_behind() && (turned || off_m > KEEPS_M);
                         let late = told.goes_straight_behind() && sv.heading.abs() > EARLY_RAD;
-                        let squeezed = told.turns_from_beside() && aside_before_m(sv, cp, came) < BESIDE_M;
+                        let squeezed = told.turns_from_beside() && aside_before_m(told, sv, cp, came) < BESIDE_M;
                         let other_way = told.is_struck_otherwise((sv_seen, cp_seen));
+                        // Who turns across an oncoming partner meets it in that one's lane.
+                        let before = told.sv.turning == Turning::Left && told.is_met_on_wrong_side(ground, cp);
                         let worse = [
+                            (before, BEFORE_LANE),
                             (face_on, FACE_ON),
                             (swings, SWINGS),
+                            (leaves, LEAVES),
+                            (told.goes_right_way(cp), RIGHT_WAY),
                             (late, LATE),
                             (squeezed, SQUEEZED),
                             (other_way, OTHER_WAY),
@@ -155,17 +164,30 @@ const FACE_ON: u32 = 2;
 const SWINGS: u32 = 2;
 const SWINGS_RAD: f64 = 0.35;
 
+/// Of an oncoming partner, that the ego, which turns, has not come to its lane.
+const BEFORE_LANE: u32 = 3;
+
 /// Of who strikes the other with parts that nobody tells, that the other one's front does.
 const OTHER_WAY: u32 = 1;
+
+/// Of who keeps its lane behind an ego that leaves its own, that it is at more than this to its way, or farther beside it. [rad, m]
+const LEAVES: u32 = 1;
+const KEEPS_RAD: f64 = 0.08;
+const KEEPS_M: f64 = 1.2;
+
+/// Of who goes the wrong way along a crossing road, that it is on the side where that is the right one, or nearer to the
+/// middle than this. [m]
+const RIGHT_WAY: u32 = 1;
+const RIGHT_SIDE_M: f64 = 1.8;
 
 /// And of who turns across from beside, that it was nearer to the ego's line than this before its turn. [m]
 const SQUEEZED: u32 = 1;
 const BESIDE_M: f64 = 2.4;
 
 /// How far beside the ego's line somebody came along that turned to this pose. [m]
-fn aside_before_m(sv: Pose, cp: Pose, came: f64) -> f64 {
+fn aside_before_m(told: &Told, sv: Pose, cp: Pose, came: f64) -> f64 {
     let turn = math::wrap_angle(cp.heading - came);
-    (cp.position.y - turn.signum() * TURN_M * (1.0 - math::cos(turn)) - sv.position.y).abs()
+    (cp.position.y - turn.signum() * turn_m(told) * (1.0 - math::cos(turn)) - sv.position.y).abs()
 }
 
 /// How far somebody has turned whose turn is over. [deg]
@@ -242,6 +264,19 @@ impl Told {
             && self.cp.movement == Some(Movement::Straight)
             && !self.sv.state.stands()
             && !self.sv.turned
+    }
+
+    /// Whether a partner that is told to go the wrong way along a crossing road is on the side of it where its way is the right one.
+    fn goes_right_way(&self, cp: Pose) -> bool {
+        let wrong_way = self.cp.movement == Some(Movement::WrongWay);
+        matches!(self.origin, Origin::Cross { side } if wrong_way && sign(side) * cp.position.x < RIGHT_SIDE_M)
+    }
+
+    /// Whether the partner drives straight on behind an ego that leaves its lane.
+    fn keeps_straight_behind(&self) -> bool {
+        let drives = |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No;
+        let straight = self.cp.movement.is_none_or(|movement| movement == Movement::Straight) && !self.cp.dodges;
+        self.origin == Origin::Behind && drives(&self.sv) && drives(&self.cp) && straight && self.sv_aside().is_some()
     }
 
     /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.
@@ -367,8 +402,8 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
                 Turning::Right => Some(1.0),
                 Turning::No | Turning::Round => None,
             };
-            let goes_on =
-                told.cp.movement == Some(Movement::Straight) && outer.is_some() && side_of(&told.sv.zones) == outer;
+            let goes_on = told.passes_from_behind()
+                || told.cp.movement == Some(Movement::Straight) && outer.is_some() && side_of(&told.sv.zones) == outer;
             let bases = match (sv_heading.abs() > 0.02, follows) {
                 (false, _) => vec![0.0],
                 (true, true) if goes_on => vec![0.0, behind, sv_heading],

@@ -82,6 +82,7 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             _ => None,
         });
         let side = if sided(act) { frame.side.or_else(|| to_lane(reading, actor, frame, act)) } else { None };
+        let side = side.or_else(|| into_turn_lane(reading, actor, frame, act));
         let side = side.or(lane.filter(|_| act == Act::Turn));
         let after_contact = reading.is_after(number);
         let fact = ActFact {
@@ -224,6 +225,22 @@ fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> Option<Act> 
         Some(Act::FailToYield)
     } else {
         None
+    }
+}
+
+/// The side to which the subject vehicle changed lanes, by the column, when it "proceeded into the right turn lane".
+fn into_turn_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
+    let column = reading.record.sv_movement.known() == Some(Movement::ChangingLanes);
+    if act != Act::Enter || actor != SUBJECT || !column || !frame.happened() {
+        return None;
+    }
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
+    let has = |word: &str| words.contains(&word);
+    match (has("turn") && has("lane"), has("left"), has("right")) {
+        (true, true, false) => Some(LeftRight::Left),
+        (true, false, true) => Some(LeftRight::Right),
+        _ => None,
     }
 }
 
@@ -531,6 +548,7 @@ fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
     let mut turned_green = None;
     for (number, frame) in reading.story.frames.iter().enumerate() {
         let changes = match frame.sense {
+            Sense::LightGreen if was_green(reading, frame, &all) => Some(SignalState::Green),
             Sense::LightGreen => Some(SignalState::TurnedGreen),
             Sense::LightRed => Some(SignalState::TurnedRed),
             Sense::LightYellow => Some(SignalState::Yellow),
@@ -592,6 +610,13 @@ fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
         all.push(reading.told(Control { device: ControlDevice::Signal, state: Some(state), obeyed: None }, first, end));
     }
     all
+}
+
+/// Whether a light "was green", and nobody tells that it had been red.
+fn was_green(reading: &Reading<'_>, frame: &Frame, before: &[Fact<Control>]) -> bool {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    let red = before.iter().any(|control| control.value.state == Some(SignalState::Red));
+    !red && words.iter().any(|token| matches!(token.text.as_str(), "is" | "was" | "were"))
 }
 
 /// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed.

@@ -610,7 +610,10 @@ impl Parser<'_> {
             && (carry.governed || carry.joint.is_some_and(|joint| joint != Joint::And))
             && who.is_some()
             && carry.last_is(who.as_ref());
-        if participle && matches!(sense, Sense::Act(Act::Stop | Act::Park)) && (carry.fresh || carry.governed) {
+        // "approached a truck stopped in the road": it stood there.
+        let of_object = bare && !be && form == Form::Past && carry.has_verb && who.is_some() && who != carry.subject;
+        let stood = participle && (carry.fresh || carry.governed) || of_object && carry.last_is(who.as_ref());
+        if stood && matches!(sense, Sense::Act(Act::Stop | Act::Park)) {
             frame.state = true;
             frame.sense = if sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
         }

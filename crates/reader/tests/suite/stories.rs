@@ -1,6 +1,8 @@
 //! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, and `families.toml`, each kind of crash in many wordings.
 
 use crate::common::{self, account_of, facts};
+use recrash_model::record::Coded;
+use recrash_model::template::Movement;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -51,4 +53,14 @@ fn every_told_fact_stands_in_the_narrative() {
         let back: recrash_model::account::Account = serde_json::from_value(json).unwrap();
         assert_eq!(back, account);
     }
+}
+
+#[test]
+fn a_turn_lane_is_gone_over_to_where_the_column_says_so() {
+    let text = "The AV was traveling in the rightmost lane. While the AV proceeded into the right turn lane, an SUV approached the AV \
+                from behind, and the front of the SUV made contact with the rear of the AV.";
+    let mut record = common::record("1-1", 1, text);
+    record.sv_movement = Coded::Known(Movement::ChangingLanes);
+    let account = recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account");
+    assert_eq!(facts(&account)["sv_acts"], "follow enter_right");
 }
