@@ -468,7 +468,12 @@ const REACTS_MPS2: f64 = 5.0;
 fn from_line(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pace> {
     let sv = &told.sv;
     let stops = match sv.control.filter(|said| said.obeyed != Some(Obeyed::No)) {
-        Some(said) => sv.state == ContactState::SettingOff || sv.stood_first || said.device == ControlDevice::StopSign,
+        // Who slows for a sign and is not told to have stood has yet to come to it, when it is hit from behind.
+        Some(said) => {
+            let yet_to_stop = told.origin == Origin::Behind && sv.slowed_from.is_some();
+            let at_sign = said.device == ControlDevice::StopSign && !yet_to_stop;
+            sv.state == ContactState::SettingOff || sv.stood_first || at_sign
+        }
         None => sv.stood_first,
     };
     let stops = stops && matches!(sv.state, ContactState::SettingOff | ContactState::Moving);

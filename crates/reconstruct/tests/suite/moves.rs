@@ -179,3 +179,13 @@ fn who_set_off_and_brakes_in_the_junction_set_off_at_its_line() {
     // The junction's arms begin 13 m from its middle, and the box is 4.5 m long.
     assert!(ego[0].x > -17.0, "{:?}", ego[0]);
 }
+
+#[test]
+fn who_slows_for_a_stop_sign_and_is_hit_from_behind_has_not_stood_there() {
+    let shown = made(&story(
+        "The AV was traveling north with a sedan following behind. While the AV slowed as it approached a stop sign at the \
+         intersection, the front of the sedan made contact with the rear of the AV.",
+    ));
+    let first = ego(&shown)[0].speed();
+    assert!(first > 2.0, "it comes along: {first} m/s");
+}
