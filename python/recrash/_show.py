@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import shutil
 import sys
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
@@ -16,6 +17,8 @@ Item = TypeVar("Item")
 
 #: Rows of a table that a notebook shows.
 MOST_ROWS = 50
+#: Rows of a table that a terminal shows, and characters of a cell.
+MOST_PRINTED, WIDEST = 20, 44
 #: Colours of the report's page.
 COLOURS = {"ego": "#47b1f2", "partner": "#ff9a45", "part": "#ff9a45", "traffic": "#b9c1c9"}
 GROUND = {"bike": "#4c7564", "median": "#9aac8d", "sidewalk": "#c2c8cd", "crosswalk": "#e6eaee", "building": "#a99f92"}
@@ -32,6 +35,35 @@ def table_html(table: Table) -> str:
         rows.append("<tr>" + "".join(f"<td>{html.escape(value[:80])}</td>" for value in values) + "</tr>")
     more = f"<p>{len(table)} rows, the first {MOST_ROWS} shown</p>" if len(table) > MOST_ROWS else ""
     return f"<table>{''.join(rows)}</table>{more}"
+
+
+def table_text(table: Table) -> str:
+    """A table for a terminal: its first rows, and the columns that fit; those that do not are named below."""
+    names = table.column_names
+    rows = [[_cell(value) for value in row.values()] for row in table.to_dicts()[:MOST_PRINTED]]
+    columns = [[name, *cells] for name, *cells in zip(names, *rows, strict=True)]
+    widths = [max(map(len, column)) for column in columns]
+    room, shown = shutil.get_terminal_size((120, 24)).columns, 0
+    while shown < len(names) and (shown == 0 or sum(widths[: shown + 1]) + 2 * shown <= room):
+        shown += 1
+    told = columns[:shown]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=False)).rstrip()
+        for line in zip(*told, strict=True)
+    ]
+    lines.insert(1, "  ".join("\u2500" * width for width in widths[:shown]))
+    if len(table) > MOST_PRINTED:
+        lines.append(f"{len(table)} rows, the first {MOST_PRINTED} shown")
+    if shown < len(names):
+        lines.append(f"not shown: {', '.join(names[shown:])}")
+    return "\n".join(lines)
+
+
+def _cell(value: object) -> str:
+    """A value in one line. What a terminal would obey is not: texts are somebody else's."""
+    text = "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
+    plain = "".join(each if each.isprintable() else " " for each in text)
+    return plain if len(plain) <= WIDEST else plain[: WIDEST - 1] + "\u2026"
 
 
 def _facts(facts: Mapping[str, object]) -> str:

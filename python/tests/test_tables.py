@@ -81,3 +81,20 @@ def test_tracks_are_the_states_of_who_is_there():
     assert walker["time_s"].max() == pytest.approx(1.7)
     ego = frame.filter(polars.col("actor") == "ego")
     assert ego["x_m"].to_list() == run.states[:, 0, 0].tolist()
+
+
+def test_a_table_is_printed_as_it_fits_and_obeys_nobody(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    rows = [
+        {"name": f"case-{number}", "gap": number / 3, "said": "\x1b[31m<b>red</b>\nline", "long": "x" * 90}
+        for number in range(30)
+    ]
+    table = Table.of_rows(rows)
+    lines = str(table).splitlines()
+    assert lines[0].split() == ["name", "gap", "said"]
+    assert lines[3].split()[:2] == ["case-1", "0.3333"]
+    assert lines[-2:] == ["30 rows, the first 20 shown", "not shown: long"]
+    assert len(lines) == 24 and all(len(line) <= 40 for line in lines[:22])
+    assert "\x1b" not in str(table)
+    assert "&lt;b&gt;red" in table._repr_html_() and repr(table).startswith("Table(30 rows: name, gap")
+    assert str(Table.of_rows([{"a": None}])).splitlines()[0] == "a"

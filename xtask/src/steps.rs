@@ -2,7 +2,7 @@
 
 use crate::tally::Tally;
 use crate::{fuzz, tidy, wheel};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -186,10 +186,15 @@ fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> Result {
     run(cargo_command().args(arguments).envs(environment.iter().copied()))
 }
 
-/// The cargo that runs this. What it told this program about the package xtask is taken away: build scripts that look at
-/// it would run again, and half of the libraries with them, whenever somebody calls cargo by hand in between.
+/// The cargo that runs this.
 pub fn cargo_command() -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// A program that may call cargo. What cargo told this program about the package xtask is taken away: build scripts that look at
+/// it would run again, and half of the libraries with them, whenever somebody calls cargo otherwise in between.
+pub fn command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();
         if ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_BIN_", "CARGO_CRATE_"].iter().any(|of| text.starts_with(of)) {

@@ -1,7 +1,7 @@
 //! The Python package: its wheel is built, installed where nothing else is, and held against its gates.
 
 use crate::licences;
-use crate::steps::{Result, built, counted, find_python, metadrive_python, missing, root, run, target};
+use crate::steps::{Result, built, command, counted, find_python, metadrive_python, missing, root, run, target};
 use crate::tally::Tally;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ pub fn step(tally: &mut Tally) -> Result {
     // An older wheel would be found instead of the one that is built.
     let _ = fs::remove_dir_all(&wheels);
     let build = ["build", "--profile", "dev", "--interpreter"];
-    run(Command::new(own("maturin")).args(build).arg(own("python")).arg("--out").arg(&wheels).current_dir(&package))?;
+    run(command(own("maturin")).args(build).arg(own("python")).arg("--out").arg(&wheels).current_dir(&package))?;
     let wheel = only_file(&wheels)?;
     run(pip(&["--force-reinstall", "--no-deps"]).arg(&wheel))?;
     let installed = "import recrash, pathlib; print(pathlib.Path(recrash.__file__).parent)";
@@ -102,7 +102,7 @@ fn released() -> Vec<PathBuf> {
 fn source_distribution(maturin: &Path, package: &Path) -> Result {
     let folder = target().join("sdist");
     let _ = fs::remove_dir_all(&folder);
-    run(Command::new(maturin).args(["sdist", "--out"]).arg(&folder).current_dir(package))?;
+    run(command(maturin).args(["sdist", "--out"]).arg(&folder).current_dir(package))?;
     let sdist = only_file(&folder)?;
     let listed = Command::new("tar").arg("tzf").arg(&sdist).output().map_err(|error| format!("tar: {error}"))?;
     let listed = String::from_utf8_lossy(&listed.stdout);

@@ -115,6 +115,16 @@ impl Table {
     fn __repr__(&self) -> String {
         format!("Table({} rows: {})", self.__len__(), self.column_names().join(", "))
     }
+
+    /// Its first rows, for a terminal.
+    fn __str__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("recrash._show")?.call_method1("table_text", (slf,))
+    }
+
+    /// Its first rows, for a notebook.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("recrash._show")?.call_method1("table_html", (slf,))
+    }
 }
 
 impl Table {
