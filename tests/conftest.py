@@ -20,15 +20,6 @@ def recrash() -> str:
     return found
 
 
-def pytest_terminal_summary(terminalreporter) -> None:
-    """Counts, and the skipped tests by name: `cargo xtask` reads these lines."""
-    stats = terminalreporter.stats
-    for report in stats.get("skipped", []):
-        print(f"pytest skipped: {report.nodeid} ({str(report.longrepr[-1]).removeprefix('Skipped: ')})")
-    failed = len(stats.get("failed", [])) + len(stats.get("error", []))
-    print(f"pytest: {len(stats.get('passed', []))} passed, {failed} failed")
-
-
 @pytest.fixture(scope="session")
 def suite(recrash: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The suite of the built-in sample, by the published method."""

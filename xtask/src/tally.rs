@@ -16,7 +16,7 @@ pub struct Tally {
 
 impl Tally {
     /// Takes one line of a runner's output: of `cargo test`, whose skipped tests tell so on a line of their own
-    /// (`recrash_testing::skip`), or of pytest with the hook in `tests/conftest.py`.
+    /// (`recrash_testing::skip`), or of pytest with the plugin `tests/plugin/counted.py`.
     pub fn read(&mut self, line: &str) {
         if let Some(skipped) = line.strip_prefix("skipped: ") {
             self.skipped_in_rust.insert(skipped.to_owned());

@@ -1,7 +1,7 @@
 //! The Python package: its wheel is built, installed where nothing else is, and held against its gates.
 
 use crate::licences;
-use crate::steps::{Result, built, command, counted, find_python, metadrive_python, missing, root, run, target};
+use crate::steps::{Result, built, command, find_python, metadrive_python, missing, root, run, target, told};
 use crate::tally::Tally;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,7 +60,7 @@ pub fn step(tally: &mut Tally) -> Result {
     if let Some(python) = metadrive_python() {
         tests.env("RECRASH_METADRIVE_PYTHON", python);
     }
-    counted(&mut tests, tally)?;
+    told(&mut tests, tally)?;
     let (pages, made) = (package.join("docs"), target().join("python-docs"));
     run(Command::new(own("sphinx-build")).args(["-q", "-W", "--keep-going", "-E"]).arg(&pages).arg(&made))?;
     source_distribution(&own("maturin"), &package)?;
