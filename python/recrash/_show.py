@@ -17,8 +17,8 @@ Item = TypeVar("Item")
 
 #: Rows of a table that a notebook shows.
 MOST_ROWS = 50
-#: Rows of a table that a terminal shows, and characters of a cell.
-MOST_PRINTED, WIDEST = 20, 44
+#: Rows of a table that a terminal shows; characters of a cell, and to what they are cut where room is scarce.
+MOST_PRINTED, CELLS = 20, (44, 28, 20, 14)
 #: Colours of the report's page.
 COLOURS = {"ego": "#47b1f2", "partner": "#ff9a45", "part": "#ff9a45", "traffic": "#b9c1c9"}
 GROUND = {"bike": "#4c7564", "median": "#9aac8d", "sidewalk": "#c2c8cd", "crosswalk": "#e6eaee", "building": "#a99f92"}
@@ -38,19 +38,20 @@ def table_html(table: Table) -> str:
 
 
 def table_text(table: Table) -> str:
-    """A table for a terminal: its first rows, and the columns that fit; those that do not are named below."""
-    names = table.column_names
-    rows = [[_cell(value) for value in row.values()] for row in table.to_dicts()[:MOST_PRINTED]]
-    columns = [[name, *cells] for name, *cells in zip(names, *rows, strict=True)]
-    widths = [max(map(len, column)) for column in columns]
-    room, shown = shutil.get_terminal_size((120, 24)).columns, 0
-    while shown < len(names) and (shown == 0 or sum(widths[: shown + 1]) + 2 * shown <= room):
+    """A table for a terminal: its first rows, cells cut where that makes room, and the columns that fit; the others are named."""
+    names, rows = table.column_names, table.to_dicts()[:MOST_PRINTED]
+    room = shutil.get_terminal_size((120, 24)).columns
+    for most in CELLS:
+        columns = [
+            [_cell(name, CELLS[0]), *(_cell(row[name], CELLS[0] if name == names[0] else most) for row in rows)] for name in names
+        ]
+        widths = [max(map(len, column)) for column in columns]
+        if sum(widths) + 2 * len(widths) - 2 <= room:
+            break
+    shown = 1
+    while shown < len(names) and sum(widths[: shown + 1]) + 2 * shown <= room:
         shown += 1
-    told = columns[:shown]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=False)).rstrip()
-        for line in zip(*told, strict=True)
-    ]
+    lines = ["  ".join(map(str.ljust, line, widths)).rstrip() for line in zip(*columns[:shown], strict=True)]
     lines.insert(1, "  ".join("\u2500" * width for width in widths[:shown]))
     if len(table) > MOST_PRINTED:
         lines.append(f"{len(table)} rows, the first {MOST_PRINTED} shown")
@@ -59,11 +60,11 @@ def table_text(table: Table) -> str:
     return "\n".join(lines)
 
 
-def _cell(value: object) -> str:
+def _cell(value: object, most: int) -> str:
     """A value in one line. What a terminal would obey is not: texts are somebody else's."""
     text = "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)
     plain = "".join(each if each.isprintable() else " " for each in text)
-    return plain if len(plain) <= WIDEST else plain[: WIDEST - 1] + "\u2026"
+    return plain if len(plain) <= most else plain[: most - 1] + "\u2026"
 
 
 def _facts(facts: Mapping[str, object]) -> str:
