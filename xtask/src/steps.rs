@@ -74,7 +74,7 @@ fn prepare(tally: &mut Tally) -> Result {
     let script = "from oracles import environment; print(environment('metadrive') / 'python')";
     let output = Command::new(venv_python())
         .args(["-c", script])
-        .current_dir(root().join("tests/plugin"))
+        .current_dir(root().join("tests"))
         .output()
         .map_err(|error| error.to_string())?;
     if output.status.success() {
