@@ -16,14 +16,14 @@ use crate::things;
 use crate::told::{Aside, Told};
 use crate::touch::{Staging, size_of};
 use crate::trailer::Rig;
-use recrash_model::account::{Account, ContactState, Kind, Origin};
+use recrash_model::account::{Account, ContactState, Kind, Origin, StandReason, told as told_of};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, STEP_S};
 use recrash_model::scenario::{
-    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Leg, MapSpec, MissionStop, ObjectSpec, Part, Place,
-    SCENARIO_FORMAT, ScenarioDraft, Size, Source,
+    Act, Actor, ActorPlan, Along, Author, Deed, EgoSpec, Environment, Leg, MapSpec, MissionStop, ObjectSpec, Part,
+    Place, SCENARIO_FORMAT, ScenarioDraft, Size, Source,
 };
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::Course;
@@ -34,8 +34,8 @@ const HANDOVER_BEFORE_S: f64 = 5.0;
 /// Before it began to brake for its stop, the ego still rolls for so long under the system under test. [s]
 const ROLLS_S: f64 = 1.0;
 
-/// The simulators' egos drive no faster: MetaDrive cuts the engine at 80 km/h. [m/s]
-const FASTEST_EGO_MPS: f64 = 80.0 / 3.6;
+/// A system under test wants no less than this. [m/s]
+const LEAST_WANTED_MPS: f64 = 2.0;
 
 /// Who throws the partner at the ego runs into it at this speed over its own, this long before the contact, and this far from where
 /// that is. [m/s, s, m]
@@ -88,8 +88,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
         }
         _ => Some((told.contact_s - HANDOVER_BEFORE_S).max(0.0)),
     };
-    let wanted_mps = told.sv.speed_mps.max(if told.sv.state.stands() { told.choices.rolling_mps } else { 2.0 });
-    let target_speed_mps = wanted_mps.min(FASTEST_EGO_MPS);
+    let target_speed_mps = wanted_mps(told, &recorded);
     let id: String =
         account.incident.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).take(40).collect();
     let draft = ScenarioDraft {
@@ -102,6 +101,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             ..Source::default()
         },
         map: MapSpec::G(map),
+        environment: environment(account),
         ego: EgoSpec {
             kind: told.sv.kind,
             size: told.sv.size,
@@ -123,6 +123,28 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     with_others(told, staging, draft)
 }
 
+/// Surface, light and weather as they are told; of several weathers the first.
+fn environment(account: &Account) -> Environment {
+    let place = &account.place;
+    Environment {
+        surface: told_of(&place.surface).unwrap_or_default(),
+        lighting: told_of(&place.lighting).unwrap_or_default(),
+        weather: place.weather.first().map(|fact| fact.value).unwrap_or_default(),
+    }
+}
+
+/// The speed that the system under test wants: the highest that the recorded driver had, or sets out for, on its way to the contact; who
+/// stood, or slowed, wants to drive on. [m/s]
+fn wanted_mps(told: &Told, recorded: &ActorPlan) -> f64 {
+    let sets_out = recorded.acts.iter().filter_map(|act| match act.deed {
+        Deed::Speed { to_mps, .. } => Some(to_mps),
+        _ => None,
+    });
+    let stood = told.sv.state.stands() || told.sv.stood_first || told.sv.state == ContactState::SettingOff;
+    let least_mps = if stood { told.choices.rolling_mps } else { LEAST_WANTED_MPS };
+    sets_out.fold(recorded.speed_mps.max(least_mps), f64::max)
+}
+
 /// The same with the others of the story, who go by what the two do.
 fn with_others(told: &Told, staging: &Staging, mut draft: ScenarioDraft) -> ScenarioDraft {
     let alone = (!told.extras.is_empty()).then(|| recrash_roads::check(draft.clone()).ok()).flatten();
@@ -142,15 +164,17 @@ fn opens(contact_s: f64, door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<P
     plan.acts.push(when(contact_s - door.before_s, Deed::Part { part: door.part.id.clone(), to_deg, over_s }));
 }
 
-/// Where the task of the system under test has it stop: where it stood, unless something in the scene makes it stop there. What
-/// made the recorded driver stop is then part of the task.
+/// Where the task of the system under test has it stop: where it stood for passengers, and where nothing in the scene makes it
+/// stop. What made the recorded driver stop is then part of the task.
 fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
     let at_line = staging.ground.junction && told.sv.control.is_some();
     let lead = told.extras.iter().any(|extra| extra.role == Role::Lead && !extra.goes);
-    if told.sv.state != ContactState::Stopped || lead || at_line {
+    let by_itself = told.sv.state == ContactState::Stopped && !lead && !at_line;
+    let boards = told.sv.state.stands() && told.reasons.contains(&StandReason::PickupDropoff);
+    if !by_itself && !boards {
         return Vec::new();
     }
-    vec![MissionStop { s_m: staging.sv_s_m, t_m: 0.0, for_s: None }]
+    vec![MissionStop { s_m: staging.sv_s_m, t_m: staging.ground.stands_m, for_s: None }]
 }
 
 /// Straight on at a speed.

@@ -23,6 +23,7 @@ use recrash_model::math;
 use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::narrative::FirstMover;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, STEP_S};
+use recrash_model::scenario::MissionStop;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::Scenario;
@@ -45,6 +46,9 @@ const NEAR_M: f64 = 0.5;
 
 /// Who come within this time come together. [s]
 const TOGETHER_S: f64 = 1.0;
+
+/// Who stands no farther from a stop of its task stands at it. [m]
+const AT_STOP_M: f64 = 1.0;
 
 struct Touch<'a> {
     time_s: f64,
@@ -261,7 +265,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     }
     for (kind, side) in [(CheckKind::SvZones, &told.sv), (CheckKind::CpZones, &told.cp)] {
         if side.only_above_or_below {
-            let seen = (CheckResult::CannotBeShown, "the simulator has no height".to_owned());
+            let since = (touch.time_s / STEP_S) as usize;
+            let seen =
+                match told.is_driven_over() && things::goes_under(ego_track, touch.track, &touch.other_box, since) {
+                    true => (CheckResult::Shown, "the ego drives over it".to_owned()),
+                    false => (CheckResult::CannotBeShown, "the simulator has no height".to_owned()),
+                };
             held(kind, "top or bottom".to_owned(), seen);
         }
     }
@@ -333,7 +342,7 @@ fn lane(
 
 /// Whether the scene holds what the ego stood for.
 fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (CheckResult, String) {
-    let (draft, ego) = (scenario.draft(), rollout.ego_track());
+    let ego = rollout.ego_track();
     let controlled = |device: ControlDevice| {
         let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
         control::check(said, scenario, ego, time_s).0 == CheckResult::Shown
@@ -341,13 +350,21 @@ fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (
     let holds = |reason: &StandReason| match reason {
         StandReason::RedLight => controlled(ControlDevice::Signal),
         StandReason::StopSign => controlled(ControlDevice::StopSign),
-        StandReason::PickupDropoff => !draft.ego.stops.is_empty(),
+        StandReason::PickupDropoff => stands_at_stop(scenario, ego, time_s),
         other => Seen::new(told, rollout, time_s).reason(*other),
     };
     match told.reasons.iter().all(holds) {
         true => (CheckResult::Shown, "in the scene".to_owned()),
         false => (CheckResult::CannotBeShown, "not in the scene".to_owned()),
     }
+}
+
+/// Whether the ego stands where its task has it stop.
+fn stands_at_stop(scenario: &Scenario, ego: &ActorTrack, time_s: f64) -> bool {
+    let met = &ego.states[((time_s / STEP_S) as usize).min(ego.states.len() - 1)];
+    let at = scenario.ego().path.project(met.position(), 0);
+    let near = |stop: &MissionStop| math::hypot(at.s - stop.s_m, at.t - stop.t_m) < AT_STOP_M;
+    met.velocity().length() < STANDS_MPS && scenario.draft().ego.stops.iter().any(near)
 }
 
 fn zone_words(zones: &[ContactZone]) -> String {

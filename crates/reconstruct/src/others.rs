@@ -142,13 +142,19 @@ const PASSES_WITHIN: usize = 12;
 pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
     let story = Story { account };
     let any = |of: fn(Kind) -> bool| account.others.iter().any(|other| of(other.kind.value) && story.is_met(other));
+    let said = |reason: StandReason| account.sv.reasons.iter().any(|fact| fact.value == reason);
     let told = account.sv.reasons.iter().map(|fact| fact.value);
-    // Who comes towards it is whom it gave way to.
-    let ahead = !matches!(origin, Origin::Behind | Origin::Beside { .. });
+    // Where nobody else is named, it gave way to a partner that does not come from behind, or did what a queue, a light or a sign asks.
+    let somebody = account.others.iter().any(|other| story.is_near(other) && !is_parked(other));
+    let explained = origin != Origin::Behind
+        || [StandReason::Queue, StandReason::RedLight, StandReason::StopSign].into_iter().any(said);
+    // "A construction worker" is somebody, and a construction truck is whom it stands behind.
+    let works = said(StandReason::LeadVehicle) || said(StandReason::Pedestrian) && any(is_on_foot);
     told.filter(|reason| match reason {
         StandReason::Pedestrian => any(is_on_foot),
         StandReason::Animal => any(|kind| kind.group() == KindGroup::Animal),
-        StandReason::Yield if ahead => account.others.iter().any(|other| story.is_near(other)),
+        StandReason::Yield => somebody || !explained,
+        StandReason::BlockedPath => !works,
         _ => true,
     })
     .collect()
@@ -180,6 +186,11 @@ pub(crate) fn crash(told: &Told, rollout: &Rollout) -> Option<String> {
         }
         _ => None,
     })
+}
+
+/// Whether somebody is told to be parked.
+fn is_parked(other: &Other) -> bool {
+    text(&other.kind.source).contains("parked") || before_contact(other).any(|fact| text(&fact.source).contains("park"))
 }
 
 pub(crate) fn is_on_foot(kind: Kind) -> bool {
@@ -468,8 +479,7 @@ impl Story<'_> {
         if stands && !other.several && self.is_between(told) {
             return Some(Role::Beside);
         }
-        let parked = said(&["parked"]) || before_contact(other).any(|fact| text(&fact.source).contains("park"));
-        if parked && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
+        if is_parked(other) && !did(&[Act::PullOut, Act::SetOff, Act::Follow, Act::Reverse]) {
             let double = said(&["double"]) || before_contact(other).any(|fact| text(&fact.source).contains("double"));
             let waits =
                 because(StandReason::BlockedPath) || because(StandReason::LeadVehicle) || place == Some(Origin::Ahead);

@@ -78,6 +78,8 @@ pub(crate) struct Side {
     pub(crate) zones: Vec<ContactZone>,
     /// It was touched on its roof or from below, and nowhere else.
     pub(crate) only_above_or_below: bool,
+    /// Touched at its underside, and nowhere else.
+    pub(crate) only_below: bool,
     /// Speed at the contact, where told. [m/s]
     pub(crate) impact_mps: Option<f64>,
     /// Speed at the contact that is staged. [m/s]
@@ -201,6 +203,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         turning,
         only_above_or_below: !party.zones.is_empty()
             && party.zone_values().iter().all(|zone| matches!(zone, ContactZone::Top | ContactZone::Bottom)),
+        only_below: !party.zones.is_empty() && party.zone_values().iter().all(|zone| *zone == ContactZone::Bottom),
         zones: party
             .zone_values()
             .into_iter()

@@ -12,7 +12,9 @@ use recrash_model::account::{
     Striker, told,
 };
 use recrash_model::geometry::OrientedBox;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::{ObstacleKind, Size};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -125,6 +127,26 @@ pub(crate) fn partner(account: &Account) -> Option<Party> {
 
 fn is_thing(kind: Kind) -> bool {
     kind.group() == KindGroup::Object
+}
+
+/// What is so far inside the ego's outline is under it. [m]
+const UNDER_M: f64 = 0.3;
+
+impl Told {
+    /// Whether the partner is told to have touched the ego's underside alone, and is no thing that stands.
+    pub(crate) fn is_driven_over(&self) -> bool {
+        let stands = |kind| matches!(kind, Kind::Wall | Kind::Pole | Kind::Gate | Kind::Barrier | Kind::Door);
+        self.sv.only_below && (self.cp.kind == PartnerKind::Animal || self.thing.is_some_and(|kind| !stands(kind)))
+    }
+}
+
+/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched.
+pub(crate) fn goes_under(ego: &ActorTrack, thing: Option<&ActorTrack>, lying: &OrientedBox, since: usize) -> bool {
+    (since..ego.states.len()).any(|step| {
+        let pose = ego.states[step].pose();
+        let body = OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
+        body.overlaps(&thing.map_or(*lying, |track| track.outline(step.min(track.states.len() - 1))))
+    })
 }
 
 /// Whether something lies in the lane for turns that the ego came along, and only a column tells that it turned.

@@ -9,5 +9,6 @@ mod roadside;
 mod sabotage;
 mod steps;
 mod stories;
+mod task;
 mod things;
 mod ways;

@@ -1,6 +1,6 @@
 //! Speeds, kinds, policies and lateral moves: what a road user may do on its way.
 
-use super::numbers::MAX_SPEED_MPS;
+use super::numbers::{MAX_SPEED_MPS, MAX_WANTED_MPS};
 use super::{Remarks, shown};
 use crate::lane::Centreline;
 use crate::network::{RoadNetwork, RoadPart};
@@ -50,6 +50,8 @@ pub(super) fn speed_limit(network: &RoadNetwork, way: &LanePath) -> (f64, &'stat
 /// The ego's speed.
 pub(super) fn ego(draft: &ScenarioDraft, network: &RoadNetwork, ego: &Placement, remarks: &mut Remarks) {
     let (limit, why) = speed_limit(network, &ego.path);
+    // Of a network the numbers say how much it may want.
+    let limit = if limit == MAX_SPEED_MPS && matches!(network.map, MapSpec::G(_)) { MAX_WANTED_MPS } else { limit };
     if draft.ego.target_speed_mps > limit {
         let message =
             format!("the ego wants {} m/s on a way that allows {}", shown(draft.ego.target_speed_mps), shown(limit));

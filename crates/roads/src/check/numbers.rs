@@ -9,6 +9,10 @@ use std::collections::BTreeSet;
 /// The fastest any vehicle drives: MetaDrive cuts the engine at 80 km/h. [m/s]
 pub(super) const MAX_SPEED_MPS: f64 = 80.0 / 3.6;
 
+/// The fastest that an ego may want on a road network, where recorded drivers may be faster than its engine: it then holds what it
+/// has. 100 mph. [m/s]
+pub(super) const MAX_WANTED_MPS: f64 = 44.7;
+
 /// Steps a policy may count, 0.1 s each: more than the longest rollout has.
 const MAX_STEPS: u32 = 10_000;
 
@@ -36,12 +40,12 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
     remarks.number("duration_s", draft.duration_s, 1.0, 120.0, "s");
     let ego = {
         let speed = remarks.number("ego.speed_mps", draft.ego.speed_mps, 0.0, MAX_SPEED_MPS, "m/s");
-        let target = remarks.number("ego.target_speed_mps", draft.ego.target_speed_mps, 1.0, MAX_SPEED_MPS, "m/s");
-        let longest = match &draft.map {
-            MapSpec::G(_) => 2000.0,
-            _ if map => draft.map.carriageway().approach_m,
-            _ => 300.0,
+        let (fastest, longest) = match &draft.map {
+            MapSpec::G(_) => (MAX_WANTED_MPS, 2000.0),
+            _ if map => (MAX_SPEED_MPS, draft.map.carriageway().approach_m),
+            _ => (MAX_SPEED_MPS, 300.0),
         };
+        let target = remarks.number("ego.target_speed_mps", draft.ego.target_speed_mps, 1.0, fastest, "m/s");
         let start = remarks.number("ego.s_m", draft.ego.s_m, 0.0, longest, "m");
         speed && target && start
     };
