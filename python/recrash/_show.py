@@ -30,7 +30,7 @@ def table_html(table: Table) -> str:
     """A table for a notebook. Every text of it is escaped: narratives are somebody else's."""
     cells = [f"<th>{html.escape(name)}</th>" for name in table.column_names]
     rows = [f"<tr>{''.join(cells)}</tr>"]
-    for row in table.to_dicts()[:MOST_ROWS]:
+    for row in table.head(MOST_ROWS).to_dicts():
         values = ["" if value is None else str(value) for value in row.values()]
         rows.append("<tr>" + "".join(f"<td>{html.escape(value[:80])}</td>" for value in values) + "</tr>")
     more = f"<p>{len(table)} rows, the first {MOST_ROWS} shown</p>" if len(table) > MOST_ROWS else ""
@@ -39,7 +39,7 @@ def table_html(table: Table) -> str:
 
 def table_text(table: Table) -> str:
     """A table for a terminal: its first rows, cells cut where that makes room, and the columns that fit; the others are named."""
-    names, rows = table.column_names, table.to_dicts()[:MOST_PRINTED]
+    names, rows = table.column_names, table.head(MOST_PRINTED).to_dicts()
     room = shutil.get_terminal_size((120, 24)).columns
     for most in CELLS:
         columns = [

@@ -495,10 +495,14 @@ class CrashEnv(gymnasium.Env[Any, Any]):
 def evaluate(policy: Callable[[Any], Any], suite: Source, **options: Any) -> list[Run]:
     """Drive every scenario once with a policy, from a batch of observations to a batch of actions; the judged runs, in order.
 
-    ``options`` are those of :class:`CrashVectorEnv` but ``num_envs`` and ``autoreset_mode``.
+    ``options`` are those of :class:`CrashVectorEnv` but ``num_envs`` and ``autoreset_mode``; episodes are always judged.
     """
+    if own := options.keys() & {"num_envs", "autoreset_mode"}:
+        raise InputError(f"evaluate chooses {', '.join(sorted(own))} itself; leave it out")
+    if options.get("judge", True) is False:
+        raise InputError("evaluate gives judged runs: judge is True or the name of a profile; it is False")
     scenarios = _chosen(suite, options.pop("split", None), options.pop("held_out_share", 0.25), options.pop("crash_types", None))
-    env = CrashVectorEnv(scenarios, len(scenarios), **{"autoreset_mode": AutoresetMode.NEXT_STEP, "judge": True, **options})
+    env = CrashVectorEnv(scenarios, len(scenarios), **options)
     observations, _ = env.reset(seed=0, options={"scenarios": np.arange(len(scenarios))})
     runs: list[Run | None] = [None] * len(scenarios)
     while any(run is None for run in runs):

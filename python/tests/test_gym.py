@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import gymnasium
 import numpy as np
 import pytest
@@ -198,6 +200,29 @@ def test_a_curriculum_draws_the_types_that_it_names():
 def test_evaluate_drives_every_scenario_once(crashes):
     runs = evaluate(lambda seen: np.zeros((len(seen), 2), np.float32), crashes)
     assert [run.scenario_id for run in runs] == [scenario.id for scenario in recrash.load_scenarios(crashes)]
+
+
+@pytest.mark.parametrize("option", [{"judge": False}, {"autoreset_mode": "same_step"}, {"num_envs": 2}])
+def test_evaluate_refuses_what_would_give_it_no_runs(crashes, option):
+    with pytest.raises(InputError, match=next(iter(option))):
+        evaluate(lambda seen: np.zeros((len(seen), 2), np.float32), crashes, **option)
+
+
+def test_a_judged_run_has_the_scenario_that_was_driven(crashes):
+    first = recrash.load_scenarios(crashes)[0]
+    other = Scenario.load({**first.to_dict(), "duration_s": 3.0})
+    assert other.id == first.id
+    runs = evaluate(lambda seen: np.full((len(seen), 2), [0, -1], np.float32), [first, other])
+    # A pickled run has its scenario with it.
+    assert [json.loads(run.__reduce__()[1][1])["duration_s"] for run in runs] == [first.duration_s, 3.0]
+
+
+def test_findings_have_the_words_of_the_findings(crashes):
+    runs = evaluate(lambda seen: np.full((len(seen), 2), [0, 0.5], np.float32), crashes)
+    assert any(run.finding_kinds for run in runs)
+    for run in runs:
+        assert run.finding_kinds == sorted({finding["kind"] for finding in run.findings}, key=run.finding_kinds.index)
+        assert not any(" " in kind for kind in run.finding_kinds)
 
 
 def test_pictures_for_people(crashes):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import time
+from collections import Counter
 
 import pytest
 
@@ -52,6 +54,18 @@ def test_progress_is_told_and_ctrl_c_keeps_what_is_done(tmp_path):
     resumed = recrash.run(tmp_path / "s", progress=False, **OPTIONS)
     fresh = recrash.run(tmp_path / "t", progress=False, **OPTIONS)
     assert resumed.summary["cases"] == fresh.summary["cases"]
+
+
+def test_a_slow_listener_hears_progress_to_its_end(tmp_path):
+    begun, advanced = Counter(), Counter()
+
+    def listens(stage, units, begins):
+        time.sleep(0.02)
+        (begun if begins else advanced)[stage] += units
+
+    recrash.run(tmp_path / "s", progress=listens, **OPTIONS)
+    assert "report" in begun
+    assert +advanced == +begun
 
 
 def test_a_listener_that_raises_stops_the_run_with_what_it_raised(tmp_path):

@@ -10,6 +10,7 @@ from conftest import case
 
 import recrash
 from recrash import InputError, Scenario, Table
+from recrash._show import table_html, table_text
 
 
 def test_the_sample_is_read_and_reconstructed():
@@ -43,6 +44,33 @@ def rows():
         {"name": "a", "count": 1, "share": 0.5, "yes": True, "more": [1, 2]},
         {"name": None, "count": 2, "share": 1, "yes": False, "more": None},
     ]
+
+
+def test_the_first_rows_are_a_table_of_their_own(rows):
+    many = Table.concat([Table.of_rows(rows)] * 1000)
+    for count in (0, 1, 2, 3, 5, 2000, 9999):
+        head = many.head(count)
+        assert head.column_names == many.column_names
+        assert head.to_dicts() == many.to_dicts()[:count]
+        assert pyarrow.table(head).to_pylist() == head.to_dicts()
+
+
+def test_a_printed_table_converts_what_it_shows(rows):
+    many, converted = Table.concat([Table.of_rows(rows)] * 1000), []
+
+    class Watched:
+        column_names = many.column_names
+
+        def __len__(self):
+            return len(many)
+
+        def head(self, count):
+            converted.append(count)
+            return many.head(count)
+
+    assert "2000 rows, the first 20 shown" in table_text(Watched())
+    assert "2000 rows, the first 50 shown" in table_html(Watched())
+    assert converted == [20, 50]
 
 
 def test_pyarrow_polars_and_pandas_take_a_table(rows):

@@ -259,9 +259,11 @@ impl Batch {
         self.slots.len()
     }
 
-    /// The last episode of a slot that ended, judged; `None` before one has, and where none is judged.
-    pub fn judged(&self, slot: usize) -> Option<&JudgedRun> {
-        self.slots.get(slot)?.judged.as_ref()
+    /// The last episode of a slot that ended, judged, and the scene that it was of; `None` before one has, and where none is
+    /// judged.
+    pub fn judged(&self, slot: usize) -> Option<(&Scene, &JudgedRun)> {
+        let (scene, run) = self.slots.get(slot)?.judged.as_ref()?;
+        Some((self.scenes.get(*scene)?, run))
     }
 
     /// A slot's picture from above as it is now, written row by row: see [`Raster`].

@@ -128,9 +128,13 @@ impl Memory {
         let wanted_m = (scene.scenario.draft().ego.target_speed_mps * STEP_S).max(0.1);
         let deceleration_mps2 = (self.speed_mps.abs() - speed_mps.abs()) / STEP_S;
         let passed = |at_m: f64| self.route_s_m < at_m && at_m <= observation.route_s_m;
-        let reds = observation.lines.iter().filter(|line| {
-            passed(line.at_m) && observation.signals.get(line.control).copied().flatten() == Some(Aspect::Red)
-        });
+        // What was shown when the step began: who has passed just before red has not run it.
+        let (control, before_s) =
+            (&scene.scenario.draft().control, f64::from(observation.step.saturating_sub(1)) / 10.0);
+        let reds = observation
+            .lines
+            .iter()
+            .filter(|line| passed(line.at_m) && control[line.control].device.aspect(before_s) == Some(Aspect::Red));
         let mut terms = [0.0; TERMS.len()];
         terms[0] = (come_m / wanted_m).clamp(-1.0, 1.0);
         terms[2] = reds.count() as f64;

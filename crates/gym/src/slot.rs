@@ -31,7 +31,8 @@ pub(crate) struct Slot {
     total: f64,
     begun: bool,
     pub(crate) ended: bool,
-    pub(crate) judged: Option<JudgedRun>,
+    /// The last episode that ended, where episodes are judged, and the scene that it was of.
+    pub(crate) judged: Option<(usize, JudgedRun)>,
 }
 
 impl Slot {
@@ -127,7 +128,7 @@ impl Slot {
             recorder.step(self.run.observe().states);
             recorder.end(termination);
             let scenario = &shared.scenes[self.scene].scenario;
-            self.judged = recorder.finish().map(|rollout| judge(scenario, rollout, profile, None));
+            self.judged = recorder.finish().map(|rollout| (self.scene, judge(scenario, rollout, profile, None)));
         }
         if shared.settings.autoreset == Autoreset::SameStep {
             self.show(shared, row.final_numbers, row.final_bytes);

@@ -174,7 +174,7 @@ class Errand:
     def __init__(self, scene):
         self.scene, self.stops = scene, scene["stops"]
         self.stops_done = self.stood = self.stood_at_sign = 0
-        self.signs_done = set()
+        self.free_to = -math.inf
 
     @staticmethod
     def aspect(device, time):
@@ -193,7 +193,7 @@ class Errand:
     def nearest(self, time, path_s, speed):
         """The distance to the nearest place where it must stand now."""
         distances, stands, at_sign = [], speed < Law.standing_mps, False
-        for number, (at, control) in enumerate(self.scene["lines"][:16]):
+        for at, control in self.scene["lines"]:
             device, distance = self.scene["control"][control], at - path_s
             shown = self.aspect(device, time)
             if distance < -Law.passed_line_m or "yield_sign" in device or shown in ("green", "dark"):
@@ -205,12 +205,12 @@ class Errand:
                 if distance < -Law.halt_short_m:
                     continue
             else:
-                if number in self.signs_done:
+                if at <= self.free_to:
                     continue
                 if stands and distance < 1.0:
-                    at_sign, self.stood_at_sign = True, self.stood_at_sign + 1
+                    at_sign, self.stood_at_sign = True, self.stood_at_sign + (not at_sign)
                     if self.stood_at_sign >= Law.sign_steps:
-                        self.signs_done.add(number)
+                        self.free_to = at
                         continue
             distances.append(distance)
         if not at_sign:
@@ -224,13 +224,15 @@ class Errand:
         stop = self.stops[self.stops_done]
         distance = stop["s_m"] - path_s
         if distance < -5.0:
-            self.stops_done += 1
+            self.stops_done, self.stood = self.stops_done + 1, 0
             return []
         if stands and distance < 1.0:
             self.stood += 1
             if stop.get("for_s") is not None and 0.1 * self.stood >= stop["for_s"]:
                 self.stops_done, self.stood = self.stops_done + 1, 0
                 return []
+        else:
+            self.stood = 0
         return [distance]
 
     def stays(self):

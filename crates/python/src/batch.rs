@@ -197,10 +197,8 @@ impl Batch {
 
     /// The last episode of a slot that ended; `None` before one has, and where none is judged.
     fn judged(&self, slot: usize) -> Option<Run> {
-        let run = self.batch.judged(slot)?.clone();
-        let id = run.scenario_id.clone();
-        let scene = self.batch.scenes().iter().find(|scene| scene.scenario().draft().id == id);
-        Some(Run::of(run, scene.map(|scene| Arc::new(scene.scenario().clone()))))
+        let (scene, run) = self.batch.judged(slot)?;
+        Some(Run::of(run.clone(), Some(Arc::new(scene.scenario().clone()))))
     }
 
     /// Numbers of the observations, (slots, fields).

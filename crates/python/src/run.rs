@@ -77,10 +77,10 @@ impl Run {
         to_python(py, &self.run.findings)
     }
 
-    /// Kinds of findings, each once, failures first.
+    /// Kinds of findings, each once, failures first: the words of `findings`, such as `near_miss`.
     #[getter]
-    fn finding_kinds(&self) -> Vec<&'static str> {
-        self.run.finding_kinds().into_iter().map(recrash_model::metrics::FindingKind::label).collect()
+    fn finding_kinds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.run.finding_kinds())
     }
 
     /// Change of the ego's velocity in its first contact; `None` without one. [m/s]

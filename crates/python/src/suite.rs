@@ -110,12 +110,16 @@ fn watched<T: Send>(
     std::thread::scope(|scope| {
         let worker = scope.spawn(|| catch_unwind(AssertUnwindSafe(work)));
         let mut interrupted = None;
-        while !worker.is_finished() {
+        loop {
+            // Asked first: what was said before the work was done is still heard.
+            let done = worker.is_finished();
             let heard = &mut *receiver;
-            let said = py.detach(move || heard.recv_timeout(LOOK_UP));
+            let said = py.detach(move || heard.recv_timeout(if done { Duration::ZERO } else { LOOK_UP }));
             let told = match (said, progress) {
+                (Ok(_), _) if interrupted.is_some() => Ok(()),
                 (Ok((stage, units, begins)), Some(progress)) => progress.call1((stage, units, begins)).map(drop),
                 (Err(RecvTimeoutError::Disconnected), _) => break,
+                (Err(RecvTimeoutError::Timeout), _) if done => break,
                 _ => Ok(()),
             };
             if let Err(error) = told.and_then(|()| py.check_signals()) {

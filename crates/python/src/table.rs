@@ -64,6 +64,17 @@ impl Table {
         (self.__len__(), self.schema.fields().len())
     }
 
+    /// Its first rows, without a copy.
+    fn head(&self, rows: usize) -> Self {
+        let mut left = rows;
+        let batches = self.batches.iter().map_while(|batch| {
+            let taken = left.min(batch.num_rows());
+            left -= taken;
+            (taken > 0 || rows == 0).then(|| batch.slice(0, taken))
+        });
+        Self { schema: Arc::clone(&self.schema), batches: batches.collect() }
+    }
+
     /// Its rows as dicts.
     fn to_dicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let names = self.column_names();

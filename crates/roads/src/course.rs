@@ -18,7 +18,7 @@ pub struct Course {
     pub legs: Vec<CourseLeg>,
     /// From the rear axle, which is on the line, forward to the centre of the box. [m]
     pub arm_m: f64,
-    /// Stop lines on it.
+    /// Stop lines on it; a yield sign has none.
     pub lines: Vec<StopLine>,
 }
 

@@ -69,6 +69,8 @@ pub struct ActorPlacement {
 pub struct ControlPlacement {
     /// Lanes it is for, each with the place of its stop line along it. [m]
     pub lines: Vec<(LaneId, f64)>,
+    /// Whether it may ask for a stop: all but a yield sign, at which only the rules of giving way hold.
+    pub stops: bool,
 }
 
 /// A static obstacle in the world, and the lane it lies in (the nearest, where it lies beside all).

@@ -5,7 +5,8 @@
 //! same rules in the plane, plus heave, pitch and roll at small angles, follow the original to centimetres.
 //! Equations, symbols and the comparison: `docs/models/vehicle.md`.
 //!
-//! What this does **not** do: collisions push nothing (a contact is an event), and nobody drives backwards.
+//! What this does **not** do: nobody drives backwards, and who collides leaves its wheels for its momentum (`impact.rs`,
+//! `contacts.rs`) where a plan or time after the contact asks for it; else a contact pushes nothing.
 
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;

@@ -20,7 +20,7 @@ pub(crate) fn nearest(setting: &Setting, state: &mut State, s_m: f64, speed_mps:
     let stands = speed_mps < STANDING_MPS;
     let errand = &mut state.errand;
     let mut at_sign = false;
-    for (number, line) in setting.ego_lines.iter().enumerate().take(16) {
+    for line in &setting.ego_lines {
         let distance_m = line.at_m - s_m;
         if distance_m < -PASSED_LINE_M {
             continue;
@@ -43,14 +43,14 @@ pub(crate) fn nearest(setting: &Setting, state: &mut State, s_m: f64, speed_mps:
             (_, Some(Aspect::FlashingRed) | None) => true,
         };
         if must_stand_first {
-            if errand.signs_done >> number & 1 == 1 {
+            if errand.free_to_m.is_some_and(|free_m| line.at_m <= free_m) {
                 continue;
             }
             if stands && distance_m < 1.0 {
+                errand.stood_at_sign += u32::from(!at_sign);
                 at_sign = true;
-                errand.stood_at_sign += 1;
                 if errand.stood_at_sign >= SIGN_STEPS {
-                    errand.signs_done |= 1 << number;
+                    errand.free_to_m = Some(line.at_m);
                     continue;
                 }
             }
@@ -71,16 +71,17 @@ fn next_stop(setting: &Setting, errand: &mut Errand, s_m: f64, stands: bool) -> 
     let stop = setting.stops.get(usize::from(errand.stops_done))?;
     let distance_m = stop.s_m - s_m;
     if distance_m < -5.0 {
-        errand.stops_done += 1;
+        (errand.stops_done, errand.stood_steps) = (errand.stops_done + 1, 0);
         return None;
     }
     if stands && distance_m < 1.0 {
         errand.stood_steps += 1;
         if stop.for_s.is_some_and(|for_s| f64::from(errand.stood_steps) * 0.1 >= for_s) {
-            errand.stops_done += 1;
-            errand.stood_steps = 0;
+            (errand.stops_done, errand.stood_steps) = (errand.stops_done + 1, 0);
             return None;
         }
+    } else {
+        errand.stood_steps = 0;
     }
     Some(distance_m)
 }
@@ -102,11 +103,18 @@ pub(crate) fn pull_over_m(setting: &Setting, errand: &Errand, s_m: f64) -> f64 {
     if next.abs() >= leaving.abs() { next } else { leaving }
 }
 
-/// Controls that also lead to a stand at a place this far ahead. [m]
-pub(crate) fn before(controls: Controls, distance_m: f64, speed_mps: f64, spec: &VehicleSpec) -> Controls {
+/// Controls that also lead to a stand at a place this far ahead [m], braking by no more than the driver does anywhere.
+pub(crate) fn before(
+    controls: Controls,
+    distance_m: f64,
+    speed_mps: f64,
+    spec: &VehicleSpec,
+    hardest_mps2: f64,
+) -> Controls {
     let left_m = distance_m - HALT_SHORT_M;
+    let hardest = -hardest_mps2 / spec.brake_demand_mps2;
     if left_m <= 0.0 || (speed_mps < STANDING_MPS && left_m < 0.5) {
-        return Controls { throttle: controls.throttle.min(hold_still(speed_mps)), ..controls };
+        return Controls { throttle: controls.throttle.min(hold_still(speed_mps).max(hardest)), ..controls };
     }
     let needed = math::sq(speed_mps) / (2.0 * left_m);
     // It never comes to the place faster than a comfortable stop allows.
@@ -114,5 +122,6 @@ pub(crate) fn before(controls: Controls, distance_m: f64, speed_mps: f64, spec: 
     if needed < 0.9 * HALT_MPS2 && speed_mps < 0.95 * allowed_mps {
         return controls;
     }
-    Controls { throttle: controls.throttle.min(-needed / spec.brake_demand_mps2), ..controls }.clipped()
+    let braking = (-needed / spec.brake_demand_mps2).max(hardest);
+    Controls { throttle: controls.throttle.min(braking), ..controls }.clipped()
 }

@@ -111,6 +111,11 @@ impl Idm {
         }
     }
 
+    /// The hardest that it brakes on this surface. [m/s^2]
+    pub(crate) fn hardest_mps2(&self) -> f64 {
+        self.parameters.hardest_deceleration_mps2
+    }
+
     pub(crate) fn decide(&mut self, scene: &Scene<'_>, me: usize, crossings: &[Crossing]) -> Controls {
         let seen = &scene.actors[me];
         let steer = self.keeper.steer(scene.lanes.lane(scene.path_lane(me)), seen.pose, scene.ego_beside_m, 0.0);

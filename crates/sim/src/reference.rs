@@ -178,6 +178,11 @@ impl Reference {
         }
     }
 
+    /// The hardest that it brakes on this surface. [m/s^2]
+    pub(crate) fn hardest_mps2(&self) -> f64 {
+        self.response.deceleration_mps2
+    }
+
     pub(crate) fn decide(
         &mut self,
         scene: &Scene<'_>,
@@ -195,7 +200,8 @@ impl Reference {
         self.give_way.count_standing(scene, me);
 
         let own_t = lane.local(seen.pose.position).1;
-        let alone = self.parameters.acceleration(seen.speed, None).min(curve_limit(&self.parameters, scene, me));
+        let free = self.parameters.acceleration(seen.speed, None).max(-self.comfortable_mps2);
+        let alone = free.min(curve_limit(&self.parameters, scene, me));
         let mut acceleration = alone;
         for obstacle in scene.obstacles {
             let outline = &obstacle.outline;
@@ -217,6 +223,7 @@ impl Reference {
         if acceleration == alone && attention.iter().any(|mind| mind.hurry) {
             acceleration = alone.max(HURRY_MPS2);
         }
+        acceleration = acceleration.max(-self.hardest_mps2());
         let full = if acceleration >= 0.0 { self.full_throttle_mps2 } else { self.full_brake_mps2 };
         let (line, drift) = self.swerve.line(seen.speed);
         Controls {

@@ -181,6 +181,10 @@ impl Run {
     /// Freezes the world for the next decision.
     fn sense(&mut self) {
         let (setting, state) = (&*self.setting, &mut self.state);
+        let time_s = f64::from(state.step) / STEPS_PER_S;
+        for (shown, device) in state.signals.iter_mut().zip(&setting.control) {
+            *shown = device.aspect(time_s);
+        }
         for (actor, ((seen, body), member)) in state.seen.iter_mut().zip(&state.bodies).zip(&setting.cast).enumerate() {
             if !body.is_finite() {
                 state.diverged = true;
@@ -247,7 +251,13 @@ impl Run {
         }
         if let (Some((Some(distance_m), _)), false) = (halt_m, matches!(drivers[0], Driver::Outside)) {
             let spec = VehicleSpec::of(setting.cast[0].kind);
-            chosen[0] = halts::before(chosen[0], distance_m, scene.actors[0].speed, &spec);
+            let hardest_mps2 = match &drivers[0] {
+                Driver::Idm(driver) => driver.hardest_mps2(),
+                Driver::Reference(driver) => driver.hardest_mps2(),
+                // MetaDrive's brakes as hard as its vehicle does.
+                _ => f64::INFINITY,
+            };
+            chosen[0] = halts::before(chosen[0], distance_m, scene.actors[0].speed, &spec, hardest_mps2);
         }
         if state.movers[0] == Mover::Wheels
             && let Some(controls) = ego
@@ -266,9 +276,6 @@ impl Run {
     fn decide_plans(&mut self) {
         let (setting, state) = (&*self.setting, &mut self.state);
         let time_s = f64::from(state.step) / STEPS_PER_S;
-        for (shown, device) in state.signals.iter_mut().zip(&setting.control) {
-            *shown = device.aspect(time_s);
-        }
         if setting.programmes.is_empty() {
             return;
         }

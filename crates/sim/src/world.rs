@@ -106,8 +106,8 @@ pub(crate) struct Errand {
     /// Stops that are over.
     pub(crate) stops_done: u16,
     pub(crate) stood_steps: u32,
-    /// Stop lines of signs that it may pass.
-    pub(crate) signs_done: u16,
+    /// It has stood at every sign up to here, and may pass it. [m]
+    pub(crate) free_to_m: Option<f64>,
     pub(crate) stood_at_sign: u32,
 }
 

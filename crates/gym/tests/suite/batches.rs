@@ -4,6 +4,7 @@ use crate::common::{Memory, batch, gallery, scenario, settings};
 use recrash_gym::{Actions, Autoreset, BatchError, Handles, Reward, Scene, Settings, TERMS};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::TerminationKind;
+use recrash_model::scenario::{Aspect, Device, Phase};
 use recrash_sim::{Controls, Ego, EgoDriver, Observation, RolloutRecorder, Run, Runner, Seat, simulate};
 
 /// Answers from a list.
@@ -62,13 +63,66 @@ fn an_episode_is_the_run_that_the_simulator_gives_on_the_whole_gallery() {
             batch.step(Actions::Numbers(&longest[before + step]), memory.lend()).unwrap();
             step += 1;
         }
-        let judged = batch.judged(0).unwrap();
+        let (_, judged) = batch.judged(0).unwrap();
         assert_eq!(judged.state_hash, expected.state_hash, "{}", expected.scenario_id);
         assert_eq!(judged.rollout, expected);
         assert_eq!(memory.episode_steps[0] as usize, step);
         assert_eq!(memory.truncated[0], expected.termination.kind == TerminationKind::Timeout);
         assert_eq!(memory.terminated[0], !memory.truncated[0]);
         assert_eq!(usize::from(memory.endings[0]), 1 + expected.termination.kind as usize);
+    }
+}
+
+#[test]
+fn who_passes_in_the_step_before_red_has_not_run_it() {
+    // The steps in which a line was passed at red, where green lasts so many steps.
+    let reds = |green: usize| {
+        let mut draft = scenario("control/01-green").draft().clone();
+        draft.ego.handover_s = Some(0.0);
+        let phase = |show: Aspect, for_s: f64| Phase { show, for_s };
+        let program = vec![phase(Aspect::Green, green as f64 / 10.0), phase(Aspect::Red, 60.0)];
+        draft.control[0].device = Device::Signal { program, offset_s: 0.0 };
+        let mut batch = batch(&[recrash_roads::check(draft).unwrap().value], 1, settings(Autoreset::Disabled));
+        let mut memory = Memory::of(&batch);
+        batch.reset(Some(1), None, None, memory.lend()).unwrap();
+        let mut found = Vec::new();
+        for step in 1.. {
+            batch.step(Actions::Numbers(&[0.0, 0.0]), memory.lend()).unwrap();
+            found.extend((memory.terms[2] > 0.0).then_some(step));
+            if memory.endings[0] != 0 {
+                break;
+            }
+        }
+        found
+    };
+    let passed = reds(1)[0];
+    assert!(passed > 5);
+    assert_eq!((reds(passed - 1), reds(passed)), (vec![passed], Vec::new()));
+}
+
+#[test]
+fn a_judged_run_is_of_its_own_scene_where_several_have_one_name() {
+    let scenarios = [6.0, 4.0, 5.0].map(|duration_s| {
+        let mut draft = scenario("roads/24-block-straight").draft().clone();
+        draft.duration_s = duration_s;
+        recrash_roads::check(draft).unwrap().value
+    });
+    let mut batch = batch(&scenarios, 3, judging());
+    let mut memory = Memory::of(&batch);
+    batch.reset(Some(1), None, Some(&[2, 0, 1]), memory.lend()).unwrap();
+    let mut left = 3;
+    while left > 0 {
+        batch.step(Actions::Numbers(&[0.0, -1.0, 0.0, -1.0, 0.0, -1.0]), memory.lend()).unwrap();
+        for slot in (0..3).filter(|slot| memory.endings[*slot] != 0) {
+            let (scene, run) = batch.judged(slot).unwrap();
+            assert_eq!(scene.scenario().draft().duration_s, [5.0, 6.0, 4.0][slot]);
+            assert_eq!(run.rollout.termination.time_s, [5.0, 6.0, 4.0][slot]);
+            left -= 1;
+        }
+        if (0..3).any(|slot| memory.endings[slot] != 0) {
+            let mask: Vec<bool> = memory.endings.iter().map(|ending| *ending != 0).collect();
+            batch.reset(None, Some(&mask), None, memory.lend()).unwrap();
+        }
     }
 }
 
@@ -236,7 +290,7 @@ fn terms_say_what_happened_and_weights_make_the_reward_of_them() {
         sums.iter_mut().zip(&memory.terms).for_each(|(sum, term)| *sum += f64::from(*term));
         total += memory.rewards[0];
     }
-    let (_, _, ego, other) = batch.judged(0).unwrap().rollout.first_ego_contact().unwrap();
+    let (_, _, ego, other) = batch.judged(0).unwrap().1.rollout.first_ego_contact().unwrap();
     let closing = (ego.velocity() - other.velocity()).length();
     assert_eq!(sums[4], 1.0);
     assert!((sums[5] - closing).abs() < 1e-6 && closing > 1.0, "{closing}");

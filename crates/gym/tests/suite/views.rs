@@ -57,6 +57,24 @@ fn the_nearest_come_first_in_the_frame_of_the_ego() {
 }
 
 #[test]
+fn the_first_observation_has_the_signal_and_no_sign() {
+    // Red for 6 s, of which the recorded driver sees nothing: it drives for none.
+    let mut draft = scenario("control/04-red-then-green").draft().clone();
+    draft.ego.handover_s = Some(0.0);
+    let scenario = recrash_roads::check(draft).unwrap().value;
+    let view = View::Kinematic { neighbours: 1 };
+    let mut batch = batch(&[scenario], 1, Settings { view, ..settings(Autoreset::NextStep) });
+    let mut memory = Memory::of(&batch);
+    batch.reset(Some(1), None, None, memory.lend()).unwrap();
+    let seen = |memory: &Memory| ["line_sign", "line_red", "line_green"].map(|name| always(memory, name));
+    assert_eq!(seen(&memory), [0.0, 1.0, 0.0]);
+    for step in 1..=60 {
+        batch.step(Actions::Numbers(&[-6.0, 0.0]), memory.lend()).unwrap();
+        assert_eq!(seen(&memory), if step < 60 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] }, "{step}");
+    }
+}
+
+#[test]
 fn more_neighbours_change_nothing_of_the_first() {
     for scenario in gallery() {
         let numbers = |neighbours: usize| {

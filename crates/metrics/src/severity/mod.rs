@@ -10,6 +10,7 @@ use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout};
+pub use recrash_model::severity::Impact;
 use recrash_model::severity::{Severity, Suffered};
 
 /// One of the two at the time of contact.
@@ -32,22 +33,6 @@ impl Party {
     }
 }
 
-/// What the collision does at the place where the two touch.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Impact {
-    /// Speed apart over speed together, across the plane of contact: 0 for none that is given back, 1 for all.
-    pub restitution: f64,
-    /// Greatest impulse along the plane of contact over that across it: 0 for smooth sides.
-    pub friction: f64,
-}
-
-impl Default for Impact {
-    /// No restitution, as in the reconstructions that the curves for occupants are fitted to (niehoff2006); friction assumed.
-    fn default() -> Self {
-        Self { restitution: 0.0, friction: 0.5 }
-    }
-}
-
 /// Severity of the ego's first contact with a road user; `None` where there is none.
 pub fn severity_of(rollout: &Rollout) -> Option<Severity> {
     let (actor, _, ego, other) = rollout.first_ego_contact()?;
@@ -58,7 +43,7 @@ pub fn severity_of(rollout: &Rollout) -> Option<Severity> {
 /// Severity of a contact.
 pub fn severity(first: &Party, second: &Party, impact: Impact) -> Severity {
     let relative = first.velocity - second.velocity;
-    let normal = contact_normal(&first.outline, &second.outline, relative);
+    let normal = first.outline.contact_normal(&second.outline, relative);
     let geometry = contact_geometry(&first.outline, first.velocity, &second.outline, second.velocity);
     let impulse = impulse(first, second, normal, geometry.point, impact);
     let pair = injury::Pair {
@@ -96,31 +81,9 @@ fn clock(outline: &OrientedBox, direction: Vec2) -> u8 {
     if hours < 0.5 { 12 } else { hours as u8 }
 }
 
-/// Normal of the plane in which two boxes touch, from the first to the second: of the four sides' directions, the one on which
-/// their shadows came to overlap last. Boxes that do not come nearer on any touch where they overlap least.
-fn contact_normal(first: &OrientedBox, second: &OrientedBox, relative: Vec2) -> Vec2 {
-    let apart = second.centre - first.centre;
-    let directions = [first.axis, first.axis.left(), second.axis, second.axis.left()]
-        .map(|direction| if apart.dot(direction) < 0.0 { -direction } else { direction });
-    let depth = |direction: Vec2| reach(first, direction) + reach(second, direction) - apart.dot(direction);
-    let least = |measure: &dyn Fn(Vec2) -> f64, among: &dyn Fn(Vec2) -> bool| {
-        let candidates = directions.into_iter().filter(|&direction| among(direction));
-        candidates.min_by(|&a, &b| measure(a).total_cmp(&measure(b)))
-    };
-    let since = |direction: Vec2| depth(direction) / relative.dot(direction);
-    let came_last = least(&since, &|direction| relative.dot(direction) > 1e-6);
-    came_last.or_else(|| least(&depth, &|_| true)).unwrap_or(first.axis)
-}
-
-/// Half of a box's shadow in a direction. [m]
-fn reach(outline: &OrientedBox, direction: Vec2) -> f64 {
-    outline.half_length * outline.axis.dot(direction).abs()
-        + outline.half_width * outline.axis.left().dot(direction).abs()
-}
-
 /// Share of the narrower shadow in a direction that both cover.
 fn overlap(first: &OrientedBox, second: &OrientedBox, direction: Vec2) -> f64 {
-    let (own, others) = (reach(first, direction), reach(second, direction));
+    let (own, others) = (first.reach(direction), second.reach(direction));
     let shared = own + others - (second.centre - first.centre).dot(direction).abs();
     (shared / (2.0 * own.min(others))).clamp(0.0, 1.0)
 }

@@ -516,7 +516,7 @@ fn tight_bends(course: &Course, kind: PartnerKind, path: &str, remarks: &mut Rem
 
 fn stop_lines(course: &Course, control: &[ControlPlacement], half_length_m: f64) -> Vec<crate::course::StopLine> {
     let mut lines = Vec::new();
-    for (number, placed) in control.iter().enumerate() {
+    for (number, placed) in control.iter().enumerate().filter(|(_, placed)| placed.stops) {
         for &(lane, line_m) in &placed.lines {
             for piece in course.pieces.iter().filter(|piece| piece.lane == Some(lane)) {
                 let line = network_point(piece, line_m);

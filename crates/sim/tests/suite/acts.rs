@@ -187,6 +187,26 @@ fn cone_in_the_way(mass_kg: Option<f64>) -> Rollout {
 }
 
 #[test]
+fn a_blow_from_behind_passes_on_the_same_wherever_the_physics_step_catches_it() {
+    // 25 cm of overlap at 15 m/s: in one physics step the car goes 30 cm farther in.
+    let after = |x: f64| {
+        let mut draft = scene();
+        draft.after_contact_s = 1.0;
+        draft.ego.recorded = Some(ActorPlan::standing(Place::at(60.0, 0.0, 0.0)));
+        draft.actors.push(actor("cp", x, 1.852 - 0.25, 15.0, vec![straight_on(250.0, 1.852 - 0.25)], Vec::new()));
+        let rollout = recorded(draft);
+        let step = (rollout.first_ego_contact().expect("they touch").1 * 10.0).ceil() as usize;
+        (rollout.actors[0].states[step].speed(), rollout.actors[1].states[step].speed())
+    };
+    let (ego, cp) = after(8.0);
+    assert!(ego > 4.0 && cp < 10.0, "{ego} {cp}");
+    for number in 1..7 {
+        let (other_ego, other_cp) = after(8.0 + 0.05 * f64::from(number));
+        assert!((other_ego - ego).abs() < 0.5 && (other_cp - cp).abs() < 0.5, "{number}: {other_ego} {other_cp}");
+    }
+}
+
+#[test]
 fn a_cone_is_pushed_aside_and_the_car_goes_on() {
     let rollout = cone_in_the_way(Some(4.5));
     let (car, cone) = (track(&rollout, "car"), track(&rollout, "cone"));
@@ -384,7 +404,7 @@ fn the_handover_is_continuous() {
     }
 }
 
-fn signal(program: &[(Aspect, f64)]) -> Control {
+pub(crate) fn signal(program: &[(Aspect, f64)]) -> Control {
     let program = program.iter().map(|&(show, for_s)| Phase { show, for_s }).collect();
     Control {
         at: "ego+".to_owned(),

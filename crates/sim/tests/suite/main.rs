@@ -3,6 +3,7 @@
 mod acts;
 mod behaviour;
 mod common;
+mod control;
 mod demand;
 mod driven;
 mod gallery;
