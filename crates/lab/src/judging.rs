@@ -52,7 +52,8 @@ pub fn judge(
 /// The same, with a verdict from elsewhere.
 pub fn judge_by(scenario: &Scenario, rollout: Rollout, profile: &SystemProfile, verdict: Verdict) -> JudgedRun {
     let metrics = measure(scenario, &rollout, &profile.failure);
-    let found = findings(scenario, &rollout, &metrics, &profile.failure);
+    let handover_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
+    let found = findings(&rollout, handover_s, &metrics, &profile.failure);
     let severity = severity_of(&rollout);
     let cause = cause(scenario.network(), &rollout, &metrics, &found);
     let mut run = JudgedRun::new(rollout, metrics, found, severity, verdict);
@@ -65,25 +66,18 @@ const MET_GAP_M: f64 = 3.0;
 /// So it is with less time than this to a collision. [s]
 const MET_TTC_S: f64 = 4.0;
 
-/// Whether the system under test came into the situation of its record: after the handover at `from_s`, it came so near to what
-/// the recorded driver crashed with, or had so little time to a collision with it, that it had to deal with it.
-pub fn situation(run: &JudgedRun, recorded: &JudgedRun, from_s: f64) -> Check {
-    let partner = recorded.metrics.contact.as_ref().map(|contact| contact.actor);
-    let after = |timed: &Timed| timed.time_s >= from_s;
-    let met = match partner {
-        Some(actor) => {
-            let touched = run.metrics.contact.as_ref().is_some_and(|contact| contact.actor == actor);
-            let of = run.metrics.partners.iter().find(|partner| partner.actor == actor);
-            let near = of.is_some_and(|of| of.min_gap.value <= MET_GAP_M && after(&of.min_gap));
-            let soon = of.and_then(|of| of.min_ttc).is_some_and(|ttc| ttc.value <= MET_TTC_S && after(&ttc));
-            touched || near || soon
+/// Whether the system under test came into the situation of its record: after the handover, before which nothing is measured, it
+/// came so near to what the recorded driver crashed with, or had so little time to a collision with it, that it had to deal
+/// with it.
+pub fn situation(run: &JudgedRun, recorded: &JudgedRun) -> Check {
+    let (gap, soon) = match &recorded.metrics.contact {
+        Some(contact) => {
+            let of = run.metrics.partners.iter().find(|partner| partner.actor == contact.actor);
+            (of.map(|of| of.min_gap), of.and_then(|of| of.min_ttc).is_some_and(|ttc| ttc.value <= MET_TTC_S))
         }
-        None => run.metrics.obstacle_gaps.iter().any(|gap| gap.value <= MET_GAP_M),
+        None => (least_obstacle_gap(run, &recorded.metrics.obstacles_hit), false),
     };
-    let gap = match partner {
-        Some(actor) => run.metrics.partners.iter().find(|of| of.actor == actor).map(|of| of.min_gap),
-        None => run.metrics.obstacle_gaps.iter().min_by(|a, b| a.value.total_cmp(&b.value)).copied(),
-    };
+    let met = soon || gap.is_some_and(|gap| gap.value <= MET_GAP_M);
     let observed = gap.map_or("never near".to_owned(), |gap| format!("{:.1} m apart at the nearest", gap.value));
     Check {
         kind: CheckKind::Situation,
@@ -91,4 +85,11 @@ pub fn situation(run: &JudgedRun, recorded: &JudgedRun, from_s: f64) -> Check {
         observed,
         result: if met { CheckResult::Shown } else { CheckResult::NotShown },
     }
+}
+
+/// The least gap to the obstacles that were hit; to any, where none was.
+fn least_obstacle_gap(run: &JudgedRun, hit: &[usize]) -> Option<Timed> {
+    let gaps = run.metrics.obstacle_gaps.iter().enumerate();
+    let of = gaps.filter(|(obstacle, _)| hit.is_empty() || hit.contains(obstacle)).map(|(_, gap)| *gap);
+    of.min_by(|a, b| a.value.total_cmp(&b.value))
 }

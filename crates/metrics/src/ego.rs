@@ -9,8 +9,8 @@ use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::metrics::{EgoMetrics, Timed};
 use recrash_model::profile::FailureCriteria;
-use recrash_model::scenario::MapSpec;
-use recrash_roads::RoadPart;
+use recrash_model::scenario::{Aspect, Device, MapSpec};
+use recrash_roads::{RoadId, RoadPart};
 
 /// Weaker braking is no braking: engine drag alone gives 0.36 m/s^2. [m/s^2] (assumed)
 const LEAST_BRAKING_MPS2: f64 = 0.5;
@@ -47,17 +47,31 @@ const RELEASE_S: f64 = 0.5;
 /// 0.2 g)
 const COMFORT_LATERAL_MPS2: f64 = 2.0;
 
+/// A comfortable stop: for a line or a stop of its task the ego may begin to brake so far away that it takes no more. [m/s^2]
+/// (the drivers' own, `docs/models/control.md`)
+const COMFORT_STOP_MPS2: f64 = 2.0;
+
+/// A stop farther behind than this is done. [m] (as for the drivers)
+const PASSED_STOP_M: f64 = 5.0;
+
+/// A stop line farther behind than this is passed. [m] (as for the drivers)
+const PASSED_LINE_M: f64 = 1.5;
+
+/// Where a stop of its task lies beside the lane, it pulls over and out again within this of it. [m] (as the drivers do)
+const PULL_OVER_M: f64 = 34.0;
+
+/// Who heads within this of a lane drives along it. [rad]
+const ALONG_RAD: f64 = 45.0 * math::PI / 180.0;
+
 /// A lane change that takes longer than this is a departure. [s] (twice a slow lane change)
 const LANE_CHANGE_S: f64 = 4.0;
 
 /// Measures of the ego alone over the scene.
 pub fn measure_ego(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], criteria: &FailureCriteria) -> EgoMetrics {
     let (max_reversals, max_reversals_time_s) = most_reversals(scene, criteria.oscillation_window_s);
-    let distance_m = scene
-        .outlines
-        .first()
-        .map_or(0.0, |outlines| outlines.windows(2).map(|pair| pair[0].centre.distance(pair[1].centre)).sum::<f64>());
-    let driven_s = time_of(scene.steps().saturating_sub(1));
+    let ego = || scene.ego().map(|(_, outline)| outline.centre);
+    let distance_m = ego().zip(ego().skip(1)).map(|(from, to)| from.distance(to)).sum::<f64>();
+    let driven_s = time_of(scene.counted().len().saturating_sub(1));
     EgoMetrics {
         max_deceleration: hardest_braking(scene),
         phantom_braking: hardest_phantom_braking(scene, way, along),
@@ -93,7 +107,7 @@ impl Brake {
 fn hardest_braking(scene: &Scene<'_>) -> Timed {
     let brake = Brake::of(scene);
     let mut hardest = Timed { value: 0.0, time_s: 0.0 };
-    for step in 0..scene.steps().saturating_sub(1) {
+    for step in scene.first..scene.steps().saturating_sub(1) {
         let deceleration = brake.deceleration(scene, step);
         if deceleration > hardest.value {
             hardest = Timed { value: deceleration, time_s: time_of(step) };
@@ -107,7 +121,7 @@ fn hardest_phantom_braking(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along])
     let brake = Brake::of(scene);
     let mut hardest: Option<Timed> = None;
     // What was there before the first step nobody has recorded: until it would be forgotten, nothing is judged.
-    for step in release_steps..scene.steps().saturating_sub(1) {
+    for step in scene.first.max(release_steps)..scene.steps().saturating_sub(1) {
         let deceleration = brake.deceleration(scene, step);
         if deceleration < LEAST_BRAKING_MPS2 || hardest.is_some_and(|hardest| deceleration <= hardest.value) {
             continue;
@@ -121,7 +135,7 @@ fn hardest_phantom_braking(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along])
 }
 
 /// Whether anything asks the ego to brake: a road user or obstacle in its corridor, one about to cross it, a curve, its
-/// own target speed, or the end of its way.
+/// own target speed, a signal or sign, a stop of its task, or the end of its way.
 fn reason_to_brake(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], step: usize) -> bool {
     let (ego, ego_along) = (&scene.outlines[0][step], &along[step]);
     let speed = scene.speed(0, step);
@@ -129,6 +143,7 @@ fn reason_to_brake(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], step: u
     if speed > way.target_speed_mps + 0.1
         || way.path.length_m - ego_along.s < look_ahead_m
         || curve_asks(way, ego_along.s, look_ahead_m, speed)
+        || stop_asks(way, ego_along.s, look_ahead_m.max(math::sq(speed) / (2.0 * COMFORT_STOP_MPS2)), time_of(step))
     {
         return true;
     }
@@ -173,12 +188,19 @@ fn curve_asks(way: &EgoWay<'_>, s: f64, look_ahead_m: f64, speed: f64) -> bool {
     })
 }
 
+/// Whether a stop line asks the ego to stand or to look, or a stop of its task comes, within a distance. [m, s]
+fn stop_asks(way: &EgoWay<'_>, s: f64, within_m: f64, time_s: f64) -> bool {
+    let asks = |device: &Device| !matches!(device.aspect(time_s), Some(Aspect::Green | Aspect::Dark));
+    way.lines.iter().any(|&(at_m, device)| (-PASSED_LINE_M..within_m).contains(&(at_m - s)) && asks(device))
+        || way.stops.iter().any(|stop| (-PASSED_STOP_M..within_m).contains(&(stop.s_m - s)))
+}
+
 /// The most changes between braking and accelerating within a window, and when that window ended.
 fn most_reversals(scene: &Scene<'_>, window_s: f64) -> (u32, f64) {
     let mut reversals: Vec<f64> = Vec::new();
     let brake = Brake::of(scene);
     let mut braked: Option<bool> = None;
-    for step in 0..scene.steps().saturating_sub(1) {
+    for step in scene.first..scene.steps().saturating_sub(1) {
         let brakes = brake.deceleration(scene, step) >= LEAST_BRAKING_MPS2;
         let accelerates = scene.acceleration(0, step) >= LEAST_BRAKING_MPS2;
         if !(brakes || accelerates) || scene.speed(0, step).abs() < STANDSTILL_MPS {
@@ -211,31 +233,34 @@ struct InLane {
     over_right_m: f64,
 }
 
+impl InLane {
+    fn is_inside(self) -> bool {
+        self.over_left_m <= 0.0 && self.over_right_m <= 0.0
+    }
+}
+
 /// Farthest a corner went over the edge of its lane, lane changes and unmarked junction areas left out.
 fn farthest_departure(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> Timed {
-    let track: Vec<Option<InLane>> = scene
-        .outlines
-        .first()
-        .map_or(&[][..], Vec::as_slice)
-        .iter()
-        .zip(along)
-        .map(|(outline, along)| in_lane(way, outline, along))
-        .collect();
+    let mut track: Vec<Option<InLane>> = scene.ego().map(|(step, ego)| in_lane(way, ego, &along[step])).collect();
+    // Who is put beside its lane, at the kerb or in a garage, has not left it: it counts from where it has come into it.
+    let entered = track.iter().position(|here| here.is_some_and(|here| here.is_inside())).unwrap_or(track.len());
+    track[..entered].fill(None);
     let around = (LANE_CHANGE_S / time_of(1)).round() as usize;
     let mut farthest = Timed { value: 0.0, time_s: 0.0 };
-    for (step, here) in track.iter().enumerate() {
+    for (at, here) in track.iter().enumerate() {
         let Some(here) = here else { continue };
+        let step = scene.first + at;
         for (over_m, neighbour) in [(here.over_left_m, here.lane - 1), (here.over_right_m, here.lane + 1)] {
             if over_m <= farthest.value {
                 continue;
             }
             // Cut short by a contact while still over that edge: nobody knows what it was to become.
             let unfinished = scene.contact.is_some()
-                && step + around >= track.len()
+                && at + around >= track.len()
                 && track.last().copied().flatten().is_some_and(|last| {
                     if neighbour < here.lane { last.over_left_m > 0.0 } else { last.over_right_m > 0.0 }
                 });
-            let window = step.saturating_sub(around)..=(step + around).min(track.len() - 1);
+            let window = at.saturating_sub(around)..=(at + around).min(track.len() - 1);
             let changes = track[window].iter().flatten().any(|there| there.lane == neighbour);
             let excused = changes || (unfinished && has_lane(way, along[step].segment, neighbour));
             if !excused {
@@ -246,14 +271,18 @@ fn farthest_departure(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along]) -> T
     farthest
 }
 
+/// `None` where there is no lane to keep: in a junction, and where the ego drives along a lane that is not of its way.
 fn in_lane(way: &EgoWay<'_>, outline: &OrientedBox, along: &Along) -> Option<InLane> {
     if is_unmarked(way, along.segment) {
         return None;
     }
     let lane = way.network.lane(way.path.segments[along.segment].lane);
+    let width_m = lane.width_at(lane.local(outline.centre).0);
     let last = way.network.road(lane.road).lanes.len() as i32 - 1;
     let index = i32::from(lane.index);
-    let offset = ((along.t / lane.width_m).round() as i32).clamp(-index, last - index);
+    let told_m = told_beside_m(way, along.s);
+    // Who is told to pull over is where it is told to be, not in the next lane.
+    let offset = if told_m == 0.0 { ((along.t / width_m).round() as i32).clamp(-index, last - index) } else { 0 };
     let (mut over_left_m, mut over_right_m) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     for corner in outline.corners() {
         // From the segment before on: the rear may still be there.
@@ -261,11 +290,32 @@ fn in_lane(way: &EgoWay<'_>, outline: &OrientedBox, along: &Along) -> Option<InL
         if is_unmarked(way, place.segment) {
             continue;
         }
-        let t = place.t - f64::from(offset) * lane.width_m;
-        over_right_m = over_right_m.max(t - 0.5 * lane.width_m);
-        over_left_m = over_left_m.max(-t - 0.5 * lane.width_m);
+        let t = place.t - f64::from(offset) * width_m;
+        over_right_m = over_right_m.max(t - (0.5 * width_m).max(told_m + outline.half_width));
+        over_left_m = over_left_m.max(-t - (0.5 * width_m).max(outline.half_width - told_m));
     }
-    Some(InLane { lane: offset, over_left_m, over_right_m })
+    let beyond = (along.t - f64::from(offset) * width_m).abs() > 0.5 * width_m;
+    (!(beyond && drives_elsewhere(way, outline, lane.road))).then_some(InLane {
+        lane: offset,
+        over_left_m,
+        over_right_m,
+    })
+}
+
+/// How far beside its lane's centre, to the right, a stop of its task nearby tells it to stand; 0 where none does. [m]
+fn told_beside_m(way: &EgoWay<'_>, s: f64) -> f64 {
+    let near = way.stops.iter().filter(|stop| stop.t_m != 0.0 && (stop.s_m - s).abs() <= PULL_OVER_M);
+    near.min_by(|a, b| (a.s_m - s).abs().total_cmp(&(b.s_m - s).abs())).map_or(0.0, |stop| stop.t_m)
+}
+
+/// Whether the ego is on another road's driving lane and goes along with it.
+fn drives_elsewhere(way: &EgoWay<'_>, outline: &OrientedBox, own: RoadId) -> bool {
+    let heading = math::atan2(outline.axis.y, outline.axis.x);
+    way.network.lanes.iter().any(|lane| {
+        let is_driven = !matches!(way.network.road(lane.road).part, RoadPart::Beside(_));
+        let turned = || math::wrap_angle(lane.heading(lane.local(outline.centre).0) - heading).abs();
+        lane.road != own && is_driven && lane.contains(outline.centre) && turned() < ALONG_RAD
+    })
 }
 
 /// Whether a road of the way has a lane this many lanes to the right of the one followed.
@@ -277,7 +327,7 @@ fn has_lane(way: &EgoWay<'_>, segment: usize, to_the_right: i32) -> bool {
 
 /// Whether a segment of the way crosses a junction, where no lanes are marked.
 fn is_unmarked(way: &EgoWay<'_>, segment: usize) -> bool {
-    matches!(way.network.map, MapSpec::X(_) | MapSpec::T(_))
+    matches!(way.network.map, MapSpec::X(_) | MapSpec::T(_) | MapSpec::G(_))
         && way.network.road(way.path.roads[segment]).part == RoadPart::Inner
 }
 

@@ -6,6 +6,7 @@ use crate::polygon::ConvexPolygon;
 use crate::swept::separating_axes;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::metrics::Timed;
+use std::ops::Range;
 
 /// Segments in one block of the coarse search.
 const BLOCK: usize = 8;
@@ -16,9 +17,10 @@ const LONGEST_S: f64 = 10.0;
 /// Post-encroachment time of two tracks sampled every `step_s`: the least time between one box leaving a spot and the
 /// other reaching it, with the time at which the second one came. `None` where no spot is shared within 10 s. [s]
 ///
-/// Between two samples a box moves in a straight line at constant velocity, with the heading of its middle.
-pub fn post_encroachment_time(a: &[OrientedBox], b: &[OrientedBox], step_s: f64) -> Option<Timed> {
-    let (blocks_a, blocks_b) = (blocks(a), blocks(b));
+/// Each track comes with its samples that count: nobody sweeps anything on the way from or to where who is not in the world
+/// is put. Between two samples a box moves in a straight line at constant velocity, with the heading of its middle.
+pub fn post_encroachment_time(a: Track<'_>, b: Track<'_>, step_s: f64) -> Option<Timed> {
+    let (blocks_a, blocks_b) = (blocks(a.0), blocks(b.0));
     let mut best = Best { lag: LONGEST_S / step_s, second: None };
     // Outwards from the diagonal: the least lag a block pair can have grows, and ends the search.
     for apart in 0..blocks_a.len().max(blocks_b.len()) {
@@ -30,13 +32,16 @@ pub fn post_encroachment_time(a: &[OrientedBox], b: &[OrientedBox], step_s: f64)
             let earlier = if apart > 0 { i.checked_sub(apart) } else { None };
             for j in [later, earlier].into_iter().flatten() {
                 if blocks_b.get(j).is_some_and(|block_b| block_a.meets(block_b)) {
-                    search_block(a, b, i * BLOCK, j * BLOCK, &mut best);
+                    search_block(&a, &b, i * BLOCK, j * BLOCK, &mut best);
                 }
             }
         }
     }
     best.second.map(|second| Timed { value: best.lag * step_s, time_s: second * step_s })
 }
+
+/// The boxes of somebody, and the samples among them that count.
+pub type Track<'a> = (&'a [OrientedBox], Range<usize>);
 
 /// Least lag found so far, and when the second of the two came; before any is found, the longest that counts. [steps]
 struct Best {
@@ -79,9 +84,13 @@ fn blocks(track: &[OrientedBox]) -> Vec<Extent> {
         .collect()
 }
 
-fn search_block(a: &[OrientedBox], b: &[OrientedBox], start_a: usize, start_b: usize, best: &mut Best) {
-    for i in start_a..(start_a + BLOCK).min(a.len() - 1) {
-        for j in start_b..(start_b + BLOCK).min(b.len() - 1) {
+fn search_block((a, in_a): &Track<'_>, (b, in_b): &Track<'_>, start_a: usize, start_b: usize, best: &mut Best) {
+    // Segments of a block between two samples that count.
+    let segments = |start: usize, counted: &Range<usize>| {
+        start.max(counted.start)..(start + BLOCK).min(counted.end.saturating_sub(1))
+    };
+    for i in segments(start_a, in_a) {
+        for j in segments(start_b, in_b) {
             if (i.abs_diff(j) as f64 - 1.0) < best.lag {
                 search_segments([&a[i], &a[i + 1]], [&b[j], &b[j + 1]], i as f64, j as f64, best);
             }
@@ -146,6 +155,10 @@ mod tests {
 
     const STEP: f64 = 0.1;
 
+    fn post_encroachment_time(a: &[OrientedBox], b: &[OrientedBox], step_s: f64) -> Option<Timed> {
+        super::post_encroachment_time((a, 0..a.len()), (b, 0..b.len()), step_s)
+    }
+
     fn track(x: f64, y: f64, heading: f64, speed: f64, steps: usize) -> Vec<OrientedBox> {
         let go = Vec2::from_heading(heading) * speed;
         (0..steps)
@@ -185,6 +198,17 @@ mod tests {
         let pet = post_encroachment_time(&first, &second, STEP).unwrap();
         let stepped = brute_force([0.0, 0.0, 0.0, 10.0], [0.0, -40.0, math::PI / 4.0, 12.0], 0.005, 7.9);
         assert!((pet.value - stepped).abs() < 0.011, "{pet:?} {stepped}");
+    }
+
+    #[test]
+    fn who_appears_or_leaves_sweeps_nothing_on_the_way() {
+        // Somebody stands 30 m beside the way, and is a million metres away before and after.
+        let ego = track(0.0, 0.0, 0.0, 10.0, 60);
+        let (here, nowhere) = (track(20.0, -30.0, 0.0, 0.0, 60), track(1e6, 1e6, 0.0, 0.0, 60));
+        let other: Vec<OrientedBox> =
+            (0..60).map(|step| if (20..40).contains(&step) { here[step] } else { nowhere[step] }).collect();
+        assert!(post_encroachment_time(&ego, &other, STEP).is_some(), "the sweep through the scene");
+        assert_eq!(super::post_encroachment_time((&ego, 0..60), (&other, 20..40), STEP), None);
     }
 
     #[test]

@@ -1,35 +1,25 @@
 //! Findings: what a rollout shows about the ego, one sentence each.
 
-use crate::scene::time_of;
+use crate::scene::{first_step, time_of};
 use recrash_model::metrics::{Finding, FindingKind, Metrics, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
-use recrash_roads::Scenario;
 
 /// Slower than this the ego stands. [m/s]
 const STANDSTILL_MPS: f64 = 0.3;
 
-/// A near miss is one of somebody who came at least this much nearer than the scene begins with: a conflict is two road
+/// A near miss is one of somebody who came at least this much nearer than the scene (or the system's part of it) begins with: a conflict is two road
 /// users who approach each other (amundsen1977), and lanes side by side are nearer than some limits. Assumed: more than
 /// lane keeping moves a car sideways. [m]
 const APPROACH_M: f64 = 0.1;
 
-/// What a rollout shows about the ego: failures first, then odd behaviour, each in order of time.
-pub fn findings(
-    _scenario: &Scenario,
-    rollout: &Rollout,
-    metrics: &Metrics,
-    criteria: &FailureCriteria,
-) -> Vec<Finding> {
-    findings_of(rollout, metrics, criteria)
-}
-
-/// [`findings`] without the scenario, which they do not depend on.
-pub fn findings_of(rollout: &Rollout, metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> {
+/// What a rollout shows about the ego, from the handover on: failures first, then odd behaviour, each in order of time.
+pub fn findings(rollout: &Rollout, handover_s: f64, metrics: &Metrics, criteria: &FailureCriteria) -> Vec<Finding> {
+    let first = first_step(rollout, handover_s);
     let mut all = Vec::new();
     all.extend(contact(metrics));
-    all.extend(obstacle_contacts(rollout, metrics));
-    all.extend(near_misses(rollout, metrics, criteria));
+    all.extend(obstacle_contacts(rollout, first, metrics));
+    all.extend(near_misses(rollout, first, metrics, criteria));
     all.extend(ending(rollout, metrics, criteria));
     all.extend(odd_behaviour(metrics, criteria));
     all.sort_by(|a, b| b.kind.is_failure().cmp(&a.kind.is_failure()).then(a.time_s.total_cmp(&b.time_s)));
@@ -57,11 +47,16 @@ fn contact(metrics: &Metrics) -> Option<Finding> {
     })
 }
 
-fn obstacle_contacts<'a>(rollout: &'a Rollout, metrics: &'a Metrics) -> impl Iterator<Item = Finding> + 'a {
+fn obstacle_contacts<'a>(
+    rollout: &'a Rollout,
+    first: usize,
+    metrics: &'a Metrics,
+) -> impl Iterator<Item = Finding> + 'a {
+    let counts = move |time_s: f64| time_s >= time_of(first) - 1e-9;
     metrics.obstacles_hit.iter().filter_map(move |&hit| {
         let kind = rollout.obstacles.get(hit)?.kind.label();
         let (time_s, speed) = rollout.events.iter().find_map(|event| match event.kind {
-            EventKind::ObstacleContact { actor: 0, obstacle, state } if obstacle == hit => {
+            EventKind::ObstacleContact { actor: 0, obstacle, state } if obstacle == hit && counts(event.time_s) => {
                 Some((event.time_s, state.velocity().length()))
             }
             _ => None,
@@ -78,6 +73,7 @@ fn obstacle_contacts<'a>(rollout: &'a Rollout, metrics: &'a Metrics) -> impl Ite
 
 fn near_misses<'a>(
     rollout: &'a Rollout,
+    first: usize,
     metrics: &'a Metrics,
     criteria: &'a FailureCriteria,
 ) -> impl Iterator<Item = Finding> + 'a {
@@ -89,7 +85,7 @@ fn near_misses<'a>(
         .filter(|partner| rollout.actors.get(partner.actor).is_some_and(|track| track.role == Role::Partner))
         .filter(|partner| partner.min_gap.value < criteria.min_gap_m)
         // Who is put so near to the ego and comes no nearer has not met it.
-        .filter(|partner| first_gap_m(rollout, partner.actor) - partner.min_gap.value > APPROACH_M)
+        .filter(move |partner| first_gap_m(rollout, first, partner.actor) - partner.min_gap.value > APPROACH_M)
         .map(|partner| {
             let Timed { value, time_s } = partner.min_gap;
             Finding {
@@ -105,11 +101,11 @@ fn near_misses<'a>(
         })
 }
 
-/// Box gap between the ego and another where the scene begins. [m]
-fn first_gap_m(rollout: &Rollout, actor: usize) -> f64 {
-    let first = |actor: usize| rollout.actors.get(actor).filter(|track| !track.states.is_empty());
-    match (first(0), first(actor)) {
-        (Some(ego), Some(other)) => ego.outline(0).gap(&other.outline(0)),
+/// Box gap between the ego and another at the first step that counts. [m]
+fn first_gap_m(rollout: &Rollout, first: usize, actor: usize) -> f64 {
+    let there = |actor: usize| rollout.actors.get(actor).filter(|track| first < track.states.len());
+    match (there(0), there(actor)) {
+        (Some(ego), Some(other)) => ego.outline(first).gap(&other.outline(first)),
         _ => 0.0,
     }
 }

@@ -25,7 +25,7 @@ pub mod severity;
 pub mod swept;
 
 pub use faithfulness::{faithfulness, faithfulness_on};
-pub use findings::{findings, findings_of};
+pub use findings::findings;
 pub use measure::{measure, measure_on, series};
 pub use scene::EgoWay;
 pub use severity::severity_of;

@@ -10,14 +10,15 @@ use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, STEP_S};
 use recrash_roads::Scenario;
 
-/// Metrics of a rollout of a scenario. Nothing after the ego's first contact with a road user is measured.
+/// Metrics of a rollout of a scenario. Nothing before the handover is measured (a run of the recorded driver has none), and
+/// nothing after the ego's first contact with a road user.
 pub fn measure(scenario: &Scenario, rollout: &Rollout, criteria: &FailureCriteria) -> Metrics {
     measure_on(&EgoWay::of(scenario), rollout, criteria)
 }
 
 /// Metrics of a rollout on a way of the ego's.
 pub fn measure_on(way: &EgoWay<'_>, rollout: &Rollout, criteria: &FailureCriteria) -> Metrics {
-    let scene = Scene::new(rollout);
+    let scene = Scene::new(rollout, way.handover_s);
     let along = Along::track(way, scene.outlines.first().map_or(&[], Vec::as_slice));
     let partners: Vec<PartnerMetrics> =
         (1..rollout.actors.len()).filter_map(|actor| measure_partner(&scene, way, &along, actor)).collect();
@@ -87,16 +88,17 @@ fn differences(speeds: &[f64]) -> Vec<f64> {
 }
 
 fn measure_partner(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], actor: usize) -> Option<PartnerMetrics> {
-    let steps = scene.steps_with(actor);
-    if steps == 0 {
+    let (egos, others) = (&scene.outlines[0], &scene.outlines[actor]);
+    let touched = scene.contact_boxes().filter(|(contact, ..)| contact.actor == actor);
+    let steps = scene.counted_with(actor);
+    if steps.is_empty() && touched.is_none() {
         return None;
     }
-    let (egos, others) = (&scene.outlines[0][..steps], &scene.outlines[actor][..steps]);
     let mut min_gap = Timed { value: f64::INFINITY, time_s: 0.0 };
     let mut min_centre_distance = min_gap;
     let (mut min_ttc, mut max_drac, mut max_required_deceleration, mut min_headway) = (None, None, None, None);
-    for (step, (ego, other)) in egos.iter().zip(others).enumerate() {
-        let time_s = time_of(step);
+    for step in steps.clone() {
+        let (ego, other, time_s) = (&egos[step], &others[step], time_of(step));
         let distance = ego.centre.distance(other.centre);
         if distance < min_centre_distance.value {
             min_centre_distance = Timed { value: distance, time_s };
@@ -117,8 +119,8 @@ fn measure_partner(scene: &Scene<'_>, way: &EgoWay<'_>, along: &[Along], actor: 
             keep_greatest(&mut max_required_deceleration, (required > 0.0).then_some(required), time_s);
         }
     }
-    let mut pet = post_encroachment_time(egos, others, STEP_S);
-    if let Some((contact, ego, other)) = scene.contact_boxes().filter(|(contact, ..)| contact.actor == actor) {
+    let mut pet = post_encroachment_time((egos, scene.counted()), (others, scene.present(actor)), STEP_S);
+    if let Some((contact, ego, other)) = touched {
         let touched = Timed { value: 0.0, time_s: contact.time_s };
         (min_gap, min_ttc, pet) = (touched, Some(touched), Some(touched));
         let distance = ego.centre.distance(other.centre);
@@ -184,9 +186,10 @@ fn first_contact(scene: &Scene<'_>) -> Option<Contact> {
     })
 }
 
-/// Obstacles the ego touched in the measured window, in order of time, with the time.
+/// Obstacles the ego touched at the steps that count, in order of time, with the time.
 pub(crate) fn obstacle_contacts<'a>(scene: &'a Scene<'_>) -> impl Iterator<Item = (usize, f64)> + 'a {
-    scene.rollout.events.iter().filter(|event| event.time_s <= scene.end_s + 1e-9).filter_map(|event| {
+    let counts = time_of(scene.first) - 1e-9..=scene.end_s + 1e-9;
+    scene.rollout.events.iter().filter(move |event| counts.contains(&event.time_s)).filter_map(|event| {
         match event.kind {
             EventKind::ObstacleContact { actor: 0, obstacle, .. } => Some((obstacle, event.time_s)),
             _ => None,
@@ -194,14 +197,14 @@ pub(crate) fn obstacle_contacts<'a>(scene: &'a Scene<'_>) -> impl Iterator<Item 
     })
 }
 
-/// `None` only for a rollout without states of the ego.
+/// `None` only where no state of the ego counts.
 fn obstacle_gap(scene: &Scene<'_>, obstacle: usize) -> Option<Timed> {
     if let Some((_, time_s)) = obstacle_contacts(scene).find(|&(hit, _)| hit == obstacle) {
         return Some(Timed { value: 0.0, time_s });
     }
     let outline = &scene.obstacles[obstacle];
     let mut least = Timed { value: f64::INFINITY, time_s: 0.0 };
-    for (step, ego) in scene.outlines.first().map_or(&[][..], Vec::as_slice).iter().enumerate() {
+    for (step, ego) in scene.ego() {
         if ego.centre.distance(outline.centre) - ego.radius() - outline.radius() < least.value {
             let gap = ego.gap(outline);
             if gap < least.value {

@@ -137,7 +137,8 @@ fn post_encroachment_time_is_crimes_within_its_steps_and_no_less_on_oblique_cros
             });
             states.collect()
         };
-        let pet = post_encroachment_time(&track(0.0, ego_v, ego_at), &track(heading, other_v, other_at), step_s);
+        let (ego, other) = (track(0.0, ego_v, ego_at), track(heading, other_v, other_at));
+        let pet = post_encroachment_time((&ego, 0..ego.len()), (&other, 0..other.len()), step_s);
         let ours = pet.expect("their paths cross").value;
         if (heading.abs() - math::FRAC_PI_2).abs() < 1e-6 {
             // CriMe enters and leaves on whole steps, up to one outwards each.

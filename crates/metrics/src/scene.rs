@@ -4,11 +4,16 @@ use crate::swept::time_to_collision;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
 use recrash_model::rollout::{ActorState, Rollout, STEP_S};
+use recrash_model::scenario::{Device, MissionStop};
 use recrash_roads::path::SegmentShape;
 use recrash_roads::{LanePath, PathPoint, RoadNetwork, Scenario};
+use std::ops::Range;
 
-/// The way the ego was to take, and how fast.
-#[derive(Debug, Clone, Copy)]
+/// Who drives a run that shows the record alone: nothing is handed over in it.
+const RECORDED: &str = "recorded";
+
+/// The way the ego was to take, how fast, where it was to stop, and from when on it is tested.
+#[derive(Debug, Clone)]
 pub struct EgoWay<'a> {
     /// Roads.
     pub network: &'a RoadNetwork,
@@ -16,17 +21,36 @@ pub struct EgoWay<'a> {
     pub path: &'a LanePath,
     /// Speed it wants. [m/s]
     pub target_speed_mps: f64,
+    /// Stop lines on the path: where the ego's centre is when its front is there, and what stands there. [m]
+    pub lines: Vec<(f64, &'a Device)>,
+    /// Stops of its task.
+    pub stops: &'a [MissionStop],
+    /// When the system under test takes over from the recorded driver; 0 where it drives from the beginning. [s]
+    pub handover_s: f64,
 }
 
 impl<'a> EgoWay<'a> {
     /// The ego's way in a scenario.
     pub fn of(scenario: &'a Scenario) -> Self {
+        let draft = scenario.draft();
+        let lines = scenario.ego_stop_lines().map(|line| (line.at_m, &draft.control[line.control].device));
         Self {
-            network: scenario.network(),
-            path: &scenario.ego().path,
-            target_speed_mps: scenario.draft().ego.target_speed_mps,
+            lines: lines.collect(),
+            stops: &draft.ego.stops,
+            handover_s: draft.ego.handover_s.unwrap_or(0.0),
+            ..Self::plain(scenario.network(), &scenario.ego().path, draft.ego.target_speed_mps)
         }
     }
+
+    /// A way without a place to stop, driven by one driver.
+    pub fn plain(network: &'a RoadNetwork, path: &'a LanePath, target_speed_mps: f64) -> Self {
+        Self { network, path, target_speed_mps, lines: Vec::new(), stops: &[], handover_s: 0.0 }
+    }
+}
+
+/// The first step that counts: the handover's, but the first of all where the recorded driver drives to the end.
+pub fn first_step(rollout: &Rollout, handover_s: f64) -> usize {
+    if rollout.ego == RECORDED { 0 } else { (handover_s / STEP_S).round() as usize }
 }
 
 /// The ego's first contact with a road user.
@@ -42,13 +66,16 @@ pub struct FirstContact {
     pub other: ActorState,
 }
 
-/// A rollout, its boxes, and the steps that count: those with finite states up to the ego's first contact. What a
-/// simulator makes of vehicles after they touched is not measured.
+/// A rollout, its boxes, and the steps that count: those with finite states from the handover up to the ego's first contact.
+/// What the recorded driver did before is not the system's; what a simulator makes of vehicles after they touched is not
+/// measured.
 #[derive(Debug)]
 pub struct Scene<'a> {
     /// The rollout.
     pub rollout: &'a Rollout,
-    /// Per actor, its boxes at the steps that count.
+    /// The first step that counts.
+    pub first: usize,
+    /// Per actor, its boxes from the beginning up to the last step that counts.
     pub outlines: Vec<Vec<OrientedBox>>,
     /// Boxes of the obstacles.
     pub obstacles: Vec<OrientedBox>,
@@ -60,7 +87,7 @@ pub struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     /// Makes a rollout ready. Never fails: a rollout without actors gives a scene without boxes.
-    pub fn new(rollout: &'a Rollout) -> Self {
+    pub fn new(rollout: &'a Rollout, handover_s: f64) -> Self {
         let contact = rollout
             .first_ego_contact()
             .filter(|&(actor, ..)| actor > 0 && actor < rollout.actors.len())
@@ -78,15 +105,40 @@ impl<'a> Scene<'a> {
         let recorded = outlines.first().map_or(0, Vec::len);
         let end_s = contact.map_or(time_of(recorded.saturating_sub(1)), |contact| contact.time_s);
         let obstacles = rollout.obstacles.iter().map(|obstacle| obstacle.outline()).collect();
-        Self { rollout, outlines, obstacles, contact, end_s }
+        Self { rollout, first: first_step(rollout, handover_s), outlines, obstacles, contact, end_s }
     }
 
-    /// Number of steps that count, for the ego and an actor together.
+    /// The steps that count for the ego.
+    pub fn counted(&self) -> Range<usize> {
+        self.first.min(self.steps())..self.steps()
+    }
+
+    /// The steps at which an actor is in the world, up to the last that counts.
+    pub fn present(&self, actor: usize) -> Range<usize> {
+        let last = self.outlines.get(actor).map_or(0, Vec::len);
+        let is_present = |step: &usize| self.rollout.actors[actor].is_present(*step);
+        let first = (0..last).find(is_present).unwrap_or(last);
+        first..(first..last).find(|step| !is_present(step)).unwrap_or(last)
+    }
+
+    /// The steps that count for the ego at which an actor is in the world.
+    pub fn counted_with(&self, actor: usize) -> Range<usize> {
+        let (counted, present) = (self.counted(), self.present(actor));
+        counted.start.max(present.start)..counted.end.min(present.end)
+    }
+
+    /// The ego's boxes at the steps that count, each with its step.
+    pub fn ego(&self) -> impl Iterator<Item = (usize, &OrientedBox)> {
+        let outlines = self.outlines.first().map_or(&[][..], Vec::as_slice);
+        outlines.iter().enumerate().skip(self.first)
+    }
+
+    /// Number of steps up to the last that counts, for the ego and an actor together.
     pub fn steps_with(&self, actor: usize) -> usize {
         self.steps().min(self.outlines.get(actor).map_or(0, Vec::len))
     }
 
-    /// Number of steps that count for the ego.
+    /// Number of steps up to the last that counts for the ego.
     pub fn steps(&self) -> usize {
         self.outlines.first().map_or(0, Vec::len)
     }

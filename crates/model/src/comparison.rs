@@ -145,6 +145,8 @@ pub struct Comparison {
     pub simulators: [String; 2],
     /// Suites of both, by content.
     pub suites: [String; 2],
+    /// The greatest p of a test that counts, held against all tests that have one; absent where none has.
+    pub level: Option<f64>,
     /// Over all tests.
     pub all: TypeRow,
     /// By crash type, in the order of tables.

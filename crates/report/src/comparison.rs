@@ -244,7 +244,11 @@ pub fn sentence(comparison: &Comparison) -> String {
         let count = comparison.all.changes.get(&change)?;
         Some(format!("{count} {}", change.label()))
     });
-    format!("{} tests: {}", comparison.all.tests, changes.collect::<Vec<_>>().join(", "))
+    let random = comparison.tests.iter().filter(|test| test.p.is_some()).count();
+    let level = comparison.level.map_or_else(String::new, |level| {
+        format!("; of {random} with a p, those of {level:.1e} or below count (Benjamini-Hochberg)")
+    });
+    format!("{} tests: {}{level}", comparison.all.tests, changes.collect::<Vec<_>>().join(", "))
 }
 
 /// A summary for people, in Markdown as GitHub and GitLab show it.

@@ -1,6 +1,6 @@
 //! Checked scenarios: everything resolved, so that the simulator cannot fail.
 
-use crate::course::Course;
+use crate::course::{Course, StopLine};
 use crate::drawing::{LineKind, RoadDrawing, RoadLine};
 use crate::lane::LaneId;
 use crate::network::RoadNetwork;
@@ -9,6 +9,7 @@ use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::PlacedObstacle;
 use recrash_model::scenario::{Part, ScenarioDraft};
+use recrash_model::vehicle::VehicleSpec;
 use std::sync::Arc;
 
 /// A scenario that passed the check. Made by [`crate::check()`] alone.
@@ -124,6 +125,17 @@ impl Scenario {
     /// The ego as it was driven in the record, where that is told.
     pub fn recorded(&self) -> Option<&ActorPlacement> {
         self.recorded.as_ref()
+    }
+
+    /// Where the ego's path passes stop lines.
+    pub fn ego_stop_lines(&self) -> impl Iterator<Item = StopLine> + '_ {
+        let (path, half_length_m) = (&self.ego.path, 0.5 * VehicleSpec::of(self.ego.kind).length_m);
+        self.control.iter().enumerate().flat_map(move |(control, placed)| {
+            placed.lines.iter().filter_map(move |&(lane, line_m)| {
+                let segment = path.segments.iter().find(|segment| segment.lane == lane)?;
+                Some(StopLine { at_m: segment.start_m + line_m - half_length_m, control })
+            })
+        })
     }
 
     /// Signals and signs, in the draft's order.

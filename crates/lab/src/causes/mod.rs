@@ -6,8 +6,9 @@ use recrash_model::math;
 use recrash_model::metrics::{Finding, FindingKind, Metrics};
 use recrash_model::results::{TestOutcome, TestResult, TestVerdict};
 use recrash_model::rollout::{ActorState, ActorTrack, Rollout, STEP_S};
+use recrash_model::scenario::MapSpec;
 use recrash_model::zones::ContactZone;
-use recrash_roads::{RoadNetwork, RoadPart};
+use recrash_roads::{LaneId, RoadNetwork, RoadPart};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,6 +32,8 @@ const TURN_S: f64 = 4.0;
 const SAME_WAY_RAD: f64 = 45.0 * math::PI / 180.0;
 /// Going sideways by more than this is a move; lane keeping takes less. Assumed. [m]
 const SIDEWAYS_M: f64 = 0.8;
+/// Who is farther beside a lane than this is not along it: two lanes. Assumed. [m]
+const BESIDE_M: f64 = 8.0;
 /// Whom it could have seen ahead: within this of its heading. [rad]
 const AHEAD_RAD: f64 = 100.0 * math::PI / 180.0;
 /// A gap to the one ahead of less than this, in time, is too close (the two-second rule halved; assumed). [s]
@@ -165,11 +168,41 @@ impl<'a> Encounter<'a> {
         (SAME_WAY_RAD..=math::PI - SAME_WAY_RAD).contains(&between) && !self.stood(self.other)
     }
 
-    /// How far somebody went across the way that it had: away from its own line. [m]
+    /// How far somebody went across the way that it had: along its lane and those that follow it; straight on where there is
+    /// none, it does not go along it or backs, or a junction begins, in which to turn is to leave one's line. [m]
     fn sideways_m(&self, track: &ActorTrack) -> f64 {
-        let from = self.before(track, BEFORE_S);
-        let across = Vec2::from_heading(from.heading).left();
-        (track.states[self.end].position() - from.position()).dot(across).abs()
+        let (from, to) = (self.before(track, BEFORE_S), &track.states[self.end]);
+        let straight_m = || {
+            let across = Vec2::from_heading(from.heading).left();
+            (to.position() - from.position()).dot(across).abs()
+        };
+        let Some(id) = self.network.lane_at(from.position(), from.heading) else { return straight_m() };
+        let lane = self.network.lane(id);
+        let (s, before_m) = lane.local(from.position());
+        let backs = from.velocity().dot(Vec2::from_heading(from.heading)) < 0.0;
+        if backs || math::wrap_angle(lane.heading(s) - from.heading).abs() > SAME_WAY_RAD {
+            return straight_m();
+        }
+        let reach_m = s + 2.0 * from.position().distance(to.position());
+        self.beside_m(id, to.position(), reach_m).map_or_else(straight_m, |now_m| (now_m - before_m).abs())
+    }
+
+    /// How far to the right of a lane, or of one that follows within reach, a place lies: the least of them. [m]
+    fn beside_m(&self, id: LaneId, place: Vec2, reach_m: f64) -> Option<f64> {
+        let lane = self.network.lane(id);
+        if self.network.road(lane.road).part == RoadPart::Inner && !matches!(self.network.map, MapSpec::C(_)) {
+            return None;
+        }
+        let (s, t) = lane.local(place);
+        if (0.0..=lane.length_m).contains(&s) && t.abs() < BESIDE_M {
+            return Some(t);
+        }
+        if reach_m <= lane.length_m {
+            return None;
+        }
+        let next = self.network.followers[usize::from(id.0)].iter();
+        let all = next.filter_map(|&next| self.beside_m(next, place, reach_m - lane.length_m));
+        all.min_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 
     /// Whether the other was where a driver looks.

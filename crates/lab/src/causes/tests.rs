@@ -3,7 +3,6 @@ use recrash_model::geometry::Pose;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{CollisionKind, Contact, EgoMetrics, Timed};
 use recrash_model::rollout::{Event, EventKind, ROLLOUT_FORMAT, Role, Termination, TerminationKind};
-use recrash_model::scenario::MapSpec;
 use recrash_roads::{Centreline, Lane, LaneId, Road, RoadId};
 
 /// A road without a lane.
@@ -39,7 +38,11 @@ const STEPS: usize = 60;
 /// Where somebody is and how fast, by the time until the contact: x, y, heading and speed. [s; m, m, rad, m/s]
 type Way = fn(f64) -> (f64, f64, f64, f64);
 
-fn track(id: &str, role: Role, way: Way) -> ActorTrack {
+/// The same that may look around.
+trait WayOf: Fn(f64) -> (f64, f64, f64, f64) {}
+impl<T: Fn(f64) -> (f64, f64, f64, f64)> WayOf for T {}
+
+fn track(id: &str, role: Role, way: impl WayOf) -> ActorTrack {
     let state = |step: usize| {
         let (x, y, heading, speed) = way((STEPS - 1 - step) as f64 * STEP_S);
         ActorState::moving(Pose { position: Vec2::new(x, y), heading }, speed)
@@ -69,10 +72,15 @@ fn told(ego: Way, other: Way, ego_zone: ContactZone, phantom: Option<Timed>) -> 
     told_on(&no_road(), ego, other, ego_zone, phantom)
 }
 
+/// That of a contact at its front.
+fn told_with(network: &RoadNetwork, ego: impl WayOf, other: impl WayOf) -> Option<Cause> {
+    told_on(network, ego, other, ContactZone::Front, None)
+}
+
 fn told_on(
     network: &RoadNetwork,
-    ego: Way,
-    other: Way,
+    ego: impl WayOf,
+    other: impl WayOf,
     ego_zone: ContactZone,
     phantom: Option<Timed>,
 ) -> Option<Cause> {
@@ -193,4 +201,33 @@ fn who_turns_or_goes_aside_into_somebody_is_told_so() {
     let aside: Way = |before_s| (-10.0 * before_s, -1.8 * before_s.min(1.5), 0.0, 10.0);
     let beside: Way = |before_s| (-10.0 * before_s, 1.9, 0.0, 10.0);
     assert_eq!(told(aside, beside, ContactZone::Left, None), Some(Cause::MovedInto));
+}
+
+#[test]
+fn who_keeps_its_lane_in_a_bend_does_not_go_aside() {
+    // To the left on 50 m; the ego at 15 m/s runs into one that drives 10 m/s.
+    let on_bend = |s: f64| {
+        let turned = s / 50.0;
+        (50.0 * math::sin(turned), 50.0 - 50.0 * math::cos(turned), turned)
+    };
+    let mut bend = lane_with_heading(0.0);
+    bend.lanes[0].length_m = 140.0;
+    bend.lanes[0].centreline =
+        Centreline::Arc { centre: Vec2::new(0.0, 50.0), radius: 50.0, start_angle: -math::FRAC_PI_2 - 2.0, turn: 1.0 };
+    let behind = |before_s: f64| {
+        let (x, y, heading) = on_bend(-15.0 * before_s);
+        (x, y, heading, 15.0)
+    };
+    let ahead = |before_s: f64| {
+        let (x, y, heading) = on_bend(4.5 - 10.0 * before_s);
+        (x, y, heading, 10.0)
+    };
+    assert_eq!(told_with(&bend, behind, ahead), Some(Cause::IgnoredAhead));
+    // Out of its lane, it does.
+    let aside = |before_s: f64| {
+        let (x, y, heading) = on_bend(-15.0 * before_s);
+        let out_m = (2.0 - before_s).clamp(0.0, 2.0);
+        (x + out_m * math::sin(heading), y - out_m * math::cos(heading), heading, 15.0)
+    };
+    assert_eq!(told_with(&bend, aside, ahead), Some(Cause::MovedInto));
 }

@@ -36,6 +36,15 @@ pub fn mcnemar(one: usize, other: usize) -> f64 {
     (2.0 * tail).min(1.0)
 }
 
+/// The greatest p that counts, where at most a share `false_share` of what is found may be chance (benjamini1995): of m sorted
+/// ones, the last p(k) that is no more than k/m of that share takes all before it along. `None` without any p.
+pub fn benjamini_hochberg(mut all: Vec<f64>, false_share: f64) -> Option<f64> {
+    all.sort_by(f64::total_cmp);
+    let bound = |found: usize| found as f64 * false_share / all.len() as f64;
+    let found = (1..=all.len()).rev().find(|&found| all[found - 1] <= bound(found));
+    (!all.is_empty()).then(|| bound(found.unwrap_or(1)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,6 +60,19 @@ mod tests {
         near(fisher([4, 4], [0, 4]), 2.0 / 70.0);
         near(fisher([2, 5], [2, 5]), 1.0);
         near(fisher([0, 1], [1, 1]), 1.0);
+    }
+
+    #[test]
+    fn many_tests_ask_for_smaller_p() {
+        // The fifteen of the paper's example: the first four count, by 4/15 of 0.05.
+        let example = [
+            0.0001, 0.0004, 0.0019, 0.0095, 0.0201, 0.0278, 0.0298, 0.0344, 0.0459, 0.3240, 0.4262, 0.5719, 0.6528,
+            0.7590, 1.0,
+        ];
+        near(benjamini_hochberg(example.to_vec(), 0.05).unwrap(), 4.0 / 15.0 * 0.05);
+        near(benjamini_hochberg(vec![0.04], 0.05).unwrap(), 0.05);
+        near(benjamini_hochberg(vec![0.04, 0.9], 0.05).unwrap(), 0.025);
+        assert_eq!(benjamini_hochberg(Vec::new(), 0.05), None);
     }
 
     #[test]

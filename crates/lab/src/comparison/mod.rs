@@ -12,8 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const HARM_MPS: f64 = 0.5;
 /// A change of the least gap of a near miss that counts. Assumed: what two simulators differ by. [m]
 pub const GAP_M: f64 = 0.1;
-/// Shares of failures that differ by chance less often than this are a change.
-pub const SIGNIFICANT: f64 = 0.05;
+/// Of the tests whose shares of failures are told to differ, at most this share does so by chance.
+pub const FALSE_CHANGES: f64 = 0.05;
 
 /// Compares two results.
 pub fn compare(base: &TestResults, new: &TestResults) -> Comparison {
@@ -22,11 +22,13 @@ pub fn compare(base: &TestResults, new: &TestResults) -> Comparison {
     };
     let (before, now) = (by_id(base), by_id(new));
     let ids: BTreeSet<&String> = before.keys().chain(now.keys()).collect();
-    let pair = |id: &String| {
-        let [old, fresh] = [before.get(id).map(|&at| &base.tests[at]), now.get(id).map(|&at| &new.tests[at])];
-        one(id, old, fresh)
-    };
-    let tests: Vec<Compared> = ids.into_iter().map(pair).collect();
+    let pair = |id: &String| [before.get(id).map(|&at| &base.tests[at]), now.get(id).map(|&at| &new.tests[at])];
+    let chances = ids.iter().filter_map(|id| match pair(id) {
+        [Some(old), Some(fresh)] => chance(old, fresh),
+        _ => None,
+    });
+    let level = exact::benjamini_hochberg(chances.collect(), FALSE_CHANGES);
+    let tests: Vec<Compared> = ids.iter().map(|id| one(id, pair(id), level)).collect();
     let types = CrashType::ALL.into_iter().map(Some).chain([None]);
     let of_type = |kind: Option<CrashType>| {
         let members: Vec<&Compared> = tests.iter().filter(|test| test.crash_type == kind).collect();
@@ -37,6 +39,7 @@ pub fn compare(base: &TestResults, new: &TestResults) -> Comparison {
         egos: [base.ego.clone(), new.ego.clone()],
         simulators: [base.simulator.clone(), new.simulator.clone()],
         suites: [base.suite.clone(), new.suite.clone()],
+        level,
         all: row("all", &tests.iter().collect::<Vec<_>>()),
         by_type: types.filter_map(of_type).collect(),
         tests,
@@ -62,13 +65,13 @@ fn row(crash_type: &'static str, tests: &[&Compared]) -> TypeRow {
     }
 }
 
-fn one(id: &str, base: Option<&TestResult>, new: Option<&TestResult>) -> Compared {
+fn one(id: &str, [base, new]: [Option<&TestResult>; 2], level: Option<f64>) -> Compared {
     let crash_type = new.or(base).and_then(|test| test.about.crash_type);
     let (change, why, p) = match (base, new) {
         (Some(base), Some(new)) if base.content != new.content => {
             (Change::Changed, "its scenario is another one".to_owned(), None)
         }
-        (Some(base), Some(new)) => verdict(base, new),
+        (Some(base), Some(new)) => verdict(base, new, level),
         (None, _) => (Change::Added, "the baseline has no such test".to_owned(), None),
         (_, None) => (Change::Removed, "only the baseline has such a test".to_owned(), None),
     };
@@ -99,15 +102,27 @@ fn side(test: &TestResult) -> Side {
     }
 }
 
+/// Failures and runs.
+fn counts(test: &TestResult) -> [usize; 2] {
+    [test.failures(), test.runs.len()]
+}
+
+/// How probable it is by chance that the shares of failures differ so; `None` where nothing is random or comparable.
+fn chance(base: &TestResult, new: &TestResult) -> Option<f64> {
+    let all_ran = |test: &TestResult| test.runs.iter().all(|run| run.verdict != TestVerdict::NotRun);
+    let is_random = base.runs.len() > 1 || new.runs.len() > 1;
+    (is_random && base.content == new.content && all_ran(base) && all_ran(new))
+        .then(|| exact::fisher(counts(base), counts(new)))
+}
+
 /// What became of a test that ran on both sides, why, and how probable that is by chance.
-fn verdict(base: &TestResult, new: &TestResult) -> (Change, String, Option<f64>) {
+fn verdict(base: &TestResult, new: &TestResult, level: Option<f64>) -> (Change, String, Option<f64>) {
     for (test, which) in [(base, "the baseline"), (new, "this run")] {
         if let Some(run) = test.runs.iter().find(|run| run.verdict == TestVerdict::NotRun) {
             let why = run.why.as_deref().unwrap_or("no reason is told");
             return (Change::NotRun, format!("in {which}: {why}"), None);
         }
     }
-    let counts = |test: &TestResult| [test.failures(), test.runs.len()];
     let (before, now) = (counts(base), counts(new));
     let told = |test: &TestResult, [failures, runs]: [usize; 2]| match (failures, telling(test)) {
         (0, _) => "passed".to_owned(),
@@ -115,11 +130,10 @@ fn verdict(base: &TestResult, new: &TestResult) -> (Change, String, Option<f64>)
         _ => format!("failed {failures} of {runs}"),
     };
     let shares = format!("{}, now {}", told(base, before), told(new, now));
-    let is_random = before[1] > 1 || now[1] > 1;
-    let p = is_random.then(|| exact::fisher(before, now));
+    let p = chance(base, new);
     let all = |[failures, runs]: [usize; 2]| failures == runs;
     let none = |[failures, _]: [usize; 2]| failures == 0;
-    let clear = |p: Option<f64>| p.is_some_and(|p| p < SIGNIFICANT);
+    let clear = |p: Option<f64>| p.zip(level).is_some_and(|(p, level)| p <= level);
     let rises = now[0] * before[1] > before[0] * now[1];
     let falls = now[0] * before[1] < before[0] * now[1];
     if none(before) && all(now) || rises && clear(p) {

@@ -78,6 +78,26 @@ fn what_is_random_is_flaky_until_it_is_clear() {
 }
 
 #[test]
+fn one_of_many_tests_has_to_be_clearer_than_one_alone() {
+    let of = |failed: usize, runs: usize| -> Vec<TestRun> {
+        (0..runs).map(|at| if at < failed { run(&[Contact], 0.0) } else { run(&[], 5.0) }).collect()
+    };
+    let names: Vec<String> = (0..20).map(|number| format!("test-{number:02}")).collect();
+    let changes = |first: [(usize, usize); 2]| {
+        let side = |first: (usize, usize)| {
+            let runs = |at: usize| if at == 0 { of(first.0, first.1) } else { of(2, first.1) };
+            results(names.iter().enumerate().map(|(at, id)| (id.as_str(), runs(at))).collect())
+        };
+        let comparison = compare(&side(first[0]), &side(first[1]));
+        (comparison.tests[0].change, comparison.level.unwrap())
+    };
+    // p = 0.048: enough for one test, too little for the first of twenty.
+    assert_eq!(change(of(0, 5), of(4, 5)), Change::Broken);
+    assert_eq!(changes([(0, 5), (4, 5)]), (Change::Flaky, 0.0025));
+    assert_eq!(changes([(1, 10), (9, 10)]), (Change::Broken, 0.0025));
+}
+
+#[test]
 fn tests_that_come_go_or_are_others_are_told_apart() {
     let pass = || vec![run(&[], 5.0)];
     let base = results(vec![("a", pass()), ("b", pass()), ("c", pass())]);

@@ -76,7 +76,7 @@ pub fn faithfulness_on(
     metrics: &Metrics,
     expectation: &Expectation,
 ) -> Verdict {
-    let scene = Scene::new(rollout);
+    let scene = Scene::new(rollout, 0.0);
     let partner = closest_partner(rollout, metrics);
     let Some(layout) = Layout::of(network).filter(|_| scene.steps() > 0) else {
         return Verdict { checks: vec![check(CheckKind::Road, "a rollout", "no rollout", false)] };
@@ -252,7 +252,9 @@ impl Witness<'_> {
         let Some(told_mps) = told_mps else { return not_told(kind, "not stated", "") };
         let expected = format!("about {told_mps:.1} m/s");
         let Some(actor) = actor else { return check(kind, expected, "no scripted partner", false) };
-        let steps = self.scene.outlines[actor].len();
+        let all = self.scene.outlines[actor].len();
+        let steps =
+            self.partner.map_or(all, |partner| all.min(self.step_at(partner.min_gap.time_s, partner.actor) + 1));
         let driven = (0..steps).map(|step| self.scene.velocity(actor, step).length()).fold(0.0, f64::max);
         let agrees = (driven - told_mps).abs() <= (SPEED_SHARE * told_mps).max(SPEED_MARGIN_MPS);
         check(kind, expected, format!("up to {driven:.1} m/s"), agrees)

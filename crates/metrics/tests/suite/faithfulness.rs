@@ -539,3 +539,18 @@ fn a_rollout_without_states_is_not_faithful() {
     let told = expecting(RoadType::Intersection, Movement::Straight, Movement::Straight);
     assert_eq!(verdict(&network, &empty, &told).faithful(), Answer::No);
 }
+
+#[test]
+fn what_comes_after_an_encounter_is_no_told_speed() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    // It creeps past a standing car at 2 s, and then drives on at 15 m/s.
+    let ego = drive_at(&way, 20.0, 90, |time| if time < 4.0 { 3.0 } else { 15.0 }, |_| -3.5);
+    let standing = drive(&way, 26.0, 90, |_| 0.0);
+    let rollout = rollout(ego, vec![standing]);
+    let mut expectation = expecting(RoadType::Street, Movement::Straight, Movement::Stopped);
+    expectation.sv_speed_mps = Some(3.0);
+    let verdict = verdict(&network, &rollout, &expectation);
+    assert_eq!(observed(&verdict, CheckKind::SvSpeed), "up to 3.0 m/s");
+    assert_eq!(result(&verdict, CheckKind::SvSpeed), CheckResult::Shown);
+}

@@ -2,4 +2,5 @@
 
 mod faithfulness;
 mod measure;
+mod tested;
 mod world;

@@ -1,7 +1,7 @@
 //! Metrics of rollouts whose numbers can be worked out by hand.
 
 use crate::world::*;
-use recrash_metrics::{findings_of, series};
+use recrash_metrics::{findings, series};
 use recrash_model::math::FRAC_PI_2;
 use recrash_model::metrics::{CollisionKind, FindingKind, Metrics};
 use recrash_model::rollout::ActorState;
@@ -10,7 +10,7 @@ use recrash_model::scenario::{Approach, Turn};
 use recrash_model::zones::ContactZone;
 
 fn kinds(rollout: &Rollout, metrics: &Metrics) -> Vec<FindingKind> {
-    findings_of(rollout, metrics, &CRITERIA).iter().map(|finding| finding.kind).collect()
+    findings(rollout, 0.0, metrics, &CRITERIA).iter().map(|finding| finding.kind).collect()
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn a_contact_at_a_crossing() {
     assert_eq!(metrics.partners[0].pet.unwrap().value, 0.0);
     assert_eq!(metrics.termination, TerminationKind::Contact);
     assert_eq!(kinds(&rollout, &metrics), [FindingKind::Contact]);
-    let sentence = &findings_of(&rollout, &metrics, &CRITERIA)[0].sentence;
+    let sentence = &findings(&rollout, 0.0, &metrics, &CRITERIA)[0].sentence;
     assert!(
         sentence.contains("cp1") && sentence.contains("left against front") && sentence.contains("9.4 m/s"),
         "{sentence}"
@@ -290,7 +290,7 @@ fn stuck_and_off_road_are_failures() {
     let mut rollout = rollout(drive(&way, 5.0, 121, |time| if time < 1.95 { 10.0 } else { 0.0 }), vec![]);
     rollout.termination.kind = TerminationKind::Stuck;
     let metrics = measure(&network, &way, 10.0, &rollout);
-    let found = findings_of(&rollout, &metrics, &CRITERIA);
+    let found = findings(&rollout, 0.0, &metrics, &CRITERIA);
     let stuck = found.iter().find(|finding| finding.kind == FindingKind::Stuck).unwrap();
     close(stuck.value, 10.1, 1e-9);
     rollout.termination.kind = TerminationKind::OffRoad;
@@ -339,7 +339,7 @@ fn broken_rollouts_do_not_panic() {
     none.actors[0].states.clear();
     none.obstacles.push(cone(3.0, 0.0));
     let metrics = measure(&network, &way, 10.0, &none);
-    assert!(findings_of(&none, &metrics, &CRITERIA).is_empty());
+    assert!(findings(&none, 0.0, &metrics, &CRITERIA).is_empty());
     none.actors.clear();
     assert!(measure(&network, &way, 10.0, &none).contact.is_none());
     assert!(series(&none).time_s.is_empty());

@@ -144,9 +144,8 @@ fn tested_run(
     recorded: &JudgedRun,
 ) -> Result<JudgedRun, RunError> {
     let mut run = run_scenario(scenario, simulator, suite.profile(), None)?;
-    let from_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
     run.judgement.preventability = preventability(&run.rollout);
-    run.judgement.verdict = Verdict { checks: vec![situation(&run, recorded, from_s)] };
+    run.judgement.verdict = Verdict { checks: vec![situation(&run, recorded)] };
     Ok(run)
 }
 

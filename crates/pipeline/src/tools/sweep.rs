@@ -359,7 +359,7 @@ impl SweepPoints {
 
     fn outcome(&self, scenario: &Scenario, rollout: &Rollout) -> Outcome {
         let metrics = measure(scenario, rollout, &self.profile.failure);
-        let found = findings(scenario, rollout, &metrics, &self.profile.failure);
+        let found = findings(rollout, scenario.draft().ego.handover_s.unwrap_or(0.0), &metrics, &self.profile.failure);
         // The most serious failure stands first among the kinds.
         let failure = found.iter().map(|finding| finding.kind).filter(|kind| kind.is_failure()).min();
         let least = |of: fn(&PartnerMetrics) -> Option<Timed>| {

@@ -3,7 +3,6 @@
 use super::programme::Who;
 use recrash_model::rollout::EGO_ID;
 use recrash_model::scenario::ScenarioDraft;
-use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{Scenario, StopLine};
 
 /// What names in a draft mean.
@@ -38,11 +37,5 @@ impl Who for Names<'_> {
 
 /// Where the ego's path passes stop lines.
 pub fn ego_stop_lines(scenario: &Scenario) -> impl Iterator<Item = StopLine> + '_ {
-    let (path, half_length_m) = (&scenario.ego().path, 0.5 * VehicleSpec::of(scenario.ego().kind).length_m);
-    scenario.control().iter().enumerate().flat_map(move |(control, placed)| {
-        placed.lines.iter().filter_map(move |&(lane, line_m)| {
-            let segment = path.segments.iter().find(|segment| segment.lane == lane)?;
-            Some(StopLine { at_m: segment.start_m + line_m - half_length_m, control })
-        })
-    })
+    scenario.ego_stop_lines()
 }

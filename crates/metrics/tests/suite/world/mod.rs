@@ -172,7 +172,7 @@ pub fn cone(x: f64, y: f64) -> PlacedObstacle {
 }
 
 pub fn measure(network: &RoadNetwork, path: &LanePath, target_speed_mps: f64, rollout: &Rollout) -> Metrics {
-    recrash_metrics::measure_on(&EgoWay { network, path, target_speed_mps }, rollout, &CRITERIA)
+    recrash_metrics::measure_on(&EgoWay::plain(network, path, target_speed_mps), rollout, &CRITERIA)
 }
 
 pub fn close(found: f64, expected: f64, tolerance: f64) {

@@ -235,7 +235,7 @@ fn run(bench: &Bench, files: &mut Files, progress: &dyn Progress) -> Result<Vec<
                 std::fs::create_dir_all(folder).map_err(|source| io("create", folder, source))?;
                 write_suite_file(&path, &content).map_err(|source| io("write", &path, source))?;
                 let recorded = recorded_crash(scenario, bench.profile());
-                let outcome = outcome(&run, test, scenario, recorded.as_ref());
+                let outcome = outcome(&run, test, recorded.as_ref());
                 facts.verdict = if run.failed() { TestVerdict::Failed } else { TestVerdict::Passed }.label();
                 facts.rollout = Some(name);
                 facts.met = outcome.met;

@@ -179,7 +179,7 @@ fn run_of(test: &FrozenTest, scenario: &Scenario, recorded: Option<&JudgedRun>, 
             seed,
             verdict: if run.failed() { TestVerdict::Failed } else { TestVerdict::Passed },
             why: None,
-            outcome: Some(outcome(&run, test, scenario, recorded)),
+            outcome: Some(outcome(&run, test, recorded)),
         },
         // What a program says of itself may hold a key.
         Err(error) => not_run(seed, crate::secrets::scrubber().scrub(&error.why.to_string())),
@@ -187,9 +187,8 @@ fn run_of(test: &FrozenTest, scenario: &Scenario, recorded: Option<&JudgedRun>, 
 }
 
 /// Whether the ego came into the situation of the recorded crash.
-fn met(run: &JudgedRun, recorded: &JudgedRun, scenario: &Scenario) -> bool {
-    let from_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
-    situation(run, recorded, from_s).result == CheckResult::Shown
+fn met(run: &JudgedRun, recorded: &JudgedRun) -> bool {
+    situation(run, recorded).result == CheckResult::Shown
 }
 
 fn not_run(seed: u64, why: String) -> TestRun {
@@ -197,12 +196,7 @@ fn not_run(seed: u64, why: String) -> TestRun {
 }
 
 /// What is kept of a run of a test.
-pub(crate) fn outcome(
-    run: &JudgedRun,
-    test: &FrozenTest,
-    scenario: &Scenario,
-    recorded: Option<&JudgedRun>,
-) -> TestOutcome {
+pub(crate) fn outcome(run: &JudgedRun, test: &FrozenTest, recorded: Option<&JudgedRun>) -> TestOutcome {
     TestOutcome {
         state_hash: run.state_hash.clone(),
         termination: run.metrics.termination,
@@ -214,6 +208,6 @@ pub(crate) fn outcome(
         preventability: preventability(&run.rollout),
         cause: run.cause,
         faithful: test.expectation.is_some().then(|| run.faithful()),
-        met: recorded.map(|recorded| met(run, recorded, scenario)),
+        met: recorded.map(|recorded| met(run, recorded)),
     }
 }

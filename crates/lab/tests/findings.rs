@@ -1,0 +1,119 @@
+//! What is found of every case under `cases/`, with each built-in ego: a golden.
+
+use recrash_lab::{run_scenario, situation};
+use recrash_model::metrics::{CheckResult, FindingKind};
+use recrash_model::profile::{
+    Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
+};
+use recrash_model::run::JudgedRun;
+use recrash_roads::Scenario;
+use recrash_sim::{Ego, Native};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+const EGOS: [Ego; 4] = [Ego::Recorded, Ego::Idm, Ego::MetadriveIdm, Ego::Reference];
+
+/// The limits of the profile `open`.
+fn profile() -> SystemProfile {
+    SystemProfile {
+        format: PROFILE_FORMAT.to_owned(),
+        name: "open".to_owned(),
+        description: String::new(),
+        ego: "metadrive-idm".to_owned(),
+        records: RecordRules { dedupe: Dedupe::None, tells: Tells::Templates },
+        expresses: Expressible {
+            road_types: Vec::new(),
+            sv_movements: Vec::new(),
+            cp_movements: Vec::new(),
+            work_zone: true,
+            partner_kinds: Vec::new(),
+            min_speed_mps: 0.0,
+            max_speed_mps: 30.0,
+            max_traffic_density: 1.0,
+        },
+        excludes: Excluded { collisions: Vec::new() },
+        failure: FailureCriteria {
+            min_gap_m: 0.3,
+            hard_braking_mps2: 4.0,
+            phantom_braking_mps2: 3.0,
+            oscillation_reversals: 4,
+            oscillation_window_s: 5.0,
+            lane_departure_m: 0.3,
+        },
+    }
+}
+
+/// All cases, in order of their names: paths below `cases/` without `.json`.
+fn cases() -> BTreeMap<String, Scenario> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let inside = |folder: &Path| -> Vec<PathBuf> {
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
+    };
+    let files = inside(&root).into_iter().filter(|path| path.is_dir()).flat_map(|folder| inside(&folder));
+    let mut cases = BTreeMap::new();
+    for file in files.filter(|file| file.extension().is_some_and(|extension| extension == "json")) {
+        let name = file.strip_prefix(&root).unwrap().with_extension("").to_string_lossy().replace('\\', "/");
+        let draft = recrash_roads::read_draft(&std::fs::read_to_string(&file).unwrap()).unwrap().value;
+        cases.insert(name, recrash_roads::check(draft).unwrap().value);
+    }
+    cases
+}
+
+fn line(name: &str, ego: Ego, run: &JudgedRun) -> String {
+    let mut line = format!("{name} {ego}:");
+    for finding in &run.findings {
+        write!(line, " {} {:.2} at {:.1} s;", finding.kind.label(), finding.value, finding.time_s).unwrap();
+    }
+    if run.findings.is_empty() {
+        line += " nothing;";
+    }
+    match run.cause {
+        Some(cause) => write!(line, " it {}", cause.label()).unwrap(),
+        None => _ = line.pop(),
+    }
+    line
+}
+
+/// To renew it after a change run with `RECRASH_RENEW_GOLDENS=1`; that run fails.
+#[test]
+fn what_is_found_of_each_case_is_as_it_was_looked_at() {
+    let (profile, mut golden, mut counts) = (profile(), String::new(), BTreeMap::<FindingKind, usize>::new());
+    for (name, scenario) in cases() {
+        for ego in EGOS {
+            let run = run_scenario(&scenario, &Native::new(ego), &profile, None).unwrap();
+            golden += &line(&name, ego, &run);
+            golden += "\n";
+            for finding in &run.findings {
+                *counts.entry(finding.kind).or_default() += 1;
+            }
+        }
+    }
+    for (kind, count) in counts {
+        writeln!(golden, "all: {} {count}", kind.label()).unwrap();
+    }
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/findings.txt");
+    if std::env::var_os("RECRASH_RENEW_GOLDENS").is_some() {
+        std::fs::write(file, golden).unwrap();
+        panic!("the golden has been renewed: look at the difference, then run again without RECRASH_RENEW_GOLDENS");
+    }
+    let committed = std::fs::read_to_string(file).unwrap();
+    for (is, was) in golden.lines().zip(committed.lines()) {
+        assert_eq!(is, was);
+    }
+    assert_eq!(golden.lines().count(), committed.lines().count());
+}
+
+/// Whoever passes another obstacle than the one that was hit has not met it.
+#[test]
+fn the_situation_is_that_of_what_was_hit_in_the_record() {
+    let scenario = &cases()["kinds/24-debris-and-pothole"];
+    let run = |ego: Ego| run_scenario(scenario, &Native::new(ego), &profile(), None).unwrap();
+    let mut recorded = run(Ego::Recorded);
+    let mut tested = run(Ego::Recorded);
+    recorded.judgement.metrics.obstacles_hit = vec![1];
+    let met = |tested: &JudgedRun| situation(tested, &recorded).result == CheckResult::Shown;
+    assert!(met(&tested));
+    tested.judgement.metrics.obstacle_gaps[1].value = 20.0;
+    assert!(!met(&tested), "{:?}", tested.metrics.obstacle_gaps);
+}
