@@ -3,11 +3,11 @@
 mod partners;
 mod scene;
 
-use crate::{ExportError, ExportFile};
 use crate::opendrive::DriveMap;
 use crate::openscenario::names::Declarations;
 use crate::openscenario::scene::is_scene;
 use crate::xml::{number, rounded};
+use crate::{ExportError, ExportFile};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
@@ -267,7 +267,13 @@ fn on_way(way: &str, s: &str, t: &str) -> String {
 }
 
 /// A road user at a place.
-fn road_user(context: &Context<'_>, placement: &Placement, start: &Placed<'_>, behavior: &str, on_road: bool) -> String {
+fn road_user(
+    context: &Context<'_>,
+    placement: &Placement,
+    start: &Placed<'_>,
+    behavior: &str,
+    on_road: bool,
+) -> String {
     let Placed { at, speed } = start;
     let spec = VehicleSpec::of(placement.kind);
     let stands = Policy::Stopped { depart_step: None, target_speed_mps: 0.0 };

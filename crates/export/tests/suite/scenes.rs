@@ -64,7 +64,8 @@ fn an_edit_of_what_was_recorded_is_told_and_not_read() {
         assert_ne!(edited, text, "{from}");
         let read = import(&edited).expect("read");
         assert_eq!(read.value.draft(), &draft(RED_LIGHT));
-        let told: Vec<_> = read.diagnostics.iter().map(|told| (told.code.as_str(), told.location.path.as_deref())).collect();
+        let told: Vec<_> =
+            read.diagnostics.iter().map(|told| (told.code.as_str(), told.location.path.as_deref())).collect();
         assert_eq!(told, [("openscenario.edited", Some(part))]);
     }
 }
@@ -81,7 +82,7 @@ fn scenic_gets_everybody_with_what_was_recorded_and_says_what_it_does_not_carry(
         assert!(text.contains(&format!("with behavior Recorded(TRACK{at})")), "{}", track.id);
         assert!(text.contains(&format!("as \"contact with {}\"", track.id)), "{}", track.id);
     }
-    assert_eq!(text.matches("new Object at").count(), rollout.obstacles.len());
+    assert_eq!(text.matches("\nnew Object at").count(), rollout.obstacles.len());
     assert!(text.contains(&format!("until seconds() >= {}\n", draft(RED_LIGHT).ego.handover_s.unwrap_or(0.0))));
     for remark in ["nobody reacts", "cyclist is not in the world before", "What signals show is not carried"] {
         assert!(text.contains(remark), "{remark}");
