@@ -73,7 +73,7 @@ def of_scenes(recrash: str, folder: Path) -> list[Export]:
         target.mkdir(parents=True)
         ego = ["--ego", "recorded"] if "recorded" in scenario["ego"] else []
         run(recrash, "simulate", "--quiet", path, *ego, "--rollout", target / "rollout.json")
-        run(recrash, "export", "--quiet", path, "--to", "scenarionet,openscenario", "--to-dir", target)
+        run(recrash, "export", "--quiet", path, "--to", "scenarionet,openscenario,scenic", "--to-dir", target)
         rollout = json.loads((target / "rollout.json").read_text())
         found.append(Export("scenes", scenario["id"], scenario, rollout, target, []))
     return found

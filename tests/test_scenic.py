@@ -29,6 +29,24 @@ def test_scenic_on_metadrive_drives_each_map_as_our_simulator_does(cases: list[E
     check_driven(cases, answers("scenic", "scenic_run.py", "metadrive", "50", *scenic_files(cases)), 0.5)
 
 
+def test_scenic_shows_recorded_road_users_where_they_were(scenes: list[Export]) -> None:
+    """Scenes whose road users have plans: everybody, the ego too, over the whole recording; who is not in the world stands
+    1000 m to the east."""
+    found = answers("scenic", "scenic_run.py", "newtonian", "1200", *scenic_files(scenes), timeout_s=1800)
+    for scene, report in zip(scenes, found, strict=True):
+        assert "error" not in report, report
+        actors, trajectory = scene.rollout["actors"], report["trajectory"]
+        assert [len(trajectory), len(trajectory[0])] == [len(actors[0]["states"]), len(actors)], scene
+        for step, places in enumerate(trajectory):
+            for actor, (x, y, *_) in zip(actors, places):
+                away = step < round(actor.get("appears_s", 0) / 0.1) or step >= actor.get("gone_s", math.inf) / 0.1 - 1e-6
+                state = actor["states"][step]
+                off = math.dist((x, y), (state["x"] + 1000 * away, state["y"]))
+                assert off <= 0.01, f"{scene} {actor['id']}: {off:.3f} m at {0.1 * step:.1f} s"
+        # Somebody else than the ego is there.
+        assert len(actors) == 1 or report["objects"] >= 2, scene
+
+
 def scenic_files(exports: list[Export]) -> list[str]:
     return [str(export.path("scenic", ".scenic")) for export in exports]
 

@@ -3,6 +3,7 @@
 mod edges;
 mod fuzz;
 mod licences;
+mod pages;
 mod steps;
 mod tally;
 mod tidy;

@@ -21,10 +21,12 @@ pub fn run(_: &mut Tally) -> Result {
     collect(&root, &mut files);
     let mut problems = map_problems(&root);
     problems.extend(crate::edges::problems(&root)?);
+    let works = crate::pages::works(&fs::read_to_string(root.join("docs/references.bib")).unwrap_or_default());
     for file in &files {
         let name = file.strip_prefix(&root).unwrap_or(file).to_string_lossy().replace('\\', "/");
         if let Ok(text) = fs::read_to_string(file) {
             problems.extend(file_problems(&name, &text));
+            problems.extend(crate::pages::problems(&root, &name, &text, &works));
         }
     }
     for problem in &problems {
@@ -88,34 +90,35 @@ fn file_problems(name: &str, text: &str) -> Vec<String> {
         problems.push(format!("{name}: {lines} lines; split it, {MAX_LINES} is the most"));
     }
     if name.ends_with(".rs") && name != "xtask/src/tidy.rs" {
-        for (pattern, advice) in [
-            ("#[ignore", "run the test or remove it"),
-            ("todo!(", "write it"),
-            ("unimplemented!(", "write it"),
-            ("use std::collections::HashMap", "use BTreeMap: the order of a HashMap is not the same twice"),
-            ("use std::collections::HashSet", "use BTreeSet: the order of a HashSet is not the same twice"),
-        ] {
+        for (pattern, advice) in
+            [("#[ignore", "run the test or remove it"), ("todo!(", "write it"), ("unimplemented!(", "write it")]
+        {
             if text.contains(pattern) {
                 problems.push(format!("{name}: holds `{pattern}`; {advice}"));
+            }
+        }
+        for (path, advice) in [
+            ("std::collections::HashMap", "use BTreeMap: the order of a HashMap is not the same twice"),
+            ("std::collections::HashSet", "use BTreeSet: the order of a HashSet is not the same twice"),
+        ] {
+            if uses(text, path) {
+                problems.push(format!("{name}: uses `{path}`; {advice}"));
             }
         }
         let may_speak = ["crates/agents/", "crates/fetch/"].iter().any(|folder| name.starts_with(folder));
         if !may_speak && !test && name.starts_with("crates/") {
             for import in ["ureq::", "std::net"] {
-                if text.contains(import) {
+                if uses(text, import) {
                     problems.push(format!("{name}: uses {import}; only agents and fetch speak to a network"));
                 }
             }
         }
         if let Some(stage) = stage_crate(name) {
             let code = text.split("#[cfg(test)]").next().unwrap_or_default();
-            // Patience with a provider is measured by the clock; nothing that is written depends on it.
-            let test = test || name == "crates/agents/src/llm/live.rs";
-            for import in
-                ["std::fs", "std::env", "std::thread", "time::Instant", "time::SystemTime", "std::net", "std::process"]
-            {
-                if !test && !name.contains("/examples/") && !name.contains("/benches/") && code.contains(import) {
-                    problems.push(format!("{name}: stage crate {stage} uses {import}; that belongs in pipeline"));
+            let test = test || name.contains("/examples/") || name.contains("/benches/");
+            for path in BEYOND_VALUES {
+                if !test && !ALLOWED.contains(&(name, path)) && uses(code, path) {
+                    problems.push(format!("{name}: stage crate {stage} uses {path}; that belongs in pipeline"));
                 }
             }
         }
@@ -123,10 +126,76 @@ fn file_problems(name: &str, text: &str) -> Vec<String> {
     problems
 }
 
+/// What a crate that only turns values into values has no use for.
+const BEYOND_VALUES: [&str; 7] =
+    ["std::fs", "std::env", "std::thread", "std::time::Instant", "std::time::SystemTime", "std::net", "std::process"];
+
+/// Where it is used all the same. Nothing that is written depends on it: patience with a provider, and threads of a batch that
+/// stay awake for a moment between two steps.
+const ALLOWED: [(&str, &str); 5] = [
+    ("crates/agents/src/llm/live.rs", "std::net"),
+    ("crates/agents/src/llm/live.rs", "std::thread"),
+    ("crates/agents/src/llm/live.rs", "std::time::Instant"),
+    ("crates/gym/src/batch.rs", "std::thread"),
+    ("crates/gym/src/batch.rs", "std::time::Instant"),
+];
+
+/// Whether code names a path: as it is, or as one of several in the braces of a `use`.
+fn uses(code: &str, path: &str) -> bool {
+    let trees = code.split(';').filter_map(|part| Some(part.rsplit_once("use ")?.1)).filter(|tree| tree.contains('{'));
+    code.contains(path) || trees.flat_map(|tree| expanded("", tree)).any(|found| is_below(&found, path))
+}
+
+fn is_below(found: &str, path: &str) -> bool {
+    found.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+}
+
+/// The paths of a `use`: `a::{b, c::{d, e}}` is `a::b`, `a::c::d` and `a::c::e`.
+fn expanded(before: &str, tree: &str) -> Vec<String> {
+    let tree = tree.trim();
+    let Some((path, inner)) = tree.split_once('{') else {
+        return vec![format!("{before}{}", tree.split(" as ").next().unwrap_or(tree))];
+    };
+    let inner = inner.trim_end().strip_suffix('}').unwrap_or(inner);
+    let before = format!("{before}{}", path.trim());
+    let (mut depth, mut start, mut all) = (0, 0, Vec::new());
+    for (at, c) in inner.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                all.extend(expanded(&before, &inner[start..at]));
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    all.extend(expanded(&before, &inner[start..]));
+    all
+}
+
 /// The crate a file belongs to, where it is a stage: value in, value out.
 fn stage_crate(name: &str) -> Option<&str> {
     let stage = name.strip_prefix("crates/")?.split('/').next()?;
-    let stages = ["model", "records", "select", "roads", "sim", "metrics", "search", "report", "agents"];
+    let stages = [
+        "agents",
+        "drivers",
+        "embed",
+        "export",
+        "gym",
+        "lab",
+        "metrics",
+        "model",
+        "plan",
+        "reader",
+        "reconstruct",
+        "records",
+        "report",
+        "roads",
+        "search",
+        "select",
+        "sim",
+    ];
     stages.contains(&stage).then_some(stage)
 }
 
@@ -149,6 +218,22 @@ mod tests {
     fn a_stage_that_opens_files_is_told() {
         assert_eq!(file_problems("crates/sim/src/a.rs", "use std::fs::File;").len(), 1);
         assert_eq!(file_problems("crates/pipeline/src/a.rs", "use std::fs::File;").len(), 0);
+    }
+
+    #[test]
+    fn an_import_is_found_however_it_is_written() {
+        for code in [
+            "use std::time::Instant;",
+            "use std::time::{Duration, Instant};",
+            "use std::{\n    collections::BTreeMap,\n    time::{Duration, Instant as Now},\n};",
+            "let now = std::time::Instant::now();",
+        ] {
+            let told = file_problems("crates/lab/src/a.rs", code);
+            assert_eq!(told.len(), 1, "{code}: {told:?}");
+        }
+        assert_eq!(file_problems("crates/lab/src/a.rs", "use std::time::{Duration};").len(), 0);
+        assert_eq!(file_problems("crates/cli/src/a.rs", "use std::collections::{BTreeMap, HashMap};").len(), 1);
+        assert_eq!(expanded("", "a::{b, c::{d, e}}"), ["a::b", "a::c::d", "a::c::e"]);
     }
 
     #[test]

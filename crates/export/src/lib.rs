@@ -142,7 +142,7 @@ pub fn export(
 ) -> Result<Vec<ExportFile>, ExportError> {
     match options.format {
         Format::OpenScenario => openscenario::files(scenario, rollout, parameters, options),
-        Format::Scenic => Ok(scenic::files(scenario, parameters)),
+        Format::Scenic => scenic::files(scenario, rollout, parameters),
         Format::MetaDrive => metadrive::files(scenario),
         Format::CommonRoad => commonroad::files(scenario, rollout, options),
         Format::ScenarioNet => scenarionet::files(scenario, rollout),

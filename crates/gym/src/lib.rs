@@ -10,7 +10,8 @@
 //! The same seed and actions give the same bytes for any number of threads. A step allocates nothing, unless episodes are
 //! judged. An episode is the run that the simulator gives: same controls, same states, same hash.
 //!
-//! What this crate does **not** do: it knows nothing of Python, opens no file and reads no clock.
+//! What this crate does **not** do: it knows nothing of Python and opens no file. A clock tells its threads alone how long they stay awake
+//! between two steps (200 µs); nothing that is computed depends on it.
 
 mod batch;
 mod handles;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  recrash import intersection-straight-straight-90102-28.xosc             writes intersection-straight-straight-90102-28.json
+  recrash import intersection-straight-straight-90101-317.xosc             writes intersection-straight-straight-90101-317.json
   recrash import edited.xosc --out edited.json --simulate           and runs it
   recrash import crash.json --out scenario.json                     the paper's JSON dialect
 
@@ -84,11 +84,11 @@ fn show(source: &Path, imported: &Imported) {
     };
     println!("{}, read as {kind} -> {}", source.display(), imported.file.display());
     println!(
-        "{}: map {}, partners {}, obstacles {}, {} s",
+        "{}: map {}, road users {}, things {}, {} s",
         scenario.id,
         scenario.map.letter(),
-        scenario.partners.len(),
-        scenario.obstacles.len(),
+        1 + scenario.partners.len() + scenario.actors.len(),
+        scenario.obstacles.len() + scenario.objects.len(),
         scenario.duration_s
     );
 }

@@ -39,7 +39,7 @@ const EXAMPLES: &str = "\
 Examples:
   recrash run                                            the built-in sample, everything else by default, into suite/
   recrash run --records SGO-2021-01_Incident_Reports_ADS.csv --profile paper --out paper-suite
-  recrash simulate suite/6-tuned/intersection-straight-straight-90102-28.json --ego idm
+  recrash simulate suite/6-tuned/intersection-straight-straight-90101-317.json --ego idm
   recrash export suite --to openscenario,scenic          the suite for other tools, in suite/exports/
   recrash run --profile paper --agent gpt-5-mini --max-cost 2    a language model in the roles; recrash prompt shows its questions
   recrash records SGO-2021-01_Incident_Reports_ADS.csv   what is in a crash file, and what of it can be used
@@ -77,10 +77,6 @@ Examples:
   recrash tune --aim severity                            the worst contact instead of the nearest failure
 
 Exit code 5: a scenario is not true to its record as tuned; the results are written all the same.";
-const REPORT_EXAMPLES: &str = "\
-Examples:
-  recrash report                                         of the suite in suite/
-  recrash report --out paper-suite --json";
 const SCHEMA_EXAMPLES: &str = "\
 Examples:
   recrash schema > scenario.schema.json                  for an editor or a validator";
@@ -127,8 +123,7 @@ pub enum Command {
     )]
     Triage(SuiteArgs),
     /// Stage 7: write report.html, junit.xml and results.csv.
-    #[command(after_help = REPORT_EXAMPLES)]
-    Report(SuiteArgs),
+    Report(run::ReportArgs),
     /// Write the scenarios of a suite, or one scenario file, in the formats of other tools.
     Export(export::ExportArgs),
     /// Read a scenario back: OpenSCENARIO that recrash wrote, or the paper's JSON dialect.
@@ -188,19 +183,12 @@ impl Command {
     /// Whether the same command goes on where it was stopped: what works in a suite, or with a ledger.
     pub fn goes_on(&self) -> bool {
         use Command::{Design, Eval, Narrate, Records, Report, Run, Select, Simulate, Triage, Tune};
-        matches!(
-            self,
-            Run(_)
-                | Records(_)
-                | Select(_)
-                | Narrate(_)
-                | Design(_)
-                | Simulate(_)
-                | Tune(_)
-                | Triage(_)
-                | Report(_)
-                | Eval(_)
-        )
+        match self {
+            Records(args) => args.out.is_some(),
+            Simulate(args) => args.scenario.as_ref().is_none_or(|given| given.is_dir()),
+            Run(_) | Select(_) | Narrate(_) | Design(_) | Tune(_) | Triage(_) | Report(_) | Eval(_) => true,
+            _ => false,
+        }
     }
 }
 
@@ -260,6 +248,16 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn only_what_keeps_something_goes_on() {
+        let goes_on = |words: &[&str]| Cli::try_parse_from(words).expect("it is a command").command.goes_on();
+        assert!(goes_on(&["recrash", "run"]) && goes_on(&["recrash", "records", "--out", "suite"]));
+        assert!(goes_on(&["recrash", "simulate"]));
+        for nothing in [&["recrash", "records"][..], &["recrash", "reconstruct"], &["recrash", "simulate", "a.json"]] {
+            assert!(!goes_on(nothing), "{nothing:?}");
+        }
     }
 
     #[test]

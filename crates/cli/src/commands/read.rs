@@ -11,6 +11,7 @@ use recrash_pipeline::{
     Accounts, Options, Output as File, PipelineError, TableFormat, read_accounts, record_outputs, told_facts,
     write_accounts,
 };
+use serde_json::Value;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -224,11 +225,25 @@ fn highlighted(narrative: &str, spans: &[(usize, usize)]) -> String {
     shown
 }
 
+/// A value for a cell, in words: `10.3 m/s (approach)`, `stall side right`.
+fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Null => "not told".to_owned(),
+        Value::Array(values) => values.iter().map(text).collect::<Vec<_>>().join(", "),
+        Value::Object(fields) => match (fields.get("mps").and_then(Value::as_f64), fields.get("meaning")) {
+            (Some(mps), Some(meaning)) => format!("{mps:.1} m/s ({})", text(meaning)),
+            _ => fields.iter().map(|(name, inner)| format!("{name} {}", text(inner))).collect::<Vec<_>>().join(", "),
+        },
+        Value::Bool(_) | Value::Number(_) => value.to_string(),
+    }
+}
+
 /// Facts of an account in the order of the type: path, value, source.
 fn listed(account: &Account) -> Vec<(String, String, Source)> {
-    fn walk(path: &str, value: &serde_json::Value, all: &mut Vec<(String, String, Source)>) {
+    fn walk(path: &str, value: &Value, all: &mut Vec<(String, String, Source)>) {
         match value {
-            serde_json::Value::Object(fields) => {
+            Value::Object(fields) => {
                 let source =
                     fields.get("source").and_then(|source| serde_json::from_value::<Source>(source.clone()).ok());
                 if let Some(source) = source {
@@ -246,14 +261,30 @@ fn listed(account: &Account) -> Vec<(String, String, Source)> {
                     walk(&inner_path, inner, all);
                 }
             }
-            serde_json::Value::Array(values) => values.iter().for_each(|inner| walk(path, inner, all)),
+            Value::Array(values) => values.iter().for_each(|inner| walk(path, inner, all)),
             _ => {}
         }
-    }
-    fn text(value: &serde_json::Value) -> String {
-        value.as_str().map_or_else(|| value.to_string(), str::to_owned)
     }
     let mut all = Vec::new();
     walk("", &serde_json::to_value(account).unwrap_or_default(), &mut all);
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_told_in_words() {
+        for (value, says) in [
+            (serde_json::json!({ "mps": 0.89408, "meaning": "approach" }), "0.9 m/s (approach)"),
+            (serde_json::json!({ "stall": { "side": "right" } }), "stall side right"),
+            (serde_json::json!({ "driveway": { "side": null } }), "driveway side not told"),
+            (serde_json::json!({ "device": "signal", "state": "red" }), "device signal, state red"),
+            (serde_json::json!("front"), "front"),
+            (serde_json::json!(true), "true"),
+        ] {
+            assert_eq!(text(&value), says);
+        }
+    }
 }

@@ -86,6 +86,15 @@ pub fn run(args: &SweepArgs, output: Output) -> Result<(), PipelineError> {
             ids.join(", ")
         );
     }
+    if !output.quiet && !sweep.fixed().is_empty() {
+        let ids = sweep.fixed();
+        eprintln!(
+            "  {} {} scenarios in which no number may move are not swept: {}",
+            yellow("warning"),
+            ids.len(),
+            ids.join(", ")
+        );
+    }
     let bar = bar(args.rollouts, output);
     let begun = Instant::now();
     let summary = sweep.run(&|done| bar.set_position(done))?;

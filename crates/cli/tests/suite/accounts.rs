@@ -20,6 +20,17 @@ fn every_case_shows_its_own_crash_and_says_whether_the_system_met_it() {
     let untold: u64 = accounts["untold"].as_array().unwrap().iter().map(|of| of[1].as_u64().unwrap()).sum();
     assert!(told > 100 && told + untold == readable, "{told} of {readable}, {untold} not");
     assert_eq!(summary["usable"].as_u64().unwrap(), told);
+    // The funnel counts the same incidents; who reports no crash is none of them.
+    let left = |name: &str| {
+        let funnel = summary["funnel"].as_array().unwrap();
+        funnel.iter().find(|step| step["name"] == name).unwrap()["remaining"].as_u64().unwrap()
+    };
+    assert_eq!(left("one report an incident"), accounts["incidents"].as_u64().unwrap());
+    assert_eq!((left("narrative readable"), left("told as it happened")), (readable, told));
+    let (code, shown, _) = place.run(&["read", "--json"]);
+    let read: Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!((code, read["incidents"].as_u64()), (0, accounts["incidents"].as_u64()));
+    assert_eq!(read["accounts"].as_array().unwrap().len() as u64, readable);
     let cases = cases(&place);
     assert_eq!(cases.len(), 12);
     for case in &cases {

@@ -190,3 +190,29 @@ fn a_model_that_cannot_be_got_leaves_nothing_and_tells_another_way() {
     let left: Vec<_> = std::fs::read_dir(place.path("cache")).unwrap().collect();
     assert!(left.is_empty(), "{left:?}");
 }
+
+#[test]
+fn scenarios_that_the_help_names_are_made_by_the_default_run() {
+    let place = Place::new();
+    for stage in [&["records", "--out", "suite"][..], &["select"]] {
+        let (code, _, error) = place.run(&[stage, &["--quiet", "--profile", "open"]].concat());
+        assert_eq!(code, 0, "{error}");
+    }
+    let selection: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(place.path("suite/2-selection.json")).unwrap()).unwrap();
+    let made: Vec<&str> =
+        selection["clusters"].as_array().unwrap().iter().map(|pick| pick["scenario_id"].as_str().unwrap()).collect();
+    let mut named = 0;
+    for help in [&["--help"][..], &["simulate", "--help"], &["export", "--help"], &["import", "--help"]] {
+        let (_, text, _) = place.run(help);
+        let words =
+            text.split_whitespace().filter(|word| word.starts_with("suite/6-tuned/") || word.contains("-straight-"));
+        for word in words {
+            let file = word.rsplit('/').next().unwrap();
+            let id = file.rsplit_once('.').map_or(file, |(id, _)| id);
+            assert!(made.contains(&id), "{id} of {help:?} is none of {made:?}");
+            named += 1;
+        }
+    }
+    assert!(named >= 5, "{named}");
+}

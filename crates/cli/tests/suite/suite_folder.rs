@@ -242,3 +242,30 @@ fn an_interrupted_sweep_leaves_nothing_behind() {
     assert_eq!((ended.status.code(), String::from_utf8_lossy(&ended.stderr).trim()), (Some(130), "interrupted"));
     assert_eq!(files(place.folder()), [""; 0]);
 }
+
+#[test]
+fn a_crash_file_that_cannot_be_read_leaves_no_suite_behind() {
+    let place = Place::new();
+    std::fs::write(place.path("wrong.csv"), "a,b\n1,2\n").unwrap();
+    for wrong in ["nope.csv", "wrong.csv"] {
+        let (code, _, error) = place.run(&["run", "--quiet", "--records", wrong]);
+        assert!(code != 0 && error.contains(wrong), "{error}");
+        assert!(!place.path("suite").exists(), "{wrong}");
+    }
+    let (code, _, error) = place.run(&["records", "--quiet", "--out", "suite"]);
+    assert_eq!(code, 0, "the corrected command goes: {error}");
+    // A suite that is there stays as it is.
+    let before = std::fs::read(place.path("suite/suite.json")).unwrap();
+    let (code, _, _) = place.run(&["run", "--quiet", "--replace", "--records", "nope.csv"]);
+    assert_ne!(code, 0);
+    assert!(std::fs::read(place.path("suite/suite.json")).unwrap() == before);
+}
+
+#[test]
+fn the_report_takes_the_folder_as_other_commands_do() {
+    let (place, _) = small_suite(&[]);
+    std::fs::rename(place.path("suite"), place.path("other")).unwrap();
+    let (code, _, error) = place.run(&["report", "other", "--quiet"]);
+    assert_eq!(code, 0, "{error}");
+    assert_eq!(place.run(&["report", "other", "--out", "suite"]).0, 2);
+}

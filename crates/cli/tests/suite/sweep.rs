@@ -138,6 +138,38 @@ fn a_deleted_scenario_of_a_suite_is_told() {
 }
 
 #[test]
+fn a_scenario_in_which_nothing_may_move_is_skipped_and_told() {
+    let case = Case::new();
+    let (suite, out) = (case.out("s").display().to_string(), case.out("a.parquet").display().to_string());
+    copy(&Place::made(&SMALL).path("suite"), &case.out("s"));
+    let sweep = |more: &[&str]| {
+        recrash(&[&["sweep", &suite, "-n", "4", "--out", &out], more].concat()).output().expect("it runs")
+    };
+    let logs = std::fs::read_dir(case.out("s/6-tuned")).expect("a folder").map(|entry| entry.expect("a name").path());
+    let mut logs: Vec<PathBuf> = logs.filter(|path| path.to_string_lossy().ends_with(".search.json")).collect();
+    logs.sort();
+    let fix = |path: &Path| {
+        let mut log: serde_json::Value = serde_json::from_slice(&std::fs::read(path).expect("a log")).expect("JSON");
+        log["parameters"] = serde_json::json!([]);
+        std::fs::write(path, log.to_string()).expect("written");
+    };
+    fix(&logs[0]);
+    let id = logs[0].file_name().expect("a name").to_string_lossy().replace(".search.json", "");
+    let output = sweep(&["--json"]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success() && told.contains("1 scenarios in which no number may move") && told.contains(&id),
+        "{told}"
+    );
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((&summary["fixed"], &summary["rollouts"]), (&serde_json::json!([id]), &serde_json::json!(4)));
+    logs[1..].iter().for_each(|path| fix(path));
+    let output = sweep(&[]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(3) && told.contains("nothing varies in"), "{told}");
+}
+
+#[test]
 fn what_cannot_vary_is_refused_with_its_pointer() {
     let case = Case::new();
     let out = case.out("a.parquet").display().to_string();

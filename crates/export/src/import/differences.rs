@@ -1,7 +1,8 @@
 //! Where a file says something else than recrash would write for the scenario it describes: told, and not read.
 
 use crate::openscenario::names::Declaration;
-use crate::openscenario::{LANES, STORYBOARD};
+use crate::openscenario::scene::whole;
+use crate::openscenario::{ENTITIES, LANES, STORYBOARD};
 use crate::xml::Element;
 use crate::{ExportOptions, Format};
 use recrash_model::tuning::Parameter;
@@ -38,6 +39,9 @@ pub(super) fn differences(root: &Element, original: &Scenario, declared: &[Decla
             }
         })
         .collect();
+    if holds_whole(root) {
+        return changed(root);
+    }
     let options = ExportOptions::new(Format::OpenScenario);
     let expected = crate::openscenario::scenario_element(original, &parameters, &options);
     let mut list = Vec::new();
@@ -46,17 +50,36 @@ pub(super) fn differences(root: &Element, original: &Scenario, declared: &[Decla
             compare(found, expected, &format!("OpenSCENARIO/{part}"), &mut list);
         }
     }
-    // What depends on a rollout cannot be compared, but whether it is as it was written can be told.
-    let written = root.find("FileHeader").and_then(|header| header.find("Properties")).and_then(|properties| {
-        properties.all("Property").find(|property| property.attribute("name") == Some(STORYBOARD))?.attribute("value")
-    });
-    if let (Some(storyboard), Some(written), true) = (root.find("Storyboard"), written, list.is_empty())
-        && storyboard.fingerprint() != written
-    {
-        let message = "what a partner does was changed since recrash wrote it; this is not read".to_owned();
-        list.push(edited(storyboard, "OpenSCENARIO/Storyboard", message));
+    if list.is_empty() {
+        list = changed(root);
     }
     list
+}
+
+/// Whether the header holds the whole scenario: everybody follows what was recorded, and nothing can be compared with it.
+fn holds_whole(root: &Element) -> bool {
+    properties(root).is_some_and(|properties| whole(properties).is_some())
+}
+
+fn properties(root: &Element) -> Option<&Element> {
+    root.find("FileHeader")?.find("Properties")
+}
+
+/// What depends on a rollout cannot be compared, but whether it is as it was written can be told.
+fn changed(root: &Element) -> Vec<Diagnostic> {
+    let written = |name: &str| {
+        let found = properties(root)?.all("Property").find(|property| property.attribute("name") == Some(name))?;
+        found.attribute("value")
+    };
+    let parts = [
+        ("Entities", ENTITIES, "who takes part was changed since recrash wrote it; this is not read"),
+        ("Storyboard", STORYBOARD, "what a road user does was changed since recrash wrote it; this is not read"),
+    ];
+    let other = parts.into_iter().filter_map(|(part, fingerprint, message)| {
+        let (there, written) = (root.find(part)?, written(fingerprint)?);
+        (there.fingerprint() != written).then(|| edited(there, &format!("OpenSCENARIO/{part}"), message.to_owned()))
+    });
+    other.collect()
 }
 
 fn compare(found: &Element, expected: &Element, place: &str, list: &mut Vec<Diagnostic>) {

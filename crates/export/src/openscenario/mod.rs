@@ -144,6 +144,9 @@ pub(crate) fn scenario_element(scenario: &Scenario, parameters: &[Parameter], op
 /// The property of the header that holds the storyboard's fingerprint.
 pub(crate) const STORYBOARD: &str = "recrash.storyboard";
 
+/// The same for the entities of a scenario that the header holds as a whole.
+pub(crate) const ENTITIES: &str = "recrash.entities";
+
 /// How the maneuvers end that say where across its lane a partner is.
 pub(crate) const LANES: &str = ": lanes";
 

@@ -5,7 +5,7 @@ use super::storyboard::{
     at_time, controller_is, event, event_on, follow_trajectory, group, maneuver, private, reference_of, set_variable,
     story, teleport,
 };
-use super::{Context, STORYBOARD, entities, header, storyboard};
+use super::{Context, ENTITIES, STORYBOARD, entities, header, storyboard};
 use crate::openscenario::environment::environment_action;
 use crate::openscenario::names::Declarations;
 use crate::openscenario::places::world_position;
@@ -18,17 +18,18 @@ use recrash_model::scenario::{Aspect, Device, MapSpec, Phase, ScenarioDraft};
 pub(crate) const WHOLE: &str = "recrash.scenario/2";
 
 /// Whether a scenario is told by what was recorded alone: road users have plans.
-pub(super) fn is_scene(draft: &ScenarioDraft) -> bool {
+pub(crate) fn is_scene(draft: &ScenarioDraft) -> bool {
     !draft.actors.is_empty() || draft.ego.recorded.is_some()
 }
 
 /// The document.
 pub(super) fn document(context: &Context<'_>, rollout: &Rollout, title: &str, map_file: &str) -> Element {
     let draft = context.scenario.draft();
-    let storyboard = storyboard_of(context, rollout);
+    let (entities, storyboard) = (entities_of(context, rollout), storyboard_of(context, rollout));
     let mut properties = vec![
         property("recrash.id", &draft.id),
         property(WHOLE, &serde_json::to_string(draft).unwrap_or_default()),
+        property(ENTITIES, &entities.fingerprint()),
         property(STORYBOARD, &storyboard.fingerprint()),
     ];
     let remarks = remarks(draft).into_iter().enumerate();
@@ -39,7 +40,7 @@ pub(super) fn document(context: &Context<'_>, rollout: &Rollout, title: &str, ma
         storyboard::variables(),
         Element::new("CatalogLocations"),
         road_network(draft, map_file),
-        entities_of(context, rollout),
+        entities,
         storyboard,
     ])
 }

@@ -1,12 +1,15 @@
 //! Scenic 3: one readable file per scenario that runs on the Newtonian simulator and on MetaDrive.
 
 mod partners;
+mod scene;
 
-use crate::ExportFile;
 use crate::opendrive::DriveMap;
 use crate::openscenario::names::Declarations;
+use crate::openscenario::scene::is_scene;
 use crate::xml::{number, rounded};
+use crate::{ExportError, ExportFile};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::rollout::Rollout;
 use recrash_model::scenario::{DEFAULT_SPEED_KP, Policy};
 use recrash_model::tuning::Parameter;
 use recrash_model::vehicle::VehicleSpec;
@@ -43,21 +46,31 @@ impl Context<'_> {
 }
 
 /// The files of a scenario: the scenario and its map.
-pub(crate) fn files(scenario: &Scenario, parameters: &[Parameter]) -> Vec<ExportFile> {
+pub(crate) fn files(
+    scenario: &Scenario,
+    rollout: Option<&Rollout>,
+    parameters: &[Parameter],
+) -> Result<Vec<ExportFile>, ExportError> {
     let draft = scenario.draft();
     let id = &draft.id;
     let map = DriveMap::new(scenario.network(), &scenario.draft().control)
         .document(scenario.network(), id)
         .document(&crate::comment(draft));
     let context = Context { scenario, names: Declarations::new(draft, parameters), parameters };
-    vec![
+    let text = if is_scene(draft) {
+        let recorded = rollout.ok_or_else(|| ExportError::NeedsRollout { scenario: id.clone() })?;
+        scene::document(&context, recorded)
+    } else {
+        document(&context)
+    };
+    Ok(vec![
         ExportFile { name: format!("{id}.xodr"), content: map },
-        ExportFile { name: format!("{id}.scenic"), content: document(&context).into_bytes() },
-    ]
+        ExportFile { name: format!("{id}.scenic"), content: text.into_bytes() },
+    ])
 }
 
 fn document(context: &Context<'_>) -> String {
-    let mut text = header(context);
+    let mut text = header(context, &run_it(context));
     text.push_str(&declarations(context));
     text.push('\n');
     text.push_str(&constants());
@@ -67,11 +80,9 @@ fn document(context: &Context<'_>) -> String {
     text
 }
 
-/// Title, source and how to run it.
-fn header(context: &Context<'_>) -> String {
+/// Title, source, and these lines on how to run it.
+fn header(context: &Context<'_>, run_it: &str) -> String {
     let draft = context.scenario.draft();
-    let id = &draft.id;
-    let steps = number((draft.duration_s * 10.0).ceil());
     let mut text = String::from("\"\"\"\n");
     let _ = writeln!(text, "{}\n", doc_text(&crate::comment(draft)));
     let environment = serde_json::to_string(&draft.environment).unwrap_or_default();
@@ -79,7 +90,17 @@ fn header(context: &Context<'_>) -> String {
     if draft.traffic.density > 0.0 {
         let _ = writeln!(text, "Background traffic of density {} is left out.", number(draft.traffic.density));
     }
-    let _ = writeln!(text, "\nRun it:");
+    let _ = write!(text, "\nRun it:\n{run_it}");
+    text.push_str("\"\"\"\n");
+    text
+}
+
+/// How to run a file whose partners act.
+fn run_it(context: &Context<'_>) -> String {
+    let draft = context.scenario.draft();
+    let id = &draft.id;
+    let steps = number((draft.duration_s * 10.0).ceil());
+    let mut text = String::new();
     let _ = writeln!(
         text,
         "  scenic {id}.scenic --2d -S --count 1 --time {steps} -m scenic.simulators.newtonian.driving_model"
@@ -95,7 +116,6 @@ fn header(context: &Context<'_>) -> String {
         text,
         "and lets vehicles pass through each other. MetaDrive gets no cones: its Scenic interface has none."
     );
-    text.push_str("\"\"\"\n");
     text
 }
 
@@ -214,7 +234,7 @@ fn cast(context: &Context<'_>) -> String {
     let ego = context.scenario.ego();
     let (s, speed) = (context.value("/ego/s_m", draft.ego.s_m), context.value("/ego/speed_mps", draft.ego.speed_mps));
     let target = context.value("/ego/target_speed_mps", draft.ego.target_speed_mps);
-    let start = Start { way: "EGO_WAY", s: &s, t: "0", speed: &speed };
+    let start = Placed { at: &on_way("EGO_WAY", &s, "0"), speed: &speed };
     let _ = writeln!(text, "\n# The system under test: replace Follow by your own behavior.");
     let _ = writeln!(text, "ego = {}", road_user(context, ego, &start, &format!("Follow(EGO_WAY, {target})"), true));
     for position in 0..draft.partners.len() {
@@ -236,23 +256,32 @@ fn cast(context: &Context<'_>) -> String {
 }
 
 /// Where a road user starts, and how fast, as expressions.
-struct Start<'a> {
-    way: &'a str,
-    s: &'a str,
-    t: &'a str,
+struct Placed<'a> {
+    at: &'a str,
     speed: &'a str,
 }
 
-/// A road user at a place of its way.
-fn road_user(context: &Context<'_>, placement: &Placement, start: &Start<'_>, behavior: &str, on_road: bool) -> String {
-    let Start { way, s, t, speed } = start;
+/// A place on a way, heading along it.
+fn on_way(way: &str, s: &str, t: &str) -> String {
+    format!("at place({way}, {s}, {t}), facing direction({way}, {s})")
+}
+
+/// A road user at a place.
+fn road_user(
+    context: &Context<'_>,
+    placement: &Placement,
+    start: &Placed<'_>,
+    behavior: &str,
+    on_road: bool,
+) -> String {
+    let Placed { at, speed } = start;
     let spec = VehicleSpec::of(placement.kind);
     let stands = Policy::Stopped { depart_step: None, target_speed_mps: 0.0 };
     let surface = context.scenario.draft().environment.surface;
     let plan = Plan::new(placement.kind, &stands, 0.0, surface);
     let class = if placement.kind == PartnerKind::Pedestrian { "Pedestrian" } else { "Car" };
     let mut text = format!(
-        "new {class} at place({way}, {s}, {t}), facing direction({way}, {s}),\n    \
+        "new {class} {at},\n    \
          with length {}, with width {}, with limits ({}, {}, {}, {}, {}),\n    \
          with speed {speed}, with requireVisible False",
         number(spec.length_m),

@@ -187,7 +187,8 @@ pub(super) fn instance(context: &Context<'_>, position: usize) -> String {
     let speed = at("speed_mps", partner.speed_mps);
     let way = format!("PARTNER{}_WAY", position + 1);
     let behavior = format!("Partner{}()", position + 1);
-    let begins = super::Start { way: &way, s: &format!("PARTNER{}_S", position + 1), t: &t, speed: &speed };
+    let at = super::on_way(&way, &format!("PARTNER{}_S", position + 1), &t);
+    let begins = super::Placed { at: &at, speed: &speed };
     format!(
         "\nPARTNER{0}_S = {s}    # start along its way [m]\nrequire 0 <= PARTNER{0}_S <= PARTNER{0}_WAY.length\n{1} = {2}\n",
         position + 1,

@@ -50,12 +50,49 @@ fn everybody_follows_what_was_recorded_and_the_ego_hands_over() {
 fn the_whole_scenario_is_read_back() {
     let read = import(&xosc()).expect("read");
     assert_eq!(read.value.draft(), &draft(RED_LIGHT));
+    assert_eq!(read.diagnostics, [], "nobody edited it");
+}
+
+#[test]
+fn an_edit_of_what_was_recorded_is_told_and_not_read() {
+    let text = xosc();
+    for (from, to, part) in [
+        ("<Dimensions width=\"1.8", "<Dimensions width=\"1.9", "OpenSCENARIO/Entities"),
+        ("<Vertex time=\"1\"", "<Vertex time=\"1.01\"", "OpenSCENARIO/Storyboard"),
+    ] {
+        let edited = text.replacen(from, to, 1);
+        assert_ne!(edited, text, "{from}");
+        let read = import(&edited).expect("read");
+        assert_eq!(read.value.draft(), &draft(RED_LIGHT));
+        let told: Vec<_> =
+            read.diagnostics.iter().map(|told| (told.code.as_str(), told.location.path.as_deref())).collect();
+        assert_eq!(told, [("openscenario.edited", Some(part))]);
+    }
+}
+
+#[test]
+fn scenic_gets_everybody_with_what_was_recorded_and_says_what_it_does_not_carry() {
+    let scenario = scenario(RED_LIGHT);
+    let rollout = simulate(&scenario, Ego::Recorded);
+    let files = exported(Format::Scenic);
+    let text = std::str::from_utf8(&files[1].content).expect("text");
+    assert_eq!(text.matches("with behavior ").count(), rollout.actors.len());
+    for (at, track) in rollout.actors.iter().enumerate().skip(1) {
+        assert!(text.contains(&format!("with name \"{}\"", track.id)), "{}", track.id);
+        assert!(text.contains(&format!("with behavior Recorded(TRACK{at})")), "{}", track.id);
+        assert!(text.contains(&format!("as \"contact with {}\"", track.id)), "{}", track.id);
+    }
+    assert_eq!(text.matches("\nnew Object at").count(), rollout.obstacles.len());
+    assert!(text.contains(&format!("until seconds() >= {}\n", draft(RED_LIGHT).ego.handover_s.unwrap_or(0.0))));
+    for remark in ["nobody reacts", "cyclist is not in the world before", "What signals show is not carried"] {
+        assert!(text.contains(remark), "{remark}");
+    }
 }
 
 #[test]
 fn plans_need_a_rollout_and_metadrive_takes_them_as_they_are() {
     let scenario = scenario(RED_LIGHT);
-    for format in [Format::OpenScenario, Format::ScenarioNet] {
+    for format in [Format::OpenScenario, Format::Scenic, Format::ScenarioNet] {
         let error = export(&scenario, None, &[], &ExportOptions::new(format)).unwrap_err();
         assert_eq!(error, ExportError::NeedsRollout { scenario: "red-light".to_owned() });
     }

@@ -2,7 +2,7 @@
 
 use crate::error::PipelineError;
 use crate::options::Options;
-use crate::reading::records::RecordInput;
+use crate::reading::records::{RecordInput, incidents};
 use recrash_model::Diagnostic;
 use recrash_model::account::Account;
 use recrash_model::incident::Incident;
@@ -44,14 +44,14 @@ pub struct ToldFact {
 /// A file cannot be read or is no crash file, or the filter or the mapping cannot be used.
 pub fn read_accounts(options: &Options) -> Result<Accounts, PipelineError> {
     let (read, filter) = RecordInput::read(options)?.ingest_all(&options.system_profile()?)?;
-    let mut incidents = recrash_reader::incidents(&read.value.records);
+    let mut incidents = incidents(&read.value);
     if let Some(filter) = filter {
         incidents.retain(|incident| incident.leading().is_some_and(|report| filter.keeps(&report.record)));
     }
     let accounts = incidents.iter().filter_map(recrash_reader::account).collect();
     Ok(Accounts {
         files: read.value.files,
-        reports: read.value.records.len(),
+        reports: read.value.usable.len(),
         incidents,
         accounts,
         diagnostics: read.diagnostics,

@@ -7,8 +7,9 @@ use crate::options::{Options, RecordSource};
 use crate::reading::fetching::cached;
 use crate::reading::named;
 use recrash_model::Outcome;
+use recrash_model::incident::Incident;
 use recrash_model::profile::{Dedupe, RecordRules, SystemProfile, Tells};
-use recrash_model::record::RecordSet;
+use recrash_model::record::{CrashRecord, RecordSet};
 use recrash_records::{
     Bytes, Filter, IngestOptions, MAX_MAPPING_BYTES, Mapping, SAMPLE_CSV, SAMPLE_NAME, SourceBytes, TableRows,
     ingest_sources, write_csv,
@@ -116,6 +117,15 @@ impl RecordInput {
         let options = IngestOptions { filter: self.filter.as_ref(), mapping: self.mapping.as_ref() };
         ingest_sources(sources, profile, &options).map_err(|e| PipelineError::bad_input(e.to_string()))
     }
+}
+
+/// The incidents of crash files. Reports that say themselves that there was no crash belong to none.
+pub(crate) fn incidents(set: &RecordSet) -> Vec<Incident> {
+    if set.usable.len() == set.records.len() {
+        return recrash_reader::incidents(&set.records);
+    }
+    let crashes: Vec<CrashRecord> = set.usable.iter().map(|&at| set.records[at].clone()).collect();
+    recrash_reader::incidents(&crashes)
 }
 
 /// The filter of the options, read.

@@ -3,6 +3,7 @@
 use crate::error::PipelineError;
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::accounts::told_facts;
+use crate::reading::records;
 use rayon::prelude::*;
 use recrash_model::account::{
     ACCOUNTS_FORMAT, Account, AccountSet, CrashType, FactShare, TypeShare, Untold, UntoldIncident, told,
@@ -142,7 +143,7 @@ pub(crate) fn tell(
     progress: &dyn Progress,
     read_again: &mut ReadAgain,
 ) -> Result<(RecordSet, AccountSet), PipelineError> {
-    let incidents = recrash_reader::incidents(&set.records);
+    let incidents = records::incidents(&set);
     let leading: BTreeMap<Place, &Incident> =
         incidents.iter().filter_map(|incident| Some((place(&incident.leading()?.record), incident))).collect();
     let kept = |incident: &&Incident| {

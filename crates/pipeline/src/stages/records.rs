@@ -33,6 +33,8 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
             ]);
         }
         let (Outcome { value, diagnostics }, filter) = input.ingest_all(profile)?;
+        // Models are asked from here on, and what they say is kept in the folder.
+        suite.save()?;
         let mut logs = BTreeMap::new();
         let mut again = |unread: &[Unread], all: usize| {
             let SecondReading { accounts, logs: told } = read_again(suite, unread, all, work.progress)?;

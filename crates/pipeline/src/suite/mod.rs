@@ -171,8 +171,21 @@ pub struct Suite {
     patience: Patience,
     models: Option<Models>,
     remarks: Vec<Diagnostic>,
+    /// Whether the options stand in the suite's file.
+    saved: Mutex<bool>,
     /// Keeps others from working in the folder at the same time.
     _lock: Option<File>,
+    _folder: Option<MadeFolder>,
+}
+
+/// A folder that was made for a suite: it goes again where nothing comes into it.
+struct MadeFolder(PathBuf);
+
+impl Drop for MadeFolder {
+    fn drop(&mut self) {
+        // What holds something stays.
+        let _ = std::fs::remove_dir(&self.0);
+    }
 }
 
 impl Suite {
@@ -185,7 +198,8 @@ impl Suite {
         there.then(|| Ok(read_saved(&Store::at(dir))?.options)).transpose()
     }
 
-    /// Opens the suite in a folder, or makes one.
+    /// Opens the suite in a folder, or makes one. The options are saved with the first work that is done with them: a crash file
+    /// that cannot be read leaves the folder as it was.
     ///
     /// # Errors
     /// The folder cannot be used, holds something else or a suite of other records or of another profile, or the options
@@ -211,7 +225,9 @@ impl Suite {
         if let Some(saved) = before.as_ref().filter(|_| !resources.permissions.replace) {
             refuse_other(dir, saved, &options)?;
         }
+        let is_new = !dir.exists();
         let store = Store::create(dir, write_file)?;
+        let folder = is_new.then(|| MadeFolder(dir.to_owned()));
         let lock = lock_folder(dir)?;
         if before.is_none() && !is_empty(&store)? {
             return Err(PipelineError::NotASuite { dir: dir.to_owned() });
@@ -219,16 +235,23 @@ impl Suite {
         store.remove_leftovers()?;
         let mut journal = Journal::read(&store)?;
         journal.tidy(&store)?;
-        let suite = Self::set_up(store, options, resources, journal, lock)?;
-        let saved = Saved {
-            format: SUITE_FORMAT.into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            options: suite.options.clone(),
-        };
-        if before.as_ref() != Some(&suite.options) {
-            suite.store.write(SUITE_FILE, &to_json(&saved))?;
+        let saved = Mutex::new(before.as_ref() == Some(&options));
+        Ok(Self { saved, _folder: folder, ..Self::set_up(store, options, resources, journal, lock)? })
+    }
+
+    /// Saves the options, unless they are. Comes before anything else is written.
+    pub(crate) fn save(&self) -> Result<(), PipelineError> {
+        let mut saved = self.saved.lock().unwrap_or_else(PoisonError::into_inner);
+        if !*saved {
+            let now = Saved {
+                format: SUITE_FORMAT.into(),
+                version: env!("CARGO_PKG_VERSION").into(),
+                options: self.options.clone(),
+            };
+            self.store.write(SUITE_FILE, &to_json(&now))?;
+            *saved = true;
         }
-        Ok(suite)
+        Ok(())
     }
 
     /// Opens a suite to read what is in it: nothing is written, and others may work in it.
@@ -272,7 +295,9 @@ impl Suite {
             patience,
             models,
             remarks,
+            saved: Mutex::new(true),
             _lock,
+            _folder: None,
         })
     }
 
@@ -369,15 +394,19 @@ impl Suite {
             let is_current = unit.inputs == inputs;
             let edited = !self.edits(unit, work.editable).is_empty();
             if edited && !self.permissions.discard_edits {
+                self.save()?;
                 return Ok(if is_current { Course::Edited } else { Course::EditedAndOld });
             }
             let failed = unit.outputs.keys().any(|file| is_failure_file(file));
             if is_current && !failed && unit.outputs.iter().all(|(file, made)| self.is_as_made(file, made)) {
+                self.save()?;
                 return Ok(Course::Skipped);
             }
         }
         let mut outputs = BTreeMap::new();
-        for (file, content) in make()? {
+        let files = make()?;
+        self.save()?;
+        for (file, content) in files {
             let hash = self.store.write(&file, &content)?;
             let (size, changed_ns) = self.store.stamp(&file).unwrap_or_default();
             outputs.insert(file, Made { hash, size, changed_ns });

@@ -103,6 +103,8 @@ pub struct SweepSummary {
     pub scenarios: Vec<SweptScenario>,
     /// Scenarios of the suite that were not swept, because their tuned files are not there.
     pub passed_over: Vec<String>,
+    /// Scenarios that were not swept, because no number of theirs may move.
+    pub fixed: Vec<String>,
     /// The table.
     #[serde(serialize_with = "paths::as_text")]
     pub file: PathBuf,
@@ -126,6 +128,7 @@ pub struct Sweep {
     threads: Option<usize>,
     output: Output,
     passed_over: Vec<String>,
+    fixed: Vec<String>,
 }
 
 /// What varies in which scenarios: any rollout of a sweep is made of its number alone, wherever and in whatever order.
@@ -146,7 +149,7 @@ impl Sweep {
     /// Reads and checks what a sweep needs.
     ///
     /// # Errors
-    /// A file cannot be read or is no scenario, or something varies that is no number of it.
+    /// A file cannot be read or is no scenario, something varies that is no number of it, or nothing varies in any.
     /// The file to write cannot be, or is one of those that are read.
     pub fn prepare(request: &SweepRequest) -> Result<Self, PipelineError> {
         let saved = if request.source.is_dir() { Suite::saved_options(request.source)? } else { None };
@@ -161,9 +164,10 @@ impl Sweep {
         let files = scenario_files(request.source)?;
         let bases = files.iter().map(|file| base(file, request.vary, &profile)).collect::<Result<Vec<_>, _>>()?;
         let passed_over = passed_over(request.source, &bases);
+        let (bases, fixed) = parted(bases, &request.source.display().to_string())?;
         let points = SweepPoints::new(bases, profile, request.seed);
         let (rollouts, threads, patience) = (request.rollouts, request.threads, request.patience);
-        Ok(Self { points, ego, patience, rollouts, threads, output, passed_over })
+        Ok(Self { points, ego, patience, rollouts, threads, output, passed_over, fixed })
     }
 
     /// Ego that drives.
@@ -185,6 +189,11 @@ impl Sweep {
     /// Scenarios of the suite that are not swept, because their tuned files are not there.
     pub fn passed_over(&self) -> &[String] {
         &self.passed_over
+    }
+
+    /// Scenarios that are not swept, because no number of theirs may move.
+    pub fn fixed(&self) -> &[String] {
+        &self.fixed
     }
 
     /// Writes the scenario of one rollout.
@@ -262,6 +271,7 @@ impl Sweep {
             closest: None,
             scenarios: scenarios.collect(),
             passed_over: self.passed_over.clone(),
+            fixed: self.fixed.clone(),
             file: self.output.name().to_owned(),
         }
     }
@@ -271,7 +281,7 @@ impl SweepPoints {
     /// Around scenarios that stand in no file: `vary` in each of them, or what a search would move where it is empty.
     ///
     /// # Errors
-    /// There is no scenario, what varies is no number of one, or nothing varies in one.
+    /// There is no scenario, what varies is no number of one, or nothing varies in any.
     pub fn around(
         scenarios: &[&Scenario],
         vary: &[Vary],
@@ -283,6 +293,7 @@ impl SweepPoints {
         }
         let base = |scenario: &&Scenario| based(scenario.draft(), vary, &scenario.draft().id, None, &profile);
         let bases = scenarios.iter().map(base).collect::<Result<Vec<_>, _>>()?;
+        let (bases, _) = parted(bases, "these scenarios")?;
         Ok(Self::new(bases, profile, seed))
     }
 
@@ -525,12 +536,18 @@ fn based(
         Some(found) => found,
         None => movable(draft, profile),
     };
-    if parameters.is_empty() {
+    Ok(Base { draft: draft.clone(), parameters })
+}
+
+/// The scenarios in which something varies, and the ids of the others.
+fn parted(bases: Vec<Base>, name: &str) -> Result<(Vec<Base>, Vec<String>), PipelineError> {
+    let (moving, fixed): (Vec<Base>, Vec<Base>) = bases.into_iter().partition(|base| !base.parameters.is_empty());
+    if moving.is_empty() {
         return Err(PipelineError::bad_input(format!(
             "nothing varies in {name}; say what shall vary, as POINTER=MIN:MAX"
         )));
     }
-    Ok(Base { draft: draft.clone(), parameters })
+    Ok((moving, fixed.into_iter().map(|base| base.draft.id).collect()))
 }
 
 /// What the search of a suite might move, where its log lies beside the scenario.

@@ -184,7 +184,7 @@ fn may_be_made(request: &FreezeRequest) -> Result<(), PipelineError> {
         return refused("what is read lies in it; name another folder");
     }
     if out.join(FROZEN_FILE).is_file() && !request.replace {
-        return refused("it holds a frozen suite; name another folder, or say that it is replaced");
+        return refused("it holds a frozen suite; name another folder, or replace it (--replace)");
     }
     must_be_free(out, Some(FROZEN_FILE))
 }
