@@ -70,11 +70,9 @@ fn main() {
                 row[1] += 1;
                 row[2] += usize::from(made.is_true());
                 for fact in &made.verdict.checks {
-                    if flags.iter().any(|flag| flag == "--others")
-                        && fact.kind == CheckKind::Others
-                        && is_developed(account)
-                    {
-                        println!("{} {:?}: {} | {}", account.report, fact.result, fact.expected, fact.observed);
+                    let open = made.is_true() && fact.result == CheckResult::CannotBeShown;
+                    if open && flags.iter().any(|flag| flag == "--open") && is_developed(account) {
+                        println!("{} {}: {} | {}", account.report, fact.kind.label(), fact.expected, fact.observed);
                     }
                     let count = facts.entry(fact.kind).or_default();
                     count[0] += 1;
