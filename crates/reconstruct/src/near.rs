@@ -211,6 +211,9 @@ fn hinders_nobody(id: &str, scenario: &Scenario, (before, after): (&Rollout, &Ro
         let name = |number: usize| rollout.actors[number].id.clone();
         let of = |event: &recrash_model::rollout::Event| match event.kind {
             EventKind::Contact { a, b, .. } => Some((name(a), name(b), event.time_s)),
+            EventKind::ObstacleContact { actor, obstacle, .. } => {
+                Some((name(actor), format!("obstacle {obstacle}"), event.time_s))
+            }
             _ => None,
         };
         rollout.events.iter().filter_map(of).collect()
@@ -224,6 +227,7 @@ fn hinders_nobody(id: &str, scenario: &Scenario, (before, after): (&Rollout, &Ro
     let clear = |step: usize| {
         let own = of(track, step);
         after.actors.iter().all(|other| other.id == id || own.gap(&of(other, step)) > CLEAR_M)
+            && after.obstacles.iter().all(|placed| own.gap(&placed.outline()) > CLEAR_M)
     };
     let drives = VehicleSpec::of(track.kind).length_m > 2.5;
     let on_road = |step: usize| !drives || scenario.network().on_road(track.states[step].position());
@@ -245,7 +249,9 @@ struct Scene<'a> {
 impl<'a> Scene<'a> {
     fn of(told: &'a Told, ground: &'a Ground, rollout: &'a Rollout) -> Option<Self> {
         let touched = |event: &recrash_model::rollout::Event| {
-            matches!(event.kind, EventKind::Contact { a: 0, .. }).then_some(event.time_s)
+            let ego =
+                matches!(event.kind, EventKind::Contact { a: 0, .. } | EventKind::ObstacleContact { actor: 0, .. });
+            ego.then_some(event.time_s)
         };
         let contact_s = rollout.events.iter().find_map(touched)?;
         let ego = rollout.ego_track();
@@ -475,6 +481,14 @@ impl<'a> Scene<'a> {
                 let at = |t_m: f64| Way::straight(self.road(s_m + on_m, t_m), speed_mps, self.contact_s - before_s);
                 list.extend(t_m.map(at));
             }
+            // It comes along, and stands there.
+            let way_m = 0.7 * speed_mps * self.contact_s;
+            let rests = |on_m: f64| Way {
+                speed_mps,
+                stops_m: Some(way_m),
+                ..Way::stands(self.road(s_m + on_m - way_m, t_m[0]))
+            };
+            list.extend([0.0, -6.0, 6.0, -12.0].map(rests));
         }
         list
     }
