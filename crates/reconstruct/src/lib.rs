@@ -132,7 +132,7 @@ impl Best {
     /// The same with those who have no part in what the ego does, where nothing told is missed for them.
     fn with_near(self) -> Reconstruction {
         let Self { cost, made, told, ground } = self;
-        if cost.0 > 0 || told.wanted.iter().all(|extra| extra.near.is_none()) {
+        if cost.0 > 0 || told.wanted.iter().all(|extra| extra.of.is_empty()) {
             return made;
         }
         let (draft, rollout, assumed) = near::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));

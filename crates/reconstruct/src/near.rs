@@ -183,22 +183,28 @@ pub(crate) fn with_near(
 ) -> (ScenarioDraft, Rollout, Vec<String>) {
     let (mut draft, mut rollout) = begun;
     let mut assumed = Vec::new();
-    for (extra, near) in told.wanted.iter().filter_map(|extra| Some((extra, extra.near?))) {
+    for extra in told.wanted.iter().filter(|extra| !extra.of.is_empty()) {
+        let id = extra.id();
+        if rollout.actors.iter().any(|track| track.id == id) {
+            continue;
+        }
         let Some(scene) = Scene::of(told, ground, &rollout) else { break };
-        let tried = scene.actors(extra, near).into_iter().find_map(|actor| {
+        let tried = scene.actors(extra).into_iter().find_map(|actor| {
             let mut with = draft.clone();
             with.actors.push(actor);
             let recorded = with.ego.recorded.clone()?;
             with.control = control::devices(told, ground, &recorded, &with.actors);
             let scenario = recrash_roads::check(with).ok()?.value;
             let driven = recrash_sim::simulate(&scenario, Ego::Recorded);
-            let fits = hinders_nobody(&near.id(), &scenario, (&rollout, &driven))
+            let fits = hinders_nobody(&id, &scenario, (&rollout, &driven))
                 && Seen::new(told, &driven, scene.contact_s).holds(extra);
             fits.then(|| (scenario.draft().clone(), driven))
         });
         if let Some((with, driven)) = tried {
             (draft, rollout) = (with, driven);
-            assumed.push(format!("where {} is that has no part in what the ego does: {}", near.id(), near.words()));
+            if let Some(near) = extra.near {
+                assumed.push(format!("where {id} is that has no part in what the ego does: {}", near.words()));
+            }
         }
     }
     (draft, rollout, assumed)
@@ -259,17 +265,18 @@ impl<'a> Scene<'a> {
         Some(Self { told, ground, ego, contact_s, until })
     }
 
-    fn actors(&self, extra: &Extra, near: Near) -> Vec<Actor> {
+    fn actors(&self, extra: &Extra) -> Vec<Actor> {
         let kind = extra.kind.partner_kind().unwrap_or(PartnerKind::PassengerCar);
         let size = size_of_kind(extra.kind);
         let spec = VehicleSpec::of(kind);
         let length_m = size.map_or(spec.length_m, |size| size.length_m);
-        let ways = match extra.kind.group() {
-            KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist => self.walks(extra.kind, near),
-            _ => self.drives(near, length_m),
+        let ways = match (extra.near, extra.kind.group()) {
+            (Some(near), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist) => self.walks(extra.kind, near),
+            (Some(near), _) => self.drives(near, length_m),
+            (None, _) => self.elsewhere(extra, 0.5 * length_m),
         };
         let actor = |way: Way| Actor {
-            id: near.id(),
+            id: extra.id(),
             kind,
             size,
             mass_kg: None,
@@ -385,6 +392,29 @@ impl<'a> Scene<'a> {
         list
     }
 
+    /// Who has a part, and does not fit where it is put first, in other places that show the same.
+    fn elsewhere(&self, extra: &Extra, half_m: f64) -> Vec<Way> {
+        let sides = match extra.side {
+            Some(side) => vec![side],
+            None => vec![LeftRight::Right, LeftRight::Left],
+        };
+        match extra.role {
+            Role::Kerb => sides.into_iter().flat_map(|side| self.kerb(side, half_m)).collect(),
+            Role::Beside => sides.into_iter().flat_map(|side| self.stands_beside(side)).collect(),
+            Role::Abreast => sides.into_iter().flat_map(|side| self.beside(side)).collect(),
+            Role::Crosser => sides.into_iter().flat_map(|side| self.crosses(side, Does::Drives, half_m)).collect(),
+            Role::Oncoming if self.is_two_way() => [0.5, 1.0, 2.0, 3.0, 4.5]
+                .map(|before_s| {
+                    let at_s = (self.contact_s - before_s).max(0.5);
+                    let (s_m, _) = self.at(((at_s * 10.0) as usize).min(self.until));
+                    Way::straight(self.against(s_m), DRIVES_MPS, at_s)
+                })
+                .into(),
+            Role::Lead if !extra.goes => self.stands_ahead(half_m, 0.0),
+            _ => Vec::new(),
+        }
+    }
+
     /// In the lane towards the ego: it comes by, is yet to come, or drives off where the ego's road begins behind a junction.
     fn oncoming(&self, half_m: f64) -> Vec<Way> {
         if !self.is_two_way() {
@@ -439,7 +469,7 @@ impl<'a> Scene<'a> {
     fn stands_ahead(&self, half_m: f64, least_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
         let front_m = s_m + self.front_m() + half_m;
-        let far = [5.0, 10.0, 16.0, 24.0, 30.0].into_iter().filter(|on_m| *on_m >= least_m);
+        let far = [3.0, 5.0, 10.0, 16.0, 24.0, 30.0].into_iter().filter(|on_m| *on_m >= least_m);
         let places = far.flat_map(|on_m| self.lines().into_iter().map(move |t_m| (front_m + on_m, t_m)));
         let across_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes) + half_m;
         let inside = |s_m: f64| self.ground.junction && s_m + half_m > self.ground.first_m() && s_m < across_m;
