@@ -43,6 +43,10 @@ const SLOWS_BY_MPS: f64 = 2.0;
 const PASSES_BY_MPS: f64 = 4.0;
 const BRAKES_MPS2: f64 = 2.5;
 
+/// Who changes lanes takes so long, and has done so this long before the contact. [s]
+const CHANGES_S: f64 = 3.5;
+const CHANGED_BEFORE_S: f64 = 0.5;
+
 /// What somebody near is told to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Does {
@@ -55,6 +59,8 @@ pub(crate) enum Does {
     Passes,
     /// Comes from the opposite side and turns left across the ego's road.
     TurnsLeft,
+    /// Changes lanes, to a side where told.
+    Changes(Option<LeftRight>),
 }
 
 /// What is told of somebody who has no part in what the ego does.
@@ -95,11 +101,16 @@ impl Near {
             Act::Slow => Some(Does::Slows),
             Act::Hold | Act::Stop | Act::Park => Some(Does::Stands),
             Act::Pass => Some(Does::Passes),
+            Act::LaneChange => Some(Does::Changes(fact.side)),
             Act::Turn if fact.side == Some(LeftRight::Left) && place == Some(Origin::Opposite) => Some(Does::TurnsLeft),
             _ => None,
         };
         let all: Vec<Does> = before.iter().map(one).collect::<Option<_>>()?;
-        let does = match all.iter().rev().find(|does| matches!(does, Does::Passes | Does::TurnsLeft)) {
+        let deed = |does: &&Does| matches!(does, Does::Passes | Does::TurnsLeft | Does::Changes(_));
+        let does = match all.iter().rev().find(deed) {
+            Some(Does::Changes(side)) if matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. })) => {
+                Does::Changes(*side)
+            }
             Some(Does::Passes) if matches!(place, None | Some(Origin::Behind | Origin::Beside { .. })) => Does::Passes,
             Some(Does::TurnsLeft) => Does::TurnsLeft,
             Some(_) => return None,
@@ -118,6 +129,7 @@ impl Near {
         match (self.does, self.place) {
             (Does::TurnsLeft, _) => "one turns left from ahead",
             (Does::Passes, _) => "one passes",
+            (Does::Changes(_), _) => "one changes lanes",
             (_, Some(Origin::Ahead)) => "one is farther ahead",
             (_, Some(Origin::Behind)) => "one is behind",
             (_, Some(Origin::Opposite)) => "one is in the opposite lane",
@@ -136,13 +148,15 @@ struct Way {
     /// It stands after so much of its way. [m]
     stops_m: Option<f64>,
     slows: bool,
+    /// It moves so far to the right before the contact. [m]
+    shifts_m: f64,
     /// Places on its way, after which it goes straight on.
     by: Vec<Pose>,
 }
 
 impl Way {
     fn stands(from: Pose) -> Self {
-        Self { from, speed_mps: 0.0, stops_m: None, slows: false, by: Vec::new() }
+        Self { from, speed_mps: 0.0, stops_m: None, slows: false, shifts_m: 0.0, by: Vec::new() }
     }
 
     /// Straight on, where it is at a place at a time.
@@ -162,10 +176,12 @@ impl Way {
         let stops = self.stops_m.map(|at_m| when(0.1, Deed::Stop { rate_mps2: BRAKES_MPS2, at_m: Some(at_m) }));
         let slower = Deed::Speed { to_mps: self.speed_mps - SLOWS_BY_MPS, rate_mps2: BRAKES_MPS2 };
         let slows = self.slows.then(|| when(tenth(contact_s - SLOWS_BEFORE_S), slower));
+        let shift = Deed::Shift { to_t_m: self.shifts_m, over_m: CHANGES_S * self.speed_mps };
+        let shifts = (self.shifts_m != 0.0).then(|| when(tenth(contact_s - CHANGES_S - CHANGED_BEFORE_S), shift));
         ActorPlan {
             speed_mps: self.speed_mps,
             course: self.by.iter().chain([&end]).map(|to| Leg::Curve { to: place(*to), reverse: false }).collect(),
-            acts: stops.into_iter().chain(slows).collect(),
+            acts: stops.into_iter().chain(slows).chain(shifts).collect(),
             ..ActorPlan::standing(place(self.from))
         }
     }
@@ -339,6 +355,7 @@ impl<'a> Scene<'a> {
         let mut list = Vec::new();
         match near.place {
             _ if near.does == Does::TurnsLeft => list.extend(self.turners()),
+            _ if let Does::Changes(side) = near.does => list.extend(self.changers(side, half_m)),
             _ if near.does == Does::Passes => list.extend(self.passers(near.place, half_m)),
             Some(Origin::Opposite) => {
                 if !stands {
@@ -552,6 +569,25 @@ impl<'a> Scene<'a> {
         list
     }
 
+    /// Changes from one lane to the next, ahead of the ego or beside it.
+    fn changers(&self, side: Option<LeftRight>, half_m: f64) -> Vec<Way> {
+        let (s_m, _) = self.at(self.until);
+        let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
+        let mut list = Vec::new();
+        for side in sides {
+            let shifts_m = if side == LeftRight::Left { -LANE_M } else { LANE_M };
+            for to_m in [-LANE_M, LANE_M, 0.0] {
+                for speed_mps in self.speeds() {
+                    for on_m in [8.0, 14.0, 3.0, 22.0, 30.0] {
+                        let at = self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
+                        list.push(Way { shifts_m, ..Way::straight(at, speed_mps, self.contact_s) });
+                    }
+                }
+            }
+        }
+        list
+    }
+
     /// Parked at a kerb, in a stall, or on a shoulder.
     fn kerb(&self, side: LeftRight, half_m: f64) -> Vec<Way> {
         let [right, left] = self.sides();
@@ -714,6 +750,11 @@ impl Near {
             Does::Passes => {
                 let by = |step: &usize| seen(*step).0 < 0.0;
                 (0..until).any(|step| by(&step)) && seen(until).0 > 0.0 && (0..until).any(beside)
+            }
+            Does::Changes(side) => {
+                let moved_m =
+                    seen(until).1 - seen(0).1 + ahead.cross(ego.states[until].position() - ego.states[0].position());
+                moved_m.abs() > 0.7 * LANE_M && side.is_none_or(|side| on_side(side, moved_m))
             }
             Does::TurnsLeft => {
                 let turned = math::wrap_angle(state(until).heading - state(0).heading);

@@ -570,7 +570,12 @@ impl Story<'_> {
             || self.merges_yet(other);
         let merges = came_over && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
         let keeps_lane = is_straight(told) || self.makes_room(told, other);
-        if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && keeps_lane {
+        if merges
+            && (near || reacts || self.makes_room(told, other))
+            && !other.several
+            && place != Some(Origin::Behind)
+            && keeps_lane
+        {
             return Some(Role::Merger);
         }
         let junction = told.place == PlaceKind::Intersection || told.is_controlled();

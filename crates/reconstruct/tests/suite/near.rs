@@ -4,7 +4,7 @@
 use crate::others::{shown_but, track};
 use crate::ways::{before_contact, degrees_between};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::scenario::{Actor, ActorPlan, Place};
+use recrash_model::scenario::{Actor, ActorPlan, Deed, Place};
 
 const SIREN: &str =
     "The AV was traveling westbound on Elm Street when it detected a siren from a nearby emergency vehicle and slowed.";
@@ -17,6 +17,9 @@ const PASSES: &str =
     "The AV was parked at the curb facing east on Elm Street when a pickup truck passed the AV on the left.";
 const TURNS: &str = "The AV was traveling south on Elm Street and approached a green light at the intersection with Oak Street. A motorcycle traveling north on Elm Street \
                      turned left onto Oak Street, and the AV slowed to a stop.";
+
+const CHANGES: &str = "The AV was traveling north in the rightmost lane of three lanes on Elm Street. An SUV in the leftmost lane changed lanes to the right \
+                       in front of a sedan.";
 
 fn far_off(actor: &mut Actor) {
     let start = match &actor.plan.start {
@@ -80,4 +83,14 @@ fn who_turns_left_from_ahead_crosses_the_egos_line() {
     assert_eq!(near.kind, PartnerKind::Motorcycle);
     assert!(degrees_between(near.states[0].heading, ego.heading) > 150.0);
     assert!(near.states[0].y > ego.y && near.states[last].y < ego.y, "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_changes_lanes_does_so_to_the_told_side() {
+    let shown = shown_but(CHANGES, "near", |near| {
+        near.plan.acts.retain(|act| !matches!(act.deed, Deed::Shift { .. }));
+    });
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[last];
+    assert!(near.states[0].y > ego.y + 4.0 && near.states[last].y < near.states[0].y - 2.4, "{:?}", near.states[last]);
 }
