@@ -17,6 +17,7 @@ mod kerb;
 mod lateral;
 mod movement;
 mod near;
+mod nearby;
 mod others;
 mod pace;
 mod phases;
@@ -135,7 +136,7 @@ impl Best {
         if cost.0 > 0 || told.wanted.iter().all(|extra| extra.of.is_empty()) {
             return made;
         }
-        let (draft, rollout, assumed) = near::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));
+        let (draft, rollout, assumed) = nearby::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));
         let Ok(checked) = recrash_roads::check(draft) else { return made };
         let verdict = Verdict { checks: facts::facts(&told, &checked.value, &rollout) };
         if verdict.failures().count() > 0 {
