@@ -156,6 +156,7 @@ impl Scene<'_> {
             Role::Beside => vec![self.stands_beside(extra, length_m)],
             Role::Backer => vec![self.backer(extra, (length_m, width_m))],
             Role::Abreast => vec![self.abreast(extra)],
+            Role::Near => Vec::new(),
         };
         let name = |number: usize| if number == 0 { String::new() } else { format!("-{}", number + 1) };
         let actor = |(number, plan): (usize, ActorPlan)| Actor {

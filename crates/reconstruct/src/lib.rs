@@ -16,6 +16,8 @@ mod ground;
 mod kerb;
 mod lateral;
 mod movement;
+mod near;
+mod nearby;
 mod others;
 mod pace;
 mod phases;
@@ -92,10 +94,9 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 }
 
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    // The best so far: told facts that are not shown, then whether others are not as told, and whether the partner strays.
-    let mut best: Option<((usize, bool, bool), Reconstruction)> = None;
+    let mut best: Option<Best> = None;
     let mut refused = 0;
-    for told in told.variants() {
+    'tried: for told in told.variants() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
             let draft = came::draft(account, &told, &staging);
             let Ok(checked) = recrash_roads::check(draft) else {
@@ -107,14 +108,41 @@ fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold>
             let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
             let others = facts::others_stray(&told, &scenario, &rollout);
             let cost = (verdict.failures().count(), others, facts::strays(&told, &scenario, &rollout));
-            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            if best.as_ref().is_none_or(|best| cost < best.cost) {
                 let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
-                best = Some((cost, Reconstruction { draft, rollout, verdict, assumed }));
+                let made = Reconstruction { draft, rollout, verdict, assumed };
+                best = Some(Best { cost, made, told: told.clone(), ground: staging.ground });
             }
             if cost == (0, false, false) {
-                return best.map(|(_, best)| best).ok_or(Untold::NoContact);
+                break 'tried;
             }
         }
     }
-    best.map(|(_, best)| best).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })
+    best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })
+}
+
+/// The best of what was tried: told facts that are not shown, then whether others are not as told, and whether the partner strays.
+struct Best {
+    cost: (usize, bool, bool),
+    made: Reconstruction,
+    told: told::Told,
+    ground: ground::Ground,
+}
+
+impl Best {
+    /// The same with those who have no part in what the ego does, where nothing told is missed for them.
+    fn with_near(self) -> Reconstruction {
+        let Self { cost, made, told, ground } = self;
+        if cost.0 > 0 || told.wanted.iter().all(|extra| extra.of.is_empty()) {
+            return made;
+        }
+        let (draft, rollout, assumed) = nearby::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));
+        let Ok(checked) = recrash_roads::check(draft) else { return made };
+        let verdict = Verdict { checks: facts::facts(&told, &checked.value, &rollout) };
+        if verdict.failures().count() > 0 {
+            return made;
+        }
+        let assumed = made.assumed.iter().cloned().chain(assumed).collect();
+        Reconstruction { draft: checked.value.draft().clone(), rollout, verdict, assumed }
+    }
 }

@@ -1,5 +1,6 @@
 //! Others than the two: who is told of besides them, and what they are to the ego.
 
+use crate::near::Near;
 use crate::phases::Phase;
 use crate::side::Turning;
 use crate::told::Told;
@@ -43,6 +44,8 @@ pub(crate) enum Role {
     Backer,
     /// Drives in the next lane as the ego does.
     Abreast,
+    /// Has no part in what the ego does.
+    Near,
 }
 
 impl Role {
@@ -64,14 +67,16 @@ impl Role {
             Self::Beside => "beside",
             Self::Backer => "backer",
             Self::Abreast => "abreast",
+            Self::Near => "near",
         }
     }
 }
 
 impl Extra {
     /// For sentences.
-    pub(crate) const fn words(&self) -> &'static str {
+    pub(crate) fn words(&self) -> &'static str {
         match self.role {
+            Role::Near => self.near.map_or("", Near::words),
             Role::Lead if self.goes => "one stands ahead and drives on",
             Role::Lead => "one stands ahead",
             Role::Slower => "one ahead slows",
@@ -111,11 +116,13 @@ pub(crate) struct Extra {
     pub(crate) behind: bool,
     /// On which side of the ego it is, or from which it comes, where told.
     pub(crate) side: Option<LeftRight>,
+    /// What is told of one who has no part in what the ego does.
+    pub(crate) near: Option<Near>,
 }
 
 impl Extra {
     /// One of whom only a reason to stand tells.
-    fn of_reason(role: Role) -> Self {
+    pub(crate) fn of_reason(role: Role) -> Self {
         Self {
             role,
             of: Vec::new(),
@@ -126,7 +133,13 @@ impl Extra {
             awaited: true,
             behind: false,
             side: None,
+            near: None,
         }
+    }
+
+    /// The name of its actor.
+    pub(crate) fn id(&self) -> String {
+        self.near.map_or_else(|| self.role.id().to_owned(), Near::id)
     }
 }
 
@@ -202,8 +215,16 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     let story = Story { account };
     let mut list: Vec<Extra> = Vec::new();
     for (number, other) in account.others.iter().enumerate() {
-        let Some(role) = story.role(told, other).filter(|role| is_drawn(told, *role)) else { continue };
         let kind = other.kind.value;
+        let near = |list: &[Extra]| {
+            let before = list.iter().filter(|extra| extra.role == Role::Near).count();
+            let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
+            near.map(|near| Extra::near(near, number, kind))
+        };
+        let Some(role) = story.role(told, other).filter(|role| is_drawn(told, *role)) else {
+            list.extend(near(&list));
+            continue;
+        };
         let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
         let parked = other.acts.iter().any(|fact| text(&fact.source).contains("parked"));
         let goes = role == Role::Lead && sets_off(told) && !parked || drives_on.is_some();
@@ -215,12 +236,23 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 known.parked |= parked;
                 known.first |= first;
             }
-            Some(_) => {}
+            Some(_) => list.extend(near(&list)),
             None => {
                 let side = story.side(role, told, other);
                 let awaited = story.is_near(other) || other.several;
                 let behind = role == Role::Obstacle && story.is_back(other);
-                list.push(Extra { role, of: vec![number], kind, goes, parked, first, awaited, behind, side });
+                list.push(Extra {
+                    role,
+                    of: vec![number],
+                    kind,
+                    goes,
+                    parked,
+                    first,
+                    awaited,
+                    behind,
+                    side,
+                    near: None,
+                });
             }
         }
     }
@@ -237,6 +269,7 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
 
 /// What to try: all of them, all but one, one of them, and none.
 pub(crate) fn choices(wanted: &[Extra]) -> Vec<Vec<Extra>> {
+    let wanted: Vec<Extra> = wanted.iter().filter(|extra| extra.near.is_none()).cloned().collect();
     let without = |left_out: usize| {
         let kept = wanted.iter().enumerate().filter(|(number, _)| *number != left_out);
         kept.map(|(_, extra)| extra.clone()).collect::<Vec<_>>()
@@ -275,7 +308,7 @@ impl Told {
 fn is_drawn(told: &Told, role: Role) -> bool {
     let drives = matches!(told.sv.state, ContactState::Stopped | ContactState::Moving | ContactState::SettingOff);
     match role {
-        Role::Kerb | Role::Beside => true,
+        Role::Kerb | Role::Beside | Role::Near => true,
         Role::Obstacle | Role::Oncoming | Role::Merger | Role::Backer | Role::Abreast => drives,
         Role::Passed => told.thing.is_none(),
         // Ahead of a partner that is ahead itself, and stands or backs there.
@@ -547,7 +580,12 @@ impl Story<'_> {
             || self.merges_yet(other);
         let merges = came_over && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
         let keeps_lane = is_straight(told) || self.makes_room(told, other);
-        if merges && (near || reacts) && !other.several && place != Some(Origin::Behind) && keeps_lane {
+        if merges
+            && (near || reacts || self.makes_room(told, other))
+            && !other.several
+            && place != Some(Origin::Behind)
+            && keeps_lane
+        {
             return Some(Role::Merger);
         }
         let junction = told.place == PlaceKind::Intersection || told.is_controlled();

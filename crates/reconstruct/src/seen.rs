@@ -65,7 +65,7 @@ impl<'a> Seen<'a> {
                 && !std::ptr::eq(track, self.ego)
                 && control::runs_red(scenario, track)
         };
-        let there = |extra: &&Extra| self.find(extra.role).is_some();
+        let there = |extra: &&Extra| self.find(extra).is_some();
         self.told.extras.iter().filter(there).any(|extra| !self.holds(extra))
             || self.rollout.actors.iter().any(runs_red)
     }
@@ -97,8 +97,9 @@ impl<'a> Seen<'a> {
         ahead_m > 0.0 && math::hypot(ahead_m, left_m) < within_m && left_m.abs() < LANE_M
     }
 
-    fn find(&self, role: Role) -> Option<&'a ActorTrack> {
-        self.rollout.actors.iter().find(|track| track.id == role.id())
+    fn find(&self, extra: &Extra) -> Option<&'a ActorTrack> {
+        let id = extra.id();
+        self.rollout.actors.iter().find(|track| track.id == id)
     }
 
     /// Whether who is told to have thrown the partner touched it.
@@ -121,7 +122,7 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody is there, of its kind, and does its part.
     pub(crate) fn holds(&self, extra: &Extra) -> bool {
-        let Some(track) = self.find(extra.role) else { return false };
+        let Some(track) = self.find(extra) else { return false };
         let as_told = extra.kind.partner_kind().is_none_or(|kind| kind == track.kind);
         as_told
             && match extra.role {
@@ -139,6 +140,7 @@ impl<'a> Seen<'a> {
                 Role::Merger => self.merges(extra, track),
                 Role::Blocker => self.blocks(track, true),
                 Role::Beyond => self.blocks(track, false),
+                Role::Near => extra.near.is_some_and(|near| near.holds(self.ego, track, self.until)),
             }
     }
 

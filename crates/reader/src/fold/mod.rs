@@ -4,6 +4,7 @@ mod blame;
 mod contact;
 mod fallback;
 mod movement;
+mod nobody;
 mod origin;
 mod party;
 mod picture;
@@ -437,11 +438,15 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         }
         let touched_partner = reading.contacts.touched_partner(story, actor);
         let again = known.sentence.is_some_and(|last| first < story.sentences[last].first);
-        let nobody =
-            is_nobody(reading, (first, end), &acts, again) || acts.is_empty() && is_named_before(reading, actor, kind);
+        let nobody = is_nobody(reading, (first, end), &acts, again)
+            || acts.is_empty() && is_named_before(reading, actor, kind)
+            || nobody::is_one_of_the_two(reading, (actor, kind), (first, end), &acts)
+            || nobody::is_remark(reading, (first, end), &acts);
         if !touched_partner && nobody {
             continue;
         }
+        // Whom the story tells of by the headline's words is another one.
+        let kind = if nobody::is_called_by_headline(reading, actor, (first, end)) { Kind::Vehicle } else { kind };
         all.push(Other {
             kind: reading.told(kind, first, end),
             place: whereabouts::place_of(reading, actor),

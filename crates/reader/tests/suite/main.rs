@@ -3,6 +3,7 @@
 mod any_text;
 mod common;
 mod incidents;
+mod nobody;
 mod sample;
 mod scores;
 mod stories;

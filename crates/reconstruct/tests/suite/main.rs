@@ -4,6 +4,7 @@
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
 mod common;
 mod moves;
+mod near;
 mod others;
 mod roadside;
 mod sabotage;

@@ -73,7 +73,7 @@ fn told(text: &str) -> Account {
     story(&whole)
 }
 
-fn track<'a>(made: &'a Reconstruction, id: &str) -> &'a ActorTrack {
+pub(crate) fn track<'a>(made: &'a Reconstruction, id: &str) -> &'a ActorTrack {
     let ids: Vec<&str> = made.rollout.actors.iter().map(|track| track.id.as_str()).collect();
     made.rollout.actors.iter().find(|track| track.id == id).unwrap_or_else(|| panic!("{id} of {ids:?}"))
 }
@@ -85,7 +85,7 @@ fn others(draft: &ScenarioDraft, account: &Account) -> Option<CheckResult> {
 }
 
 /// A staging that shows the others as told; and does not where one of them is changed so.
-fn shown_but(text: &str, id: &str, change: impl Fn(&mut Actor)) -> Reconstruction {
+pub(crate) fn shown_but(text: &str, id: &str, change: impl Fn(&mut Actor)) -> Reconstruction {
     let account = told(text);
     let shown = made(&account);
     assert_eq!(others(&shown.draft, &account), Some(CheckResult::Shown), "{:?}", shown.verdict);

@@ -215,7 +215,7 @@ fn other_side(account: &Account, draft: &mut ScenarioDraft) -> bool {
     if !left && !right || !draft.ego.route.iter().all(|road| road.starts_with("main")) {
         return false;
     }
-    let Some(partner) = draft.actors.first_mut() else { return false };
+    let Some(partner) = draft.actors.iter_mut().find(|actor| actor.id == "cp") else { return false };
     let mut mirrored = false;
     // About the ego's lane, which lies along the x axis.
     for place in places(&mut partner.plan) {
@@ -245,7 +245,7 @@ fn order_reversed(account: &Account, draft: &mut ScenarioDraft) -> bool {
 }
 
 fn far_off(_: &Account, draft: &mut ScenarioDraft) -> bool {
-    let Some(partner) = draft.actors.first_mut() else { return false };
+    let Some(partner) = draft.actors.iter_mut().find(|actor| actor.id == "cp") else { return false };
     for place in places(&mut partner.plan) {
         if let Place::Plane { y_m, .. } = place {
             *y_m += 40.0;
@@ -269,7 +269,7 @@ fn too_fast(account: &Account, draft: &mut ScenarioDraft) -> bool {
 }
 
 fn other_kind(_: &Account, draft: &mut ScenarioDraft) -> bool {
-    let Some(partner) = draft.actors.first_mut() else { return false };
+    let Some(partner) = draft.actors.iter_mut().find(|actor| actor.id == "cp") else { return false };
     partner.kind = match partner.kind {
         PartnerKind::Bus => PartnerKind::PassengerCar,
         _ => PartnerKind::Bus,
@@ -302,7 +302,9 @@ fn standing_partner_rolls(account: &Account, draft: &mut ScenarioDraft) -> bool 
 
 fn forward_gear(account: &Account, draft: &mut ScenarioDraft) -> bool {
     let reversed = partner_state(account) == Some(ContactState::Reversing);
-    let Some(partner) = draft.actors.first_mut().filter(|_| reversed) else { return false };
+    let Some(partner) = draft.actors.iter_mut().find(|actor| actor.id == "cp").filter(|_| reversed) else {
+        return false;
+    };
     for leg in &mut partner.plan.course {
         if let Leg::Curve { reverse, .. } = leg {
             *reverse = false;
@@ -359,7 +361,7 @@ fn standing_ego_rolls(account: &Account, draft: &mut ScenarioDraft) -> bool {
 
 fn never_stood(account: &Account, draft: &mut ScenarioDraft) -> bool {
     let stood = partner_state(account) == Some(ContactState::SettingOff);
-    let Some(partner) = draft.actors.first_mut().filter(|_| stood) else { return false };
+    let Some(partner) = draft.actors.iter_mut().find(|actor| actor.id == "cp").filter(|_| stood) else { return false };
     partner.plan.speed_mps = 4.0;
     partner.plan.acts.clear();
     true

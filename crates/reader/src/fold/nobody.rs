@@ -1,0 +1,136 @@
+//! Nouns that name nobody beside the two: one of the two again, a part of it, or somebody who was not there.
+
+use super::{Reading, whereabouts};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, ActFact, Kind, KindGroup};
+
+/// Whether a noun names one of the two again, or a part of it. Its tokens; what it is told to have done.
+pub(super) fn is_one_of_the_two(
+    reading: &Reading<'_>,
+    (actor, kind): (Actor, Kind),
+    (first, end): (usize, usize),
+    acts: &[ActFact],
+) -> bool {
+    let story = &reading.story;
+    let word = |at: Option<usize>| at.and_then(|at| story.tokens.get(at)).map_or("", |token| token.text.as_str());
+    let back = |by: usize| word(first.checked_sub(by));
+    let inside = |words: &[&str]| (first..end).any(|at| words.contains(&word(Some(at))));
+    let partner = reading.contacts.partner;
+    let idle = acts.iter().all(|fact| fact.after_contact);
+    let another = inside(&["another", "second", "third"]);
+    // "autonomous truck's mirror", "Olli is an 8-passenger shuttle", "the Kodiak AV Class 8 semi-truck".
+    let own = idle && inside(&["autonomous", "automated"]) && !inside(&["other"]);
+    let is = idle && matches!(back(1), "is") && story.world.actors[actor].mentions == 1;
+    let class = idle_or_drives(acts) && back(2) == "class" && back(1).parse::<u8>().is_ok();
+    let told_once = is_of_headline(reading, actor, (first, end)) && idle;
+    let headline = told_once && (whereabouts::place_of(reading, actor).is_none() || kind == Kind::Pickup);
+    let the_other = idle && partner.is_some() && word(Some(first)) == "the" && word(Some(first + 1)) == "other";
+    own && !another
+        || is
+        || class
+        || headline
+        || the_other
+        || is_towed_with(reading, (actor, kind), (first, end))
+        || is_thing_again(reading, kind, end, another)
+}
+
+/// Whether the headline of the crash names somebody so: "a collision with a van". It is the partner.
+fn is_of_headline(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usize)) -> bool {
+    let story = &reading.story;
+    let word = |at: Option<usize>| at.and_then(|at| story.tokens.get(at)).map_or("", |token| token.text.as_str());
+    let back = |by: usize| word(first.checked_sub(by));
+    let crash = matches!(back(2), "collision" | "crash" | "incident" | "accident");
+    let another = (first..end).any(|at| matches!(word(Some(at)), "another" | "second" | "third"));
+    let partner = reading.contacts.partner.map(|partner| &story.world.actors[partner]);
+    let vehicle = |kind: Option<Kind>| kind.is_some_and(|kind| kind.is_vehicle());
+    let known = &story.world.actors[actor];
+    matches!(back(1), "with" | "involving")
+        && crash
+        && !another
+        && !known.several
+        && vehicle(known.kind)
+        && partner.is_some_and(|partner| vehicle(partner.kind) && !partner.another)
+}
+
+/// Whether only the headline tells the kind of somebody, which is the partner's: the story calls it a vehicle.
+pub(super) fn is_called_by_headline(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usize)) -> bool {
+    let story = &reading.story;
+    let (kind, partner) = (story.world.actors[actor].kind, reading.contacts.partner);
+    let partner = partner.map(|partner| &story.world.actors[partner]).filter(|partner| partner.kind == kind);
+    let Some((begins, _)) = partner.and_then(|partner| partner.kind_tokens) else { return false };
+    let head = &story.tokens[end - 1].text;
+    let again = story.tokens[end.min(begins)..begins].iter().any(|token| &token.text == head);
+    begins > end && !again && is_of_headline(reading, actor, (first, end))
+}
+
+fn idle_or_drives(acts: &[ActFact]) -> bool {
+    acts.iter().all(|fact| fact.after_contact || fact.act == Act::Follow)
+}
+
+/// A trailer and who draws it are one where one of them is the partner.
+fn is_towed_with(reading: &Reading<'_>, (actor, kind): (Actor, Kind), (first, end): (usize, usize)) -> bool {
+    let story = &reading.story;
+    let Some(partner) = reading.contacts.partner else { return false };
+    let known = &story.world.actors[partner];
+    let words = |from: usize, to: usize| {
+        let to = to.min(story.tokens.len());
+        story.tokens[from.min(to)..to].iter().map(|token| token.text.as_str()).collect::<Vec<_>>()
+    };
+    // "The side of the heavy truck's trailer".
+    let (from, to) = known.kind_tokens.unwrap_or((0, 0));
+    let draws_it = |word: &&str| word.starts_with("truck") || word.starts_with("pickup");
+    let of_trailer = words(from, to).last() == Some(&"trailer") && words(from, to).iter().any(draws_it);
+    if of_trailer && words(first, end).iter().any(draws_it) {
+        return true;
+    }
+    let draws = matches!(kind.group(), KindGroup::Truck | KindGroup::Car) && known.kind == Some(Kind::Trailer);
+    if draws && kind != Kind::Trailer {
+        return known.towed_by == Some(actor) || words(first, end + 6).contains(&"trailer");
+    }
+    let drawn = kind == Kind::Trailer
+        && known.kind.is_some_and(|kind| matches!(kind.group(), KindGroup::Truck | KindGroup::Car));
+    let with = words(first.saturating_sub(3), end);
+    drawn && ["with", "and", "pulling", "towing", "hauling", "its"].iter().any(|word| with.contains(word))
+}
+
+/// A thing that is called as the partner is, or a part of a vehicle.
+fn is_thing_again(reading: &Reading<'_>, kind: Kind, end: usize, another: bool) -> bool {
+    let story = &reading.story;
+    if kind.group() != KindGroup::Object || another {
+        return false;
+    }
+    let head = story.tokens[end - 1].text.as_str();
+    let part = end > 1 && story.tokens[end - 2].text == "tie" && head == "rod";
+    let partner =
+        reading.contacts.partner.filter(|partner| *partner != SUBJECT).map(|partner| &story.world.actors[partner]);
+    let thing = |kind: Kind| matches!(kind.group(), KindGroup::Object | KindGroup::Other);
+    let tokens = partner.filter(|partner| partner.kind.is_some_and(thing)).and_then(|partner| partner.kind_tokens);
+    // What appeared to be a chair is one.
+    let same = tokens.is_some_and(|(first, end)| {
+        let named = &story.tokens[first..(end + 8).min(story.tokens.len())];
+        let named = named.iter().take_while(|token| !matches!(token.text.as_str(), "." | "on" | "at" | "near" | "in"));
+        named.into_iter().any(|token| token.text == head)
+    });
+    part || same
+}
+
+/// Whether a noun of a general remark names nobody who was there: "no injuries in either vehicle", "she called an ambulance", "signs that
+/// require vehicles to stop", "took the sign for a pedestrian".
+pub(super) fn is_remark(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFact]) -> bool {
+    let tokens = &reading.story.tokens;
+    let word = |at: Option<usize>| at.and_then(|at| tokens.get(at)).map_or("", |token| token.text.as_str());
+    let back = |by: usize| word(first.checked_sub(by));
+    let inside = |words: &[&str]| (first..end).any(|at| words.contains(&word(Some(at))));
+    if acts.iter().any(|fact| !fact.after_contact) {
+        return false;
+    }
+    let either = matches!(back(1), "either" | "neither") || inside(&["either", "neither"]);
+    let called = matches!(back(1), "called" | "summoned" | "requested" | "call" | "contacted");
+    let required = matches!(back(1), "require" | "requires" | "requiring");
+    let taken_for = back(1) == "as"
+        && (2..9).any(|by| ["misclassif", "misidentif", "mistook"].iter().any(|stem| back(by).starts_with(stem)));
+    let valet = inside(&["valet"]) && (word(Some(end)) == "parking" || inside(&["automated"]));
+    let restricted = inside(&["traffic"])
+        && (end..end + 3).any(|at| matches!(word(Some(at)), "restricted" | "prohibited" | "permitted"));
+    either || called || required || taken_for || valet || restricted
+}

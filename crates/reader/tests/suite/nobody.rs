@@ -1,0 +1,56 @@
+//! Nouns that name nobody beside the two, and those that do.
+
+use crate::common::account_of;
+use recrash_model::account::Kind;
+
+fn others(text: &str) -> Vec<Kind> {
+    account_of(text).expect("an account").others.iter().map(|other| other.kind.value).collect()
+}
+
+#[test]
+fn one_of_the_two_is_nobody_else() {
+    let texts = [
+        "The AV was in a minor collision with a commercial vehicle. While the AV was traveling through a parking lot, a van backed out of a \
+         parking space. The AV came to a stop and the rear of the van made contact with the front of the AV.",
+        "The AV was traveling north. The right mirror of a pickup truck made contact with the autonomous truck's left \
+         side mirror.",
+        "A van reversed out of a parking space and struck the right side of the AV. The AV came to a stop. In summary, the other car did not give way.",
+        "The AV was traveling west in a parking lot when a heavy truck in front of the AV stopped. The heavy truck began to reverse and the rear of \
+         the heavy truck's trailer made contact with the front of the AV.",
+        "The AV was stopped in the right turn lane to yield to a heavy truck with an oversized trailer. The heavy truck proceeded forward and the \
+         right side of the heavy truck made contact with the left side of the AV.",
+        "The AV was traveling west when its right front contacted the curb, causing tie rod and cosmetic damage.",
+        "The AV was traveling west when a remote controlled toy robot entered the roadway from the right, and the front of the AV made contact with the \
+         remote controlled robot.",
+    ];
+    for text in texts {
+        assert_eq!(others(text), [], "{text}");
+    }
+}
+
+#[test]
+fn a_general_remark_names_nobody() {
+    let before = "The AV was stopped at a red light on Elm Street when a sedan made contact with the rear of the AV.";
+    let remarks = [
+        "The airbags did not deploy in either vehicle.",
+        "The driver called an ambulance.",
+        "There are stop signs that require vehicles to stop before entering the intersection.",
+        "The AV had misclassified a speed limit sign as a pedestrian.",
+        "This was in preparation for the Automated Valet Parking demonstration.",
+    ];
+    for remark in remarks {
+        for text in [format!("{before} {remark}"), format!("{remark} {before}")] {
+            assert_eq!(others(&text), [], "{text}");
+        }
+    }
+}
+
+#[test]
+fn whom_only_the_headline_calls_so_is_a_vehicle() {
+    let text = "The AV was in a collision involving a van on Elm Street. The AV was traveling west on Elm Street and came to a stop behind a \
+                double-parked vehicle. A van approached from behind and made contact with the rear of the AV.";
+    assert_eq!(others(text), [Kind::Vehicle]);
+    let again = "The AV was in a collision involving a van on Elm Street. The AV was traveling west on Elm Street and came to a stop behind a \
+                 parked van. Another van approached from behind and made contact with the rear of the AV.";
+    assert_eq!(others(again), [Kind::Van]);
+}
