@@ -4,6 +4,7 @@ mod blame;
 mod contact;
 mod fallback;
 mod movement;
+mod open;
 mod origin;
 mod party;
 mod picture;
