@@ -199,6 +199,12 @@ pub(crate) fn check(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Opti
     Some((format!("under a wheel{side}"), there && of, format!("{left_m:.1} m to the left of the ego's middle")))
 }
 
+/// Whether only the roof was touched: what did it hangs above the road.
+pub(crate) fn is_overhead(sv: &Party) -> bool {
+    let zones = sv.zone_values();
+    !zones.is_empty() && zones.iter().all(|zone| *zone == ContactZone::Top)
+}
+
 /// Whether a thing is told to be fixed, and no more.
 pub(crate) fn is_fixed(thing: &Party) -> bool {
     told(&thing.kind) == Some(Kind::Object) && words_of(&thing.kind).is_some_and(|text| text.contains("fixed"))
