@@ -243,6 +243,13 @@ impl World {
         {
             return Some(SUBJECT);
         }
+        // "An Acme AV ("AV") Peterbilt semi-truck": what it is, behind its name.
+        let alone = self.actors.len() == 1 && self.actors[SUBJECT].mentions > 0;
+        let truck_name = kind == Kind::SemiTrailerTruck && !noun.names.is_empty();
+        if noun.article == Article::None && !noun.several && alone && truck_name {
+            self.actors[SUBJECT].kind.get_or_insert(kind);
+            return Some(SUBJECT);
+        }
         let has = |adjective: Adjective| noun.adjectives.contains(&adjective);
         // "The shuttle" of a story that a shuttle tells, and that knows no other one.
         let truck = |kind: Kind| matches!(kind, Kind::HeavyTruck | Kind::SemiTrailerTruck);

@@ -220,6 +220,9 @@ pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option
 const ASIDE_S: f64 = 4.0;
 const ASIDE_M: (f64, f64) = (14.0, 60.0);
 
+/// Who was completing a lane change has driven so many times half of its way.
+const MOSTLY_DONE: f64 = 1.5;
+
 /// The same of who swerves from somebody. [s, m]
 const SWERVES_S: f64 = 1.6;
 const SWERVES_M: f64 = 8.0;
@@ -236,6 +239,12 @@ fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
     let (over_s, from_m) = if told.sv.reacts { (SWERVES_S, SWERVES_M) } else { (ASIDE_S, ASIDE_M.0) };
     let half_m = (0.5 * over_s * speed_mps).clamp(0.5 * from_m, 0.5 * ASIDE_M.1).max(least_m);
     let drives = pace.speed_mps > 0.0;
+    // Who was completing it has done most of it.
+    let most_m = MOSTLY_DONE * half_m;
+    if told.sv.completes && !aside.done && drives && speed_mps > 0.0 && most_m < pace.driven_m {
+        let from_s = (time_before(contact_s, pace, most_m) * 10.0).round() / 10.0;
+        return when(from_s, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m });
+    }
     let (half_m, from_s) = if aside.done {
         (half_m, (contact_s - DRIVES_ON_S - 2.0 * half_m / speed_mps.max(0.1)).max(0.0))
     } else if drives && speed_mps == 0.0 {
@@ -244,7 +253,7 @@ fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
         let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
         let half_m = (braking_m + pace.speed_mps * ROLLS_S).min(pace.driven_m);
         (half_m, (brakes_s - ROLLS_S).max(0.0))
-    } else if half_m < pace.driven_m && least_m > 0.0 {
+    } else if half_m < pace.driven_m && (least_m > 0.0 || drives && contact_s * speed_mps < half_m) {
         (half_m, time_before(contact_s, pace, half_m))
     } else if half_m < pace.driven_m && drives {
         (half_m, contact_s - half_m / speed_mps)

@@ -537,6 +537,10 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
     // Every second.
     let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
+    let oncoming = |state: &ActorState| movement::is_against(scenario, state) == Some(true);
+    if told.keeps_direction() && track.states[..=until].iter().step_by(10).filter(|state| oncoming(state)).count() > 1 {
+        return true;
+    }
     let turns = || track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
     let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M;
     let tighter = |(turn, state): (f64, &ActorState)| {

@@ -235,8 +235,10 @@ fn is_one_way(told: &Told) -> bool {
 /// Lanes in the ego's direction: as told, and at least as many as the told lanes need.
 fn lanes_for(told: &Told, usual: usize) -> usize {
     // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
-    let usual =
-        if (told.cp.lane == Some(LaneWord::Opposing) || told.comes_over) && told.sv.lane.is_none() { 1 } else { usual };
+    let beside_opposite = told.cp.lane == Some(LaneWord::Opposing)
+        || told.comes_over
+        || told.is_met_by_oncoming() && told.sv.turning == Turning::No;
+    let usual = if beside_opposite && told.sv.lane.is_none() { 1 } else { usual };
     // A street with driveways, or stalls, on both sides.
     let from_left = matches!(
         told.origin,
@@ -253,7 +255,8 @@ fn lanes_for(told: &Told, usual: usize) -> usize {
         LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn => 2,
         _ => 1,
     });
-    told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)).clamp(1, MOST_LANES)
+    let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + usize::from(told.more_lanes);
+    lanes.clamp(1, MOST_LANES)
 }
 
 /// No road has more lanes in one direction.
@@ -316,6 +319,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::Right => "right",
         Turning::No | Turning::Round => "own",
     };
+    let one_way = is_one_way(told);
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
         let beside: &[StripKind] =
@@ -330,7 +334,6 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         };
         straight(id, start, length_m, away, towards)
     };
-    let one_way = is_one_way(told);
     let (exit, lane) = match told.sv.turning {
         Turning::Left => ("left+", told_lane(told, lanes).unwrap_or(0)),
         Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),

@@ -66,7 +66,8 @@ impl Told {
         let goes_round = self.cp.lane == Some(LaneWord::Opposing) || self.cp.movement == Some(Movement::Passing);
         let in_the_way = self.origin == Origin::Behind && goes_round && self.cp.state != ContactState::Reversing;
         let on_lane = self.sv.lane.is_some_and(|lane| lane != LaneWord::Curb);
-        self.sv.state == ContactState::Parked && self.thing.is_none() && !on_lane && !in_the_way
+        let stands = self.thing.is_some() && self.cp.state.stands();
+        self.sv.state == ContactState::Parked && !stands && !on_lane && !in_the_way
     }
 
     /// Whether the partner reverses out of a stall or a driveway.

@@ -1,11 +1,11 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
 use crate::ground::{Ground, LANE_M};
-use crate::pace::{Pace, start_over};
+use crate::pace::{Pace, first_time, start_over};
 use crate::side::Turning;
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, Party};
+use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, Party, PlaceKind, Standing, told};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -21,6 +21,9 @@ const LEAST_RADIUS_M: f64 = 10.0;
 /// Who leaves its lane has begun so long before the contact, on so much of its way at least and at most. [s, m]
 const LEAVES_S: f64 = 2.5;
 const LEAVES_M: (f64, f64) = (12.0, 60.0);
+
+/// Who comes over in front of an ego that stops for it began to so long before that slowed. [s]
+const BEGUN_S: f64 = 0.7;
 
 /// Who walks, or runs on four legs, comes across the kerb; who drives pulls out along it.
 pub(crate) fn is_on_foot(kind: PartnerKind) -> bool {
@@ -80,13 +83,48 @@ impl Told {
     /// Whether an oncoming partner that drives straight on touches an ego that stands on the ego's side of the road. Nobody tells that it
     /// left its own: it does so late.
     pub(crate) fn is_met_on_wrong_side(&self, ground: &Ground, cp: Pose) -> bool {
+        self.is_met_by_oncoming() && cp.position.y < ground.opposing_y_m() - 0.5 * LANE_M
+    }
+
+    /// Whether an oncoming partner drives straight on past an ego that stands, and touches it.
+    pub(crate) fn is_met_by_oncoming(&self) -> bool {
         self.origin == Origin::Opposite
             && self.cp.turning == Turning::No
             && self.sv.state.stands()
             && self.thing.is_none()
             && self.door.is_none()
             && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
-            && cp.position.y < ground.opposing_y_m() - 0.5 * LANE_M
+    }
+
+    /// Whether the partner has to keep to the lanes of the ego's direction: nobody tells that it left them.
+    pub(crate) fn keeps_direction(&self) -> bool {
+        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. });
+        let over = matches!(
+            self.cp.movement,
+            Some(Movement::CrossingIntoOpposingLane | Movement::WrongWay | Movement::UTurn | Movement::Passing)
+        );
+        let drives = self.cp.state == ContactState::Moving && self.cp.turning == Turning::No;
+        let street = !matches!(
+            self.place,
+            PlaceKind::Highway | PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley
+        );
+        along && !over && drives && street && self.cp.lane != Some(LaneWord::Opposing) && self.thing.is_none()
+    }
+
+    /// Whether the ego came to a stop for a partner beside it that had begun to come over into its lane.
+    pub(crate) fn stops_for_merge(&self, sv: &Party, partner: &Party) -> bool {
+        let step = |party: &Party, of: fn(Act) -> bool| {
+            let before = party.acts.iter().filter(|fact| !fact.after_contact && of(fact.act));
+            before.map(|fact| fact.step).min()
+        };
+        let over = step(partner, |act| matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::Enter));
+        let slows = step(sv, |act| matches!(act, Act::Slow | Act::Stop));
+        let came = told(&sv.standing) == Some(Standing::CameToStop) && self.sv.state == ContactState::Stopped;
+        let merges = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
+        let drives = self.cp.state == ContactState::Moving && !self.cp.stood_first && self.cp.phases.is_empty();
+        let simple = self.sv.phases.is_empty() && self.thing.is_none() && self.cp.turning == Turning::No;
+        let beside = matches!(self.origin, Origin::Beside { .. }) && self.ahead != Some(false);
+        came && merges && drives && simple && beside && over.is_some() && over < slows
     }
 
     /// Whether the partner stood beside the lanes before it came: at the kerb, in a stall or in a driveway.
@@ -105,6 +143,10 @@ fn kerb_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     let [left_m, right_m] = staging.ground.kerbs_m;
     let on_left = side.map_or(staging.cp.heading < 0.0, |side| side == LeftRight::Left);
     let (kerb_m, cp_m) = if on_left { (left_m, staging.cp.position.y) } else { (right_m, -staging.cp.position.y) };
+    // Before a junction the road has two directions: it came out into the leftmost lane.
+    if on_left && staging.ground.junction && staging.ground.lane > 0 {
+        return Some(staging.sv.position.y + f64::from(staging.ground.lane) * LANE_M);
+    }
     let aside_m = kerb_m.max(cp_m);
     Some(if on_left { aside_m } else { -aside_m })
 }
@@ -165,7 +207,10 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     }
     let (cp, came) = (staging.cp, Vec2::from_heading(staging.cp_came));
     let line_y_m = line_y_m(told, staging)?;
-    let over_m = (LEAVES_S * told.cp.speed_mps).clamp(LEAVES_M.0, LEAVES_M.1);
+    let usual_m = (LEAVES_S * told.cp.speed_mps).clamp(LEAVES_M.0, LEAVES_M.1);
+    // It had begun before the ego slowed.
+    let since_m = pace.driven_m - pace.speed_mps * (first_time(&pace.acts) - BEGUN_S);
+    let over_m = if told.gives_way_to_merge { since_m.max(usual_m) } else { usual_m };
     let leaves = Pose { position: Vec2::new(cp.position.x - came.x * over_m, line_y_m), heading: staging.cp_came };
     let mut course = Course::begin(arm_m);
     let before_m = if course.curve(leaves, cp, false) { pace.driven_m - course.length_m() } else { return None };

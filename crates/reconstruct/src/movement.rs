@@ -90,16 +90,7 @@ impl Way<'_> {
 
     /// Whether it goes against the direction of the lane it is on.
     fn against(&self) -> Option<bool> {
-        let last = &self.until()[self.until().len() - 1];
-        let network = self.scenario.network();
-        // The lane it is on, whichever way it faces.
-        let lanes = [0.0, math::PI].map(|turn| network.lane_at(last.position(), last.heading + turn));
-        let [along, against] = lanes;
-        let (along, against) = (along?, against?);
-        let faces =
-            |id| math::wrap_angle(network.lane(id).heading(network.lane(id).local(last.position()).0) - last.heading);
-        let (first, second) = (faces(along).abs(), faces(against).abs());
-        Some(first > math::FRAC_PI_2 && second > math::FRAC_PI_2)
+        is_against(self.scenario, &self.until()[self.until().len() - 1])
     }
 
     fn starts_off_lanes(&self) -> bool {
@@ -107,6 +98,19 @@ impl Way<'_> {
         let lane = network.lane_at(first.position(), first.heading);
         lane.is_none_or(|lane| matches!(network.road(network.lane(lane).road).part, RoadPart::Beside(_)))
     }
+}
+
+/// Whether somebody faces against the direction of the lane it is on; nothing where it is on none.
+pub(crate) fn is_against(scenario: &Scenario, state: &ActorState) -> Option<bool> {
+    let network = scenario.network();
+    // The lane it is on, whichever way it faces.
+    let lanes = [0.0, math::PI].map(|turn| network.lane_at(state.position(), state.heading + turn));
+    let [along, against] = lanes;
+    let (along, against) = (along?, against?);
+    let faces =
+        |id| math::wrap_angle(network.lane(id).heading(network.lane(id).local(state.position()).0) - state.heading);
+    let (first, second) = (faces(along).abs(), faces(against).abs());
+    Some(first > math::FRAC_PI_2 && second > math::FRAC_PI_2)
 }
 
 /// Who drives at an angle to the road is at least at this one, and who leaves the kerb or parks has turned by more where it is not

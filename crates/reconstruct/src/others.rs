@@ -443,6 +443,8 @@ impl Story<'_> {
     fn keeps_abreast(&self, told: &Told, place: Option<Origin>) -> bool {
         let Some(Origin::Beside { side }) = place else { return false };
         let free = told.comes_from_side() != Some(side) && told.origin != Origin::Beside { side };
+        // What came off it rolls out from beside it.
+        let free = free || told.is_sliding();
         let drives = matches!(told.sv.state, ContactState::Moving | ContactState::SettingOff);
         free && drives && is_straight(told)
     }

@@ -239,6 +239,9 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
     let follows = follows && told.ahead != Some(true) && !told.sv.reacts;
     let enters = cp.movement == Some(Movement::EnteringTraffic);
     match cp.state {
+        ContactState::Moving if told.gives_way_to_merge && cp.speed_mps < ego.speed_mps - 1.0 => {
+            slows_abreast(contact_s, cp.speed_mps, ego)
+        }
         ContactState::Moving if told.brakes_late() => slows(contact_s, cp),
         // It slows with the ego that it follows.
         ContactState::Moving if told.sv.slowed_from.is_some() && follows && usual.driven_m < ego_m + 5.0 => {
@@ -407,6 +410,17 @@ fn slows(contact_s: f64, side: &Side) -> Pace {
     let brake = Deed::Speed { to_mps: side.speed_mps, rate_mps2: by_mps / braking_s };
     let driven_m = from_mps * (contact_s - braking_s) + 0.5 * (from_mps + side.speed_mps) * braking_s;
     Pace { speed_mps: from_mps, acts: vec![when(contact_s - braking_s, brake)], driven_m }
+}
+
+/// It comes along as fast as the ego does, slows when that does, and goes on slowly.
+fn slows_abreast(contact_s: f64, speed_mps: f64, ego: &Pace) -> Pace {
+    let (from_s, by_mps) = (first_time(&ego.acts), ego.speed_mps - speed_mps);
+    let braking_s = (by_mps / STOPPING_MPS2).min(contact_s - from_s);
+    let brake = Deed::Speed { to_mps: speed_mps, rate_mps2: by_mps / braking_s };
+    let driven_m = ego.speed_mps * from_s
+        + 0.5 * (ego.speed_mps + speed_mps) * braking_s
+        + speed_mps * (contact_s - from_s - braking_s);
+    Pace { speed_mps: ego.speed_mps, acts: vec![when(from_s, brake)], driven_m }
 }
 
 /// From a stand up to more than its speed at the contact, and down to that: so far, by less where that takes farther, or as far as the

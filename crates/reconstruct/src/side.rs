@@ -59,6 +59,8 @@ pub(crate) struct Side {
     pub(crate) turns_later: bool,
     /// Its turn was over, or all but over.
     pub(crate) turned: bool,
+    /// It was completing a lane change.
+    pub(crate) completes: bool,
     /// It turns all the way into the road that the other is on, to meet it head-on.
     pub(crate) turns_wide: bool,
     /// To which side it moves out of its line, where told.
@@ -187,6 +189,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         stopped_aside,
         turns_later: false,
         turned: turning != Turning::No && party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done),
+        completes: is_completing(party, movement),
         turns_wide: false,
         dodges: false,
         slants: None,
@@ -214,6 +217,13 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         lane: told(&party.lane),
         control: control(party),
     }
+}
+
+/// Whether somebody is told to have been completing a lane change.
+fn is_completing(party: &Party, movement: Option<Movement>) -> bool {
+    let changes = matches!(movement, Some(Movement::ChangingLanes | Movement::Merging));
+    let last = party.acts.iter().rfind(|fact| fact.act == Act::LaneChange && !fact.after_contact && !fact.begun);
+    changes && last.is_some_and(|fact| fact.done)
 }
 
 /// Whether somebody who stood and set off is told to have slowed after it.

@@ -3,6 +3,7 @@
 
 use crate::ground::LANE_M;
 use crate::lateral::is_on_foot;
+use crate::others::Role;
 use crate::pace::{Pace, start_over};
 use crate::side::{Side, Turning};
 use crate::told::Told;
@@ -221,6 +222,12 @@ pub(crate) fn check(told: &Told, ego: &OrientedBox, other: &OrientedBox) -> Opti
     Some((format!("under a wheel{side}"), there && of, format!("{left_m:.1} m to the left of the ego's middle")))
 }
 
+/// Whether only the roof was touched: what did it hangs above the road.
+pub(crate) fn is_overhead(sv: &Party) -> bool {
+    let zones = sv.zone_values();
+    !zones.is_empty() && zones.iter().all(|zone| *zone == ContactZone::Top)
+}
+
 /// Whether a thing is told to be fixed, and no more.
 pub(crate) fn is_fixed(thing: &Party) -> bool {
     told(&thing.kind) == Some(Kind::Object) && words_of(&thing.kind).is_some_and(|text| text.contains("fixed"))
@@ -229,6 +236,10 @@ pub(crate) fn is_fixed(thing: &Party) -> bool {
 /// How fast a thing is that rolls or slides, from how far away. [m/s, m]
 pub(crate) const SLIDES_MPS: f64 = 2.0;
 const SLIDES_M: f64 = 4.0;
+
+/// The same from the edge of the ego's lane, and how much farther to its other side. [m]
+const FROM_EDGE_M: f64 = 1.5;
+const TO_FAR_SIDE_M: f64 = 0.7;
 
 /// Whether it is told of a thing that it came into the way. What has fallen lies there.
 pub(crate) fn slides(thing: &Party) -> bool {
@@ -276,7 +287,17 @@ pub(crate) fn walks_across(origin: Origin, partner: &Party) -> bool {
 
 /// It lies or stands aside, and then comes.
 pub(crate) fn pace(told: &Told) -> Option<Pace> {
-    told.comes_across().then(|| start_over(told.contact_s, told.cp.speed_mps, SLIDES_M)).flatten()
+    // From the lane's edge where somebody drives in the next one.
+    let abreast = told.extras.iter().any(|extra| matches!(extra.role, Role::Abreast | Role::Beside));
+    let far = match (told.origin, side_of(&told.sv.zones)) {
+        (Origin::Beside { side }, Some(touched)) => (side == LeftRight::Left) != (touched > 0.0),
+        _ => false,
+    };
+    let way_m = match abreast && told.thing.is_some() {
+        true => FROM_EDGE_M + if far { TO_FAR_SIDE_M } else { 0.0 },
+        false => SLIDES_M,
+    };
+    told.comes_across().then(|| start_over(told.contact_s, told.cp.speed_mps, way_m)).flatten()
 }
 
 /// Across the ego's lane: from the told side, or from both.

@@ -7,7 +7,7 @@ use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::{GAINS_MPS, STARTS_AND_SLOWS_MPS};
 use crate::roadside;
-use crate::side::{Side, Slant, Turning, side};
+use crate::side::{Side, Slant, Slowed, Turning, side};
 use crate::things::{self, Lies, SLIDES_MPS};
 use crate::touch::side_of;
 use crate::trailer::{self, Rig};
@@ -46,6 +46,13 @@ const SETS_OFF_FASTER_MPS: f64 = 1.0;
 
 /// Who turns beside an ego that turns is faster than it by so much. [m/s]
 const ABREAST_MPS: f64 = 1.0;
+
+/// An ego that is no faster than this creeps, and who was ahead beside its line drives so. [m/s]
+const CREEPS_MPS: f64 = 0.5;
+const NEARED_MPS: f64 = 1.2;
+
+/// Who merges in front of an ego that stops for it does so slowly. [m/s]
+const MERGES_MPS: f64 = 1.5;
 
 /// Speed in a turn, usual and at most. [m/s]
 const TURNS_MPS: f64 = 5.0;
@@ -98,6 +105,8 @@ pub(crate) struct Told {
     pub(crate) striker: Option<Striker>,
     /// Lanes in the ego's direction.
     pub(crate) lanes: Option<u8>,
+    /// The road has one lane more in each direction than is usual.
+    pub(crate) more_lanes: bool,
     /// Why the ego stood.
     pub(crate) reasons: Vec<StandReason>,
     /// Others than the two.
@@ -114,6 +123,8 @@ pub(crate) struct Told {
     pub(crate) ahead: Option<bool>,
     /// The ego stood already when the partner began what it did.
     pub(crate) stood_before: bool,
+    /// The ego stopped for a partner beside it that had begun to come over.
+    pub(crate) gives_way_to_merge: bool,
     /// The partner backs: it began to when the ego had set off.
     pub(crate) backs_late: bool,
     /// The partner backs: it began to before the ego stopped, or moved up to where it stands.
@@ -137,6 +148,7 @@ impl Told {
         match (this.place, this.origin) {
             (PlaceKind::Circle, _) => Err(Untold::Place),
             (_, Origin::Above) => Err(Untold::FromAbove),
+            _ if this.thing.is_some() && things::is_overhead(&account.sv) => Err(Untold::FromAbove),
             _ => Ok(this),
         }
     }
@@ -186,7 +198,7 @@ impl Told {
         let pushed_rolling = (partner.did(Act::Follow) || partner.did(Act::Slow))
             && !(partner.did(Act::Stop) || partner.did(Act::Hold) || cp.state.stands());
         let sv_reverses = sv.state == ContactState::Reversing;
-        let (backs_late, backs_early) = backs_behind(&account.sv, partner);
+        let (backs_late, backs_early) = backs_behind(&account.sv, partner, origin);
         let (backs_late, backs_early) = match (cp.state, sv.state) {
             (ContactState::Reversing, ContactState::Moving | ContactState::SettingOff) => (backs_late, false),
             (ContactState::Reversing, ContactState::Stopped) => (false, backs_early),
@@ -222,6 +234,7 @@ impl Told {
             rig: None,
             striker,
             lanes: told(&account.place.lanes),
+            more_lanes: false,
             reasons: others::reasons(account, origin),
             others: account.others.len(),
             door: told(&account.door),
@@ -230,6 +243,7 @@ impl Told {
             extras: Vec::new(),
             ahead: told(&account.ahead),
             stood_before: stood_before(&account.sv, partner),
+            gives_way_to_merge: false,
             backs_late,
             backs_early,
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
@@ -239,6 +253,7 @@ impl Told {
         };
         this.courses(&account.sv, partner);
         this.phases();
+        this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);
         this.wanted = others::wanted(&this, account);
         if this.origin_told {
             this.speeds();
@@ -396,7 +411,13 @@ impl Told {
             });
             drawn.into_iter().chain([told])
         };
-        self.by_origin().into_iter().flat_map(with_rig).flat_map(with_extras).collect()
+        // Who has no room in the ego's direction has it on a wider road.
+        let with_lanes = |told: Self| {
+            let may = told.lanes.is_none() && told.edge.is_none() && told.keeps_direction();
+            let more = may.then(|| Self { more_lanes: true, ..told.clone() });
+            [told].into_iter().chain(more)
+        };
+        self.by_origin().into_iter().flat_map(with_rig).flat_map(with_extras).flat_map(with_lanes).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.
@@ -465,6 +486,14 @@ impl Told {
     /// Speeds at the contact: as told, or such that who closes on whom does.
     fn speeds(&mut self) {
         let (driven_mps, slides) = (self.driven_mps(), self.is_sliding());
+        // Who came up to one that was ahead beside its line, and hardly moves, came faster.
+        let beside_ahead = matches!(self.origin, Origin::Beside { .. }) && self.ahead == Some(true);
+        let creeps = self.sv.impact_mps.is_some_and(|mps| mps <= CREEPS_MPS) && self.sv.state == ContactState::Moving;
+        let neared = beside_ahead && creeps && self.sv.turning == Turning::No && !self.sv.stood_first;
+        let neared = neared && self.cp.turning == Turning::No && self.cp.state == ContactState::Moving;
+        if neared && self.sv.phases.is_empty() {
+            self.sv.slowed_from = self.sv.slowed_from.or(Some(Slowed(None)));
+        }
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
             ContactState::SettingOff => 1.5,
@@ -517,6 +546,7 @@ impl Told {
                     let slower = if self.sv.slowed_from.is_some() { sv } else { sv - 2.5 };
                     self.cp.speed_mps = self.cp.speed_mps.min(slower.max(0.4));
                 }
+                Origin::Beside { .. } if neared => self.cp.speed_mps = NEARED_MPS,
                 // Who turns beside an ego that turns is hardly faster.
                 Origin::Beside { .. } if self.sv.turning != Turning::No && self.cp.turning == self.sv.turning => {
                     self.cp.speed_mps = sv + ABREAST_MPS;
@@ -533,6 +563,9 @@ impl Told {
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
                 _ => {}
             }
+        }
+        if self.cp.impact_mps.is_none() && self.gives_way_to_merge {
+            self.cp.speed_mps = MERGES_MPS;
         }
         // Who gained speed came at the usual one.
         if self.cp.impact_mps.is_none() && self.cp.gains {
@@ -637,14 +670,35 @@ fn steps(party: &Party, of: fn(Act) -> bool) -> Vec<u32> {
 }
 
 /// Whether the partner that backs began to after the ego had set off; and whether before the ego stopped for it, or moved up.
-fn backs_behind(sv: &Party, partner: &Party) -> (bool, bool) {
+fn backs_behind(sv: &Party, partner: &Party, origin: Origin) -> (bool, bool) {
     let first = |party: &Party, of: fn(Act) -> bool| steps(party, of).into_iter().min();
     let Some(backs) = first(partner, |act| act == Act::Reverse) else { return (false, false) };
     let sets_off = steps(sv, |act| act == Act::SetOff).into_iter().max();
     let stops = first(sv, |act| matches!(act, Act::Stop | Act::Hold));
-    let early = sets_off.is_some_and(|at| at > backs) || stops.is_some_and(|at| at > backs);
+    let in_lane = matches!(origin, Origin::Ahead | Origin::Behind);
+    let early = in_lane && stops_for_who_backs(sv, partner)
+        || sets_off.is_some_and(|at| at > backs)
+        || stops.is_some_and(|at| at > backs);
     (sets_off.is_some_and(|at| at < backs), early)
 }
+
+/// Whether the ego stopped for one that was reversing then: "came to a stop for a van that was backing up".
+fn stops_for_who_backs(sv: &Party, partner: &Party) -> bool {
+    let before = |fact: &&ActFact| !fact.after_contact && !fact.begun;
+    let words = |fact: &ActFact| match &fact.source {
+        Source::Words { start, end, text } => Some((*start, *end, text.to_lowercase())),
+        _ => None,
+    };
+    let backs = partner.acts.iter().filter(before).find(|fact| fact.act == Act::Reverse).and_then(words);
+    let stops = sv.acts.iter().filter(before).find(|fact| matches!(fact.act, Act::Stop | Act::Slow)).and_then(words);
+    let (Some((backs, _, text)), Some((_, stops, _))) = (backs, stops) else { return false };
+    let goes_on = text.starts_with("reversing") || text.starts_with("backing");
+    let own = steps(sv, |act| act == Act::Reverse);
+    goes_on && own.is_empty() && (0..SAME_BREATH).contains(&(backs as i64 - stops as i64))
+}
+
+/// What is told within so many bytes is told in one breath.
+const SAME_BREATH: i64 = 130;
 
 /// Whether one that stood at the contact did so before the partner began to do something: nothing is told of it behind that.
 fn stood_before(sv: &Party, partner: &Party) -> bool {

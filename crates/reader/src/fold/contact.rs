@@ -144,6 +144,11 @@ fn as_column(
     if said.is_none_or(|said| said == column) {
         return unchanged;
     }
+    // An animal that it struck before somebody ran into it was the first.
+    let hit = &story.frames[first];
+    if said == Some(KindGroup::Animal) && hit.who == Some(SUBJECT) && hit.object == Some(partner) && hit.happened() {
+        return unchanged;
+    }
     if let Some(&touch) = touching.iter().find(|(_, actor)| is(*actor)) {
         return touch;
     }

@@ -5,6 +5,7 @@ mod contact;
 mod fallback;
 mod movement;
 mod nobody;
+mod open;
 mod origin;
 mod party;
 mod picture;
@@ -202,6 +203,9 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let is_thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Door);
     account.door = account.door.filter(|_| !is_thing);
     account.came_from = origin::came_from(&reading, &account);
+    if let (Some(lane), Some(partner)) = (open::oncoming_lane(&reading, &account), &mut account.partner) {
+        partner.lane = Some(lane);
+    }
     movement::movements(&reading, &mut account);
     if let Some(origin) = picture::settle(&account) {
         if let Some(told) = account.came_from.take().filter(|told| told.source.is_told()) {

@@ -146,7 +146,11 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             "what stands beside the way is on the side that touches it",
         ));
     }
-    if let (true, Some(side)) = (clues.reading.did(clues.actor, Act::Roll), zone_side(account)) {
+    let rolls = account.partner.as_ref()?.did(Act::Roll);
+    if let Some(side) = came_off(clues, account).filter(|_| rolls) {
+        return Some(Fact::by_rule(Origin::Beside { side }, "what rolls comes from the lane of whom it came off"));
+    }
+    if let (true, Some(side)) = (rolls, zone_side(account)) {
         return Some(Fact::by_rule(Origin::Beside { side }, "what rolls comes from the side that it touches"));
     }
     let lies = matches!(kind, Some(Kind::Debris | Kind::Pothole | Kind::Object | Kind::LooseWheel))
@@ -167,6 +171,20 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         ));
     }
     zone_side(account).map(|side| Fact::by_rule(Origin::Beside { side }, "the side that the thing touches"))
+}
+
+/// The side on which the vehicle drives that lost a thing: the only other one that is told of.
+fn came_off(clues: &Clues<'_>, account: &Account) -> Option<LeftRight> {
+    let actors = || clues.reading.story.world.actors.iter().enumerate().skip(1);
+    let vehicle = |kind: Option<Kind>| kind.is_some_and(Kind::is_vehicle);
+    let mut others = actors().filter(|(actor, known)| *actor != clues.actor && vehicle(known.kind));
+    let (only, more) = (others.next(), others.next());
+    let (lane, ..) = only.filter(|_| more.is_none())?.1.lane?;
+    match lane_place(lane)? - lane_place(account.sv.lane.as_ref()?.value)? {
+        0 => None,
+        difference if difference < 0 => Some(LeftRight::Left),
+        _ => Some(LeftRight::Right),
+    }
 }
 
 fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
@@ -362,7 +380,12 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
     {
         return told_as(Origin::Behind, clues.has(Relation::Behind));
     }
+    // Who drives the other way comes from there, and is beside it then.
+    let other_way = turn == Some(4)
+        && !(did(Act::Turn) || did(Act::UTurn) || did(Act::WrongWay))
+        && told(&account.partner.as_ref()?.state) == Some(ContactState::Moving);
     if first == Some(Relation::Beside)
+        && !other_way
         && let Some(side) = lane_side(account).or_else(|| zone_side(account))
     {
         return told_as(Origin::Beside { side }, clues.has(Relation::Beside));
@@ -392,7 +415,7 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         let opposite_side = clues.any(Relation::Opposite) || account.partner.as_ref()?.did(Act::WrongWay);
         match eighths {
             // Facing the other way and going backwards it goes the same way, beside.
-            4 if did(Act::Reverse) && zone_side(account).is_some() => {
+            4 if did(Act::Reverse) && !other_way && zone_side(account).is_some() => {
                 let side = zone_side(account)?;
                 return told_as(Origin::Beside { side }, heading?.source.clone());
             }
@@ -536,7 +559,9 @@ fn of_road_user(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
             return Some(Fact::by_rule(Origin::Beside { side }, "the side that a parked one is touched with"));
         }
         let left = super::types::turn_side(&account.sv) == Some(LeftRight::Left);
-        if left && side == LeftRight::Right {
+        // Who ran a red light where it had green crossed.
+        let ran_red = |frame: &Frame| frame.who != Some(SUBJECT) && frame.act() == Some(Act::RunRed);
+        if left && side == LeftRight::Right && !reading.story.frames.iter().any(ran_red) {
             return Some(Fact::by_rule(Origin::Opposite, "the right side of a vehicle turning left that was touched"));
         }
         return Some(Fact::by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched"));

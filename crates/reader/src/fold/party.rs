@@ -1,6 +1,7 @@
 //! One side: kind, acts, state at the contact, reasons to stand, lane, direction, zones, speeds, signals.
 
 use super::Reading;
+use super::open::{doer, is_any_truck, turned_by_column};
 use super::state::sv_state;
 use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided, zone_of};
@@ -72,7 +73,7 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             && frame.object == Some(actor)
             && Some(actor) == reading.contacts.partner;
         let pushed = thrown || (frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened());
-        if frame.who != Some(actor) && !pushed {
+        if doer(reading, frame) != Some(actor) && !pushed {
             continue;
         }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
@@ -83,7 +84,7 @@ pub(crate) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         });
         let side = if sided(act) { frame.side.or_else(|| to_lane(reading, actor, frame, act)) } else { None };
         let side = side.or_else(|| into_turn_lane(reading, actor, frame, act));
-        let side = side.or(lane.filter(|_| act == Act::Turn));
+        let side = side.or(lane.filter(|_| act == Act::Turn)).or_else(|| turned_by_column(reading, actor, act));
         let after_contact = reading.is_after(number);
         let fact = ActFact {
             act,
@@ -269,7 +270,7 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
     let mut since = (usize::MAX, 0);
     let mut spoken = 0;
     for (number, frame) in reading.story.frames.iter().enumerate() {
-        if frame.who != Some(actor) || !frame.happened() || reading.is_after(number) {
+        if doer(reading, frame) != Some(actor) || !frame.happened() || reading.is_after(number) {
             continue;
         }
         let Some(act) = frame.act().filter(|act| *act != Act::OpenDoor && *act != Act::Leave) else { continue };
@@ -696,7 +697,9 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
         _ => None,
     };
     let vague = partner.kind.as_ref().is_none_or(|kind| kind.value == Kind::Vehicle);
-    if let (true, Some(kind)) = (vague, column) {
+    // "The truck" is a pickup where the column says so, and "a commercial vehicle" is a van.
+    let light = matches!(column, Some(Kind::Pickup | Kind::Van)) && partner.kind.as_ref().is_some_and(is_any_truck);
+    if let (true, Some(kind)) = (vague || light, column) {
         partner.kind = Some(Fact::of_column(kind, "Crash With"));
     }
     // Something that neither a word of ours nor the column knows is no road user.

@@ -1,6 +1,7 @@
 //! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, and `families.toml`, each kind of crash in many wordings.
 
 use crate::common::{self, account_of, facts};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
 use recrash_model::template::Movement;
 use serde::Deserialize;
@@ -63,4 +64,39 @@ fn a_turn_lane_is_gone_over_to_where_the_column_says_so() {
     record.sv_movement = Coded::Known(Movement::ChangingLanes);
     let account = recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account");
     assert_eq!(facts(&account)["sv_acts"], "follow enter_right");
+}
+
+/// The facts of a narrative beside these columns.
+fn beside_columns(text: &str, partner: PartnerKind, own: Option<Movement>) -> BTreeMap<&'static str, String> {
+    let mut record = common::record("1-1", 1, text);
+    record.partner = Coded::Known(partner);
+    record.sv_movement = own.map_or(Coded::Blank, Coded::Known);
+    facts(&recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account"))
+}
+
+#[test]
+fn a_bare_truck_is_what_the_column_says() {
+    let text =
+        "The AV was stopped at a stop sign. A truck that had been behind the AV made contact with the rear of the AV.";
+    assert_eq!(beside_columns(text, PartnerKind::PickupTruck, None)["cp_kind"], "pickup");
+    let text =
+        "The AV stopped for a commercial vehicle backing out of a parking space, and it made contact with the AV.";
+    assert_eq!(beside_columns(text, PartnerKind::Van, None)["cp_kind"], "van");
+    let text = "The AV was stopped. A dump truck that had been behind the AV made contact with the rear of the AV.";
+    assert_eq!(beside_columns(text, PartnerKind::PickupTruck, None)["cp_kind"], "heavy_truck");
+}
+
+#[test]
+fn a_turn_of_which_no_side_is_told_goes_where_the_column_says() {
+    let text = "The AV was completing its turn when it braked and came to a stop in the intersection. A cyclist made contact with the \
+                right side of the stopped AV.";
+    let facts = beside_columns(text, PartnerKind::Cyclist, Some(Movement::LeftTurn));
+    assert_eq!(facts["sv_acts"], "turn_left slow stop hold");
+}
+
+#[test]
+fn an_animal_that_was_struck_first_is_the_partner_whatever_the_column_says() {
+    let text = "The AV was traveling south when a cat crossed the street. As the AV braked, the front of the AV made contact with the \
+                cat, and the AV came to a stop. The front of a van behind the AV then made contact with the rear of the AV.";
+    assert_eq!(beside_columns(text, PartnerKind::Van, None)["cp_kind"], "animal");
 }

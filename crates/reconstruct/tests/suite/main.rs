@@ -3,6 +3,7 @@
 #[path = "../../../reader/tests/suite/common.rs"]
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
 mod common;
+mod lanes;
 mod moves;
 mod near;
 mod others;

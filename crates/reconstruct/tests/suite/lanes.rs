@@ -1,0 +1,78 @@
+//! In which lanes the two are drawn, and who is abreast of whom.
+
+use crate::common::account_of;
+use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
+use recrash_model::account::{Fact, Untold};
+use recrash_model::scenario::{MapSpec, StripKind};
+use recrash_model::zones::ContactZone;
+use recrash_reconstruct::{Reconstruction, reconstruct};
+
+/// Lanes of the ego's first road: those that go its way, and those that come towards it.
+fn lanes(made: &Reconstruction) -> (usize, usize) {
+    let MapSpec::G(map) = &made.draft.map else { panic!("a graph") };
+    let driving = |strips: &[recrash_model::scenario::Strip]| {
+        strips.iter().filter(|strip| strip.kind == StripKind::Driving).count()
+    };
+    (driving(&map.roads[0].right), driving(&map.roads[0].left))
+}
+
+#[test]
+fn who_comes_towards_a_stopped_ego_and_scrapes_by_does_so_on_a_narrow_street_and_almost_along_it() {
+    let text = "The AV was traveling north on Elm Street when it came to a stop to yield to a van traveling southbound. As the van passed \
+                the stationary AV, the left side of the van made contact with the left side of the AV.";
+    let made = made(&story(text));
+    assert_eq!(lanes(&made), (1, 1));
+    let states = partner(&made).0;
+    assert!(states.iter().all(|state| degrees_between(state.heading, std::f64::consts::PI) < 6.0), "{states:?}");
+}
+
+#[test]
+fn who_swerves_over_from_beside_an_ego_that_changes_lanes_comes_along_a_lane_of_its_own_direction() {
+    let text = "The AV was completing a lane change to the left when a sedan beside it swerved into that lane from the left, and the right \
+                side of the sedan made contact with the front left of the AV.";
+    let made = made(&story(text));
+    let side = partner(&made).0[0].y - made.rollout.ego_track().states[0].y;
+    assert!(lanes(&made).0 >= 3 || side < 5.0, "{:?} lanes, {side} m aside", lanes(&made));
+}
+
+#[test]
+fn who_merges_in_front_of_an_ego_that_stops_for_it_was_abreast_when_that_slowed() {
+    let text = "The AV was traveling west in the center lane. A box truck in the left lane slowed and began to merge into the center lane. \
+                The AV slowed and came to a stop, yielding to the box truck. While the AV remained stopped, the box truck continued \
+                merging and the right side of the box truck made contact with the front left of the AV.";
+    let made = made(&story(text));
+    let ego = &made.rollout.ego_track().states;
+    let slows = speeds(&made).windows(2).position(|pair| pair[1] < pair[0] - 0.05).expect("it slows");
+    let behind_m = ego[slows].x - partner(&made).0[slows].x;
+    assert!(behind_m.abs() < 9.0, "{behind_m} m behind");
+}
+
+#[test]
+fn who_was_backing_when_the_ego_stopped_for_it_backs_before_that_slows() {
+    let text = "The AV was traveling south when it slowed to a stop to yield to a heavy truck that was reversing. While the AV was stopped, \
+                the heavy truck continued to reverse and the rear of the heavy truck made contact with the front of the AV.";
+    let made = made(&story(text));
+    let until = before_contact(&made);
+    let slows = speeds(&made).windows(2).take(until).position(|pair| pair[1] < pair[0] - 0.05).expect("it slows");
+    let backs = partner(&made).0.iter().position(|state| state.speed() < -0.1).expect("it backs");
+    assert!(backs <= slows, "backs at {backs}, slows at {slows}");
+}
+
+#[test]
+fn what_touches_only_the_roof_cannot_be_shown() {
+    let mut account =
+        account_of("The AV was turning into a covered stall when it made contact with the edge of a wall.")
+            .expect("a story");
+    account.sv.zones = vec![Fact::by_rule(ContactZone::Top, "ticked")];
+    assert_eq!(reconstruct(&account).err(), Some(Untold::FromAbove));
+}
+
+#[test]
+fn an_ego_that_hardly_moves_came_up_to_who_was_ahead_beside_it() {
+    let text = "The AV was traveling north when it approached a street sweeper along the right curb. As the AV began to maneuver left \
+                around it, the street sweeper veered left into the lane and its front left made contact with the rear right of the \
+                AV. The AV was traveling at 1 mph.";
+    let made = made(&story(text));
+    let (ego, sweeper) = (&made.rollout.ego_track().states[0], &partner(&made).0[0]);
+    assert!(sweeper.x > ego.x + 3.0, "{} m ahead", sweeper.x - ego.x);
+}
