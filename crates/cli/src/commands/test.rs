@@ -289,11 +289,11 @@ fn show_failures(results: &TestResults) {
     let mut rows = table(&header).named_by("test").without_first(&spare);
     for (test, outcome) in failed.iter().take(SHOWN) {
         let kinds: Vec<&str> = outcome.kinds().iter().map(|kind| kind.label()).collect();
-        let cause = outcome.cause.map_or_else(String::new, |cause| format!(": {}", cause.label()));
+        let what = outcome.cause.map_or_else(|| kinds.join(", "), |cause| cause.label().to_owned());
         rows.add_row([
             Cell::new(if struck_standing(outcome) { "STRUCK" } else { "FAIL" }),
             Cell::new(&test.id),
-            Cell::new(format!("{}{cause}", kinds.join(", "))),
+            Cell::new(what),
             number(outcome.severity.as_ref().map_or("-".to_owned(), |severity| {
                 format!("{:.1} / {:.1} m/s", severity.first.delta_v_mps, severity.second.delta_v_mps)
             })),
