@@ -28,18 +28,21 @@ pub fn number(value: impl ToString) -> Cell {
     Cell { right: true, ..Cell::new(value) }
 }
 
-/// A table with a header. The first column names the row: it is never left out, and wrapped at the very last.
+/// A table with a header. One column, the first unless another is named, names the row: it is never left out, and wrapped at the
+/// very last.
 #[derive(Debug, Clone)]
 pub struct Table {
     header: Vec<String>,
     rows: Vec<Vec<Cell>>,
     /// Columns that may be left out, the least important first.
     spare: Vec<usize>,
+    /// The column that names the row.
+    name: usize,
 }
 
 /// A table with a header.
 pub fn table(header: &[&str]) -> Table {
-    Table { header: header.iter().map(|name| one_line(name)).collect(), rows: Vec::new(), spare: Vec::new() }
+    Table { header: header.iter().map(|name| one_line(name)).collect(), rows: Vec::new(), spare: Vec::new(), name: 0 }
 }
 
 impl Table {
@@ -48,6 +51,13 @@ impl Table {
     pub fn without_first(mut self, names: &[&str]) -> Self {
         let position = |name: &&str| self.header.iter().position(|other| other == name);
         self.spare = names.iter().filter_map(position).collect();
+        self
+    }
+
+    /// The same with this column to name the row.
+    #[must_use]
+    pub fn named_by(mut self, name: &str) -> Self {
+        self.name = self.header.iter().position(|other| other == name).unwrap_or(0);
         self
     }
 
@@ -62,7 +72,7 @@ impl Table {
             let cells = self.rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.text.chars().count());
             cells.chain([self.header[at].chars().count()]).max().unwrap_or(0)
         };
-        let least = |at: usize| PADDING + if at == 0 { natural(at) } else { natural(at).min(LEAST_COLUMN) };
+        let least = |at: usize| PADDING + if at == self.name { natural(at) } else { natural(at).min(LEAST_COLUMN) };
         let mut shown: Vec<usize> = (0..self.header.len()).collect();
         let mut left_out = Vec::new();
         for &spare in &self.spare {
@@ -90,7 +100,7 @@ impl Table {
             });
             table.add_row(cells);
         }
-        self.keep_first_whole(&mut table, width);
+        self.keep_name_whole(&mut table, &shown, width);
         self.keep_numbers_whole(&mut table, &shown, width);
         let mut text = with_bold_header(&table.trim_fmt());
         if !left_out.is_empty() {
@@ -100,12 +110,15 @@ impl Table {
         text
     }
 
-    /// The first column names the row: the others are wrapped before it is, while it leaves them a quarter of the width.
-    fn keep_first_whole(&self, table: &mut comfy_table::Table, width: usize) {
-        let names = self.rows.iter().filter_map(|row| row.first()).map(|cell| cell.text.chars().count());
+    /// One column names the row: the others are wrapped before it is, while it leaves them a quarter of the width.
+    fn keep_name_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
+        let place = shown.iter().position(|&at| at == self.name).unwrap_or(0);
+        let names = self.rows.iter().filter_map(|row| row.get(self.name)).map(|cell| cell.text.chars().count());
         let wanted = names.max().unwrap_or(0) + PADDING;
-        if wanted <= width * 3 / 4
-            && let (Some(first), Ok(wanted)) = (table.column_mut(0), u16::try_from(wanted))
+        // A word before the name, such as a verdict, takes room from what stands behind it.
+        let most = if self.name == 0 { width * 3 / 4 } else { width * 3 / 5 };
+        if wanted <= most
+            && let (Some(first), Ok(wanted)) = (table.column_mut(place), u16::try_from(wanted))
         {
             first.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(wanted)));
         }
@@ -115,7 +128,7 @@ impl Table {
     fn keep_numbers_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
         let cells = |at: usize| self.rows.iter().filter_map(move |row| row.get(at));
         let widest = |at: usize| cells(at).map(|cell| cell.text.chars().count()).max().unwrap_or(0) + PADDING;
-        let of_numbers = |at: usize| at == 0 || cells(at).all(|cell| cell.right || cell.text == "-");
+        let of_numbers = |at: usize| at == 0 || at == self.name || cells(at).all(|cell| cell.right || cell.text == "-");
         let word = |at: usize| self.header[at].split(' ').map(|word| word.chars().count()).max().unwrap_or(0) + PADDING;
         let with_headers = |&at: &usize| widest(at).max(word(at));
         let numbers: Vec<usize> = (0..shown.len()).filter(|&place| of_numbers(shown[place])).collect();
@@ -191,6 +204,23 @@ mod tests {
             let plain = crate::screen::plain(&table.render(width));
             let row = plain.lines().last().unwrap_or_default();
             assert!(row.contains("accel_then_brake") && row.matches("100.0 %").count() == 5, "{width}:\n{plain}");
+        }
+    }
+
+    #[test]
+    fn a_verdict_stands_whole_before_the_name_and_what_failed_is_never_left_out() {
+        let mut table = table(&["verdict", "scenario", "what failed", "found", "as told"])
+            .named_by("scenario")
+            .without_first(&["as told", "found"]);
+        let (name, what) = ("intersection-straight-departure-30270-6878", "did not react to crossing traffic");
+        table.add_row(["STRUCK", name, what, "by tuning", "yes"].map(Cell::new));
+        for width in [60, 80, 100, 120] {
+            let plain = crate::screen::plain(&table.render(width));
+            assert!(plain.contains("STRUCK") && plain.contains("react"), "{width}:\n{plain}");
+            assert_eq!(plain.contains(name), width >= 80, "{width}:\n{plain}");
+            for line in plain.lines().filter(|line| !line.contains("not shown")) {
+                assert!(line.chars().count() <= width, "{width}: {line}");
+            }
         }
     }
 

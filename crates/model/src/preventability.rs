@@ -1,4 +1,5 @@
-//! Whether good drivers would have prevented a contact.
+//! Whether the reference drivers of UN R157 would have prevented a contact, on its straight-road model. How other egos fare in
+//! the whole scenario is another question: [`crate::triage`].
 
 use serde::{Deserialize, Serialize};
 

@@ -15,11 +15,11 @@ pub const REFERENCE_EGO: &str = "reference";
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FailureClass {
-    /// The reference driver avoids it; somebody else fails too.
+    /// The ego `reference` avoids it; somebody else fails too.
     Avoidable,
     /// Nobody but the system under test fails.
     Quirk,
-    /// The reference driver fails, but somebody who reacts sooner or brakes harder does not.
+    /// The ego `reference` fails, but somebody who reacts sooner or brakes harder does not.
     BeyondReference,
     /// Everybody fails.
     Unavoidable,
@@ -39,12 +39,13 @@ impl FailureClass {
         }
     }
 
-    /// In one sentence.
+    /// In one sentence, about the other egos in the same scenario. What the reference drivers of UN R157 make of a contact is
+    /// another question: [`crate::preventability::Bracket`].
     pub fn meaning(self) -> &'static str {
         match self {
-            Self::Avoidable => "the careful reference driver avoids it, another ego fails as well",
+            Self::Avoidable => "the ego `reference` avoids it, another ego fails as well",
             Self::Quirk => "only the system under test fails; every other ego avoids it",
-            Self::BeyondReference => "the reference driver fails, an ego that reacts sooner avoids it",
+            Self::BeyondReference => "the ego `reference` fails, one that reacts sooner avoids it",
             Self::Unavoidable => "every ego fails",
         }
     }

@@ -57,7 +57,7 @@ pub use simulators::external::{
 pub use simulators::{Simulator, SimulatorKind, metadrive_egos, start_simulator};
 pub use stages::{
     AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary,
-    SelectionStudy, StageReport, StrategyStudy, Summary, run_stage, unfaithful,
+    SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, run_stage, unfaithful,
 };
 pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
 pub use tools::accounts::{account_table, write_accounts};

@@ -55,12 +55,6 @@ function readRun(raw) {
   }));
   const gaps = raw.gaps.map(([actor, values]) => ({ actor, values: running(values, 1000) }));
   const steps = actors.length ? actors[0].x.length : 0;
-  const nearest = new Float64Array(steps).fill(NaN);
-  for (const { values } of gaps) {
-    values.forEach((value, i) => {
-      if (!(nearest[i] <= value)) nearest[i] = Number.isNaN(value) ? nearest[i] : value;
-    });
-  }
   return {
     step: raw.step,
     steps,
@@ -70,7 +64,10 @@ function readRun(raw) {
     obstacles: raw.obstacles.map(([kind, x, y, heading, length, width]) => ({ kind, x, y, heading, length, width })),
     contacts: raw.contacts.map(([time, x, y, actor]) => ({ time, x, y, actor })),
     gaps,
-    nearest,
+    partner: gaps.find(({ actor }) => actor === raw.partner) ?? gaps[0] ?? null,
+    signals: (raw.signals ?? []).map(([line, device]) => ({ line, device })),
+    stops: raw.stops ?? [],
+    handover: raw.handover ?? null,
     accelerations: raw.accelerations.map(([actor, values]) => ({ actor, values: running(values, 100) })),
     minGap: raw.minGap ? { value: raw.minGap[0], time: raw.minGap[1] } : null,
     events: raw.events.map(([time, kind, text]) => ({ time, kind, text })),
@@ -88,7 +85,7 @@ function readCase(name) {
       areas: raw.areas.map(([shape, points]) => ({ shape, points: polyline(points) })),
       lines: raw.lines.map(([kind, points]) => ({ kind, points: polyline(points) })),
     };
-    cases.set(name, { id: raw.id, drawing, before: readRun(raw.before), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });
+    cases.set(name, { id: raw.id, drawing, before: readRun(raw.before), untuned: readRun(raw.untuned), after: readRun(raw.after), reference: readRun(raw.reference), tune: raw.tune });
   }
   return cases.get(name);
 }
@@ -104,6 +101,22 @@ function valueAt(values, run, time) {
   if (part < 1e-6) return values[i];
   if (part > 1 - 1e-6) return values[i + 1];
   return values[i] + (values[i + 1] - values[i]) * part;
+}
+
+/** Whether an actor is in the world. */
+const isThere = (actor, time) => time >= (actor.from ?? 0) - 1e-9 && time < (actor.until ?? Infinity) - 1e-9;
+
+/** What a signal shows; `stop` or `yield` of a sign. */
+function aspectAt(device, time) {
+  if (typeof device === 'string') return device;
+  const [phases, offset] = device;
+  const cycle = phases.reduce((sum, [, length]) => sum + length, 0);
+  let left = (((time + offset) % cycle) + cycle) % cycle;
+  for (const [aspect, length] of phases) {
+    if (left < length) return aspect;
+    left -= length;
+  }
+  return phases[phases.length - 1][0];
 }
 
 /** State of an actor between two steps; headings go the short way round. */

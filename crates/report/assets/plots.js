@@ -33,12 +33,13 @@ function pathOf(values, x, y) {
 function linesOf(name, kase) {
   const lines = [];
   const single = !(kase.before && kase.after);
-  for (const which of ['before', 'after']) {
+  for (const which of ['before', 'untuned', 'after']) {
     const run = kase[which];
     if (!run) continue;
     const look = which === 'before' && !single ? 'before' : '';
+    const of = run.partner && run.actors[run.partner.actor];
     const who = (actor) => (actor === 0 ? 'ego' : 'partner');
-    if (name === 'gap') lines.push({ which, look, run, who: 'gap', id: 'gap', values: run.nearest });
+    if (name === 'gap') if (of) lines.push({ which, look, run, who: 'gap', id: of.id, values: run.partner.values.map((value, i) => (isThere(of, i * run.step) ? value : NaN)) });
     if (name === 'speed') {
       run.actors.forEach((actor, i) => {
         if (actor.role !== 'traffic') lines.push({ which, look, run, who: who(i), id: actor.id, values: actor.speed });
@@ -113,10 +114,18 @@ class Plot {
     }
     for (const line of this.lines) {
       const inFrame = this.name === 'gap' ? line.values.map((value) => (value > high ? NaN : value)) : line.values;
-      parts.push(svg('path', { class: `plot-line ${line.who} ${line.look}`, d: pathOf(inFrame, (i) => this.x(i * line.run.step), this.y) }));
-      if (this.name === 'gap' && line.run.minGap) {
-        parts.push(svg('circle', { class: 'plot-least', cx: this.x(line.run.minGap.time), cy: this.y(line.run.minGap.value), r: 4 }));
+      parts.push(svg('path', { 'data-which': line.which, class: `plot-line ${line.who} ${line.look}`, d: pathOf(inFrame, (i) => this.x(i * line.run.step), this.y) }));
+      // The least of this very gap: the run's may be to somebody else.
+      const least = line.values.reduce((best, value, i) => (value < (line.values[best] ?? Infinity) ? i : best), -1);
+      if (this.name === 'gap' && least >= 0) {
+        parts.push(svg('circle', { 'data-which': line.which, class: 'plot-least', cx: this.x(least * line.run.step), cy: this.y(line.values[least]), r: 4 }));
       }
+    }
+    const handover = this.lines.map((line) => line.run.handover).find((time) => time !== null);
+    if (handover !== undefined) {
+      const x = this.x(handover);
+      parts.push(svg('line', { class: 'plot-handover', x1: x, x2: x, y1: MARGIN.top, y2: MARGIN.top + inner.h }));
+      if (this.name === 'gap') parts.push(svg('text', { class: 'plot-text', x: x + 4, y: MARGIN.top + 11 }, 'handover'));
     }
     if (limit) parts.push(svg('text', { class: 'plot-limit-text', x: MARGIN.left + 5, y: this.y(limit[0]) - 3 }, limit[1]));
     this.cursor = svg('line', { class: 'plot-cursor', y1: MARGIN.top, y2: MARGIN.top + inner.h });
@@ -130,6 +139,9 @@ class Plot {
     this.time = time;
     this.shown = shown;
     const told = [];
+    // The run before tuning takes the place of the last one where it is looked at.
+    const hidden = shown === 'untuned' ? 'after' : 'untuned';
+    all('[data-which]', this.svg).forEach((mark) => mark.setAttribute('visibility', mark.dataset.which === hidden ? 'hidden' : 'visible'));
     this.lines.forEach((line, i) => {
       const value = valueAt(line.values, line.run, time);
       const inside = this.name !== 'gap' || value <= GAP_SHOWN_M;
@@ -141,7 +153,7 @@ class Plot {
           this.dots[i].setAttribute('cy', this.y(value));
         }
       }
-      if (line.which === shown) told.push([line.who, line.who === 'gap' ? '' : `${line.id} `, fixed(value, line.who === 'gap' ? 2 : 1)]);
+      if (line.which === shown) told.push([line.who, line.who === 'gap' ? `to ${line.id} ` : `${line.id} `, fixed(value, line.who === 'gap' ? 2 : 1)]);
     });
     if (this.cursor) {
       this.cursor.setAttribute('x1', this.x(time));

@@ -1,10 +1,10 @@
 // The replay of one scenario: time, which run, camera, and the controls that move them.
 
-const MODES = ['before', 'after', 'both', 'reference'];
+const MODES = ['before', 'untuned', 'after', 'both', 'reference'];
 /** How long before the encounter a replay opens. [s] */
 const LEAD_S = 1.5;
 /** Kinds of events, the gravest first: what a mark for several of them looks like. */
-const GRAVITY = ['contact', 'obstacle', 'gap', 'braking', 'finding', 'end'];
+const GRAVITY = ['contact', 'obstacle', 'gap', 'handover', 'braking', 'finding', 'end'];
 
 class Replay {
   constructor(section) {

@@ -27,8 +27,11 @@ function interesting(run, time) {
   const closest = encounterOf(run)?.time ?? run.end;
   for (const actor of run.actors) {
     if (actor.role === 'traffic') continue;
-    const [now, then] = [stateAt(actor, run, time), stateAt(actor, run, closest)];
-    points.push([now.x, now.y], [then.x, then.y]);
+    for (const at of [time, closest]) {
+      if (!isThere(actor, at)) continue;
+      const state = stateAt(actor, run, at);
+      points.push([state.x, state.y]);
+    }
   }
   return points;
 }
@@ -52,11 +55,13 @@ function drawScene(canvas, kase, run, time, camera, ghost) {
     points.forEach(([x, y], i) => (i ? pen.lineTo(toX(x), toY(y)) : pen.moveTo(toX(x), toY(y))));
   };
   drawRoad(pen, kase.drawing, trace, k);
+  run.signals.forEach((signal) => drawSignal(pen, signal, time, trace, toX, toY, k));
+  run.stops.forEach((stop) => drawStop(pen, toX(stop[0]), toY(stop[1]), k));
   run.obstacles.forEach((obstacle) => drawObstacle(pen, obstacle, toX(obstacle.x), toY(obstacle.y), k));
   const order = [...run.actors.keys()].reverse();
-  for (const i of order) if (run.actors[i].role !== 'traffic') drawTrail(pen, run, run.actors[i], time, trace, k);
+  for (const i of order) if (run.actors[i].role !== 'traffic' && isThere(run.actors[i], time)) drawTrail(pen, run, run.actors[i], time, trace, k);
   if (ghost) drawGhost(pen, ghost, Math.min(time, ghost.end), toX, toY, k);
-  for (const i of order) drawActor(pen, run.actors[i], stateAt(run.actors[i], run, time), toX, toY, k);
+  for (const i of order) if (isThere(run.actors[i], time)) drawActor(pen, run.actors[i], stateAt(run.actors[i], run, time), toX, toY, k);
   run.contacts.filter((contact) => contact.time <= time + 0.051).forEach((contact) => drawContact(pen, toX(contact.x), toY(contact.y), k));
   drawEncounter(pen, run, time, toX, toY, k);
   drawLabels(pen, run, time, toX, toY, k);
@@ -113,6 +118,46 @@ function drawRoad(pen, drawing, trace, k) {
   pen.setLineDash([]);
 }
 
+const LAMPS = { green: '#2ee06a', yellow: '#ffd000', red: '#ff3b30', 'flashing red': '#ff3b30', dark: '#7d858d', stop: '#d7191c', yield: '#ffffff' };
+
+/** A stop line in the colour of what stands there, and at its end the lamp or the sign. */
+function drawSignal(pen, { line, device }, time, trace, toX, toY, k) {
+  const aspect = aspectAt(device, time);
+  const lit = aspect !== 'flashing red' || time % 1 < 0.5;
+  const sign = aspect === 'stop' || aspect === 'yield';
+  pen.strokeStyle = LAMPS[aspect];
+  pen.lineWidth = clamp(0.5 * k, 2.5, 6);
+  pen.globalAlpha = lit ? 1 : 0.35;
+  if (!sign) {
+    trace(line);
+    pen.stroke();
+  }
+  const [x, y] = [toX(line[line.length - 1][0]), toY(line[line.length - 1][1])];
+  const r = clamp(0.7 * k, 5, 9);
+  pen.fillStyle = LAMPS[aspect];
+  pen.strokeStyle = sign && aspect === 'yield' ? LAMPS.stop : colours['scene-ink'];
+  pen.lineWidth = aspect === 'yield' ? 2 : 1.5;
+  pen.beginPath();
+  const corners = { stop: 8, yield: 3 }[aspect];
+  if (corners) for (let i = 0; i < corners; i++) pen.lineTo(x + r * Math.sin(((2 * i + 1) * Math.PI) / corners), y - r * Math.cos(((2 * i + 1) * Math.PI) / corners));
+  else pen.arc(x, y, r, 0, 7);
+  pen.closePath();
+  pen.fill();
+  pen.stroke();
+  pen.globalAlpha = 1;
+}
+
+/** Where the ego's task has it stop. */
+function drawStop(pen, x, y, k) {
+  const r = clamp(0.9 * k, 6, 14);
+  pen.strokeStyle = colours['scene-ego'];
+  pen.lineWidth = 2;
+  pen.setLineDash([3, 3]);
+  pen.strokeRect(x - r, y - r, 2 * r, 2 * r);
+  pen.setLineDash([]);
+  pill(pen, 'task stop', x, y - r - 13, colours['scene-ego'], colours['scene-ink']);
+}
+
 function drawObstacle(pen, obstacle, x, y, k) {
   pen.save();
   pen.translate(x, y);
@@ -151,10 +196,10 @@ function drawTrail(pen, run, actor, time, trace, k) {
   const now = stateAt(actor, run, time);
   const at = clamp(Math.floor(time / run.step + 1e-9), 0, actor.x.length - 1);
   const past = [];
-  for (let i = 0; i <= at; i++) past.push([actor.x[i], actor.y[i]]);
+  for (let i = 0; i <= at; i++) if (isThere(actor, i * run.step)) past.push([actor.x[i], actor.y[i]]);
   past.push([now.x, now.y]);
   const future = [[now.x, now.y]];
-  for (let i = at + 1; i < actor.x.length; i++) future.push([actor.x[i], actor.y[i]]);
+  for (let i = at + 1; i < actor.x.length; i++) if (isThere(actor, i * run.step)) future.push([actor.x[i], actor.y[i]]);
   pen.strokeStyle = paintOf(actor);
   pen.lineCap = 'round';
   pen.globalAlpha = 0.75;
@@ -335,7 +380,7 @@ function drawLabels(pen, run, time, toX, toY, k) {
   const ego = run.actors[0];
   const egoState = stateAt(ego, run, time);
   const gaps = run.gaps
-    .filter(({ actor }) => run.actors[actor])
+    .filter(({ actor }) => run.actors[actor] && isThere(run.actors[actor], time))
     .map(({ actor, values }) => ({ actor, gap: valueAt(values, run, time) }))
     .filter(({ gap }) => Number.isFinite(gap));
   const near = gaps.reduce((best, item) => (best && best.gap <= item.gap ? best : item), null);
@@ -354,10 +399,10 @@ function drawLabels(pen, run, time, toX, toY, k) {
     const fails = near.gap < suite.minGap;
     pill(pen, `${fixed(near.gap, 1)} m`, (toX(p[0]) + toX(q[0])) / 2, (toY(p[1]) + toY(q[1])) / 2, fails ? '#ffd9cc' : '#ffffff', fails ? '#8a1c00' : colours['scene-ink']);
   }
-  const partners = run.actors.filter((actor) => actor.role === 'partner');
+  const partners = run.actors.filter((actor) => actor.role === 'partner' && isThere(actor, time));
   const middle = partners.length ? stateAt(partners[0], run, time) : { x: egoState.x, y: egoState.y - 1 };
   for (const actor of run.actors) {
-    if (actor.role === 'traffic') continue;
+    if (actor.role === 'traffic' || !isThere(actor, time)) continue;
     const state = stateAt(actor, run, time);
     // Labels point away from the other road user, so that they do not cover the gap.
     const from = actor === ego ? middle : egoState;

@@ -1,5 +1,8 @@
 // The search over a scenario's numbers: objective by point, with the best so far and the point that was kept.
 
+/** Objectives above this are of points that could not be run: they stand at the upper edge, and stretch no axis. [m] */
+const SCORED_M = 1e6;
+
 function drawTuning(section) {
   const plot = one('.tune-plot', section);
   if (!plot || !plot.clientWidth) return;
@@ -9,9 +12,9 @@ function drawTuning(section) {
   const [width, height] = [plot.clientWidth, plot.clientHeight];
   const margin = { left: 40, right: 10, top: 8, bottom: 20 };
   const drawn = points.filter((point) => point.objective !== null);
-  const [low, high] = drawn.reduce(([a, b], { objective }) => [Math.min(a, objective), Math.max(b, objective)], [0, 1]);
+  const [low, high] = drawn.filter(({ objective }) => objective < SCORED_M).reduce(([a, b], { objective }) => [Math.min(a, objective), Math.max(b, objective)], [0, 1]);
   const x = (number) => margin.left + ((number + 0.5) / points.length) * (width - margin.left - margin.right);
-  const y = (value) => height - margin.bottom - ((value - low) / (high - low || 1)) * (height - margin.top - margin.bottom) * 0.96;
+  const y = (value) => height - margin.bottom - ((clamp(value, low, high) - low) / (high - low || 1)) * (height - margin.top - margin.bottom) * 0.96;
   const parts = [svg('rect', { class: 'plot-frame', x: margin.left, y: margin.top, width: width - margin.left - margin.right, height: height - margin.top - margin.bottom })];
   for (const value of ticks(low, high, 5)) {
     parts.push(svg('line', { class: 'plot-grid', x1: margin.left, x2: width - margin.right, y1: y(value), y2: y(value) }));
@@ -19,10 +22,6 @@ function drawTuning(section) {
   }
   for (const value of ticks(0, points.length - 1, 8).filter(Number.isInteger)) {
     parts.push(svg('text', { class: 'plot-text', x: x(value), y: height - 5, 'text-anchor': 'middle' }, value));
-  }
-  if (suite.minGap < high) {
-    parts.push(svg('line', { class: 'plot-limit', x1: margin.left, x2: width - margin.right, y1: y(suite.minGap), y2: y(suite.minGap) }));
-    parts.push(svg('text', { class: 'plot-limit-text', x: width - margin.right - 5, y: y(suite.minGap) - 3, 'text-anchor': 'end' }, 'failure below'));
   }
   let best = Infinity;
   let path = '';
@@ -57,7 +56,7 @@ function drawTuning(section) {
     }
     const verdict = point.refused.length ? `refused: ${point.refused.join('; ')}` : point.failed ? 'the ego fails' : 'the ego passes';
     const values = log.parameters.map((name, i) => `${name.split('/').filter(Boolean).join('.')} = ${point.values[i] ?? '\u2013'}`);
-    detail.textContent = `Point ${number} (${point.by}): objective ${fixed(point.objective ?? NaN, 2)} m, least gap ${fixed(point.gap ?? NaN, 2)} m, ${verdict}. ${values.join(', ')}`;
+    detail.textContent = `Point ${number} (${point.by}): objective ${fixed(point.objective < SCORED_M ? point.objective ?? NaN : NaN, 2)} m, least gap ${fixed(point.gap ?? NaN, 2)} m, ${verdict}. ${values.join(', ')}`;
   };
   plot.onpointermove = (event) => {
     const box = plot.getBoundingClientRect();

@@ -8,6 +8,8 @@ use crate::anchor;
 use crate::page::{Context, cluster_map};
 use crate::pairs::{PairView, RunTrace};
 use crate::search;
+use crate::staging;
+use crate::summary::Result as Outcome;
 use crate::view::{CaseRow, CaseView, RunRow, RunView};
 use crate::words;
 use recrash_model::geometry::{OrientedBox, Vec2};
@@ -16,9 +18,13 @@ use recrash_model::metrics::{Answer, FindingKind, Series};
 use recrash_model::record::CrashRecord;
 use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Role, Rollout, STEP_S};
 use recrash_model::run::JudgedRun;
+use recrash_model::severity::Severity;
 use recrash_model::tuning::TuneLog;
 use recrash_roads::RoadDrawing;
 use serde_json::{Value, json};
+
+/// What reconstructions call the crash partner.
+const CRASH_PARTNER: &str = "cp";
 
 /// JSON that may stand inside a `script` element or file: nothing in it can close the element, open a comment or end a line.
 pub fn embed(value: &Value) -> String {
@@ -81,7 +87,8 @@ fn rows(context: &Context) -> Value {
         "kind": texts(&search::partner),
         "injury": texts(&search::injury),
         "harm": cases().map(|(i, _)| told(i).and_then(|record| record.severity.known()).map(|severity| severity as usize)).collect::<Vec<_>>(),
-        "before": numbers(&|case| case.before.as_ref().and_then(|run| run.min_gap_m())),
+        "worst": cases().map(|(_, case)| short(badness(case), 3)).collect::<Vec<_>>(),
+        "before": numbers(&|case| case.first_run().and_then(|run| run.min_gap_m())),
         "after": numbers(&|case| last(case, |run| run.min_gap_m())),
         "impact": numbers(&|case| last(case, |run| Some(run.metrics.contact.as_ref()?.relative_speed_mps))),
         "severity": numbers(&|case| last(case, |run| Some(run.severity.as_ref()?.harm_mps()))),
@@ -110,12 +117,28 @@ fn finding_weight(kinds: &[FindingKind]) -> f64 {
     kinds.iter().map(|kind| if kind.is_failure() { 100.0 } else { 1.0 }).sum()
 }
 
+/// The order of a list that begins with the worst, which has the smallest number: failures while driving, then those while
+/// it stood, each by the largest change of velocity; then what came nearest to one.
+fn badness(case: &CaseRow) -> f64 {
+    let Some(run) = case.last_run() else { return 4000.0 };
+    let harm = run.severity.as_ref().map_or(0.0, Severity::harm_mps).min(999.0);
+    match Outcome::of(Some(&run.judgement)) {
+        Outcome::Failed => 1000.0 - harm,
+        Outcome::Struck => 2000.0 - harm,
+        _ => 3000.0 + run.min_gap_m().unwrap_or(999.0).min(999.0),
+    }
+}
+
 /// What a case can be filtered by.
 fn tags(case: &CaseRow) -> String {
+    let outcome = Outcome::of(case.last_run().map(|run| &run.judgement));
     let failed = case.last_run().map(|run| run.failed());
     let origin = case.origin.as_ref().map_or("", |origin| origin.name());
     let holds = [
         ("failed", failed == Some(true)),
+        ("driving", outcome == Outcome::Failed),
+        ("struck", outcome == Outcome::Struck),
+        ("tuning", case.found_by_tuning()),
         ("passed", failed == Some(false)),
         ("faithful", case.faithful() == Some(Answer::Yes)),
         ("unfaithful", case.faithful() == Some(Answer::No)),
@@ -134,10 +157,14 @@ fn tags(case: &CaseRow) -> String {
 
 /// What the scripts need of one case.
 pub fn case(case: &CaseView) -> Value {
+    let run = |run: &RunView| staging::on(trace(&run.run, &run.series), &run.scenario, &case.drawing, &run.run);
     let runs = [case.before.as_ref().map(run), case.after.as_ref().map(run)];
     let mut data = drawn(&case.scenario_id, &case.drawing, runs, case.tune_log.as_ref().map(tune));
-    if let Some(RunTrace { run, series }) = &case.reference {
-        data["reference"] = trace(run, series);
+    if let Some(untuned) = &case.untuned {
+        data["untuned"] = run(untuned);
+    }
+    if let (Some(RunTrace { run, series }), Some(last)) = (&case.reference, case.last_run()) {
+        data["reference"] = staging::on(trace(run, series), &last.scenario, &case.drawing, run);
     }
     data
 }
@@ -186,10 +213,6 @@ fn drawn(id: &str, drawing: &RoadDrawing, [before, after]: [Option<Value>; 2], t
     })
 }
 
-fn run(run: &RunView) -> Value {
-    trace(&run.run, &run.series)
-}
-
 fn trace(run: &JudgedRun, series: &Series) -> Value {
     let rollout = &run.rollout;
     let obstacles = rollout.obstacles.iter().map(|obstacle| {
@@ -213,11 +236,22 @@ fn trace(run: &JudgedRun, series: &Series) -> Value {
         "actors": rollout.actors.iter().map(actor).collect::<Vec<_>>(),
         "obstacles": obstacles.collect::<Vec<_>>(),
         "contacts": contacts(rollout),
+        "partner": partner(run, series),
         "gaps": series.partners.iter().map(|p| json!([p.actor, column(p.gap_m.iter().copied(), 1000.0)])).collect::<Vec<_>>(),
         "accelerations": accelerations,
         "minGap": run.metrics.min_gap.map(|gap| json!([short(gap.value, 3), short(gap.time_s, 3)])),
         "events": events(run),
     })
+}
+
+/// Whose gap to the ego is told over time: who it touches, else the crash partner, else the first.
+fn partner(run: &JudgedRun, series: &Series) -> Option<usize> {
+    let actors = &run.rollout.actors;
+    let named = |id: &str| actors.iter().position(|track| track.id == id);
+    let touched = run.metrics.contact.as_ref().and_then(|contact| named(&contact.id));
+    let wanted = touched.or_else(|| named(CRASH_PARTNER));
+    let measured = |actor: &usize| series.partners.iter().any(|partner| partner.actor == *actor);
+    wanted.filter(measured).or_else(|| series.partners.first().map(|partner| partner.actor))
 }
 
 /// What is worth a look, in the order of time: when, what kind, and in words.
@@ -370,7 +404,7 @@ fn column(values: impl Iterator<Item = f64>, scale: f64) -> Value {
 }
 
 /// A number with so many decimals at most; `null` where it is not finite.
-fn short(value: f64, decimals: usize) -> Value {
+pub(crate) fn short(value: f64, decimals: usize) -> Value {
     words::fixed(value, decimals).and_then(|text| text.parse::<f64>().ok()).map_or(Value::Null, |number| {
         if number == number.trunc() && number.abs() < 1e15 { Value::from(number as i64) } else { Value::from(number) }
     })

@@ -1,6 +1,7 @@
 //! JUnit XML, in the form that Jenkins, GitLab and GitHub actions read.
 
 use crate::results::other_egos;
+use crate::summary::{Summary, struck_standing};
 use crate::view::{CaseRow, RunNames, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use quick_xml::Writer;
@@ -42,16 +43,15 @@ struct Group<'a> {
     run: fn(&CaseRow) -> Option<&RunRow>,
 }
 
-/// As designed and as tuned; in a suite that goes by accounts, the runs of the system under test alone.
+/// As designed and as tuned; in a suite that goes by accounts, the system under test in the crashes as reconstructed, and in
+/// those where tuning kept another scenario.
 fn groups(suite: &SuiteView) -> Vec<Group<'_>> {
-    let all = || suite.cases.iter();
-    if suite.accounts.is_some() {
-        return vec![Group { name: RunNames::RETOLD.after, cases: all().collect(), run: CaseRow::last_run }];
-    }
-    let tuned = all().filter(|case| case.after.is_some()).collect();
+    let by_account = suite.accounts.is_some();
+    let names = if by_account { RunNames::RETOLD_TUNED } else { RunNames::DESIGNED };
+    let tuned = suite.cases.iter().filter(|case| if by_account { case.is_tuned() } else { case.after.is_some() });
     vec![
-        Group { name: RunNames::DESIGNED.before, cases: all().collect(), run: |case| case.before.as_ref() },
-        Group { name: RunNames::DESIGNED.after, cases: tuned, run: |case| case.after.as_ref() },
+        Group { name: names.untuned, cases: suite.cases.iter().collect(), run: CaseRow::first_run },
+        Group { name: names.after, cases: tuned.collect(), run: |case| case.after.as_ref() },
     ]
 }
 
@@ -85,8 +85,10 @@ impl Group<'_> {
                 ("generator", &suite.generated_by),
             ];
             if is_first {
+                let counted = counted(suite);
+                let counted = counted.iter().map(|(name, value)| (*name, value));
                 writer.create_element("properties").write_inner_content(|writer| {
-                    for (name, value) in settings {
+                    for (name, value) in settings.into_iter().chain(counted) {
                         let property = attributes(&[("name", name), ("value", value)]);
                         writer.create_element("property").with_attributes(property).write_empty()?;
                     }
@@ -97,6 +99,25 @@ impl Group<'_> {
         })?;
         Ok(())
     }
+}
+
+/// Failures in numbers, in a suite that goes by accounts: of the runs that came into the situation of their record.
+fn counted(suite: &SuiteView) -> Vec<(&'static str, String)> {
+    if suite.accounts.is_none() {
+        return Vec::new();
+    }
+    let summary = Summary::of(suite);
+    let [first, last] = summary.tested;
+    let numbers = [
+        ("as-reconstructed.situation-met", first.met),
+        ("as-reconstructed.failed-while-driving", first.driving()),
+        ("as-reconstructed.struck-while-it-stood", first.struck),
+        ("after-tuning.situation-met", last.met),
+        ("after-tuning.failed-while-driving", last.driving()),
+        ("after-tuning.struck-while-it-stood", last.struck),
+        ("failed-after-tuning-alone", summary.by_tuning),
+    ];
+    numbers.into_iter().map(|(name, number)| (name, number.to_string())).collect()
 }
 
 fn test_case(
@@ -123,11 +144,14 @@ fn test_case(
             let failures: Vec<_> = run.findings.iter().filter(|finding| finding.kind.is_failure()).collect();
             let kinds: Vec<_> = failures.iter().map(|finding| finding.kind.label()).collect();
             let sentences: Vec<_> = failures.iter().map(|finding| safe(&finding.sentence)).collect();
+            let is_last = case.last_run().is_some_and(|last| std::ptr::eq(run, last));
             let class = triage_of(case, run).map_or_else(String::new, |t| format!(" ({})", t.class.label()));
             let harm = run.severity.as_ref().and_then(|severity| fixed(severity.harm_mps(), 1));
-            let harm = harm.map_or_else(String::new, |harm| format!(", delta-v {harm} m/s"));
-            let message = format!("{}{class}{harm}", kinds.join(", "));
-            let kind = kinds.first().copied().unwrap_or_default();
+            let harm = harm.map_or_else(String::new, |harm| format!(", largest delta-v {harm} m/s"));
+            let struck = if struck_standing(run) { ", struck while it stood" } else { "" };
+            let by_tuning = if is_last && case.found_by_tuning() { ", found by tuning alone" } else { "" };
+            let message = format!("{}{struck}{class}{harm}{by_tuning}", kinds.join(", "));
+            let kind = if struck.is_empty() { kinds.first().copied().unwrap_or_default() } else { "struck standing" };
             let failure = writer.create_element("failure");
             let failure = failure.with_attributes(attributes(&[("type", kind), ("message", &message)]));
             failure.write_text_content(BytesText::new(&sentences.join("\n")))?;
@@ -176,22 +200,27 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         let risk = severity
             .serious_injury()
             .map_or_else(String::new, |risk| format!("; serious injury: {} %", number(100.0 * risk)));
-        format!("\ndelta-v: ego {ego} m/s, other {other} m/s{risk}")
+        format!("\ndelta-v: ego {ego} m/s, partner {other} m/s{risk}")
     });
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
-        format!("\n{}: {}\nother egos: {}", triage.class.label(), triage.class.meaning(), other_egos(triage))
+        format!(
+            "\nother egos in the same scenario: {}, {} ({})",
+            triage.class.label(),
+            triage.class.meaning(),
+            other_egos(triage)
+        )
     });
     let cause = run.cause.map_or_else(String::new, |cause| format!("\ncause: {}", cause.label()));
     let bracket = run
         .preventability
         .as_ref()
-        .map_or_else(String::new, |found| format!("\npreventability: {}", found.bracket().label()));
+        .map_or_else(String::new, |found| format!("\n{}: {}", words::REGULATION_DRIVERS, found.bracket().label()));
     let edited = match &case.edited[..] {
         [] => String::new(),
         files => format!("\nedited by hand: {}", files.join(", ")),
     };
     let what = case.account.as_ref().map_or(String::new(), |account| {
-        let met = case.situation_met().map_or("not looked at", |met| if met { "yes" } else { "no" });
+        let met = run.situation_met().map_or("not looked at", |met| if met { "yes" } else { "no" });
         format!("crash type: {}\nincident: {}\nsituation met: {met}\n", account.crash_type.label(), account.incident)
     });
     format!(

@@ -16,6 +16,7 @@ mod pairs;
 mod picture;
 mod results;
 mod search;
+mod staging;
 mod summary;
 mod thumbnail;
 mod view;

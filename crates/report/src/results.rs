@@ -1,5 +1,6 @@
 //! The results as a table for spreadsheets and data frames.
 
+use crate::summary::struck_standing;
 use crate::view::{CaseRow, RunRow, SuiteView};
 use crate::words::{self, fixed};
 use recrash_model::metrics::{Check, PartnerMetrics, Timed};
@@ -8,7 +9,7 @@ use recrash_model::severity::Severity;
 use recrash_model::spreadsheet::inert;
 use recrash_model::triage::Triage;
 
-const HEADER: [&str; 54] = [
+const HEADER: [&str; 56] = [
     "scenario",
     "run",
     "road",
@@ -63,6 +64,8 @@ const HEADER: [&str; 54] = [
     "serious_injury_probability",
     "cause",
     "preventability",
+    "struck_standing",
+    "found_by_tuning",
 ];
 
 /// The table.
@@ -121,7 +124,11 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(account.map_or_else(String::new, |account| account.incident.clone()));
     row.push(account.map_or_else(String::new, |account| words::name(&account.crash_type)));
     row.push(account.and_then(|account| account.role).map_or_else(String::new, |role| words::name(&role)));
-    row.push(case.situation_met().filter(|_| is_last).map_or_else(String::new, |met| met.to_string()));
+    row.push(
+        run.filter(|_| account.is_some())
+            .and_then(RunRow::situation_met)
+            .map_or_else(String::new, |met| met.to_string()),
+    );
     let severity = run.and_then(|run| run.severity.as_ref());
     let number = |value: Option<f64>| value.and_then(|value| fixed(value, 3)).unwrap_or_default();
     row.push(number(severity.map(|severity| severity.first.delta_v_mps)));
@@ -130,6 +137,9 @@ fn row(suite: &SuiteView, case: &CaseRow, name: &str, run: Option<&RunRow>) -> V
     row.push(run.and_then(|run| run.cause).map_or_else(String::new, |cause| cause.label().to_owned()));
     let bracket = run.and_then(|run| run.preventability.as_ref()).map(Preventability::bracket);
     row.push(bracket.map_or_else(String::new, |bracket| bracket.label().to_owned()));
+    let is_recorded = account.is_some() && name == case.names().before;
+    row.push(run.filter(|_| !is_recorded).map_or_else(String::new, |run| struck_standing(run).to_string()));
+    row.push(if is_last { case.found_by_tuning().to_string() } else { String::new() });
     row
 }
 

@@ -1,6 +1,7 @@
 //! The headline numbers, computed once, so that no two places of the report can disagree.
 
-use crate::view::{CaseRow, SuiteView};
+use crate::view::{CaseRow, RunRow, SuiteView};
+use recrash_model::cause::Cause;
 use recrash_model::metrics::Answer;
 use recrash_model::run::Judgement;
 use recrash_model::triage::FailureClass;
@@ -8,8 +9,10 @@ use recrash_model::triage::FailureClass;
 /// How a run ended for the ego.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Result {
-    /// It failed.
+    /// It failed while it drove.
     Failed,
+    /// It failed, and stood in its own way when it was struck: nothing to do with what it drove.
+    Struck,
     /// It did not.
     Passed,
     /// There is no run.
@@ -20,6 +23,7 @@ impl Result {
     /// Of a run.
     pub fn of(run: Option<&Judgement>) -> Self {
         match run {
+            Some(run) if struck_standing(run) => Self::Struck,
             Some(run) if run.failed() => Self::Failed,
             Some(_) => Self::Passed,
             None => Self::Missing,
@@ -30,9 +34,47 @@ impl Result {
     pub fn label(self) -> &'static str {
         match self {
             Self::Failed => "fails",
+            Self::Struck => "struck standing",
             Self::Passed => "passes",
             Self::Missing => "not run",
         }
+    }
+}
+
+/// Whether the ego failed by being struck while it stood, which has nothing to do with what it drove.
+pub fn struck_standing(run: &Judgement) -> bool {
+    run.failed() && run.cause == Some(Cause::StruckStanding)
+}
+
+/// Failures of a number of runs of the system under test.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Failures {
+    /// Runs.
+    pub ran: usize,
+    /// Of those, runs that came into the situation of the record.
+    pub met: usize,
+    /// Of those, failures.
+    pub failed: usize,
+    /// Of those, failures while it stood.
+    pub struck: usize,
+}
+
+impl Failures {
+    fn of<'a>(runs: impl Iterator<Item = &'a RunRow>) -> Self {
+        runs.fold(Self::default(), |sum, run| {
+            let met = run.situation_met() == Some(true);
+            Self {
+                ran: sum.ran + 1,
+                met: sum.met + usize::from(met),
+                failed: sum.failed + usize::from(met && run.failed()),
+                struck: sum.struck + usize::from(met && struck_standing(run)),
+            }
+        })
+    }
+
+    /// Failures while it drove.
+    pub fn driving(self) -> usize {
+        self.failed - self.struck
     }
 }
 
@@ -54,10 +96,10 @@ pub struct Summary {
     pub origins: [usize; 3],
     /// Scenarios with nothing to test: who was parked has nothing to answer for.
     pub parked: usize,
-    /// Scenarios in which the system under test came into the situation of its record.
-    pub met: usize,
-    /// Of those, the ones it fails.
-    pub failed_met: usize,
+    /// In a suite that goes by accounts: the system under test in the crashes as reconstructed, and after tuning.
+    pub tested: [Failures; 2],
+    /// Scenarios that the system under test fails after tuning alone.
+    pub by_tuning: usize,
     /// Scenarios that tell their own record and whose run shows every fact told.
     pub own_faithful: usize,
     /// Scenarios that tell their own record and whose last run shows something else.
@@ -66,7 +108,7 @@ pub struct Summary {
     pub other_faithful: usize,
     /// Scenarios in which a person edited a file.
     pub edited: usize,
-    /// Scenarios the ego fails as designed.
+    /// Scenarios the ego fails before tuning: as designed, or as reconstructed.
     pub failed_before: usize,
     /// Scenarios the ego fails after tuning.
     pub failed_after: usize,
@@ -96,13 +138,14 @@ impl Summary {
             refused: count(&|case| case.refused.is_some()),
             origins: ["own", "other", "invented"].map(|name| count(&|case| tells(case, name))),
             parked: count(&|case| case.account.is_some() && case.before.is_some() && case.after.is_none()),
-            met: count(&|case| case.situation_met() == Some(true)),
-            failed_met: count(&|case| case.situation_met() == Some(true) && fails(case)),
+            tested: [CaseRow::first_run, CaseRow::last_run]
+                .map(|run: fn(&CaseRow) -> Option<&RunRow>| Failures::of(suite.cases.iter().filter_map(run))),
+            by_tuning: count(&CaseRow::found_by_tuning),
             own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
             own_unfaithful: count(&|case| tells(case, "own") && answers(case, Answer::No)),
             other_faithful: count(&|case| tells(case, "other") && answers(case, Answer::Yes)),
             edited: count(&|case| !case.edited.is_empty()),
-            failed_before: count(&|case| case.before.as_ref().is_some_and(|run| run.failed())),
+            failed_before: count(&|case| case.first_run().is_some_and(|run| run.failed())),
             failed_after: count(&fails),
             classes: FailureClass::ALL
                 .into_iter()
@@ -110,7 +153,7 @@ impl Summary {
                 .filter(|(_, count)| *count > 0)
                 .collect(),
             closer: count(&|case| closer(case) == Some(true)),
-            median_before_m: gaps(&|case| case.before.as_ref()?.min_gap_m()),
+            median_before_m: gaps(&|case| case.first_run()?.min_gap_m()),
             median_after_m: gaps(&|case| case.last_run()?.min_gap_m()),
         }
     }
@@ -123,7 +166,7 @@ impl Summary {
 
 /// Whether tuning brought the partner closer, where the ego did not fail as designed.
 fn closer(case: &CaseRow) -> Option<bool> {
-    let (before, after) = (case.before.as_ref()?, case.after.as_ref()?);
+    let (before, after) = (case.first_run().filter(|_| case.is_tuned())?, case.after.as_ref()?);
     Some(!before.failed() && after.min_gap_m()? < before.min_gap_m()?)
 }
 

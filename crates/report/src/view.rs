@@ -74,23 +74,31 @@ pub struct AccountRow {
     pub role: Option<Role>,
 }
 
-/// What the two runs of a case are called, first and second.
+/// What the runs of a case are called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RunNames {
     /// The first.
     pub before: &'static str,
-    /// The second.
+    /// The one before tuning, where tuning kept another scenario than the reconstruction.
+    pub untuned: &'static str,
+    /// The last.
     pub after: &'static str,
 }
 
 impl RunNames {
     /// Of a suite that goes by templates: the same ego in the scenario as designed, and as tuned.
-    pub const DESIGNED: Self = Self { before: "as designed", after: "tuned" };
-    /// Of a suite that goes by accounts: the recorded driver, and the system under test.
-    pub const RETOLD: Self = Self { before: "as told", after: "tested" };
+    pub const DESIGNED: Self = Self { before: "as designed", untuned: "as designed", after: "tuned" };
+    /// Of a suite that goes by accounts: the recorded driver, and the system under test in the crash as reconstructed.
+    pub const RETOLD: Self = Self { before: "as told", untuned: "tested", after: "tested" };
+    /// The same where tuning kept another scenario: the system under test in both.
+    pub const RETOLD_TUNED: Self = Self { after: "tuned", ..Self::RETOLD };
 
-    fn of(account: Option<&AccountRow>) -> Self {
-        if account.is_some() { Self::RETOLD } else { Self::DESIGNED }
+    fn of(account: bool, untuned: bool) -> Self {
+        match (account, untuned) {
+            (false, _) => Self::DESIGNED,
+            (true, false) => Self::RETOLD,
+            (true, true) => Self::RETOLD_TUNED,
+        }
     }
 }
 
@@ -117,8 +125,12 @@ pub struct CaseRow {
     /// The scenario as designed; in a suite that goes by accounts, the recorded driver's run. `None` only where it was refused
     /// before it could run.
     pub before: Option<RunRow>,
-    /// The scenario as tuned, where tuning kept another point; in a suite that goes by accounts, the run of the system under
-    /// test, where there is something to test.
+    /// In a suite that goes by accounts, the run of the system under test in the crash as reconstructed, where tuning kept
+    /// another scenario; else that run is `after`.
+    #[serde(default)]
+    pub untuned: Option<RunRow>,
+    /// The scenario as tuned, where tuning kept another point; in a suite that goes by accounts, the last run of the system
+    /// under test, where there is something to test.
     pub after: Option<RunRow>,
     /// How the other egos fare in the last run's scenario, where the ego under test fails it.
     pub triage: Option<Triage>,
@@ -154,6 +166,8 @@ pub struct CaseView {
     pub drawing: RoadDrawing,
     /// As [`CaseRow::before`].
     pub before: Option<RunView>,
+    /// As [`CaseRow::untuned`].
+    pub untuned: Option<RunView>,
     /// As [`CaseRow::after`].
     pub after: Option<RunView>,
     /// How the other egos fare in the last run's scenario, where the ego under test fails it.
@@ -221,14 +235,40 @@ impl CaseRow {
         self.after.as_ref().or(self.before.as_ref().filter(|_| self.account.is_none()))
     }
 
-    /// What its two runs are called.
+    /// The run of the system under test before tuning: in the scenario as designed, or in the crash as reconstructed.
+    pub fn first_run(&self) -> Option<&RunRow> {
+        match self.account {
+            None => self.before.as_ref(),
+            Some(_) => self.untuned.as_ref().or(self.after.as_ref()),
+        }
+    }
+
+    /// Whether tuning kept another scenario than the first.
+    pub fn is_tuned(&self) -> bool {
+        let first = if self.account.is_some() { &self.untuned } else { &self.before };
+        first.is_some() && self.after.is_some()
+    }
+
+    /// Whether the system under test fails after tuning alone.
+    pub fn found_by_tuning(&self) -> bool {
+        let fails = |run: Option<&RunRow>| run.is_some_and(|run| run.failed());
+        fails(self.last_run()) && self.first_run().is_some() && !fails(self.first_run())
+    }
+
+    /// What its runs are called.
     pub fn names(&self) -> RunNames {
-        RunNames::of(self.account.as_ref())
+        RunNames::of(self.account.is_some(), self.untuned.is_some())
     }
 
     /// The runs with their names.
     pub fn runs(&self) -> Vec<(&'static str, &RunRow)> {
-        named(self.names(), &self.before, &self.after)
+        named(self.names(), [&self.before, &self.untuned, &self.after])
+    }
+
+    /// Those of the system under test: without the recorded driver's.
+    pub fn system_runs(&self) -> Vec<(&'static str, &RunRow)> {
+        let recorded = RunNames::RETOLD.before;
+        self.runs().into_iter().filter(|(name, _)| *name != recorded).collect()
     }
 
     /// Whether the run that tells the record is true to it: the recorded driver's, or the last one where there is none. There
@@ -246,8 +286,16 @@ impl CaseRow {
 
     /// Whether the system under test came into the situation of its record; nothing where that was not looked at.
     pub fn situation_met(&self) -> Option<bool> {
-        let checks = self.account.as_ref().and(self.after.as_ref())?.verdict.checks.iter();
-        checks.filter(|check| check.kind == CheckKind::Situation).map(|check| check.result == CheckResult::Shown).next()
+        self.account.as_ref().and(self.after.as_ref())?.situation_met()
+    }
+}
+
+impl RunRow {
+    /// Whether the system under test came into the situation of its record; nothing where that was not looked at.
+    pub fn situation_met(&self) -> Option<bool> {
+        let mut checks = self.verdict.checks.iter();
+        let check = checks.find(|check| check.kind == CheckKind::Situation)?;
+        Some(check.result == CheckResult::Shown)
     }
 }
 
@@ -257,20 +305,20 @@ impl CaseView {
         self.after.as_ref().or(self.before.as_ref().filter(|_| self.account.is_none()))
     }
 
-    /// What its two runs are called.
+    /// What its runs are called.
     pub fn names(&self) -> RunNames {
-        RunNames::of(self.account.as_ref())
+        RunNames::of(self.account.is_some(), self.untuned.is_some())
     }
 
     /// The runs with their names.
     pub fn runs(&self) -> Vec<(&'static str, &RunView)> {
-        named(self.names(), &self.before, &self.after)
+        named(self.names(), [&self.before, &self.untuned, &self.after])
     }
 }
 
-fn named<'a, T>(names: RunNames, before: &'a Option<T>, after: &'a Option<T>) -> Vec<(&'static str, &'a T)> {
-    let named = [(names.before, before), (names.after, after)];
-    named.into_iter().filter_map(|(name, run)| Some((name, run.as_ref()?))).collect()
+fn named<T>(names: RunNames, runs: [&Option<T>; 3]) -> Vec<(&'static str, &T)> {
+    let names = [names.before, names.untuned, names.after];
+    names.into_iter().zip(runs).filter_map(|(name, run)| Some((name, run.as_ref()?))).collect()
 }
 
 impl std::ops::Deref for RunRow {

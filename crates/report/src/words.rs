@@ -12,6 +12,9 @@ use std::borrow::Cow;
 /// Longest text shown of one field of a record; the rest stays in the file. [characters]
 pub const LONGEST_TEXT: usize = 12_000;
 
+/// Who [`recrash_model::preventability`] is about, told apart from the other egos of [`recrash_model::triage`].
+pub const REGULATION_DRIVERS: &str = "reference drivers of UN R157, on its straight-road model";
+
 /// A number with so many decimals; never `-0.00`. Not a finite number: `None`.
 pub fn fixed(value: f64, decimals: usize) -> Option<String> {
     if !value.is_finite() {

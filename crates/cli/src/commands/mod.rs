@@ -20,6 +20,7 @@ mod prompt;
 mod read;
 mod reconstruct;
 mod records;
+mod retold;
 mod run;
 mod schema;
 mod select;

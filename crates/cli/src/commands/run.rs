@@ -1,20 +1,17 @@
 //! `recrash run` and `recrash report`: everything, and what came of it in tables.
 
-use super::reconstruct::{fact_table, type_table};
 use super::records::funnel;
+use super::retold;
 use super::select::{coverage, tables};
+use super::simulate::REGULATION_DRIVERS;
 use crate::options::SuiteArgs;
 use crate::output::{self, Output, title};
 use crate::screen::{bold, eprintln, one_line, println, yellow};
 use crate::table::{Cell, number, table};
 use clap::Args;
-use recrash_model::account::CrashType;
 use recrash_model::metrics::{Answer, CheckKind};
 use recrash_model::narrative::Origin;
-use recrash_pipeline::{
-    AccountSummary, CaseSummary, ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices,
-    run_stage,
-};
+use recrash_pipeline::{ModelSummary, PipelineError, RunSummary, Stage, Suite, Summary, check_choices, run_stage};
 use std::path::{Path, PathBuf};
 
 const REPORT_EXAMPLES: &str = "\
@@ -106,25 +103,6 @@ fn gap(run: Option<&RunSummary>) -> String {
     }
 }
 
-/// The greater change of velocity of the two in the contact.
-fn delta_v(run: Option<&RunSummary>) -> String {
-    match run.filter(|run| run.delta_v_mps.is_some()) {
-        Some(run) => format!("{:.1} m/s", run.harm_mps()),
-        None => "-".into(),
-    }
-}
-
-/// Failures in the situation of their record first, by the harm they do; the others as the suite has them.
-fn by_harm(cases: &[CaseSummary]) -> Vec<&CaseSummary> {
-    let harm = |case: &CaseSummary| {
-        let failed = case.tuned.as_ref().filter(|run| run.failed && case.situation_met == Some(true));
-        failed.map_or(-1.0, RunSummary::harm_mps)
-    };
-    let mut ranked: Vec<&CaseSummary> = cases.iter().collect();
-    ranked.sort_by(|a, b| harm(b).total_cmp(&harm(a)));
-    ranked
-}
-
 /// Prints what this run has spent on models.
 fn spent(suite: &Suite) {
     if let Some(spent) = suite.spent().filter(|spent| spent.answers > 0) {
@@ -163,88 +141,12 @@ fn models(models: &[ModelSummary]) {
     }
 }
 
-/// Prints a run of a suite that goes by accounts.
-fn show_accounts(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
-    type_table(&accounts.types);
-    if !accounts.untold.is_empty() {
-        title("Why the others are not told");
-        let mut rows = table(&["reason", "incidents"]);
-        for (why, count) in &accounts.untold {
-            rows.add_row(vec![Cell::new(why.label()), number(*count)]);
-        }
-        println!("{rows}");
-    }
-    fact_table(&accounts.facts);
-    title("Scenarios, the worst failures first");
-    let header = ["scenario", "crash type", "as told", "situation", "least gap", "delta-v", "failure", "findings"];
-    let mut rows = table(&header).without_first(&["findings", "crash type", "failure"]);
-    for case in by_harm(&summary.cases).into_iter().take(CASES_SHOWN) {
-        let as_told = match case.faithful() {
-            Some(Answer::Yes) => "yes",
-            Some(Answer::Unchecked) => "not all checked",
-            Some(Answer::No) => "NO",
-            None => "NOT RUN",
-        };
-        let situation = match (case.situation_met, &case.recorded) {
-            (Some(true), _) => "met",
-            (Some(false), _) => "not met",
-            (None, Some(_)) => "parked",
-            (None, None) => "-",
-        };
-        rows.add_row(vec![
-            Cell::new(&case.id),
-            Cell::new(case.crash_type.map_or("", CrashType::label)),
-            Cell::new(as_told),
-            Cell::new(situation),
-            Cell::new(gap(case.tuned.as_ref())),
-            number(delta_v(case.tuned.as_ref())),
-            Cell::new(case.triage.as_ref().map_or("", |triage| triage.class.label())),
-            Cell::new(case.tuned.as_ref().map_or_else(String::new, |run| run.findings.join(", "))),
-        ]);
-    }
-    println!("{rows}");
-    if summary.cases.len() > CASES_SHOWN {
-        println!("  and {} more, in results.csv and on the page", summary.cases.len() - CASES_SHOWN);
-    }
-    for case in &summary.cases {
-        if let Some(failure) = &case.failure {
-            println!("  {} {}: {failure}", yellow("not run:"), case.id);
-        } else if case.faithful() == Some(Answer::No) {
-            let why = case.recorded.as_ref().map_or_else(String::new, |run| run.unfaithful.join("; "));
-            println!("  {} {}: {why}", yellow("not as told:"), case.id);
-        }
-    }
-    let count = |holds: &dyn Fn(&CaseSummary) -> bool| summary.cases.iter().filter(|case| holds(case)).count();
-    let fails = |case: &CaseSummary| case.tuned.as_ref().is_some_and(|run| run.failed);
-    let met = count(&|case| case.situation_met == Some(true));
-    println!(
-        "\n{} {} of {} readable incidents are told with every checked fact shown, {} of them in this suite; invented: 0",
-        bold("result:"),
-        accounts.told,
-        accounts.readable,
-        summary.cases.len(),
-    );
-    let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
-    println!("  of {whole} of those {} no told fact is beyond what is checked", accounts.told);
-    println!(
-        "  {} drove {} of them ({} were parked: nothing to test), came into the situation of the record in {met} and fails {} of those {met}",
-        summary.ego,
-        summary.run(),
-        count(&|case| case.recorded.is_some() && case.tuned.is_none()),
-        count(&|case| case.situation_met == Some(true) && fails(case)),
-    );
-    ending(summary, dir);
-}
-
-/// Scenarios that the terminal lists; the page and results.csv have all.
-const CASES_SHOWN: usize = 100;
-
 /// Prints a whole run in tables.
 fn show(summary: &Summary, dir: &Path) {
-    funnel(&summary.funnel);
     if let Some(accounts) = &summary.accounts {
-        return show_accounts(summary, accounts, dir);
+        return retold::show(summary, accounts, dir);
     }
+    funnel(&summary.funnel);
     tables(&summary.tables);
     coverage(&summary.coverage, &summary.templates);
     title("Scenarios (least box gap to the partner, as designed and as tuned)");
@@ -332,7 +234,7 @@ fn ending(summary: &Summary, dir: &Path) {
     let brackets = summary.brackets();
     if !brackets.is_empty() {
         println!(
-            "  contacts: {}",
+            "  of contacts, {REGULATION_DRIVERS}: {}",
             told(brackets.into_iter().map(|(bracket, count)| (bracket.label(), count)).collect())
         );
     }

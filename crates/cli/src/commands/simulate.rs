@@ -6,6 +6,7 @@ use crate::output::{self, Output};
 use crate::screen::{bold, println, red, yellow};
 use crate::table::{Cell, number, table};
 use clap::Args;
+use recrash_model::cause::Cause;
 use recrash_model::preventability::Preventability;
 use recrash_model::severity::{InjuryOutcome, Suffered};
 use recrash_pipeline::{FileRequest, FileRun, PipelineError, Stage, preventability, simulate_file};
@@ -117,11 +118,16 @@ pub(super) fn show(result: &FileRun) {
             println!("  {}", suffered("the partner", &severity.second));
         }
         if let Some(prevented) = preventability(&run.rollout) {
-            println!("  {}", in_their_place(&prevented));
+            println!("  {REGULATION_DRIVERS}: {}", in_their_place(&prevented));
         }
     }
     for finding in &run.findings {
-        let mark = if finding.kind.is_failure() { red("FAIL") } else { yellow("odd ") };
+        let struck = run.cause == Some(Cause::StruckStanding);
+        let mark = match finding.kind.is_failure() {
+            true if struck => red("FAIL (struck while it stood, whatever it drove)"),
+            true => red("FAIL"),
+            false => yellow("odd "),
+        };
         println!("  {mark} {}", finding.sentence);
     }
     println!("state hash {}", run.rollout.state_hash);
@@ -139,6 +145,9 @@ fn suffered(who: &str, side: &Suffered) -> String {
     }
     line
 }
+
+/// Who is asked about a contact; how other egos fare in the scenario is another question.
+pub(super) const REGULATION_DRIVERS: &str = "reference drivers of UN R157, on its straight-road model";
 
 /// What the reference drivers make of a contact, in a line.
 fn in_their_place(prevented: &Preventability) -> String {

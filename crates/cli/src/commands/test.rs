@@ -1,10 +1,12 @@
 //! `recrash test` and `recrash compare`: a frozen suite run with an ego, and held against a baseline.
 
+use super::simulate::REGULATION_DRIVERS;
 use crate::options::{EgoArgs, one_change, patience};
 use crate::output::{self, Output};
 use crate::screen::{self, println};
 use crate::table::{Cell, number, table};
 use clap::Args;
+use recrash_model::cause::Cause;
 use recrash_model::comparison::{Change, Comparison, TypeRow, shown_p};
 use recrash_model::preventability::Bracket;
 use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict};
@@ -253,7 +255,7 @@ fn show_causes(results: &TestResults) {
         return;
     }
     output::title("Causes: one finding each");
-    let mut rows = table(&["cause", "tests", "worst delta-v", "shortest example"]);
+    let mut rows = table(&["cause", "tests", "largest delta-v", "shortest example"]);
     for group in groups {
         rows.add_row([
             Cell::new(group.cause.map_or("no rule holds", |cause| cause.label())),
@@ -274,19 +276,27 @@ fn show_failures(results: &TestResults) {
         return;
     }
     let gap = |outcome: &TestOutcome| outcome.least_gap.map_or(f64::MAX, |gap| gap.value);
+    let struck = failed.iter().filter(|(_, outcome)| struck_standing(outcome)).count();
     failed.sort_by(|(a, one), (b, other)| {
+        let by_kind = struck_standing(one).cmp(&struck_standing(other));
         let by_harm = other.harm_mps().total_cmp(&one.harm_mps());
-        by_harm.then(gap(one).total_cmp(&gap(other))).then(a.id.cmp(&b.id))
+        by_kind.then(by_harm).then(gap(one).total_cmp(&gap(other))).then(a.id.cmp(&b.id))
     });
-    output::title("Failures, the most harmful first");
-    let header = ["test", "findings", "delta-v", "least gap", "failed", "reference drivers"];
-    let mut rows = table(&header).without_first(&["failed", "reference drivers", "least gap"]);
+    output::title("Failures while driving, then those that struck it while it stood, the most harmful first");
+    let header =
+        ["verdict", "test", "what failed", "delta-v ego / partner", "least gap", "failed", "UN R157 reference drivers"];
+    let spare = ["failed", "UN R157 reference drivers", "least gap", "delta-v ego / partner"];
+    let mut rows = table(&header).named_by("test").without_first(&spare);
     for (test, outcome) in failed.iter().take(SHOWN) {
         let kinds: Vec<&str> = outcome.kinds().iter().map(|kind| kind.label()).collect();
+        let what = outcome.cause.map_or_else(|| kinds.join(", "), |cause| cause.label().to_owned());
         rows.add_row([
+            Cell::new(if struck_standing(outcome) { "STRUCK" } else { "FAIL" }),
             Cell::new(&test.id),
-            Cell::new(kinds.join(", ")),
-            number(if outcome.contact.is_some() { format!("{:.1} m/s", outcome.harm_mps()) } else { "-".to_owned() }),
+            Cell::new(what),
+            number(outcome.severity.as_ref().map_or("-".to_owned(), |severity| {
+                format!("{:.1} / {:.1} m/s", severity.first.delta_v_mps, severity.second.delta_v_mps)
+            })),
             number(outcome.least_gap.map_or_else(|| "-".to_owned(), |gap| format!("{:.2} m", gap.value))),
             number(format!("{} of {}", test.failures(), test.runs.len())),
             Cell::new(outcome.bracket().map_or("-", short)),
@@ -296,6 +306,16 @@ fn show_failures(results: &TestResults) {
     if failed.len() > SHOWN {
         println!("and {} more, told by --json and --out", failed.len() - SHOWN);
     }
+    println!(
+        "{} failed: {} while driving, {struck} struck while it stood (STRUCK: nothing to do with what it drove)",
+        failed.len(),
+        failed.len() - struck
+    );
+}
+
+/// Whether it failed by being struck while it stood.
+fn struck_standing(outcome: &TestOutcome) -> bool {
+    outcome.cause == Some(Cause::StruckStanding)
 }
 
 fn short(bracket: Bracket) -> &'static str {
@@ -315,7 +335,7 @@ fn show_brackets(results: &TestResults) {
     }
     if !counts.is_empty() {
         let told: Vec<String> = counts.iter().map(|(bracket, count)| format!("{count} {}", bracket.label())).collect();
-        println!("contacts: {}", told.join(", "));
+        println!("of contacts, {REGULATION_DRIVERS}: {}", told.join(", "));
     }
 }
 

@@ -119,7 +119,14 @@ fn incidents_and_crash_types_go_along() {
     }
     let (code, shown, errors) = test(&place, &["--ego", "idm"]);
     assert_eq!(code, 0, "{errors}");
-    for words in ["Front to rear", "Intersection", "Causes: one finding each", "most harmful first", "contacts:"] {
+    for words in [
+        "Front to rear",
+        "Intersection",
+        "Causes: one finding each",
+        "most harmful first",
+        "of contacts, reference drivers of UN R157",
+        "failed: ",
+    ] {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }
 }

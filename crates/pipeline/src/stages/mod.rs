@@ -25,7 +25,7 @@ pub(crate) use cases::Cases;
 pub use design::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
 pub use select::{SelectionStudy, StrategyStudy};
-pub use summary::{AccountSummary, CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary};
+pub use summary::{AccountSummary, CaseSummary, FallbackReason, ModelSummary, RunSummary, Summary, TestedRuns};
 
 use crate::error::PipelineError;
 use crate::models::cast::RULES;

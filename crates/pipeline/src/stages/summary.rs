@@ -261,10 +261,28 @@ impl RunSummary {
         }
     }
 
+    /// Whether it failed by being struck while it stood, which has nothing to do with what it drove.
+    pub fn struck_standing(&self) -> bool {
+        self.failed && self.cause == Some(Cause::StruckStanding)
+    }
+
     /// What findings are ranked by: the greater change of velocity of the two; 0 without a contact of two road users. [m/s]
     pub fn harm_mps(&self) -> f64 {
         self.delta_v_mps.map_or(0.0, |[ego, other]| ego.max(other))
     }
+}
+
+/// Runs of the system under test, in numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TestedRuns {
+    /// Runs.
+    pub ran: usize,
+    /// Of those, runs that came into the situation of the record.
+    pub met: usize,
+    /// Of those, failures.
+    pub failed: usize,
+    /// Of those, failures while it stood: nothing to do with what it drove.
+    pub struck: usize,
 }
 
 impl Summary {
@@ -316,6 +334,22 @@ impl Summary {
         self.cases.iter().filter_map(|case| case.tuned.as_ref()).filter(|run| run.failed)
     }
 
+    /// In a suite that goes by accounts: the system under test in the crashes as reconstructed, and after tuning. Its runs are
+    /// held against one thing alone, whether it came into the situation of the record.
+    pub fn tested(&self) -> [TestedRuns; 2] {
+        let of = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
+            let runs: Vec<&RunSummary> = self.cases.iter().filter_map(|case| run(case).as_ref()).collect();
+            let met: Vec<&RunSummary> = runs.iter().copied().filter(|run| run.faithful == Answer::Yes).collect();
+            TestedRuns {
+                ran: runs.len(),
+                met: met.len(),
+                failed: met.iter().filter(|run| run.failed).count(),
+                struck: met.iter().filter(|run| run.struck_standing()).count(),
+            }
+        };
+        [of(|case| &case.first), of(|case| &case.tuned)]
+    }
+
     /// Scenarios the ego fails, as designed and as tuned.
     pub fn failed(&self) -> (usize, usize) {
         let count = |run: fn(&CaseSummary) -> &Option<RunSummary>| {
@@ -326,6 +360,12 @@ impl Summary {
 }
 
 impl CaseSummary {
+    /// Whether the system under test fails after tuning alone.
+    pub fn found_by_tuning(&self) -> bool {
+        let fails = |run: &Option<RunSummary>| run.as_ref().is_some_and(|run| run.failed);
+        self.first.is_some() && !fails(&self.first) && fails(&self.tuned)
+    }
+
     /// Whether it tells the crash of an `own` record, an `other` one, or an `invented` one.
     fn is_told(&self, name: &str) -> bool {
         self.origin.as_ref().is_some_and(|origin| origin.name() == name)

@@ -67,7 +67,7 @@ fn model_remarks(summary: &Summary) -> Vec<Diagnostic> {
 pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) -> CaseRow {
     let id = &case.cluster.scenario_id;
     let narrative = case.narrative.as_ref().map(|(narrative, _)| narrative);
-    let [before, after] = runs(case);
+    let [before, untuned, after] = runs(case);
     let last = after.or(before).map(|(ran, _)| ran);
     let mut row = CaseRow {
         scenario_id: id.clone(),
@@ -79,6 +79,7 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
         narrative: narrative.map_or_else(String::new, |narrative| narrative.text.clone()),
         account: case.account.clone(),
         before: before.map(|(ran, file)| run_row(suite, ran, &file(id))),
+        untuned: untuned.map(|(ran, file)| run_row(suite, ran, &file(id))),
         after: after.map(|(ran, file)| run_row(suite, ran, &file(id))),
         triage: case.triage.clone(),
         refused: case.failure.as_ref().map(ToString::to_string),
@@ -92,15 +93,18 @@ pub(super) fn row(suite: &Suite, cases: &Cases, position: usize, case: &Case) ->
 /// A run, and the scenario file it is of.
 type RunOf<'a> = (&'a Ran, fn(&str) -> String);
 
-/// The two runs of a case that the page shows: as designed and as tuned; or, in a suite that goes by accounts, the recorded
-/// driver's and the last one of the system under test.
-fn runs<'a>(case: &'a Case) -> [Option<RunOf<'a>>; 2] {
+/// The runs of a case that the page shows: as designed and as tuned; or, in a suite that goes by accounts, the recorded
+/// driver's, that of the system under test before tuning where tuning kept another scenario, and its last one.
+fn runs<'a>(case: &'a Case) -> [Option<RunOf<'a>>; 3] {
     let first = case.first.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String));
     let moved = case.tuned.as_ref().filter(|tuned| tuned.log.best != 0 || !case.edited.is_empty());
     let tuned = moved.map(|tuned| (&tuned.ran, names::tuned as fn(&str) -> String));
     match case.account {
-        None => [first, tuned],
-        Some(_) => [case.recorded.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String)), tuned.or(first)],
+        None => [first, None, tuned],
+        Some(_) => {
+            let recorded = case.recorded.as_ref().map(|ran| (ran, names::scenario as fn(&str) -> String));
+            [recorded, first.filter(|_| tuned.is_some()), tuned.or(first)]
+        }
     }
 }
 
@@ -118,7 +122,7 @@ fn run_row(suite: &Suite, ran: &Ran, file: &str) -> RunRow {
 /// The heavy part of a case.
 pub(super) fn case(suite: &Suite, case: &Case) -> CaseView {
     let id = &case.cluster.scenario_id;
-    let [before, after] = runs(case);
+    let [before, untuned, after] = runs(case);
     CaseView {
         scenario_id: id.clone(),
         narrative: case.narrative.as_ref().map(|(narrative, _)| narrative.clone()),
@@ -126,6 +130,7 @@ pub(super) fn case(suite: &Suite, case: &Case) -> CaseView {
         assumed: case.design.as_ref().map_or_else(Vec::new, |log| log.assumed.clone()),
         drawing: before.or(after).map(|(ran, _)| ran.scenario.drawing()).unwrap_or_default(),
         before: before.map(|(ran, file)| run_view(suite, ran, &file(id))),
+        untuned: untuned.map(|(ran, file)| run_view(suite, ran, &file(id))),
         after: after.map(|(ran, file)| run_view(suite, ran, &file(id))),
         triage: case.triage.clone(),
         reference: case.reference.as_ref().map(|run| RunTrace { run: run.clone(), series: series(&run.rollout) }),

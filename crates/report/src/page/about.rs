@@ -20,7 +20,7 @@ pub fn section(context: &Context) -> Markup {
             }
             .panel { h2 { "Files read" } (files(context)) }
             .panel { h2 { "Remarks" } (remarks(&context.suite.diagnostics)) }
-            .panel { h2 { "Words and measures" } (glossary()) }
+            .panel { h2 { "Words and measures" } (glossary(context.suite.accounts.is_some())) }
         }
     }
 }
@@ -61,7 +61,7 @@ fn profile(context: &Context) -> Markup {
             (row("CP movements", list(e.cp_movements.iter().map(|movement| movement.label()).collect())))
             (row("Work zones", html! { @if e.work_zone { "yes" } @else { "no" } }))
             (row("Speeds", html! { (number(e.min_speed_mps)) " to " (number(e.max_speed_mps)) "\u{a0}m/s" }))
-            (row("Not generated", list(profile.excludes.collisions.iter().map(|kind| kind.label()).collect())))
+            @if !profile.excludes.collisions.is_empty() { (row("Not generated", list(profile.excludes.collisions.iter().map(|kind| kind.label()).collect()))) }
             (row("Failure: box gap below", html! { (number(f.min_gap_m)) "\u{a0}m" }))
             (row("Finding: braking above", html! { (number(f.hard_braking_mps2)) "\u{a0}m/s\u{b2}, or " (number(f.phantom_braking_mps2)) "\u{a0}m/s\u{b2} with nothing in the way" }))
             (row("Finding: oscillation", html! { (f.oscillation_reversals) " reversals in " (number(f.oscillation_window_s)) "\u{a0}s" }))
@@ -116,7 +116,59 @@ fn remarks(diagnostics: &[Diagnostic]) -> Markup {
     }
 }
 
-fn glossary() -> Markup {
+/// Words of a suite that goes by accounts.
+const OF_ACCOUNTS: [(&str, &str); 11] = [
+    (
+        "Told, not told",
+        "An incident is told where a reconstruction shows every checked fact of its narratives; else it is not told, and why is counted. A single fact is not told where no narrative states it.",
+    ),
+    (
+        "Crash type",
+        "What the vehicles were doing to each other, such as front to rear; “not told” where the narrative does not say.",
+    ),
+    (
+        "Initiator, responder",
+        "Whose move brought the conflict about, and who had to answer it. Said of the subject vehicle.",
+    ),
+    ("As told", "The run of the recorded driver, in the crash as reconstructed: it is held against the record."),
+    (
+        "Tested, as reconstructed",
+        "The run of the system under test in the same crash: it takes over from the recorded driver at the handover.",
+    ),
+    (
+        "Tuned, after tuning",
+        "The system under test after a search over what the report leaves open, for the nearest failure. Every scenario of it shows the told facts too, and it is not the crash as reconstructed. “Found by tuning”: it passes that, and fails here.",
+    ),
+    (
+        "Situation met",
+        "The system under test came within a few metres or seconds of what the record's vehicle crashed with. Without that a pass says nothing of the crash.",
+    ),
+    (
+        "Fails while driving, struck standing",
+        "A failure while the ego stood in its own way and somebody drove into it is counted apart: it has nothing to do with what it drove.",
+    ),
+    (
+        "Quirk, avoidable, beyond reference, unavoidable",
+        "Of a failure: every other ego avoids it in the same scenario; the ego “reference” does, and another fails; “reference” fails, and another avoids it; every ego fails.",
+    ),
+    (
+        "Avoided by all, some, no reference driver",
+        "Of a contact: what the drivers of UN R157 make of it on its straight-road model. It is another question than how other egos fare.",
+    ),
+    (
+        "Delta-v",
+        "Change of velocity in the contact, of the ego and of the partner. Lists are sorted by the larger of the two.",
+    ),
+];
+
+/// Words of a suite that goes by templates.
+const OF_TEMPLATES: [(&str, &str); 2] = [
+    ("As designed", "The scenario as it was made from the narrative: the first shot."),
+    ("Tuned", "The same scenario with other numbers, inside bounds that keep the narrative true, nearer to a failure."),
+];
+
+fn glossary(by_account: bool) -> Markup {
+    let special: &[(&str, &str)] = if by_account { &OF_ACCOUNTS } else { &OF_TEMPLATES };
     let words = [
         (
             "SV, ego",
@@ -125,11 +177,6 @@ fn glossary() -> Markup {
         ("CP, partner", "The crash partner: the other road user."),
         ("Template", "Road type, movement of the SV, movement of the CP, and whether it was a work zone."),
         ("Pick", "The record that stands for its cluster. Each pick becomes one scenario."),
-        ("As designed", "The scenario as it was made from the narrative: the first shot."),
-        (
-            "Tuned",
-            "The same scenario with other numbers, inside bounds that keep the narrative true, nearer to a failure.",
-        ),
         (
             "Faithful",
             "Every told fact was checked and is shown by what was driven. Computed from the paths, never from the scenario's labels.",
@@ -149,5 +196,5 @@ fn glossary() -> Markup {
         ("DRAC", "Deceleration rate to avoid a crash: the constant braking that would just have sufficed."),
         ("Time headway", "Gap to the road user ahead divided by the ego's speed."),
     ];
-    html! { dl.glossary { @for (word, meaning) in words { dt { (word) } dd { (meaning) } } } }
+    html! { dl.glossary { @for (word, meaning) in special.iter().chain(&words) { dt { (word) } dd { (meaning) } } } }
 }

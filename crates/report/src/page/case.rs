@@ -49,8 +49,7 @@ fn inside(case: Case) -> Markup {
             p.banner.bad role="note" { (icon::cross()) span { strong { "Refused. " } (words::clean(why, 600)) } }
         }
         @if view.before.is_some() || view.after.is_some() {
-            @let names = view.names();
-            (stage([&words::capital(names.before), &words::capital(names.after)], [view.before.is_some(), view.after.is_some()], view.reference.is_some()))
+            (stage(&modes(view), view.reference.is_some()))
             (numbers(view))
             (severity::of_case(case))
         }
@@ -67,6 +66,17 @@ fn inside(case: Case) -> Markup {
     }
 }
 
+/// The runs that the replay can show: how the scripts call them, their names, and whether they are there.
+fn modes(view: &CaseView) -> Vec<(&'static str, String, bool)> {
+    let names = view.names();
+    let mut modes = vec![("before", words::capital(names.before), view.before.is_some())];
+    if view.untuned.is_some() {
+        modes.push(("untuned", words::capital(names.untuned), true));
+    }
+    modes.push(("after", words::capital(names.after), view.after.is_some()));
+    modes
+}
+
 fn head(case: Case, anchor: &str) -> Markup {
     let (view, row) = (case.view, case.row);
     let last = view.last_run();
@@ -78,6 +88,7 @@ fn head(case: Case, anchor: &str) -> Markup {
                 @if let Some(triage) = &view.triage { (parts::class_chip(triage.class)) }
                 (parts::faithful_chip(row.telling_run().map(|run| &run.judgement), row.origin.as_ref()))
                 @match row.situation_met() { Some(true) => span.chip.none { "situation met" }, Some(false) => span.chip.odd { "situation not met" }, None => "" }
+                @if row.account.is_some() && row.found_by_tuning() { (parts::tuning_chip()) }
                 @for kind in last.map(|run| run.finding_kinds()).unwrap_or_default() { (parts::finding_chip(kind)) }
                 (parts::origin_chip(row.origin.as_ref(), row.told.as_ref()))
                 (parts::edited_chip(&row.edited))
@@ -95,14 +106,16 @@ fn head(case: Case, anchor: &str) -> Markup {
 
 /// Replay and plots of one or two runs, which the scripts fill: their names, which of them there are, and whether the
 /// reference driver's run is there to be seen beside the last.
-pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2], reference: bool) -> Markup {
-    let mut modes = vec![
-        ("before", first, is_first),
-        ("after", second, is_second),
-        ("both", "Side by side", is_first && is_second),
-    ];
+pub(super) fn stage(runs: &[(&str, String, bool)], reference: bool) -> Markup {
+    let there = |run: &str| runs.iter().any(|(name, _, there)| *name == run && *there);
+    let name = |run: &str| runs.iter().find(|(name, ..)| *name == run).map_or("", |(_, name, _)| name.as_str());
+    let (first, second) = (name("before"), name("after"));
+    let (is_first, is_second) = (there("before"), there("after"));
+    let mut modes: Vec<(&str, &str, bool)> =
+        runs.iter().map(|(run, name, there)| (*run, name.as_str(), *there)).collect();
+    modes.push(("both", "Side by side", is_first && is_second));
     if reference {
-        modes.push(("reference", "Reference driver", true));
+        modes.push(("reference", "Ego \u{201c}reference\u{201d}", true));
     }
     html! {
         noscript { p.banner { "The replay and the plots need scripts. Every number is in the tables below." } }
@@ -126,9 +139,8 @@ pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]
                     button.small type="button" data-act="zoom-in" title="Zoom in ( + )" aria-label="Zoom in" { (icon::plus()) }
                 }
                 .views tabindex="0" role="img" aria-label="Top-down picture of the run; the plots and tables hold the same in numbers" {
-                    figure.view data-run="before" hidden { canvas {} figcaption { (first) } }
-                    figure.view data-run="after" hidden { canvas {} figcaption { (second) } }
-                    @if reference { figure.view data-run="reference" hidden { canvas {} figcaption { "Reference driver" } } }
+                    @for (run, name, _) in runs { figure.view data-run=(run) hidden { canvas {} figcaption { (name) } } }
+                    @if reference { figure.view data-run="reference" hidden { canvas {} figcaption { "Ego \u{201c}reference\u{201d}" } } }
                 }
                 .transport {
                     button.small type="button" data-act="start" title="To the start ( Home )" aria-label="To the start" { (icon::to_start()) }
@@ -156,7 +168,7 @@ pub(super) fn stage([first, second]: [&str; 2], [is_first, is_second]: [bool; 2]
                     @if is_second { span.key.solid { (uncapital(second)) } @if is_first { span.key.dashed { (uncapital(first)) } } }
                     @else { span.key.solid { (uncapital(first)) } }
                     span.key.ego { "ego" } span.key.partner { "partner" } }
-                @for (name, title, unit) in [("gap", "Gap to the nearest partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
+                @for (name, title, unit) in [("gap", "Gap to the partner", "m"), ("speed", "Speed", "m/s"), ("acceleration", "Acceleration", "m/s\u{b2}")] {
                     figure.plot data-plot=(name) { figcaption { b { (title) } " " span.muted { (unit) } span.readout {} } svg role="img" aria-label={ (title) " over time" } {} }
                 }
             }
@@ -187,12 +199,15 @@ fn numbers(case: &CaseView) -> Markup {
                 dt { (name) }
                 dd.value {
                     @if let Some(before) = &case.before { (parts::quantity(of(before), decimals, unit, why)) }
+                    @if let Some(untuned) = &case.untuned { @if case.before.is_some() { " " span.arrow { "\u{2192}" } " " } (parts::quantity(of(untuned), decimals, unit, why)) }
                     @if let Some(after) = &case.after { @if case.before.is_some() { " " span.arrow { "\u{2192}" } " " } (parts::quantity(of(after), decimals, unit, why)) }
                 }
             }
         }
     };
+    let names: Vec<&str> = case.runs().into_iter().map(|(name, _)| name).collect();
     html! {
+        @if names.len() > 1 { p.muted.small { "In each: " (names.join(" \u{2192} ")) "." } }
         dl.tiles.compact {
             (pair("Least gap", "m", 2, "no scripted partner took part", &|run: &RunView| run.min_gap_m()))
             (pair("Least TTC", "s", 2, "they were never on a course to touch", &|run| worst(run, |p| p.min_ttc.map(|t| t.value), true)))

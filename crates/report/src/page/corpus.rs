@@ -12,7 +12,6 @@ const LONGEST_LIST: usize = 40;
 pub fn corpus(corpus: &CorpusCoverage) -> Markup {
     let CoverageCounts { incidents, tellable, told, met, failed } = corpus.all;
     html! {
-        h2 { "What of the corpus is covered" }
         p.muted {
             "Of " (thousands(incidents)) " readable incidents " (thousands(tellable)) " can be told, " (thousands(told)) " are told here, the ego came into the situation of "
             (thousands(met)) " and failed " (thousands(failed)) " of those. Covered means the incident's own crash told, not a file made; one told incident covers a cell."

@@ -31,15 +31,20 @@ pub fn section(context: &Context) -> Markup {
                 h1 #findings-title { "Findings about the ego" }
                 p.lead {
                     b { (words::clean(&context.suite.ego, 60)) } " fails " (context.summary.failed_before) " of " (context.summary.ran)
-                    " scenarios as designed and " (context.summary.failed_after) " after tuning. The other kinds are odd behaviour worth a look."
+                    " scenarios " (untuned(context)) " and " (context.summary.failed_after) " after tuning. The other kinds are odd behaviour worth a look."
                 }
             }
-            .panel { h2 { "Causes: one finding each" } (triage::by_cause(context)) }
-            .panel { h2 { "How other egos fare in the failures" } (triage::by_class(context)) }
+            .panel { h2 { "Causes of the failures after tuning: one finding each" } (triage::by_cause(context)) }
+            .panel { h2 { "How other egos fare in the same scenarios" } (triage::by_class(context)) }
             .panel { h2 { "By kind" } (by_kind(context)) }
             .panel { h2 { "Every finding" } (every(context)) }
         }
     }
+}
+
+/// What the scenarios before tuning are called.
+fn untuned(context: &Context) -> &'static str {
+    if context.suite.accounts.is_some() { "as reconstructed" } else { "as designed" }
 }
 
 fn has(run: Option<&RunRow>, kind: FindingKind) -> bool {
@@ -54,9 +59,9 @@ fn by_kind(context: &Context) -> Markup {
         .table-wrap {
             table.plain {
                 caption.hidden-text { "Number of scenarios with a finding of each kind" }
-                thead { tr { th scope="col" { "Finding" } th scope="col" { "What it means" } th.right scope="col" { "As designed" } td {} th.right scope="col" { "After tuning" } td {} } }
+                thead { tr { th scope="col" { "Finding" } th scope="col" { "What it means" } th.right scope="col" { (words::capital(untuned(context))) } td {} th.right scope="col" { "After tuning" } td {} } }
                 tbody { @for kind in KINDS {
-                    @let before = cases.iter().filter(|case| has(case.before.as_ref(), kind)).count();
+                    @let before = cases.iter().filter(|case| has(case.first_run(), kind)).count();
                     @let after = cases.iter().filter(|case| has(case.last_run(), kind)).count();
                     @let class = if kind.is_failure() { "bad" } else { "odd" };
                     tr {
@@ -68,7 +73,7 @@ fn by_kind(context: &Context) -> Markup {
                 } }
             }
         }
-        p.muted { "Scenarios with at least one finding of the kind, of " (ran) " that ran." }
+        p.muted { "Scenarios with at least one finding of the kind, of " (ran) " that the system under test drove." }
     }
 }
 
@@ -97,8 +102,11 @@ fn meaning(kind: FindingKind, context: &Context) -> String {
 }
 
 fn every(context: &Context) -> Markup {
-    let runs =
-        context.suite.cases.iter().flat_map(|case| case.runs().into_iter().map(move |(name, run)| (case, name, run)));
+    let runs = context
+        .suite
+        .cases
+        .iter()
+        .flat_map(|case| case.system_runs().into_iter().map(move |(name, run)| (case, name, run)));
     // Of a contact, what it does to the velocity of the two.
     let harm = |run: &RunRow, finding: &Finding| {
         run.severity.as_ref().filter(|_| finding.kind == FindingKind::Contact).map(Severity::harm_mps)
@@ -114,8 +122,8 @@ fn every(context: &Context) -> Markup {
             }
             .table-wrap {
                 table.plain {
-                    caption.hidden-text { "Findings of every run" }
-                    thead { tr { th scope="col" { "Scenario" } th scope="col" { "Run" } th.right scope="col" { "Time" } th.right scope="col" title="the greater change of velocity of the two" { "Delta-v" } th scope="col" { "Finding" } th scope="col" { "In words" } } }
+                    caption.hidden-text { "Findings of every run of the system under test" }
+                    thead { tr { th scope="col" { "Scenario" } th scope="col" { "Run" } th.right scope="col" { "Time" } th.right scope="col" title="the greater change of velocity of the two" { "Largest delta-v" } th scope="col" { "Finding" } th scope="col" { "In words" } } }
                     tbody { @for (case, name, finding, harm) in rows.into_iter().take(LONGEST_LIST) {
                         tr {
                             th scope="row" { a href={ "#" (anchor::anchor(&case.scenario_id)) } { (words::clean(&case.scenario_id, 80)) } }

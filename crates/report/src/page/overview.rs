@@ -27,9 +27,9 @@ pub fn section(context: &Context) -> Markup {
                 }
             }
             @match &suite.accounts { Some(accounts) => (account_tiles(context, accounts)), None => (tiles(context)) }
-            @if let Some(accounts) = &suite.accounts { (types::types(context, accounts)) }
-            @if let Some(corpus) = &suite.corpus { (corpus::corpus(corpus)) }
-            h2 { "Scenarios" }
+            @if let Some(accounts) = &suite.accounts { details.fold { summary { "Crash types: how much of each is told and tested" } (types::types(context, accounts)) } }
+            @if let Some(corpus) = &suite.corpus { details.fold { summary { "What of the corpus is covered" } (corpus::corpus(corpus)) } }
+            h2 { "Scenarios" @if suite.accounts.is_some() { ", the worst first" } }
             noscript { p.banner { "A scenario opens with scripts only. This table, results.csv and the scenario files of the suite need none." } }
             @if suite.cases.is_empty() { p.empty { "The suite has no scenario." } } @else { (controls(suite.accounts.is_some())) (table(context)) }
             .two {
@@ -66,13 +66,14 @@ fn sentence(context: &Context) -> Markup {
 /// The same of a suite that goes by accounts.
 fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
+    let [first, last] = s.tested;
     html! {
         b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with every checked fact shown, and "
         "of " (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them no told fact is beyond what is checked. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
-        b { (words::clean(&suite.ego, 60)) } " came into the situation of its record in " b { (thousands(s.met)) " of the " (thousands(s.ran)) } " that it drove, and fails "
-        b { (thousands(s.failed_met)) " of those " (thousands(s.met)) }
-        @if s.failed_after > s.failed_met { " and " (thousands(s.failed_after - s.failed_met)) " more" }
+        "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
+        b { (thousands(first.failed)) " of those " (thousands(first.met)) } ": " (thousands(first.driving())) " while driving, " (thousands(first.struck)) " struck while it stood, which has nothing to do with what it drove. "
+        "After tuning within what the reports leave open it fails " b { (thousands(last.failed)) " of " (thousands(last.met)) } " (" (thousands(last.driving())) " and " (thousands(last.struck)) "), " (thousands(s.by_tuning)) " of them after tuning alone"
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
@@ -96,6 +97,7 @@ fn tile(name: &str, value: Markup, note: Markup, bar: Option<(f64, &str)>) -> Ma
 
 fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
     let s = &context.summary;
+    let [first, last] = s.tested;
     let types = |of: fn(&TypeShare) -> bool| {
         accounts.types.iter().filter(|share| share.crash_type.is_some() && of(share)).count()
     };
@@ -121,25 +123,25 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
             ))
             (tile(
                 "Situation met",
-                html! { (thousands(s.met)) span.of { " of " (thousands(s.ran)) } },
-                html! { "driven by the system under test" @if s.parked > 0 { "; " (thousands(s.parked)) " parked, not tested" } },
-                Some((share(s.met, s.ran), "plain")),
+                html! { (thousands(first.met)) span.of { " of " (thousands(first.ran)) } },
+                html! { "driven by the system under test, as reconstructed" @if s.parked > 0 { "; " (thousands(s.parked)) " parked, not tested" } },
+                Some((share(first.met, first.ran), "plain")),
             ))
             (tile(
-                "Ego fails",
-                html! { (thousands(s.failed_met)) span.of { " of " (thousands(s.met)) } },
+                "Ego fails, as reconstructed",
+                html! { (thousands(first.failed)) span.of { " of " (thousands(first.met)) } },
+                html! { b { (thousands(first.driving())) } " while driving, " b { (thousands(first.struck)) } " struck while it stood" },
+                Some((share(first.failed, first.met), "bad")),
+            ))
+            (tile(
+                "Ego fails, after tuning",
+                html! { (thousands(last.failed)) span.of { " of " (thousands(last.met)) } },
                 html! {
-                    "where the situation was met"
-                    @if !s.classes.is_empty() { ": " }
+                    b { (thousands(last.driving())) } " while driving, " b { (thousands(last.struck)) } " struck while it stood; " (thousands(s.by_tuning)) " found by tuning alone"
+                    @if !s.classes.is_empty() { ". Against other egos: " }
                     @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
                 },
-                Some((share(s.failed_met, s.met), "bad")),
-            ))
-            (tile(
-                "Median least gap",
-                html! { (s.median_after_m.and_then(|value| fixed(value, 2)).unwrap_or_else(|| "\u{2013}".to_owned())) span.of { "\u{a0}m" } },
-                html! { "of the system under test" },
-                None,
+                Some((share(last.failed, last.met), "bad")),
             ))
         }
     }
@@ -203,15 +205,16 @@ fn tiles(context: &Context) -> Markup {
 }
 
 /// Keys to sort by, as the scripts know them.
-const SORTS: [(&str, &str); 11] = [
+const SORTS: [(&str, &str); 12] = [
+    ("worst", "Worst first"),
     ("order", "Order of the suite"),
     ("operator", "Operator"),
     ("city", "City"),
     ("kind", "Partner"),
-    ("before", "Least gap as designed"),
+    ("before", "Least gap before tuning"),
     ("after", "Least gap after tuning"),
     ("impact", "Impact speed"),
-    ("severity", "Delta-v"),
+    ("severity", "Largest delta-v"),
     ("harm", "Injury in the record"),
     ("findings", "Findings"),
     ("faithful", "True to its record"),
@@ -233,6 +236,9 @@ fn controls(accounts: bool) -> Markup {
     let by_account = [
         ("all", "All"),
         ("failed", "Fails"),
+        ("driving", "Fails while driving"),
+        ("struck", "Struck while it stood"),
+        ("tuning", "Found by tuning"),
         ("passed", "Passes"),
         ("met", "Situation met"),
         ("unmet", "Situation not met"),
@@ -242,6 +248,8 @@ fn controls(accounts: bool) -> Markup {
         ("edited", "Edited"),
     ];
     let filters: &[(&str, &str)] = if accounts { &by_account } else { &by_template };
+    // Of a suite that goes by accounts the worst come first; the paper's has its own order.
+    let sorted = if accounts { "worst" } else { "order" };
     html! {
         .controls {
             label { span.hidden-text { "Search scenarios" } input #case-search type="search" placeholder="Search id, record, operator, city, kind, words  ( / )"; }
@@ -250,7 +258,7 @@ fn controls(accounts: bool) -> Markup {
                 label.field { span { (name) } select data-only=(key) { option value="" { "any" } } }
             }
             @if accounts { label.field { span { "Crash type" } select data-only="type" { option value="" { "any" } } } }
-            label.field { span { "Sort by" } select #case-sort { @for (key, name) in SORTS { option value=(key) { (name) } } } }
+            label.field { span { "Sort by" } select #case-sort { @for (key, name) in SORTS { option value=(key) selected[key == sorted] { (name) } } } }
             button.small #case-direction type="button" aria-pressed="false" title="Turn the order round" { "\u{2191}" span.hidden-text { " turn the order round" } }
             span #case-count.muted role="status" {}
             button type="button" #case-reset hidden { "Show all" }
@@ -263,7 +271,7 @@ fn table(context: &Context) -> Markup {
         ("scene", "Scene", None, "paths of ego and partner about the encounter"),
         ("what", "Scenario", Some("order"), "its id and template"),
         ("crash", "Crash told", Some("operator"), "the record that is told: id, operator, city, kind of partner"),
-        ("gap", "Least gap", Some("after"), "box to box, as designed and after tuning"),
+        ("gap", "Least gap", Some("after"), "box to box, before and after tuning"),
         (
             "impact",
             "Impact",
@@ -307,18 +315,16 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
             td.crash { (crash(context, position, case)) }
             td.gap {
                 @if last.is_none() { (missing(not_run)) } @else {
-                    @if case.account.is_some() { b { (metres(last)) } } @else {
-                        (metres(case.before.as_ref()))
-                        @if let Some(after) = &case.after { " \u{2192} " b { (metres(Some(after))) } }
-                    }
+                    @if case.is_tuned() || case.account.is_none() { (metres(case.first_run())) } @else { b { (metres(last)) } }
+                    @if let Some(after) = case.after.as_ref().filter(|_| case.is_tuned()) { " \u{2192} " b { (metres(Some(after))) } }
                 }
             }
             td.impact {
                 @match contact {
                     Some(contact) => {
                         b { (fixed(contact.relative_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
-                        .muted { "ego " (fixed(contact.ego_speed_mps, 1).unwrap_or_default()) ", other " (fixed(contact.other_speed_mps, 1).unwrap_or_default()) }
-                        @if let Some(severity) = last.and_then(|run| run.severity.as_ref()) { .muted { "delta-v " (fixed(severity.first.delta_v_mps, 1).unwrap_or_default()) ", " (fixed(severity.second.delta_v_mps, 1).unwrap_or_default()) } }
+                        .muted { "ego " (fixed(contact.ego_speed_mps, 1).unwrap_or_default()) ", partner " (fixed(contact.other_speed_mps, 1).unwrap_or_default()) }
+                        @if let Some(severity) = last.and_then(|run| run.severity.as_ref()) { .muted { "delta-v ego " (fixed(severity.first.delta_v_mps, 1).unwrap_or_default()) ", partner " (fixed(severity.second.delta_v_mps, 1).unwrap_or_default()) } }
                     },
                     None => (missing(if last.is_some() { "no contact" } else { not_run })),
                 }
@@ -360,12 +366,12 @@ fn crash(context: &Context, position: usize, case: &CaseRow) -> Markup {
 fn ego(case: &CaseRow, not_run: &str) -> Markup {
     let Some(last) = case.last_run() else { return missing(not_run) };
     let result = |run: &RunRow| Result::of(Some(&run.judgement));
-    let designed = case.before.as_ref().filter(|_| case.account.is_none());
-    let first = designed.filter(|first| case.after.is_some() && result(first) != result(last));
+    let first = case.first_run().filter(|first| case.is_tuned() && result(first) != result(last));
     html! {
         @if let Some(first) = first { span.muted { (result(first).label()) " \u{2192}" } " " }
         (parts::result_chip(result(last)))
         @if let Some(triage) = &case.triage { " " (parts::class_chip(triage.class)) }
+        @if case.account.is_some() && case.found_by_tuning() { " " (parts::tuning_chip()) }
         @let kinds = last.finding_kinds();
         @if !kinds.is_empty() { .why { (kinds.iter().map(|kind| kind.label()).collect::<Vec<_>>().join(", ")) } }
     }

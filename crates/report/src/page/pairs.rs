@@ -79,7 +79,7 @@ fn section(view: &PairsView, position: usize, pair: &PairView) -> Markup {
         section.case id=(id) data-case=(position) aria-labelledby={ (id) "-title" } {
             h2 id={ (id) "-title" } { (words::clean(&pair.title, 120)) }
             p.case-what { (words::clean(&pair.remark, 600)) }
-            (case::stage([&names[0], &names[1]], [true, pair.second.is_some()], false))
+            (case::stage(&[("before", names[0].clone(), true), ("after", names[1].clone(), pair.second.is_some())], false))
             script type="application/json" id={ "case-data-" (position) } { (PreEscaped(data::embed(&data::pair(pair)))) }
         }
     }

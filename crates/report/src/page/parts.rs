@@ -45,10 +45,18 @@ pub fn text_or(value: Option<&str>, why: &str) -> Markup {
 pub fn result_chip(result: Result) -> Markup {
     let class = match result {
         Result::Failed => "bad",
+        Result::Struck => "odd",
         Result::Passed => "good",
         Result::Missing => "none",
     };
-    html! { span.chip.(class) { (result.label()) } }
+    let why = (result == Result::Struck)
+        .then_some("a failure: it was struck while it stood, which has nothing to do with what it drove");
+    html! { span.chip.(class) title=[why] { (result.label()) } }
+}
+
+/// That a failure is one of the tuned scenario alone.
+pub fn tuning_chip() -> Markup {
+    html! { span.chip.odd title="it passes the crash as reconstructed, and fails after tuning within what the report leaves open" { "found by tuning" } }
 }
 
 /// Whether a run is true to its record, with the checks that say otherwise. Nobody's crash has no record to be true to.

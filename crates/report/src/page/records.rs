@@ -13,6 +13,8 @@ const LONGEST_LIST: usize = 24;
 /// The section.
 pub fn section(context: &Context) -> Markup {
     let selection = &context.suite.selection;
+    // A table of many movements has no room beside another.
+    let wide = selection.tables.sv_movements.len() > 4;
     html! {
         section.page #records aria-labelledby="records-title" {
             .page-head {
@@ -24,8 +26,9 @@ pub fn section(context: &Context) -> Markup {
             }
             .columns {
                 .panel { h2 { "From rows to usable records" } (funnel(context)) }
-                .panel { h2 { "Road types" } (road_types(context)) h2 { "Movements" } (movements(context)) }
+                .panel { h2 { "Road types" } (road_types(context)) @if !wide { h2 { "Movements" } (movements(context)) } }
             }
+            @if wide { .panel { h2 { "Movements" } (movements(context)) } }
             .panel { h2 { "Templates" } (templates(context)) }
             .panel { h2 { "Map of the records" } (cluster_map::map(context)) }
             .panel { h2 { "What the picks cover" } (coverage::coverage(context)) }
@@ -122,7 +125,11 @@ pub fn heat(n: usize, most: usize) -> &'static str {
 fn templates(context: &Context) -> Markup {
     let selection = &context.suite.selection;
     let most = selection.templates.iter().map(|count| count.records).max().unwrap_or(0);
+    // A suite of accounts picks incidents, and fills no table of templates.
+    let by_account = context.suite.accounts.is_some();
+    let unpicked = selection.templates.iter().filter(|count| count.picks == 0).count();
     html! {
+        @if by_account && unpicked > 0 { p.muted { "Templates with a scenario; left out: " (words::count(unpicked, "template")) " of records of which none was picked." } }
         .table-wrap {
             table.plain.sortable {
                 caption.hidden-text { "Observed templates, most frequent first" }
@@ -130,7 +137,7 @@ fn templates(context: &Context) -> Markup {
                     @for name in ["#", "Road", "SV (ego)", "CP (partner)", "Work zone"] { th scope="col" { (name) } }
                     th.right scope="col" { "Records" } td {} th.right scope="col" { "Picks" } th scope="col" { "Scenarios" }
                 } }
-                tbody { @for (order, count) in selection.templates.iter().enumerate() {
+                tbody { @for (order, count) in selection.templates.iter().enumerate().filter(|(_, count)| count.picks > 0 || !by_account) {
                     @let t = count.template;
                     tr {
                         td.number { (order + 1) }

@@ -11,13 +11,14 @@ pub fn tuning(case: &CaseView) -> Markup {
     let Some(log) = &case.tune_log else {
         return html! { p.empty { "It was not tuned." } };
     };
+    let untuned = if case.account.is_some() { "as reconstructed" } else { "as designed" };
     let kept = log.points.iter().find(|point| point.number == log.best);
     let refused = log.points.iter().filter(|point| !point.score.refused.is_empty()).count();
     let failed = log.points.iter().filter(|point| point.score.failed && point.score.refused.is_empty()).count();
     html! {
         p { "The search " b { (words::clean(&log.searcher, 80)) } " tried " (words::count(log.points.len(), "point")) " (seed " (log.seed) "): "
             (failed) " made the ego fail, " (refused) " were refused. "
-            @if log.best == 0 { "None was better than the scenario as designed." } @else { "Point " b { (log.best) } " was kept." } }
+            @if log.best == 0 { "None was better than the scenario " (untuned) "." } @else { "Point " b { (log.best) } " was kept." } }
         .columns {
             figure.tune-figure {
                 figcaption { b { "Objective by point" } " " span.muted { "least box gap plus penalties, m; smaller is worse for the ego" } }
@@ -27,7 +28,7 @@ pub fn tuning(case: &CaseView) -> Markup {
             }
             .table-wrap { table.plain.tuning {
                 caption.hidden-text { "Numbers that may move" }
-                thead { tr { th scope="col" { "Number" } th.right scope="col" { "From" } th.right scope="col" { "To" } th.right scope="col" { "As designed" } th.right scope="col" { "Kept" } th scope="col" { "In its bounds" } } }
+                thead { tr { th scope="col" { "Number" } th.right scope="col" { "From" } th.right scope="col" { "To" } th.right scope="col" { (words::capital(untuned)) } th.right scope="col" { "Kept" } th scope="col" { "In its bounds" } } }
                 tbody { @for (i, parameter) in log.parameters.iter().enumerate() { (parameter_row(parameter, kept.and_then(|point| point.values.get(i)).copied())) } }
             } }
         }

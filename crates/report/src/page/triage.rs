@@ -12,7 +12,7 @@ use recrash_model::metrics::{FindingKind, Timed};
 use recrash_model::preventability::Preventability;
 use recrash_model::rollout::TerminationKind;
 use recrash_model::severity::Severity;
-use recrash_model::triage::FailureClass;
+use recrash_model::triage::{FailureClass, Triage};
 
 /// Scenarios of a class that are named; the table finds the rest. [count]
 const LONGEST_LIST: usize = 30;
@@ -44,12 +44,12 @@ pub fn by_cause(context: &Context) -> Markup {
         @if groups.is_empty() { p.empty { "There are no failures." } } @else {
             .table-wrap { table.plain {
                 caption.hidden-text { "Failures by what led to them" }
-                thead { tr { th scope="col" { "Cause" } th.right scope="col" { "Scenarios" } td {} th.right scope="col" title="the greater change of velocity of the two" { "Worst delta-v" } th scope="col" { "Which, the shortest first" } } }
+                thead { tr { th scope="col" { "Cause" } th.right scope="col" { "Scenarios" } td {} th.right scope="col" title="the greater change of velocity of the two" { "Largest delta-v" } th scope="col" { "Which, the shortest first" } } }
                 tbody { @for (cause, of) in &groups {
                     tr {
-                        th scope="row" { (words::capital(cause.label())) }
+                        th scope="row" { (words::capital(cause.label())) @if *cause == Cause::StruckStanding { .muted { "nothing to do with what it drove" } } }
                         td.right.number { (of.len()) }
-                        td.bar-cell { (parts::bar(of.len() as f64 / failed.len() as f64, "bad")) }
+                        td.bar-cell { (parts::bar(of.len() as f64 / failed.len() as f64, if *cause == Cause::StruckStanding { "odd" } else { "bad" })) }
                         td.right { (parts::quantity(worst(of), 1, "m/s", "no contact of two road users")) }
                         td {
                             @for (i, (case, _)) in of.iter().take(LONGEST_LIST).enumerate() {
@@ -78,7 +78,7 @@ pub fn by_class(context: &Context) -> Markup {
                 @let of_class: Vec<&CaseRow> = context.suite.cases.iter().filter(|case| case.triage.as_ref().is_some_and(|triage| triage.class == class)).collect();
                 tr {
                     th scope="row" { (parts::class_chip(class)) }
-                    td.muted { (class.meaning()) }
+                    td.muted { (meaning(class)) }
                     td.right.number { (of_class.len()) }
                     td.bar-cell { (parts::bar(share(of_class.len()), "bad")) }
                     td {
@@ -91,7 +91,7 @@ pub fn by_class(context: &Context) -> Markup {
                 }
             } }
         } }
-        p.muted { "Of the " (failures) " scenarios the ego fails at last. The other egos drive the same scenario on the native simulator." }
+        p.muted { "Of the " (failures) " scenarios the ego fails at last. The other egos drive the same scenario on the native simulator; what the " (words::REGULATION_DRIVERS) ", make of a contact stands with each scenario." }
     }
 }
 
@@ -103,45 +103,72 @@ pub fn of_case(case: Case) -> Markup {
     };
     let kinds = last.finding_kinds();
     html! {
-        p { (parts::class_chip(triage.class)) " " (words::capital(triage.class.meaning())) "." }
         @if let Some(cause) = last.run.cause { p { b { "Cause: " } (cause.label()) ". " span.muted { "Told by rules from the rollout: docs/models/causes.md." } } }
-        @if let Some(found) = &last.run.preventability { (in_their_place(found)) }
+        (two_answers(triage, last.run.preventability.as_ref()))
+        h3 { "Other egos in the same scenario" }
         .table-wrap { table.plain {
             caption.hidden-text { "Every ego on this scenario" }
             thead { tr { th scope="col" { "Ego" } th scope="col" { "Avoids it" } th scope="col" { "Result" } th scope="col" { "Least gap" } th scope="col" { "Ended by" } th scope="col" { "Findings" } } }
             tbody {
-                (row(html! { b { (words::clean(case.context.ego, 60)) } " (under test)" }, false, last.failed(), last.metrics.min_gap, last.metrics.termination, &kinds))
+                (row(html! { b { (words::clean(case.context.ego, 60)) } " (under test)" }, false, Result::of(Some(&last.run.judgement)), last.metrics.min_gap, last.metrics.termination, &kinds))
                 @for other in &triage.others {
-                    (row(html! { (words::clean(&other.ego, 60)) }, other.avoids, other.failed, other.min_gap, other.termination, &other.findings))
+                    (row(html! { (words::clean(&other.ego, 60)) }, other.avoids, if other.failed { Result::Failed } else { Result::Passed }, other.min_gap, other.termination, &other.findings))
                 }
             }
         } }
     }
 }
 
-/// The bracket over the reference drivers whose source covers the contact.
+/// What a class means, with the name of an ego as a page quotes it.
+fn meaning(class: FailureClass) -> String {
+    class.meaning().replacen('`', "\u{201c}", 1).replacen('`', "\u{201d}", 1)
+}
+
+/// Two questions with two answers, side by side: how other egos fare, and what the regulation's drivers make of the contact.
+fn two_answers(triage: &Triage, found: Option<&Preventability>) -> Markup {
+    html! {
+        p.muted { "Two questions, and their answers may differ: the first is asked in the whole scenario, from the handover on; the second only along the road, from what both did before the contact." }
+        .table-wrap { table.plain {
+            caption.hidden-text { "What others make of this failure" }
+            thead { tr { th scope="col" { "Asked" } th scope="col" { "Answer" } th scope="col" { "In words" } } }
+            tbody {
+                tr {
+                    th scope="row" { "Other egos in the same scenario" }
+                    td { (parts::class_chip(triage.class)) }
+                    td { (words::capital(&meaning(triage.class))) "." }
+                }
+                tr {
+                    th scope="row" { (words::capital(words::REGULATION_DRIVERS)) }
+                    @match found {
+                        Some(found) => { td { (found.bracket().label()) } td { (in_their_place(found)) span.muted { "docs/models/reference-drivers.md" } } },
+                        None => { td { (parts::missing("there is no contact")) } td.muted { "They are asked about contacts." } },
+                    }
+                }
+            }
+        } }
+    }
+}
+
+/// Each reference driver of the regulation whose source covers the contact.
 fn in_their_place(found: &Preventability) -> Markup {
     let number = |value: f64| fixed(value, 1).unwrap_or_default();
     html! {
-        p {
-            b { "In the ego's place: " } (found.bracket().label())
-            @for (i, driver) in found.drivers.iter().enumerate() {
-                @if i == 0 { ": " } @else { ", " }
-                (words::clean(&driver.driver, 40))
-                @match driver.closing_speed_mps {
-                    None => " avoids it",
-                    Some(left) => { " touches at " (number(left)) "\u{a0}m/s of closing speed (the ego at " (number(found.closing_speed_mps)) ")" }
-                }
+        @for (i, driver) in found.drivers.iter().enumerate() {
+            @if i > 0 { ", " }
+            (words::clean(&driver.driver, 40))
+            @match driver.closing_speed_mps {
+                None => " avoids it",
+                Some(left) => { " touches at " (number(left)) "\u{a0}m/s of closing speed (the ego at " (number(found.closing_speed_mps)) ")" }
             }
-            ". " span.muted { "docs/models/reference-drivers.md" }
         }
+        @if !found.drivers.is_empty() { ". " }
     }
 }
 
 fn row(
     ego: Markup,
     avoids: bool,
-    failed: bool,
+    result: Result,
     gap: Option<Timed>,
     ended: TerminationKind,
     findings: &[FindingKind],
@@ -150,7 +177,7 @@ fn row(
         tr {
             th scope="row" { (ego) }
             td { @if avoids { "yes" } @else { "no" } }
-            td { (parts::result_chip(if failed { Result::Failed } else { Result::Passed })) }
+            td { (parts::result_chip(result)) }
             td { (parts::timed(gap, 2, "m", "no scripted partner took part")) }
             td { (words::name(&ended)) }
             td { @for kind in findings { (parts::finding_chip(*kind)) " " } @if findings.is_empty() { (parts::missing("no finding")) } }

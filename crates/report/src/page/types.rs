@@ -1,6 +1,7 @@
 //! Crash types: how much of each is told and tested, and why the others are not.
 
 use super::{Context, parts};
+use crate::view::{CaseRow, RunRow};
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
 use recrash_model::account::{AccountSet, CrashType, Untold};
@@ -11,9 +12,12 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
     let cases = &context.suite.cases;
     let of = |kind: Option<CrashType>| {
         let in_type = cases.iter().filter(move |case| case.account.as_ref().map(|account| account.crash_type) == kind);
-        let met = in_type.clone().filter(|case| case.situation_met() == Some(true));
-        let failed = met.clone().filter(|case| case.last_run().is_some_and(|run| run.failed())).count();
-        (in_type.count(), met.count(), failed)
+        let count = |run: fn(&CaseRow) -> Option<&RunRow>, failed: bool| {
+            let met = in_type.clone().filter_map(run).filter(|run| run.situation_met() == Some(true));
+            met.filter(|run| !failed || run.failed()).count()
+        };
+        let fails = [count(CaseRow::first_run, true), count(CaseRow::last_run, true)];
+        (in_type.clone().count(), count(CaseRow::first_run, false), fails)
     };
     let percent = |part: usize, whole: usize| fixed(100.0 * part as f64 / whole.max(1) as f64, 0).unwrap_or_default();
     let mut reasons: BTreeMap<Untold, usize> = BTreeMap::new();
@@ -23,14 +27,14 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
     let mut reasons: Vec<(Untold, usize)> = reasons.into_iter().collect();
     reasons.sort_by_key(|(why, count)| (std::cmp::Reverse(*count), *why));
     html! {
-        h2 { "Crash types" }
         .table-wrap { table.plain {
             caption.hidden-text { "Readable incidents by crash type" }
             thead { tr {
                 th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="every told fact that is checked is shown" { "Told: every checked fact shown" }
                 th.number scope="col" title="no told fact is beyond what is checked" { "Of those, all facts checked" }
                 th.number scope="col" title="facts that stand in the narratives, for every 100 words" { "Facts per 100 words" }
-                th.number scope="col" { "Scenarios here" } th.number scope="col" { "Situation met" } th.number scope="col" { "Ego fails" }
+                th.number scope="col" { "Scenarios here" } th.number scope="col" title="in the crash as reconstructed" { "Situation met" }
+                th.number scope="col" title="of those, in the crash as reconstructed" { "Ego fails" } th.number scope="col" title="within what the report leaves open" { "After tuning" }
             } }
             tbody { @for share in &accounts.types {
                 @let (scenarios, met, failed) = of(share.crash_type);
@@ -40,8 +44,8 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
                     td.number { (thousands(share.told)) span.muted { " (" (percent(share.told, share.incidents)) "\u{a0}%)" } }
                     td.number { (thousands(share.whole)) }
                     td.number { (parts::quantity(Some(share.facts_per_100_words), 1, "", "")) }
-                    @if share.crash_type.is_some() { td.number { (thousands(scenarios)) } td.number { (thousands(met)) } td.number { (thousands(failed)) } }
-                    @else { td {} td {} td {} }
+                    @if share.crash_type.is_some() { td.number { (thousands(scenarios)) } td.number { (thousands(met)) } @for failed in failed { td.number { (thousands(failed)) } } }
+                    @else { td {} td {} td {} td {} }
                 }
             } }
         } }

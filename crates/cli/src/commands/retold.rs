@@ -1,0 +1,220 @@
+//! What `recrash run` and `recrash report` print of a suite that goes by accounts: the worst scenarios, then the result.
+
+use super::simulate::REGULATION_DRIVERS;
+use crate::output::title;
+use crate::screen::{bold, println, yellow};
+use crate::table::{Cell, number, table};
+use recrash_model::account::CrashType;
+use recrash_model::metrics::Answer;
+use recrash_pipeline::{AccountSummary, CaseSummary, RunSummary, Summary, TestedRuns};
+use std::path::Path;
+
+/// Scenarios that the terminal lists; the page and results.csv have all.
+const CASES_SHOWN: usize = 10;
+/// Remarks on scenarios that the terminal tells one by one.
+const REMARKS_SHOWN: usize = 5;
+
+/// How a scenario ended for the system under test, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Verdict {
+    /// It failed while it drove.
+    Fail,
+    /// It failed, and stood when it was struck.
+    Struck,
+    /// It did not fail.
+    Pass,
+    /// It was parked: nothing to test.
+    Parked,
+    /// It could not be run.
+    NotRun,
+}
+
+impl Verdict {
+    fn of(case: &CaseSummary) -> Self {
+        match &case.tuned {
+            Some(run) if run.struck_standing() => Self::Struck,
+            Some(run) if run.failed => Self::Fail,
+            Some(_) => Self::Pass,
+            None if case.recorded.is_some() => Self::Parked,
+            None => Self::NotRun,
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Fail => "FAIL",
+            Self::Struck => "STRUCK",
+            Self::Pass => "PASS",
+            Self::Parked => "parked",
+            Self::NotRun => "NOT RUN",
+        }
+    }
+}
+
+/// The worst first: by verdict, in the situation of the record before others, by the larger change of velocity, by the gap.
+fn worst_first(cases: &[CaseSummary]) -> Vec<&CaseSummary> {
+    let harm = |case: &CaseSummary| case.tuned.as_ref().map_or(0.0, RunSummary::harm_mps);
+    let gap = |case: &CaseSummary| case.tuned.as_ref().and_then(|run| run.min_gap_m).unwrap_or(f64::MAX);
+    let mut ranked: Vec<&CaseSummary> = cases.iter().collect();
+    ranked.sort_by(|a, b| {
+        let group = |case: &CaseSummary| (Verdict::of(case), case.situation_met != Some(true));
+        group(a).cmp(&group(b)).then(harm(b).total_cmp(&harm(a))).then(gap(a).total_cmp(&gap(b)))
+    });
+    ranked
+}
+
+/// What led to the failure, or its kind where no rule tells.
+fn what_failed(case: &CaseSummary) -> String {
+    let Some(run) = case.tuned.as_ref().filter(|run| run.failed) else { return "-".into() };
+    run.cause.map_or_else(|| run.findings.join(", "), |cause| cause.label().to_owned())
+}
+
+/// In which run it fails first.
+fn found(case: &CaseSummary) -> &'static str {
+    match &case.tuned {
+        Some(run) if run.failed && case.found_by_tuning() => "by tuning",
+        Some(run) if run.failed => "as is",
+        _ => "-",
+    }
+}
+
+fn delta_v(run: Option<&RunSummary>) -> String {
+    run.and_then(|run| run.delta_v_mps).map_or("-".into(), |[ego, partner]| format!("{ego:.1} / {partner:.1} m/s"))
+}
+
+/// Prints a run of a suite that goes by accounts.
+pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
+    remarks(summary);
+    worst(&summary.cases);
+    result(summary);
+    let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
+    println!(
+        "records: {} of {} readable incidents are told with every checked fact shown, of {whole} of them no told fact is beyond what \
+         is checked; {} are in this suite; invented: 0",
+        accounts.told,
+        accounts.readable,
+        summary.cases.len(),
+    );
+    if summary.sample {
+        println!("  the built-in sample, invented; give real crash files with --records FILE");
+    }
+    println!("report: {} (every scenario, crash types, why others are not told)", dir.join("report.html").display());
+}
+
+/// Scenarios that were not run, or are not as told.
+fn remarks(summary: &Summary) {
+    let told = |case: &CaseSummary| {
+        if let Some(failure) = &case.failure {
+            return Some(format!("{} {}: {failure}", yellow("not run:"), case.id));
+        }
+        let why = case.recorded.as_ref().map_or_else(String::new, |run| run.unfaithful.join("; "));
+        (case.faithful() == Some(Answer::No)).then(|| format!("{} {}: {why}", yellow("not as told:"), case.id))
+    };
+    let told: Vec<String> = summary.cases.iter().filter_map(told).collect();
+    for line in told.iter().take(REMARKS_SHOWN) {
+        println!("  {line}");
+    }
+    if told.len() > REMARKS_SHOWN {
+        println!("  and {} more, on the page", told.len() - REMARKS_SHOWN);
+    }
+}
+
+fn worst(cases: &[CaseSummary]) {
+    title(&format!("Scenarios, the worst {} of {}", CASES_SHOWN.min(cases.len()), cases.len()));
+    let header =
+        ["verdict", "scenario", "what failed", "found", "delta-v ego / partner", "situation", "crash type", "as told"];
+    let mut rows = table(&header).named_by("scenario").without_first(&[
+        "as told",
+        "crash type",
+        "situation",
+        "delta-v ego / partner",
+        "found",
+    ]);
+    for case in worst_first(cases).into_iter().take(CASES_SHOWN) {
+        let as_told = match case.faithful() {
+            Some(Answer::Yes) => "yes",
+            Some(Answer::Unchecked) => "not all checked",
+            Some(Answer::No) => "NO",
+            None => "NOT RUN",
+        };
+        let situation = match (case.situation_met, &case.recorded) {
+            (Some(true), _) => "met",
+            (Some(false), _) => "not met",
+            (None, Some(_)) => "parked",
+            (None, None) => "-",
+        };
+        rows.add_row(vec![
+            Cell::new(Verdict::of(case).label()),
+            Cell::new(&case.id),
+            Cell::new(what_failed(case)),
+            Cell::new(found(case)),
+            number(delta_v(case.tuned.as_ref())),
+            Cell::new(situation),
+            Cell::new(case.crash_type.map_or("", CrashType::label)),
+            Cell::new(as_told),
+        ]);
+    }
+    println!("{rows}");
+    println!(
+        "  STRUCK: it failed, and stood when it was struck: nothing to do with what it drove\n  found: as is, in the crash as \
+         reconstructed; by tuning, only within what the report leaves open"
+    );
+}
+
+fn failures(runs: &TestedRuns) -> String {
+    format!(
+        "{} of {}: {} while driving, {} struck while it stood",
+        runs.failed,
+        runs.met,
+        runs.failed - runs.struck,
+        runs.struck
+    )
+}
+
+fn result(summary: &Summary) {
+    let count = |holds: &dyn Fn(&CaseSummary) -> bool| summary.cases.iter().filter(|case| holds(case)).count();
+    let [first, last] = summary.tested();
+    let parked = count(&|case| case.recorded.is_some() && case.tuned.is_none());
+    println!("\n{} {} fails, where it came into the situation of the record,", bold("result:"), summary.ego);
+    println!("  as reconstructed, from the handover on: {}", failures(&first));
+    println!(
+        "  after tuning within what reports leave open: {}; {} by tuning alone",
+        failures(&last),
+        count(&CaseSummary::found_by_tuning)
+    );
+    println!(
+        "  {} scenarios: {} driven, {} of them never in the situation; {parked} parked, nothing to test",
+        summary.cases.len(),
+        first.ran,
+        first.ran - first.met,
+    );
+    let edited = count(&|case| !case.edited.is_empty());
+    if edited > 0 {
+        println!("  {edited} edited by hand, and kept");
+    }
+    let listed = |counts: Vec<(&str, usize)>| {
+        let listed: Vec<String> = counts.into_iter().map(|(label, count)| format!("{count} {label}")).collect();
+        listed.join(", ")
+    };
+    let causes = summary.causes();
+    if !causes.is_empty() {
+        let causes = causes.iter().map(|(cause, count)| (cause.label(), *count)).collect();
+        println!("after tuning, by cause: {}", listed(causes));
+        let classes = summary.failure_classes().into_iter().map(|(class, count)| (class.label(), count)).collect();
+        println!("  other egos in the same scenario: {}", listed(classes));
+        let brackets = summary.brackets().into_iter().map(|(bracket, count)| (bracket.label(), count)).collect();
+        println!("  of contacts, {REGULATION_DRIVERS}: {}", listed(brackets));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failures_while_driving_come_before_those_that_struck_a_standing_ego() {
+        assert!(Verdict::Fail < Verdict::Struck && Verdict::Struck < Verdict::Pass && Verdict::Pass < Verdict::Parked);
+        let told = failures(&TestedRuns { ran: 54, met: 51, failed: 38, struck: 12 });
+        assert_eq!(told, "38 of 51: 26 while driving, 12 struck while it stood");
+    }
+}

@@ -1,0 +1,127 @@
+//! A suite that goes by accounts: the recorded driver, the system under test in the crash as reconstructed, and after tuning are
+//! told apart everywhere, and who was struck while it stood is counted apart.
+
+use crate::suite;
+use recrash_model::account::{AccountSet, CrashType};
+use recrash_model::cause::Cause;
+use recrash_model::metrics::{Check, CheckKind, CheckResult, Finding, FindingKind};
+use recrash_report::{AccountRow, RunRow, SuiteView, html, junit, results_csv};
+
+/// A run that came into the situation of its record, and failed or did not.
+fn run(like: &RunRow, cause: Option<Cause>) -> RunRow {
+    let mut run = like.clone();
+    let (expected, observed) = ("near".to_owned(), "near".to_owned());
+    run.judgement.verdict.checks =
+        vec![Check { kind: CheckKind::Situation, expected, observed, result: CheckResult::Shown }];
+    run.judgement.cause = cause;
+    let sentence = "it touched".to_owned();
+    let finding = Finding { kind: FindingKind::Contact, time_s: 1.0, value: 0.0, threshold: 0.0, sentence };
+    run.judgement.findings = cause.map(|_| finding).into_iter().collect();
+    run
+}
+
+/// Four scenarios: fails as reconstructed and was not tuned; was struck while it stood; passes, and fails after tuning; passes
+/// both.
+fn retold() -> SuiteView {
+    let mut suite = suite::demo().suite;
+    suite.accounts = Some(AccountSet {
+        format: "recrash.accounts/1".into(),
+        incidents: 9,
+        readable: 8,
+        types: Vec::new(),
+        facts: Vec::new(),
+        told: Vec::new(),
+        untold: Vec::new(),
+    });
+    suite.cases.truncate(4);
+    let like = suite.cases[0].before.clone().expect("it was run");
+    let late = Some(Cause::BrakedLate);
+    let of_cases = [
+        (None, late),
+        (None, Some(Cause::StruckStanding)),
+        (Some(run(&like, None)), late),
+        (Some(run(&like, None)), None),
+    ];
+    for (case, (untuned, last)) in suite.cases.iter_mut().zip(of_cases) {
+        case.account = Some(AccountRow {
+            incident: case.scenario_id.clone(),
+            reports: 1,
+            crash_type: CrashType::FrontToRear,
+            role: None,
+        });
+        // The recorded driver crashes in every one.
+        case.before = Some(run(&like, Some(Cause::WasStruck)));
+        case.after = Some(run(&like, last));
+        (case.untuned, case.triage, case.refused) = (untuned, None, None);
+    }
+    suite
+}
+
+#[test]
+fn junit_has_the_runs_as_reconstructed_and_the_tuned_ones_apart_and_counts_both() {
+    let xml = junit(&retold());
+    assert!(xml.contains("<testsuite name=\"tested\" tests=\"4\" failures=\"2\""), "{xml}");
+    assert!(xml.contains("<testsuite name=\"tuned\" tests=\"2\" failures=\"1\""), "{xml}");
+    for (name, value) in [
+        ("as-reconstructed.situation-met", 4),
+        ("as-reconstructed.failed-while-driving", 1),
+        ("as-reconstructed.struck-while-it-stood", 1),
+        ("after-tuning.failed-while-driving", 2),
+        ("after-tuning.struck-while-it-stood", 1),
+        ("failed-after-tuning-alone", 1),
+    ] {
+        assert!(xml.contains(&format!("<property name=\"{name}\" value=\"{value}\"/>")), "{name}: {xml}");
+    }
+    assert!(xml.contains("type=\"struck standing\" message=\"contact, struck while it stood"), "{xml}");
+    assert_eq!(xml.matches("found by tuning alone").count(), 1, "{xml}");
+}
+
+#[test]
+fn the_table_has_a_row_for_each_run_and_marks_what_only_tuning_found() {
+    let table = results_csv(&retold());
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let at = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let told: Vec<[&str; 4]> = rows
+        .iter()
+        .map(|row| ["run", "failed", "struck_standing", "found_by_tuning"].map(|name| &row[at(name)]))
+        .collect();
+    let recorded = ["as told", "true", "", ""];
+    assert_eq!(
+        told,
+        [
+            recorded,
+            ["tested", "true", "false", "false"],
+            recorded,
+            ["tested", "true", "true", "false"],
+            recorded,
+            ["tested", "false", "false", ""],
+            ["tuned", "true", "false", "true"],
+            recorded,
+            ["tested", "false", "false", ""],
+            ["tuned", "false", "false", "false"],
+        ]
+    );
+}
+
+#[test]
+fn the_page_counts_the_runs_of_the_system_alone_and_both_of_them() {
+    let page = html(&retold());
+    let text = page.replace("<b>", "").replace("</b>", "");
+    for words in [
+        "fails 2 of those 4: 1 while driving, 1 struck while it stood",
+        "it fails 3 of 4 (2 and 1), 1 of them after tuning alone",
+        "fails 2 of 4 scenarios as reconstructed and 3 after tuning",
+    ] {
+        assert!(text.contains(words), "{words}");
+    }
+    // Contacts by kind: two as reconstructed, three after tuning, and none of the recorded driver's four.
+    let by_kind = page.split("Number of scenarios with a finding of each kind").nth(1).unwrap();
+    let contacts = by_kind.split("<tr>").nth(2).unwrap();
+    assert!(contacts.contains(">2</td>") && contacts.contains(">3</td>"), "{contacts}");
+    let every = page.split("Findings of every run of the system under test").nth(1).unwrap();
+    assert!(!every.split("</table>").next().unwrap().contains("as told"));
+    assert_eq!(page.matches(">found by tuning</span>").count(), 1);
+    assert!(page.contains(">struck standing</span>"));
+}
