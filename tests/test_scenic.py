@@ -36,7 +36,8 @@ def test_scenic_shows_recorded_road_users_where_they_were(scenes: list[Export]) 
     for scene, report in zip(scenes, found, strict=True):
         assert "error" not in report, report
         actors, trajectory = scene.rollout["actors"], report["trajectory"]
-        assert [len(trajectory), len(trajectory[0])] == [len(actors[0]["states"]), len(actors)], scene
+        # Things come behind the road users.
+        assert len(trajectory) == len(actors[0]["states"]) and len(trajectory[0]) >= len(actors), scene
         for step, places in enumerate(trajectory):
             for actor, (x, y, *_) in zip(actors, places):
                 away = step < round(actor.get("appears_s", 0) / 0.1) or step >= actor.get("gone_s", math.inf) / 0.1 - 1e-6
