@@ -132,7 +132,8 @@ impl Table {
         let word = |at: usize| self.header[at].split(' ').map(|word| word.chars().count()).max().unwrap_or(0) + PADDING;
         let with_headers = |&at: &usize| widest(at).max(word(at));
         let numbers: Vec<usize> = (0..shown.len()).filter(|&place| of_numbers(shown[place])).collect();
-        let others = (shown.len() - numbers.len()) * (PADDING + 1);
+        let room = if self.name == 0 { PADDING + 1 } else { LEAST_COLUMN };
+        let others = (shown.len() - numbers.len()) * room;
         let needed =
             |of: &dyn Fn(&usize) -> usize| numbers.iter().map(|&place| of(&shown[place])).sum::<usize>() + others;
         let bound: &dyn Fn(&usize) -> usize =
