@@ -93,7 +93,7 @@ fn failures_are_ranked_by_severity_with_what_their_records_report() {
         assert!(shown.contains(words), "{words}: {shown}");
     }
     let junit = std::fs::read_to_string(place.path("suite/junit.xml")).unwrap();
-    assert!(junit.contains(", delta-v ") && junit.contains("\ndelta-v: ego "), "{junit}");
+    assert!(junit.contains(", largest delta-v ") && junit.contains("\ndelta-v: ego "), "{junit}");
     let id = failures[0]["id"].as_str().unwrap();
     let case = std::fs::read_to_string(place.path(&format!("suite/report/{id}.js"))).unwrap();
     assert!(case.contains("Severity of the contact") && case.contains(" reports: "), "{id}");

@@ -317,7 +317,7 @@ fn a_folder_that_holds_something_else_is_left_alone() {
     let freeze = |out: &str, extra: &[&str]| place.run(&[&["freeze", text(&source), "--out", out], extra].concat()).0;
     assert_eq!((freeze("mine", &[]), freeze("mine", &["--replace"]), freeze("frozen", &[])), (3, 3, 3));
     assert_eq!(freeze("frozen", &["--replace"]), 0);
-    let (_, _, told) = place.run(&["freeze", "suite", "--out", "frozen"]);
+    let (_, _, told) = place.run(&["freeze", text(&source), "--out", "frozen"]);
     assert!(told.contains("--replace"), "{told}");
     assert!(!place.path("frozen/scenarios/crashes-01-rear-end-at-red.json").exists(), "the old suite's are gone");
     assert_eq!(test(&place, &["--ego", "idm", "--quiet"]).0, 0);

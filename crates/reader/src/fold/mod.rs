@@ -257,12 +257,15 @@ fn partner_word(kind: PartnerKind) -> Option<&'static str> {
     })
 }
 
-/// Kind of the subject vehicle, by its make, where that makes trucks only.
+/// Kind of the subject vehicle, by its make, where that makes trucks or shuttles only, or by its model, which some call a shuttle.
 fn own_kind(record: &CrashRecord) -> Option<Kind> {
     let vehicle = record.vehicle.to_lowercase();
     let truck = ["peterbilt", "freightliner", "kenworth", "international", "mack", "navistar", "volvo vnl"];
     if truck.iter().any(|make| vehicle.contains(make)) {
         return Some(Kind::SemiTrailerTruck);
+    }
+    if ["sienna", "pacifica"].iter().any(|model| vehicle.contains(model)) {
+        return Some(Kind::Minivan);
     }
     let shuttle = ["navya", "olli", "easymile", "e-palette", "autonom", "ohmio"];
     shuttle.iter().any(|make| vehicle.contains(make)).then_some(Kind::Bus)
