@@ -129,12 +129,12 @@ def main() -> None:
     read_before = set()
     for file in [HERE.parent / "reconstructions.csv", *args.skip]:
         with open(file, newline="") as stream:
-            read_before |= {row["report"] for row in csv.DictReader(stream)}
+            read_before |= {row["report"].split("/")[0] for row in csv.DictReader(stream)}
     drawn = []
     for scene in sorted(args.scenes.glob("incident-*.json")):
         report = json.loads(scene.read_text())["source"]["records"][0]
         half = "dev" if digest(report.split("/")[0])[31] % 2 == 0 else "held-out"
-        if half == args.half and report not in read_before:
+        if half == args.half and report.split("/")[0] not in read_before:
             drawn.append((digest(args.word, report), report, scene))
     drawn = sorted(drawn)[: args.count]
     by_report = rows(args.files)

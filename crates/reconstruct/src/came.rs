@@ -354,7 +354,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         id: "cp".to_owned(),
         kind: cp.kind,
         size: cp.size,
-        mass_kg: None,
+        mass_kg: told.thing.filter(|_| !told.gate_swings).and_then(things::mass_kg),
         parts: told.rig.iter().map(Rig::part).collect(),
         plan,
     };

@@ -130,6 +130,17 @@ fn is_thing(kind: Kind) -> bool {
     kind.group() == KindGroup::Object
 }
 
+/// Usual masses of things that move, assumed; none of what stands fast. [kg]
+pub(crate) const fn mass_kg(kind: Kind) -> Option<f64> {
+    match kind {
+        Kind::Cone => Some(5.0),
+        Kind::Debris | Kind::Object | Kind::Scooter | Kind::Sign | Kind::TreeBranch => Some(20.0),
+        Kind::LooseWheel | Kind::Cart => Some(30.0),
+        Kind::Cargo | Kind::Barrier => Some(50.0),
+        _ => None,
+    }
+}
+
 /// What is so far inside the ego's outline is under it. [m]
 const UNDER_M: f64 = 0.3;
 

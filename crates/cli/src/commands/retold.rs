@@ -89,8 +89,8 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     result(summary);
     let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
     println!(
-        "records: {} of {} readable incidents are told with every checked fact shown, of {whole} of them no told fact is beyond what \
-         is checked; {} are in this suite; invented: 0",
+        "records: {} of {} readable incidents are told, no told fact shown otherwise; {whole} of them with every told fact shown; {} are in \
+         this suite; invented: 0",
         accounts.told,
         accounts.readable,
         summary.cases.len(),

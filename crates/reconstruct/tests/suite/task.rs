@@ -24,6 +24,12 @@ const SCRAPES: &str = "The AV was traveling north on Elm Street. As the AV turne
 
 const UNDER_A_POLE: &str = "The AV was traveling east when the underside of the AV made contact with a pole.";
 
+const ROLLS: &str = "The AV was traveling east when the left side of the AV made contact with an object that was rolling into the AV's lane from \
+                     the left side of the road.";
+
+const SWINGS: &str = "The AV was traveling north through an open gate when the gate began to close and the gate made contact with the left \
+                      side of the AV.";
+
 fn result(draft: &ScenarioDraft, account: &Account, kind: CheckKind) -> Option<CheckResult> {
     let scenario = recrash_roads::check(draft.clone()).expect("it can run").value;
     let verdict = held_against(account, &scenario, &simulate(&scenario, Ego::Recorded)).expect("it can be staged");
@@ -95,4 +101,14 @@ fn what_touches_the_underside_comes_under_the_ego() {
     assert_eq!(result(&stops, &account, CheckKind::SvZones), Some(CheckResult::CannotBeShown));
     let account = story(UNDER_A_POLE);
     assert_eq!(result(&made(&account).draft, &account, CheckKind::SvZones), Some(CheckResult::CannotBeShown));
+}
+
+#[test]
+fn what_rolls_into_the_way_is_light_and_what_stands_fast_is_not() {
+    let mass_kg = |text: &str| {
+        let draft = made(&story(text)).draft;
+        draft.actors.iter().find(|actor| actor.id == "cp").map(|actor| actor.mass_kg)
+    };
+    assert_eq!(mass_kg(ROLLS), Some(Some(20.0)));
+    assert_eq!(mass_kg(SWINGS), Some(None), "a gate's post stands fast");
 }

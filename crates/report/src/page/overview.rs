@@ -68,8 +68,8 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
     let [first, last] = s.tested;
     html! {
-        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with every checked fact shown, and "
-        "of " (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them no told fact is beyond what is checked. "
+        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with no told fact shown otherwise, "
+        (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
         b { (thousands(first.failed)) " of those " (thousands(first.met)) } ": " (thousands(first.driving())) " while driving, " (thousands(first.struck)) " struck while it stood, which has nothing to do with what it drove. "
@@ -112,7 +112,7 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
             (tile(
                 "Own crash told",
                 html! { (thousands(accounts.told.len())) span.of { " of " (thousands(accounts.readable)) } },
-                html! { "readable incidents, every checked fact shown; invented: 0" },
+                html! { "readable incidents, no told fact shown otherwise; invented: 0" },
                 Some((share(accounts.told.len(), accounts.readable), "good")),
             ))
             (tile(

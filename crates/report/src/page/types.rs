@@ -30,8 +30,8 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
         .table-wrap { table.plain {
             caption.hidden-text { "Readable incidents by crash type" }
             thead { tr {
-                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="every told fact that is checked is shown" { "Told: every checked fact shown" }
-                th.number scope="col" title="no told fact is beyond what is checked" { "Of those, all facts checked" }
+                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="every told fact that could be checked is shown" { "Told: no fact shown otherwise" }
+                th.number scope="col" title="no told fact was left open" { "Of those, every fact shown" }
                 th.number scope="col" title="facts that stand in the narratives, for every 100 words" { "Facts per 100 words" }
                 th.number scope="col" { "Scenarios here" } th.number scope="col" title="in the crash as reconstructed" { "Situation met" }
                 th.number scope="col" title="of those, in the crash as reconstructed" { "Ego fails" } th.number scope="col" title="within what the report leaves open" { "After tuning" }
