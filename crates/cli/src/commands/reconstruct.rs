@@ -25,8 +25,8 @@ Examples:
 
 The ego is the recorded driver. Checked are: contact, kind of partner, zones of both within a step, state of both at the
 contact, impact speeds, turns of both, lanes of both, signals and signs and whether they were obeyed, why the ego stood, from
-where the partner comes, who was first, and whether another threw the partner at the ego. A crash with a
-door is not told: doors stay shut. docs/models/reconstruction.md says how each is checked.";
+where the partner comes, who was first, whether another threw the partner at the ego, doors that took part,
+and the others of the story. docs/models/reconstruction.md says how each is checked.";
 
 /// Options of `reconstruct`.
 #[derive(Debug, Clone, Args)]

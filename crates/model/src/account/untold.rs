@@ -11,9 +11,9 @@ pub enum Untold {
     NoAccount,
     /// The two never touched: others crashed.
     OthersOnly,
-    /// The place cannot be drawn yet: a roundabout, a garage, rails.
+    /// The place cannot be drawn yet: a roundabout.
     Place,
-    /// It came from above.
+    /// It came from above, or touched the roof alone.
     FromAbove,
     /// No way of touching fits the told zones, states and directions.
     NoContact,
