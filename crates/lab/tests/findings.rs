@@ -2,9 +2,7 @@
 
 use recrash_lab::{run_scenario, situation};
 use recrash_model::metrics::{CheckResult, FindingKind};
-use recrash_model::profile::{
-    Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
-};
+use recrash_model::profile::SystemProfile;
 use recrash_model::run::JudgedRun;
 use recrash_roads::Scenario;
 use recrash_sim::{Ego, Native};
@@ -14,34 +12,8 @@ use std::path::{Path, PathBuf};
 
 const EGOS: [Ego; 4] = [Ego::Recorded, Ego::Idm, Ego::MetadriveIdm, Ego::Reference];
 
-/// The limits of the profile `open`.
 fn profile() -> SystemProfile {
-    SystemProfile {
-        format: PROFILE_FORMAT.to_owned(),
-        name: "open".to_owned(),
-        description: String::new(),
-        ego: "metadrive-idm".to_owned(),
-        records: RecordRules { dedupe: Dedupe::None, tells: Tells::Templates },
-        expresses: Expressible {
-            road_types: Vec::new(),
-            sv_movements: Vec::new(),
-            cp_movements: Vec::new(),
-            work_zone: true,
-            partner_kinds: Vec::new(),
-            min_speed_mps: 0.0,
-            max_speed_mps: 30.0,
-            max_traffic_density: 1.0,
-        },
-        excludes: Excluded { collisions: Vec::new() },
-        failure: FailureCriteria {
-            min_gap_m: 0.3,
-            hard_braking_mps2: 4.0,
-            phantom_braking_mps2: 3.0,
-            oscillation_reversals: 4,
-            oscillation_window_s: 5.0,
-            lane_departure_m: 0.3,
-        },
-    }
+    toml::from_str(include_str!("../../../profiles/open.toml")).expect("a profile")
 }
 
 /// All cases, in order of their names: paths below `cases/` without `.json`.
