@@ -289,6 +289,10 @@ pub enum CheckKind {
     SvMovement,
     /// Movement of the partner, from its path.
     CpMovement,
+    /// What the ego is told to have done until the contact, one after the other.
+    SvActs,
+    /// The same of the partner.
+    CpActs,
     /// Side from which the partner came, or on which it drove.
     Approach,
     /// Who reached the place where the paths cross first.
@@ -337,7 +341,7 @@ pub enum CheckKind {
 
 impl CheckKind {
     /// Those that an account is held to, in the order of tables.
-    pub const OF_ACCOUNTS: [Self; 20] = [
+    pub const OF_ACCOUNTS: [Self; 22] = [
         Self::Contact,
         Self::Partner,
         Self::SvZones,
@@ -348,6 +352,8 @@ impl CheckKind {
         Self::CpSpeed,
         Self::SvMovement,
         Self::CpMovement,
+        Self::SvActs,
+        Self::CpActs,
         Self::Approach,
         Self::Order,
         Self::PassedOn,
@@ -367,6 +373,8 @@ impl CheckKind {
             Self::WorkZone => "work zone",
             Self::SvMovement => "SV movement",
             Self::CpMovement => "CP movement",
+            Self::SvActs => "SV acts",
+            Self::CpActs => "CP acts",
             Self::Approach => "approach",
             Self::Order => "order",
             Self::SvSpeed => "SV speed",

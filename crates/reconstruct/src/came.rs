@@ -192,7 +192,7 @@ pub(crate) fn straight_plan(start: Vec2, way: Vec2, (speed_mps, contact_s): (f64
 /// line is driven there alone.
 pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option<Pose> {
     let on_way = ground.sv_pose(sv_s_m);
-    if ground.drift.or(told.sv_aside()).is_none() {
+    if ground.drift.or(told.sv_aside()).is_none() && !pulls_over(told, ground) {
         return Some(ground.pose(sv_s_m, ground.stands_m));
     }
     let alone = ScenarioDraft {
@@ -263,8 +263,22 @@ fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
     when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
 }
 
+/// Who parks at the kerb comes along its lane, and leaves it for the kerb on so much of its way. [m]
+const PULLS_OVER_M: f64 = 20.0;
+
+/// Whether the ego comes to the kerb where it is parked.
+fn pulls_over(told: &Told, ground: &Ground) -> bool {
+    told.sv.came_to_park && ground.stands_m != 0.0
+}
+
 fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
     let (mut lead, mut pace) = ego_paces(told, ground, sv_s_m);
+    let pulls_over = pulls_over(told, ground) && lead.is_none() && pace.driven_m > PULLS_OVER_M;
+    if pulls_over {
+        let from_s = (time_before(told.contact_s, &pace, PULLS_OVER_M) * 10.0).round() / 10.0;
+        let over = when(from_s, Deed::Shift { to_t_m: ground.stands_m, over_m: PULLS_OVER_M });
+        pace.acts.insert(0, over);
+    }
     let aside = ground.drift.or(told.sv_aside());
     if let Some(aside) = aside {
         let by_m = (aside.to_t_m - aside.from_t_m).abs();
@@ -297,7 +311,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         road: ground.route[0].clone(),
         lane: ground.lane,
         along: Along::FromStart(s_m),
-        t_m: aside.map_or(ground.stands_m, |aside| aside.from_t_m),
+        t_m: aside.map_or(if pulls_over { 0.0 } else { ground.stands_m }, |aside| aside.from_t_m),
         heading_deg: 0.0,
     };
     if reverses {

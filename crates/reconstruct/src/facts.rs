@@ -1,5 +1,6 @@
 //! Told facts, held against a rollout. Nothing here reads the scenario: only who was where.
 
+use crate::acts;
 use crate::control;
 use crate::door;
 use crate::lateral::is_on_foot;
@@ -209,6 +210,13 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let way = Way { scenario, track, other, met, time_s: touch.time_s, road_rad };
         if let Some((expected, result, observed)) = movement::check(side, &way) {
             list.push(Check { kind, expected, observed, result });
+        }
+    }
+    let parties = [(CheckKind::SvActs, &told.sv, Some(ego_track)), (CheckKind::CpActs, &told.cp, touch.track)];
+    for (kind, side, track) in parties {
+        if let Some(track) = track.filter(|_| !side.acts.is_empty()) {
+            let (result, observed) = acts::check(&side.acts, track, touch.time_s);
+            list.push(Check { kind, expected: acts::words(&side.acts), observed, result });
         }
     }
     let mut fact = |kind: CheckKind, shown: bool, expected: String, observed: String| {

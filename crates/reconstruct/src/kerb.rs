@@ -67,7 +67,7 @@ impl Told {
         let in_the_way = self.origin == Origin::Behind && goes_round && self.cp.state != ContactState::Reversing;
         let on_lane = self.sv.lane.is_some_and(|lane| lane != LaneWord::Curb);
         let stands = self.thing.is_some() && self.cp.state.stands();
-        self.sv.state == ContactState::Parked && !stands && !on_lane && !in_the_way
+        (self.sv.state == ContactState::Parked || self.sv.came_to_park) && !stands && !on_lane && !in_the_way
     }
 
     /// Whether the partner reverses out of a stall or a driveway.

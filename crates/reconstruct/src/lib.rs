@@ -6,6 +6,7 @@
 //! named as assumed. A rollout decides: who is drawn and does not show a told fact is not told. Rules and numbers:
 //! `docs/models/reconstruction.md`.
 
+mod acts;
 mod came;
 mod choices;
 mod control;

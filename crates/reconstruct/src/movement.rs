@@ -9,13 +9,13 @@ use recrash_model::template::Movement;
 use recrash_roads::{RoadPart, Scenario};
 
 /// Slower than this is standing. [m/s]
-const STANDS_MPS: f64 = 0.1;
+pub(crate) const STANDS_MPS: f64 = 0.1;
 
 /// Who changes lanes has left the middle of its own by at least this: the box reaches the next one. [m]
 const CHANGED_M: f64 = 0.8;
 
 /// Who leaves its lane, or pulls out or in, has left its line by at least this. [m]
-const LEFT_LINE_M: f64 = 0.5;
+pub(crate) const LEFT_LINE_M: f64 = 0.5;
 
 /// Nobody parks faster. [m/s]
 const PARKS_MPS: f64 = 5.0;

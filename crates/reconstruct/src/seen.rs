@@ -83,7 +83,7 @@ impl<'a> Seen<'a> {
                 .any(is),
             StandReason::BlockedJunction => is(Role::Beyond) || is(Role::Blocker),
             StandReason::BlockedPath => is(Role::Lead) || is(Role::Obstacle),
-            StandReason::Parked => self.told.sv.state == ContactState::Parked,
+            StandReason::Parked => self.told.sv.state == ContactState::Parked || self.told.sv.came_to_park,
             _ => false,
         }
     }

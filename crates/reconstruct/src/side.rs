@@ -1,5 +1,6 @@
 //! One side of a crash: what is told of one vehicle, person or thing, in the terms of a staging.
 
+use crate::acts::{self, Doing};
 use crate::phases::{self, Phase};
 use crate::things;
 use recrash_model::account::{
@@ -43,6 +44,8 @@ pub(crate) struct Side {
     pub(crate) stood_first: bool,
     /// It stood already when the story begins.
     pub(crate) stands_from_start: bool,
+    /// It is parked, and is told to have come there.
+    pub(crate) came_to_park: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
     /// It brakes, or swerves, for the turn that the other has begun: late and hard.
@@ -51,6 +54,8 @@ pub(crate) struct Side {
     pub(crate) gains: bool,
     /// What it did last, ended by what it does at the contact, where that is more than the state says: of the ego.
     pub(crate) phases: Vec<Phase>,
+    /// Everything that it is told to have done until the contact and that can be seen, in order.
+    pub(crate) acts: Vec<Doing>,
     /// Whether the state is told.
     pub(crate) state_told: bool,
     pub(crate) movement: Option<Movement>,
@@ -125,6 +130,9 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         && (movement == Some(Movement::Backing) || parks_backing(party))
         && !went_on(party);
     let state = if backs { ContactState::Reversing } else { state };
+    // Who parks in the story comes to a stop in it.
+    let came_to_park = who == "ego" && state == ContactState::Parked && came_there(party);
+    let state = if came_to_park { ContactState::Stopped } else { state };
     if !state_told {
         assumed.push(format!("the {who} is {state:?} at the contact"));
     }
@@ -171,6 +179,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         true => phases::told(party, state),
         false => Vec::new(),
     };
+    let acts = if drives || who == "ego" { acts::told(party, state) } else { Vec::new() };
     let stopped = last_way(party).filter(|_| state == ContactState::Stopped && turning == Turning::No && who == "ego");
     let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
     let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
@@ -196,8 +205,10 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         backs_in: false,
         slowed_from,
         stood_first,
+        came_to_park,
         stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),
         phases,
+        acts,
         kind: partner_kind.unwrap_or_default(),
         size: kind.and_then(size_of),
         state,
@@ -217,6 +228,15 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         lane: told(&party.lane),
         control: control(party),
     }
+}
+
+/// Whether the first that is told of somebody who is parked is how it came there.
+fn came_there(party: &Party) -> bool {
+    let stands = |fact: &&ActFact| {
+        matches!(fact.act, Act::Stop | Act::PullOver | Act::Hold | Act::Park) && !fact.after_contact && !fact.begun
+    };
+    let first = party.acts.iter().filter(stands).min_by_key(|fact| fact.step);
+    first.is_some_and(|fact| matches!(fact.act, Act::Stop | Act::PullOver))
 }
 
 /// Whether somebody is told to have been completing a lane change.

@@ -369,6 +369,8 @@ impl Told {
             (CheckKind::CpSpeed, cp.impact_mps.is_some()),
             (CheckKind::SvMovement, sv.movement.is_some()),
             (CheckKind::CpMovement, cp.movement.is_some() && moves),
+            (CheckKind::SvActs, !sv.acts.is_empty()),
+            (CheckKind::CpActs, !cp.acts.is_empty() && moves),
             (CheckKind::Approach, self.origin_told && moves || self.edge.is_some() || self.lies.is_some()),
             (CheckKind::Order, self.order.is_some() && moves),
             (CheckKind::PassedOn, self.pushed),
@@ -597,7 +599,7 @@ impl Told {
     pub(crate) fn sv_aside(&self) -> Option<Aside> {
         let (left, right) = (LeftRight::Left, LeftRight::Right);
         let back = self.sv.phases.contains(&crate::phases::Phase::Reverses);
-        let stopped = self.sv.stopped_aside.filter(|_| !back);
+        let stopped = self.sv.stopped_aside.filter(|_| !back && !self.sv.came_to_park);
         let stands = self.sv.state.stands() && stopped.is_none();
         if self.sv.turning != Turning::No || stands || self.sv.state == ContactState::Reversing {
             return None;

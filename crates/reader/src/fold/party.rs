@@ -153,7 +153,9 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         matches!(last, Act::Hold | Act::Stop).then_some(())
     };
     let keeps = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
-    let goes_on = keeps.starts_with("continu") || keeps.starts_with("remain");
+    // "stopped at a red light, heading west", "stopped, following a pick-up": there it stands.
+    let goes_on = ["continu", "remain", "heading", "following", "traveling", "travelling", "driving"];
+    let goes_on = goes_on.iter().any(|start| keeps.starts_with(start));
     // "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.
     let with_subject = || {
         let sets_off = |other: &Frame| {

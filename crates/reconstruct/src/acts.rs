@@ -1,0 +1,229 @@
+//! What each of the two is told to have done before the contact, one after the other, found in the way that was driven.
+
+use crate::movement::{LEFT_LINE_M, STANDS_MPS};
+use recrash_model::account::{Act, ActFact, ContactState, LeftRight, Party, StandReason};
+use recrash_model::geometry::Vec2;
+use recrash_model::math;
+use recrash_model::metrics::CheckResult;
+use recrash_model::rollout::{ActorState, ActorTrack};
+
+/// An act that is told, and can be seen in a way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Doing {
+    act: Act,
+    side: Option<LeftRight>,
+    /// It was begun or attempted.
+    begun: bool,
+}
+
+/// What is told of somebody until the contact that can be seen, in order.
+pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
+    let before = party.acts.iter().filter(|fact| !fact.after_contact && least(fact.act).is_some());
+    let mut acts: Vec<&ActFact> = before.collect();
+    acts.sort_by_key(|fact| fact.step);
+    let stands = |act: Act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park);
+    let at_line = party.reasons.iter().any(|fact| matches!(fact.value, StandReason::RedLight | StandReason::StopSign))
+        || !party.controls.is_empty();
+    let mut list: Vec<Doing> = Vec::new();
+    for (number, fact) in acts.iter().enumerate() {
+        let stood = list.iter().any(|doing| stands(doing.act) || doing.act == Act::Reverse);
+        let skipped = match fact.act {
+            // Who was told to begin or go on before it stood drove already.
+            Act::SetOff => !stood && state != ContactState::SettingOff,
+            // Who turned on its way to a light or a sign did so on another road, or has yet to.
+            Act::Turn => at_line && !stood && acts[number..].iter().any(|later| stands(later.act)),
+            Act::Park => list.last().is_some_and(|last| stands(last.act)),
+            _ => false,
+        };
+        if !skipped {
+            list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun });
+        }
+    }
+    // Who moves at the contact was slowing to its last stop.
+    if let Some(last) = list.last_mut().filter(|last| last.act == Act::Stop && !state.stands()) {
+        last.begun = true;
+    }
+    list.dedup();
+    list
+}
+
+/// By how much somebody does something who does it.
+enum Least {
+    /// Loses or gains speed. [m/s]
+    Speed(f64),
+    /// Stands; and comes to a stand.
+    Stand,
+    Halt,
+    /// Drives from a stand.
+    Start,
+    /// Drives backwards.
+    Back,
+    /// Goes aside. [m]
+    Aside(f64),
+    /// Turns. [deg]
+    Turn(f64),
+    /// Goes aside, turns, or drives backwards.
+    Any,
+}
+
+/// Who slows or gains speed does so by this. [m/s]
+const CHANGES_MPS: f64 = 0.8;
+
+/// Who comes to a stop was faster before. [m/s]
+const CAME_MPS: f64 = 0.5;
+
+/// Who changes lanes has gone aside by so much, and who drifts or swerves. [m]
+const CHANGES_LANES_M: f64 = 0.8;
+const DRIFTS_M: f64 = 0.2;
+
+/// Who turns has turned by so much, who turns round, and who comes from the kerb or draws up at it where it does not go aside. [deg]
+const TURNS_DEG: f64 = 15.0;
+const ROUND_DEG: f64 = 50.0;
+const BENDS_DEG: f64 = 8.0;
+
+/// Of what was begun, so much is seen.
+const BEGUN: f64 = 0.2;
+
+/// An act takes no longer, and is seen so soon by so much of it. [steps]
+const LONGEST: usize = 60;
+const SOON: usize = 10;
+const SOON_SHARE: f64 = 0.04;
+
+/// Who did one thing after another may have begun the second so much earlier. [steps]
+const OVERLAP: usize = 5;
+
+/// How an act is seen; nothing where a way does not tell it.
+fn least(act: Act) -> Option<Least> {
+    Some(match act {
+        Act::Slow => Least::Speed(-CHANGES_MPS),
+        Act::Accelerate => Least::Speed(CHANGES_MPS),
+        Act::Stop => Least::Halt,
+        Act::Hold => Least::Stand,
+        Act::SetOff => Least::Start,
+        Act::Reverse => Least::Back,
+        Act::LaneChange => Least::Aside(CHANGES_LANES_M),
+        Act::Drift | Act::Swerve => Least::Aside(DRIFTS_M),
+        Act::Turn => Least::Turn(TURNS_DEG),
+        Act::UTurn => Least::Turn(ROUND_DEG),
+        Act::PullOut | Act::PullOver | Act::Park => Least::Any,
+        _ => return None,
+    })
+}
+
+/// Whether everything that is told of somebody is seen, in order; and what is.
+pub(crate) fn check(told: &[Doing], track: &ActorTrack, time_s: f64) -> (CheckResult, String) {
+    let way = Way(&track.states[..=((time_s * 10.0).floor() as usize).min(track.states.len() - 1)]);
+    let (mut from, mut missed) = (0, Vec::new());
+    for doing in told {
+        match way.begins(*doing, from) {
+            Some(at) => from = at.saturating_sub(OVERLAP),
+            None => missed.push(*doing),
+        }
+    }
+    match missed.is_empty() {
+        true => (CheckResult::Shown, "all of it".to_owned()),
+        false => (CheckResult::CannotBeShown, format!("not that it {}", words(&missed))),
+    }
+}
+
+/// The states of somebody until the contact.
+struct Way<'a>(&'a [ActorState]);
+
+impl Way<'_> {
+    fn speed(&self, at: usize) -> f64 {
+        self.0[at].speed()
+    }
+
+    fn is_still(&self, at: usize) -> bool {
+        self.0[at].velocity().length() < STANDS_MPS
+    }
+
+    fn last(&self) -> usize {
+        self.0.len() - 1
+    }
+
+    /// The first step from this one on at which a value, of that step and a later one, begins to come to this much and does.
+    fn comes_to(&self, from: usize, least: f64, value: impl Fn(usize, usize) -> f64) -> Option<usize> {
+        let until = |at: usize, steps: usize| (at + steps).min(self.last());
+        (from..self.last()).find(|at| {
+            value(*at, until(*at, SOON)) > SOON_SHARE * least
+                && (at + 1..=until(*at, LONGEST)).any(|then| value(*at, then) > least)
+        })
+    }
+
+    /// When somebody stands, from this step on.
+    fn stands(&self, from: usize) -> Option<usize> {
+        (from..=self.last()).find(|at| self.is_still(*at))
+    }
+
+    fn begins(&self, doing: Doing, from: usize) -> Option<usize> {
+        let share = if doing.begun { BEGUN } else { 1.0 };
+        let towards = |value: f64| match doing.side {
+            Some(LeftRight::Left) => value,
+            Some(LeftRight::Right) => -value,
+            None => value.abs(),
+        };
+        let aside = |at: usize, then: usize| {
+            let (now, then) = (&self.0[at], &self.0[then]);
+            towards(Vec2::from_heading(now.heading).cross(then.position() - now.position()))
+        };
+        let turned = |at: usize, then: usize| {
+            towards(math::wrap_angle(self.0[then].heading - self.0[at].heading).to_degrees())
+        };
+        let slower = |at: usize, then: usize| self.speed(at) - self.speed(then);
+        let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
+        match least(doing.act)? {
+            Least::Speed(by) if by < 0.0 => self.comes_to(from, -by, slower),
+            Least::Speed(by) => self.comes_to(from, by, |at, then| -slower(at, then)),
+            Least::Stand => self.stands(from),
+            // Who was coming to a stop has slowed for it.
+            Least::Halt if doing.begun => self.comes_to(from, CHANGES_MPS, slower),
+            Least::Halt => {
+                let halts = |at: &usize| self.is_still(*at) && !self.is_still(at - 1);
+                let came = |at: &usize| (0..*at).any(|before| self.speed(before).abs() > CAME_MPS);
+                (from.max(1)..=self.last()).find(|at| halts(at) && came(at))
+            }
+            Least::Start => {
+                let stood = self.stands(from)?;
+                (stood..self.last()).find(|at| self.is_still(*at) && !self.is_still(at + 1))
+            }
+            Least::Back => backs(),
+            Least::Aside(by) => self.comes_to(from, share * by, aside),
+            Least::Turn(by) => self.comes_to(from, share * by, turned),
+            Least::Any => self
+                .comes_to(from, share * LEFT_LINE_M, aside)
+                .or_else(|| self.comes_to(from, share * BENDS_DEG, turned))
+                .or_else(backs),
+        }
+    }
+}
+
+/// For sentences.
+pub(crate) fn words(told: &[Doing]) -> String {
+    let word = |doing: &Doing| {
+        let verb = match doing.act {
+            Act::Slow => "slowed",
+            Act::Accelerate => "gained speed",
+            Act::Stop => "stopped",
+            Act::Hold => "stood",
+            Act::SetOff => "set off",
+            Act::Reverse => "reversed",
+            Act::LaneChange => "changed lanes",
+            Act::Drift => "went aside",
+            Act::Swerve => "swerved",
+            Act::Turn => "turned",
+            Act::UTurn => "turned round",
+            Act::PullOut => "pulled out",
+            Act::PullOver => "pulled over",
+            _ => "parked",
+        };
+        let side = match doing.side {
+            Some(LeftRight::Left) => " to the left",
+            Some(LeftRight::Right) => " to the right",
+            None => "",
+        };
+        let side = if matches!(doing.act, Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse) { "" } else { side };
+        format!("{}{verb}{side}", if doing.begun { "began: " } else { "" })
+    };
+    told.iter().map(word).collect::<Vec<_>>().join(", ")
+}
