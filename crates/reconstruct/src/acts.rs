@@ -167,9 +167,8 @@ impl Way<'_> {
             let (now, then) = (&self.0[at], &self.0[then]);
             towards(Vec2::from_heading(now.heading).cross(then.position() - now.position()))
         };
-        let turned = |at: usize, then: usize| {
-            towards(math::wrap_angle(self.0[then].heading - self.0[at].heading).to_degrees())
-        };
+        let turned =
+            |at: usize, then: usize| towards(math::wrap_angle(self.0[then].heading - self.0[at].heading).to_degrees());
         let slower = |at: usize, then: usize| self.speed(at) - self.speed(then);
         let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
         match least(doing.act)? {
@@ -222,7 +221,12 @@ pub(crate) fn words(told: &[Doing]) -> String {
             Some(LeftRight::Right) => " to the right",
             None => "",
         };
-        let side = if matches!(doing.act, Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse) { "" } else { side };
+        let side =
+            if matches!(doing.act, Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse) {
+                ""
+            } else {
+                side
+            };
         format!("{}{verb}{side}", if doing.begun { "began: " } else { "" })
     };
     told.iter().map(word).collect::<Vec<_>>().join(", ")

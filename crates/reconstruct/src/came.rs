@@ -263,21 +263,46 @@ fn shift(told: &Told, aside: Aside, pace: &Pace, least_m: f64) -> Act {
     when((from_s * 10.0).round() / 10.0, Deed::Shift { to_t_m: aside.to_t_m, over_m: 2.0 * half_m })
 }
 
-/// Who parks at the kerb comes along its lane, and leaves it for the kerb on so much of its way. [m]
+/// Who parks at the kerb comes along its lane, and leaves it on so much of its way; it is at the kerb so far before it stands. [m]
 const PULLS_OVER_M: f64 = 20.0;
+const AT_KERB_M: f64 = 1.0;
 
 /// Whether the ego comes to the kerb where it is parked.
 fn pulls_over(told: &Told, ground: &Ground) -> bool {
     told.sv.came_to_park && ground.stands_m != 0.0
 }
 
+/// Who leaves a line and comes back to it does the first within this time, on so much of its way, and is on the other one for so long.
+/// [s, m, s]
+const GOES_OUT_S: f64 = 4.0;
+const GOES_OUT_M: (f64, f64) = (8.0, 30.0);
+const IS_OUT_S: f64 = 0.5;
+
+/// Puts before a lane change that it was one in the other direction first; false where there is none, or no time for it.
+fn goes_out(aside: Aside, pace: &mut Pace) -> bool {
+    let shift = pace.acts.iter().find(|act| matches!(act.deed, Deed::Shift { .. }));
+    let Some(shift_s) = shift.map(|act| first_time(std::slice::from_ref(act))).filter(|_| aside.back) else {
+        return false;
+    };
+    let over_m = (GOES_OUT_S * pace.speed_mps).clamp(GOES_OUT_M.0, GOES_OUT_M.1);
+    let from_s = ((shift_s - IS_OUT_S - over_m / pace.speed_mps.max(0.1)) * 10.0).floor() / 10.0;
+    let drives = pace.acts.iter().all(|act| first_time(std::slice::from_ref(act)) >= shift_s);
+    if from_s < 0.0 || !drives {
+        return false;
+    }
+    pace.acts.insert(0, when(from_s, Deed::Shift { to_t_m: aside.from_t_m, over_m }));
+    true
+}
+
 fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
     let (mut lead, mut pace) = ego_paces(told, ground, sv_s_m);
     let pulls_over = pulls_over(told, ground) && lead.is_none() && pace.driven_m > PULLS_OVER_M;
     if pulls_over {
-        let from_s = (time_before(told.contact_s, &pace, PULLS_OVER_M) * 10.0).round() / 10.0;
-        let over = when(from_s, Deed::Shift { to_t_m: ground.stands_m, over_m: PULLS_OVER_M });
-        pace.acts.insert(0, over);
+        let brakes_s = first_time(&pace.acts);
+        let braking_m = pace.driven_m - pace.speed_mps * brakes_s;
+        let way_m = PULLS_OVER_M.max(braking_m + AT_KERB_M);
+        let from_s = ((brakes_s - (way_m - braking_m) / pace.speed_mps) * 10.0).floor().max(0.0) / 10.0;
+        pace.acts.insert(0, when(from_s, Deed::Shift { to_t_m: ground.stands_m, over_m: way_m - AT_KERB_M }));
     }
     let aside = ground.drift.or(told.sv_aside());
     if let Some(aside) = aside {
@@ -299,7 +324,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         }
     }
     let reverses = told.sv.state == ContactState::Reversing;
-    let pace = match lead {
+    let mut pace = match lead {
         Some(lead) if reverses || lead.reverses() => {
             let (plan, begin) = along_line(told, pace, sv);
             return phases::before(lead, plan, begin);
@@ -307,11 +332,16 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
         Some(lead) => lead.then(pace),
         None => pace,
     };
+    let from_m =
+        aside.map_or(if pulls_over { 0.0 } else { ground.stands_m }, |aside| match goes_out(aside, &mut pace) {
+            true => aside.to_t_m,
+            false => aside.from_t_m,
+        });
     let lane = |s_m: f64| Place::Lane {
         road: ground.route[0].clone(),
         lane: ground.lane,
         along: Along::FromStart(s_m),
-        t_m: aside.map_or(if pulls_over { 0.0 } else { ground.stands_m }, |aside| aside.from_t_m),
+        t_m: from_m,
         heading_deg: 0.0,
     };
     if reverses {
@@ -378,7 +408,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     };
     let plan = match lead {
         Some(lead) => phases::before(lead, plan, begin),
-        None => plan,
+        None => lateral::turns_off(told, begin, &plan, recrash_roads::arm_m(cp.kind, length_m)).unwrap_or(plan),
     };
     let stands = plan.course.is_empty();
     let mut actors = vec![actor(plan)];

@@ -616,10 +616,10 @@ fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bo
     // Seen when it sets out.
     let sets_out = other.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
     let stands_then = sets_out > 0;
-    // Of who backs into a space: when it begins to.
+    // Of who backs into a space, or had turned off: when it begins to back.
     let backs = other.states.iter().position(|state| state.speed() < -STANDS_MPS);
-    let sets_out = backs.filter(|_| told.cp.backs_in).unwrap_or(sets_out);
-    let turned_off = matches!(told.cp.slants, Some(Slant::Stood(_)));
+    let turned_off = matches!(told.cp.slants, Some(Slant::Stood { .. }));
+    let sets_out = backs.filter(|_| told.cp.backs_in || turned_off).unwrap_or(sets_out);
     let beside_m = BESIDE_M + if turned_off { TURNED_OFF_M } else { 0.0 };
     let met = &ego.states[((time_s * 10.0) as usize).min(ego.states.len() - 1)];
     let (ego, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &other.states[sets_out]);

@@ -1,14 +1,16 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
 use crate::ground::{Ground, LANE_M};
-use crate::pace::{Pace, first_time, start_over};
-use crate::side::Turning;
+use crate::pace::{Pace, first_time, start_over, when};
+use crate::phases::STOPS_SHORT_M;
+use crate::side::{Slant, Turning};
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, Party, PlaceKind, Standing, told};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::scenario::{ActorPlan, Deed, Leg, Place};
 use recrash_model::template::Movement;
 use recrash_roads::Course;
 
@@ -356,4 +358,34 @@ fn into_the_road(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
     }
     let by = |pose: Pose| Pose { position: pose.position + Vec2::new(behind_m, 0.0), ..pose };
     by_bend(by(bends), vec![by(turned), cp], pace, arm_m)
+}
+
+/// Who turns off the road and stops there comes along it with this speed, brakes by so much, and stands so long before it reverses.
+/// [m/s, m/s^2, s]
+const TURNS_OFF_MPS: f64 = 4.0;
+const TURNS_OFF_MPS2: f64 = 2.0;
+const TURNED_STANDS_S: f64 = 1.0;
+
+/// The same plan of who reverses, with how it came there before: along the road, by a bend to where it stands. Nothing where it is not
+/// told to have come, or has no time to.
+pub(crate) fn turns_off(told: &Told, begin: Pose, plan: &ActorPlan, arm_m: f64) -> Option<ActorPlan> {
+    let Some(Slant::Stood { oncoming, .. }) = told.cp.slants.filter(|_| told.cp.came_there) else { return None };
+    let came = if oncoming { math::PI } else { 0.0 };
+    let stands_s = ((first_time(&plan.acts) - TURNED_STANDS_S) * 10.0).floor() / 10.0;
+    let braking_s = TURNS_OFF_MPS / TURNS_OFF_MPS2;
+    let driven_m = TURNS_OFF_MPS * (stands_s - 0.5 * braking_s);
+    let pace = Pace { speed_mps: TURNS_OFF_MPS, acts: Vec::new(), driven_m: driven_m + STOPS_SHORT_M };
+    let turn = math::wrap_angle(begin.heading - came).abs();
+    let bends = bend_before(begin, came, TURN_M.min(driven_m / turn.max(0.1)), arm_m);
+    let (start, poses) = by_bend(bends, vec![begin], &pace, arm_m)?;
+    let at = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
+    let legs = poses.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse: false });
+    let stop = when(stands_s - braking_s, Deed::Stop { rate_mps2: TURNS_OFF_MPS2, at_m: None });
+    Some(ActorPlan {
+        start: at(start),
+        speed_mps: TURNS_OFF_MPS,
+        course: legs.chain(plan.course.clone()).collect(),
+        acts: [stop].into_iter().chain(plan.acts.clone()).collect(),
+        ..plan.clone()
+    })
 }

@@ -420,7 +420,9 @@ impl Story<'_> {
     /// Whether the partner goes round somebody who stands: it comes over from the opposite side, or passes where the ego is at the kerb.
     fn is_passed(&self, told: &Told) -> bool {
         let passes = |fact: &ActFact| matches!(fact.act, Act::Pass | Act::LaneChange) && !fact.after_contact;
-        let at_kerb = told.sv.state == ContactState::Parked || told.sv.came_to_park || told.sv.movement == Some(Movement::EnteringTraffic);
+        let at_kerb = told.sv.state == ContactState::Parked
+            || told.sv.came_to_park
+            || told.sv.movement == Some(Movement::EnteringTraffic);
         told.comes_over || at_kerb && self.account.partner.as_ref().is_some_and(|party| party.acts.iter().any(passes))
     }
 

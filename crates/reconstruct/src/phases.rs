@@ -299,7 +299,7 @@ fn moves_up(way_m: f64) -> (f64, f64) {
 }
 
 /// Who changes gear stops so far before the end of a leg: a hair behind it, it would stand on the next one. [m]
-const STOPS_SHORT_M: f64 = 0.002;
+pub(crate) const STOPS_SHORT_M: f64 = 0.002;
 
 /// The same plan with what came before it: along the line on which it begins, back and forth.
 pub(crate) fn before(lead: Lead, plan: ActorPlan, begin: Pose) -> ActorPlan {

@@ -278,7 +278,7 @@ fn drifted(told: &Told, ground: &Ground, sv_s_m: f64, point: (f64, f64), line_m:
     let mut to_t_m = 2.0 * (line_m + point.1 * 0.5 * size_of(&told.sv).1);
     for _ in 0..12 {
         let (by_m, gain) = if stood { by_m } else { (to_t_m, 1.4) };
-        let ground = ground.drifting(Aside { from_t_m: to_t_m - by_m, to_t_m, done: false });
+        let ground = ground.drifting(Aside { from_t_m: to_t_m - by_m, to_t_m, done: false, back: false });
         let sv = sv_at_contact(told, &ground, sv_s_m)?;
         let off_m = line_m - ground.beside(at(told, sv, point)).1;
         if off_m.abs() < 0.005 {

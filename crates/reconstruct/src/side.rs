@@ -28,8 +28,8 @@ pub(crate) struct Slowed(pub(crate) Option<f64>);
 /// How somebody who reverses came to be at an angle to the road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Slant {
-    /// It had turned, to this side where told, before it stood and reversed.
-    Stood(Option<LeftRight>),
+    /// It had turned, to this side where told, before it stood and reversed; out of the opposite direction, where that is told.
+    Stood { side: Option<LeftRight>, oncoming: bool },
     /// It swung aside while it reversed.
     Swung,
 }
@@ -46,6 +46,8 @@ pub(crate) struct Side {
     pub(crate) stands_from_start: bool,
     /// It is parked, and is told to have come there.
     pub(crate) came_to_park: bool,
+    /// It came to a stop before the last that it did.
+    pub(crate) came_there: bool,
     /// Speed on the way there, of who is told to have slowed before the contact and still moved. [m/s]
     pub(crate) slowed_from: Option<Slowed>,
     /// It brakes, or swerves, for the turn that the other has begun: late and hard.
@@ -76,6 +78,8 @@ pub(crate) struct Side {
     pub(crate) changed_lanes: bool,
     /// It changed lanes to pass.
     pub(crate) passes: bool,
+    /// It changed lanes, and goes back to the lane that it left.
+    pub(crate) returns: bool,
     /// It is told to have dodged or drifted that way while it drove on.
     pub(crate) dodges: bool,
     /// It backs into a space at the kerb.
@@ -146,6 +150,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         None if turned(LeftRight::Left) => Turning::Left,
         None if turned(LeftRight::Right) => Turning::Right,
         Some(Movement::Stopped) if who == "ego" => turned_before_its_stop(party),
+        Some(Movement::Straight) if who == "ego" => turned_before(party),
         _ => Turning::No,
     };
     // The last before the contact is the one that led to it. Who enters a lane beside its own does so to a side.
@@ -193,11 +198,14 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         aside,
         changed_lanes,
         passes,
+        returns: returns(party),
         gains,
         reacts: false,
         stopped_aside,
         turns_later: false,
-        turned: turning != Turning::No && party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done),
+        turned: turning != Turning::No
+            && (party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done)
+                || movement == Some(Movement::Straight)),
         completes: is_completing(party, movement),
         turns_wide: false,
         dodges: false,
@@ -206,6 +214,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         slowed_from,
         stood_first,
         came_to_park,
+        came_there: came_there(party),
         stands_from_start: told(&party.standing) == Some(Standing::FromTheStart),
         phases,
         acts,
@@ -237,6 +246,13 @@ fn came_there(party: &Party) -> bool {
     };
     let first = party.acts.iter().filter(stands).min_by_key(|fact| fact.step);
     first.is_some_and(|fact| matches!(fact.act, Act::Stop | Act::PullOver))
+}
+
+/// Whether the last two lane changes before the contact that are told of somebody go to opposite sides.
+fn returns(party: &Party) -> bool {
+    let changes = party.acts.iter().filter(|fact| fact.act == Act::LaneChange && !fact.after_contact);
+    let sides: Vec<LeftRight> = changes.filter_map(|fact| fact.side).collect();
+    matches!(sides.as_slice(), [.., before, last] if before != last)
 }
 
 /// Whether somebody is told to have been completing a lane change.
@@ -308,6 +324,20 @@ fn turned_before_its_stop(party: &Party) -> Turning {
     let at_line = |fact: &Fact<StandReason>| matches!(fact.value, StandReason::RedLight | StandReason::StopSign);
     let waits = party.reasons.iter().any(at_line) && !entered;
     match last_way(party).filter(|fact| fact.act == Act::Turn && !waits).and_then(|fact| fact.side) {
+        Some(LeftRight::Left) => Turning::Left,
+        Some(LeftRight::Right) => Turning::Right,
+        None => Turning::No,
+    }
+}
+
+/// The turn that somebody who goes straight on since had done before.
+fn turned_before(party: &Party) -> Turning {
+    let turn = |fact: &&ActFact| fact.act == Act::Turn && !fact.after_contact && !fact.begun;
+    let stands = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
+    let turn = party.acts.iter().find(turn).filter(|turn| {
+        party.controls.is_empty() && !party.acts.iter().any(|fact| stands(fact) && fact.step <= turn.step)
+    });
+    match turn.and_then(|fact| fact.side) {
         Some(LeftRight::Left) => Turning::Left,
         Some(LeftRight::Right) => Turning::Right,
         None => Turning::No,

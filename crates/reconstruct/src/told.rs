@@ -277,8 +277,14 @@ impl Told {
             let last = partner.acts.iter().filter(before).rfind(swing);
             self.cp.slants = last.and_then(|fact| match Some(fact.step) >= reversed {
                 true => Some(Slant::Swung),
-                false => (fact.act == Act::Turn).then_some(Slant::Stood(fact.side)),
+                false => {
+                    (fact.act == Act::Turn).then_some(Slant::Stood { side: fact.side, oncoming: faces(sv, partner) })
+                }
             });
+        }
+        // Who meets a thing after a turn may be in it yet.
+        if self.thing.is_some() && self.sv.movement == Some(Movement::Straight) {
+            (self.sv.turning, self.sv.turned) = (Turning::No, false);
         }
         if things::lies_before_turn(self, sv) {
             (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
@@ -344,7 +350,7 @@ impl Told {
     /// What the two did before, as far as it can be drawn: of who comes from beside the road, or stood across it, the state says enough.
     fn phases(&mut self) {
         let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. } | Origin::Opposite);
-        if !along || matches!(self.cp.slants, Some(Slant::Stood(_))) {
+        if !along || matches!(self.cp.slants, Some(Slant::Stood { .. })) {
             self.cp.phases.clear();
         }
         if self.cp.backs_in && self.cp.phases.is_empty() {
@@ -592,6 +598,8 @@ pub(crate) struct Aside {
     pub(crate) to_t_m: f64,
     /// It is over before the contact.
     pub(crate) done: bool,
+    /// It had left the other line for this one before.
+    pub(crate) back: bool,
 }
 
 impl Told {
@@ -631,7 +639,8 @@ impl Told {
             Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, DEPARTS_M)),
             _ => return None,
         };
-        Some(Aside { from_t_m, to_t_m, done: self.lane_changed && stopped.is_none() })
+        let back = self.sv.returns && matches!(movement, Movement::ChangingLanes | Movement::Merging);
+        Some(Aside { from_t_m, to_t_m, done: self.lane_changed && stopped.is_none(), back })
     }
 
     /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]
@@ -749,4 +758,10 @@ fn assumed_origin(crash_type: CrashType, sv: &Side, cp: &Side) -> Option<Origin>
         }
         _ => None,
     }
+}
+
+/// Whether the two are told to have gone in opposite directions.
+fn faces(sv: &Party, partner: &Party) -> bool {
+    let ways = told(&sv.heading).zip(told(&partner.heading));
+    ways.is_some_and(|(sv, partner)| (3..=5).contains(&sv.eighths_to(partner)))
 }

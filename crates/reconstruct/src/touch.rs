@@ -384,9 +384,11 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
         Origin::Behind | Origin::Ahead | Origin::Beside { .. } => {
             // Along the road, or as the ego has turned.
             match told.cp.slants {
-                Some(Slant::Stood(side)) => {
+                Some(Slant::Stood { side, oncoming }) => {
+                    let came = if oncoming { 180.0 } else { 0.0 };
                     let signs = side.map_or(vec![1.0, -1.0], |side| vec![sign(side)]);
-                    let turned = signs.iter().flat_map(|sign| [60.0, 90.0, 45.0, 30.0].map(|off| degrees(sign * off)));
+                    let turned =
+                        signs.iter().flat_map(|sign| [60.0, 90.0, 45.0, 30.0].map(|off| degrees(came + sign * off)));
                     list.extend(turned.map(|heading| (heading, heading)));
                 }
                 Some(Slant::Swung) => {
