@@ -2,6 +2,7 @@
 
 use crate::control;
 use crate::door;
+use crate::extras::STANDS_MPS;
 use crate::lateral::is_on_foot;
 use crate::movement::{self, Way};
 use crate::others;
@@ -27,9 +28,6 @@ use recrash_model::scenario::MissionStop;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::Scenario;
-
-/// Slower than this is standing. [m/s]
-const STANDS_MPS: f64 = 0.1;
 
 /// Nearer to the middle than this a contact is on neither side. [m]
 const MIDDLE_M: f64 = 0.1;
