@@ -215,7 +215,7 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
         Some(Obeyed::Yes) => kept,
         Some(Obeyed::No) => !kept,
     };
-    let color = shows(time_s).map_or(String::new(), |aspect| format!("{} ", format!("{aspect:?}").to_lowercase()));
+    let color = shows(time_s).map_or(String::new(), |aspect| format!("{} ", aspect.label()));
     let did = match passage.crossed_s {
         None => "it stayed before the line".to_owned(),
         Some(at_s) => format!("it crossed the line at {at_s:.1} s"),

@@ -253,7 +253,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         }
     }
     if told.sv.state.stands() && !told.reasons.is_empty() {
-        let said: Vec<String> = told.reasons.iter().map(|reason| format!("{reason:?}").to_lowercase()).collect();
+        let said: Vec<&str> = told.reasons.iter().map(|reason| reason.label()).collect();
         held(CheckKind::Reason, said.join(", "), reason(told, scenario, rollout, touch.time_s));
     }
     if told.others > 0 {

@@ -126,7 +126,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         && !went_on(party);
     let state = if backs { ContactState::Reversing } else { state };
     if !state_told {
-        assumed.push(format!("the {who} is {state:?} at the contact"));
+        assumed.push(format!("the {who} is {} at the contact", state.label()));
     }
     let turned = |side: LeftRight| {
         party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)

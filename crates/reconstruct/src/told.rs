@@ -447,7 +447,7 @@ impl Told {
         }
         let with = |origin: Origin| {
             let mut told = Self { origin, ..self.clone() };
-            told.assumed.push(format!("the partner comes from {origin:?}"));
+            told.assumed.push(format!("the partner comes {}", origin.words()));
             told.speeds();
             told
         };

@@ -82,10 +82,10 @@ pub(super) fn show(result: &FileRun) {
     let run = &result.run;
     result.diagnostics.iter().for_each(output::remark);
     println!(
-        "{} under {}: {:?} after {:.1} s",
+        "{} under {}: {} after {:.1} s",
         bold(&run.rollout.scenario_id),
         run.rollout.ego,
-        run.metrics.termination,
+        run.metrics.termination.label(),
         run.metrics.duration_s
     );
     let mut rows = table(&["with", "min gap", "at", "centres", "TTC", "PET", "DRAC", "headway"]);
