@@ -200,7 +200,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         let risk = severity
             .serious_injury()
             .map_or_else(String::new, |risk| format!("; serious injury: {} %", number(100.0 * risk)));
-        format!("\ndelta-v: ego {ego} m/s, partner {other} m/s{risk}")
+        format!("\ndelta-v: ego {ego} m/s, {} {other} m/s{risk}", severity.other())
     });
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
         format!(

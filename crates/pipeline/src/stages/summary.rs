@@ -213,7 +213,7 @@ pub struct RunSummary {
     pub min_centre_distance_m: Option<f64>,
     /// Contact with a road user: kind of collision.
     pub contact: Option<String>,
-    /// Change of velocity of the ego and of the other in that contact. [m/s]
+    /// Change of velocity of the ego and of the other in that contact; where there is none, in that with an obstacle. [m/s]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delta_v_mps: Option<[f64; 2]>,
     /// Probability that it injures somebody seriously, where a published curve covers it.
@@ -266,9 +266,14 @@ impl RunSummary {
         self.failed && self.cause == Some(Cause::StruckStanding)
     }
 
-    /// What findings are ranked by: the greater change of velocity of the two; 0 without a contact of two road users. [m/s]
+    /// What findings are ranked by: the greater change of velocity of the two, of a contact with an obstacle the ego's; 0 without any.
+    /// [m/s]
     pub fn harm_mps(&self) -> f64 {
-        self.delta_v_mps.map_or(0.0, |[ego, other]| ego.max(other))
+        match (self.delta_v_mps, &self.contact) {
+            (Some([ego, other]), Some(_)) => ego.max(other),
+            (Some([ego, _]), None) => ego,
+            (None, _) => 0.0,
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::{anchor, search, thumbnail};
 use maud::{Markup, html};
 use recrash_model::account::{AccountSet, TypeShare};
 use recrash_model::narrative::Origin;
+use recrash_model::severity::Severity;
 use std::fmt::Write;
 
 /// The overview.
@@ -297,11 +298,17 @@ fn table(context: &Context) -> Markup {
     }
 }
 
+fn delta_v(severity: &Severity) -> Markup {
+    let [ego, other] = [&severity.first, &severity.second].map(|side| fixed(side.delta_v_mps, 1).unwrap_or_default());
+    html! { .muted { "delta-v ego " (ego) ", " (severity.other()) " " (other) } }
+}
+
 fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
     let last = case.last_run();
     let anchor = anchor::anchor(&case.scenario_id);
     let not_run = if case.refused.is_some() { "refused" } else { words::not_run(case) };
     let contact = last.and_then(|run| run.metrics.contact.as_ref());
+    let severity = last.and_then(|run| run.severity.as_ref());
     html! {
         tr data-row=(position) {
             td.scene { (scene(case)) }
@@ -324,9 +331,15 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
                     Some(contact) => {
                         b { (fixed(contact.relative_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
                         .muted { "ego " (fixed(contact.ego_speed_mps, 1).unwrap_or_default()) ", partner " (fixed(contact.other_speed_mps, 1).unwrap_or_default()) }
-                        @if let Some(severity) = last.and_then(|run| run.severity.as_ref()) { .muted { "delta-v ego " (fixed(severity.first.delta_v_mps, 1).unwrap_or_default()) ", partner " (fixed(severity.second.delta_v_mps, 1).unwrap_or_default()) } }
+                        @if let Some(severity) = severity { (delta_v(severity)) }
                     },
-                    None => (missing(if last.is_some() { "no contact" } else { not_run })),
+                    None => {
+                        @if let Some(severity) = severity.filter(|severity| severity.obstacle.is_some()) {
+                            b { (fixed(severity.closing_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
+                            .muted { "on a " (severity.other()) }
+                            (delta_v(severity))
+                        } @else { (missing(if last.is_some() { "no contact" } else { not_run })) }
+                    },
                 }
             }
             td.injury { @match context.told.at(position) { Some(record) => (search::injury(record)), None => (missing("no record is told")) } }
