@@ -11,6 +11,8 @@ use std::path::Path;
 
 /// Scenarios that the terminal lists; the page and results.csv have all.
 const CASES_SHOWN: usize = 10;
+/// The column of what a contact does to both.
+pub(super) const DELTA_V: &str = "delta-v ego / partner [m/s]";
 /// Remarks on scenarios that the terminal tells one by one.
 const REMARKS_SHOWN: usize = 5;
 
@@ -79,7 +81,7 @@ fn found(case: &CaseSummary) -> &'static str {
 }
 
 fn delta_v(run: Option<&RunSummary>) -> String {
-    run.and_then(|run| run.delta_v_mps).map_or("-".into(), |[ego, partner]| format!("{ego:.1} / {partner:.1} m/s"))
+    run.and_then(|run| run.delta_v_mps).map_or("-".into(), |[ego, partner]| format!("{ego:.1} / {partner:.1}"))
 }
 
 /// Prints a run of a suite that goes by accounts.
@@ -122,14 +124,9 @@ fn remarks(summary: &Summary) {
 fn worst(cases: &[CaseSummary]) {
     title(&format!("Scenarios, the worst {} of {}", CASES_SHOWN.min(cases.len()), cases.len()));
     let header =
-        ["verdict", "scenario", "what failed", "found", "delta-v ego / partner", "situation", "crash type", "as told"];
-    let mut rows = table(&header).named_by("scenario").without_first(&[
-        "as told",
-        "crash type",
-        "situation",
-        "delta-v ego / partner",
-        "found",
-    ]);
+        ["verdict", "scenario", "what failed", "found", DELTA_V, "situation", "crash type", "as told"];
+    let spare = ["as told", "crash type", "situation", "found", DELTA_V];
+    let mut rows = table(&header).named_by("scenario").whole("what failed").without_first(&spare);
     for case in worst_first(cases).into_iter().take(CASES_SHOWN) {
         let as_told = match case.faithful() {
             Some(Answer::Yes) => "yes",

@@ -1,5 +1,6 @@
 //! `recrash test` and `recrash compare`: a frozen suite run with an ego, and held against a baseline.
 
+use super::retold::DELTA_V;
 use super::simulate::REGULATION_DRIVERS;
 use crate::options::{EgoArgs, one_change, patience};
 use crate::output::{self, Output};
@@ -284,9 +285,9 @@ fn show_failures(results: &TestResults) {
     });
     output::title("Failures while driving, then those that struck it while it stood, the most harmful first");
     let header =
-        ["verdict", "test", "what failed", "delta-v ego / partner", "least gap", "failed", "UN R157 reference drivers"];
-    let spare = ["failed", "UN R157 reference drivers", "least gap", "delta-v ego / partner"];
-    let mut rows = table(&header).named_by("test").without_first(&spare);
+        ["verdict", "test", "what failed", DELTA_V, "least gap", "failed", "UN R157 reference drivers"];
+    let spare = ["failed", "UN R157 reference drivers", "least gap", DELTA_V];
+    let mut rows = table(&header).named_by("test").whole("what failed").without_first(&spare);
     for (test, outcome) in failed.iter().take(SHOWN) {
         let kinds: Vec<&str> = outcome.kinds().iter().map(|kind| kind.label()).collect();
         let what = outcome.cause.map_or_else(|| kinds.join(", "), |cause| cause.label().to_owned());
@@ -295,7 +296,7 @@ fn show_failures(results: &TestResults) {
             Cell::new(&test.id),
             Cell::new(what),
             number(outcome.severity.as_ref().map_or("-".to_owned(), |severity| {
-                format!("{:.1} / {:.1} m/s", severity.first.delta_v_mps, severity.second.delta_v_mps)
+                format!("{:.1} / {:.1}", severity.first.delta_v_mps, severity.second.delta_v_mps)
             })),
             number(outcome.least_gap.map_or_else(|| "-".to_owned(), |gap| format!("{:.2} m", gap.value))),
             number(format!("{} of {}", test.failures(), test.runs.len())),
