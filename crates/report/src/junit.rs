@@ -110,11 +110,13 @@ fn counted(suite: &SuiteView) -> Vec<(&'static str, String)> {
     let [first, last] = summary.tested;
     let numbers = [
         ("as-reconstructed.situation-met", first.met),
-        ("as-reconstructed.failed-while-driving", first.driving()),
-        ("as-reconstructed.struck-while-it-stood", first.struck),
+        ("as-reconstructed.struck-while-it-stood", first.failures.struck_standing),
+        ("as-reconstructed.struck-while-it-moved-or-had-just-stopped", first.failures.struck_moving),
+        ("as-reconstructed.failed-otherwise", first.failures.otherwise),
         ("after-tuning.situation-met", last.met),
-        ("after-tuning.failed-while-driving", last.driving()),
-        ("after-tuning.struck-while-it-stood", last.struck),
+        ("after-tuning.struck-while-it-stood", last.failures.struck_standing),
+        ("after-tuning.struck-while-it-moved-or-had-just-stopped", last.failures.struck_moving),
+        ("after-tuning.failed-otherwise", last.failures.otherwise),
         ("failed-after-tuning-alone", summary.by_tuning),
     ];
     numbers.into_iter().map(|(name, number)| (name, number.to_string())).collect()
@@ -226,7 +228,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
     format!(
         "{what}template: {}\ntells: {origin}\nleast gap: {gap}{severity}{cause}{bracket}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
         case.template,
-        words::name(&run.metrics.termination),
+        run.metrics.termination.label(),
         run.rerun_command
     )
 }

@@ -19,7 +19,7 @@ const REMARKS_SHOWN: usize = 5;
 /// How a scenario ended for the system under test, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
-    /// It failed while it drove.
+    /// It failed, and was not struck while it stood.
     Fail,
     /// It failed, and stood when it was struck.
     Struck,
@@ -123,8 +123,7 @@ fn remarks(summary: &Summary) {
 
 fn worst(cases: &[CaseSummary]) {
     title(&format!("Scenarios, the worst {} of {}", CASES_SHOWN.min(cases.len()), cases.len()));
-    let header =
-        ["verdict", "scenario", "what failed", "found", DELTA_V, "situation", "crash type", "as told"];
+    let header = ["verdict", "scenario", "what failed", "found", DELTA_V, "situation", "crash type", "as told"];
     let spare = ["as told", "crash type", "situation", "found", DELTA_V];
     let mut rows = table(&header).named_by("scenario").whole("what failed").without_first(&spare);
     for case in worst_first(cases).into_iter().take(CASES_SHOWN) {
@@ -159,13 +158,7 @@ fn worst(cases: &[CaseSummary]) {
 }
 
 fn failures(runs: &TestedRuns) -> String {
-    format!(
-        "{} of {}: {} while driving, {} struck while it stood",
-        runs.failed,
-        runs.met,
-        runs.failed - runs.struck,
-        runs.struck
-    )
+    format!("{} of {}: {}", runs.failures.total(), runs.met, runs.failures)
 }
 
 fn result(summary: &Summary) {
@@ -207,11 +200,14 @@ fn result(summary: &Summary) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use recrash_model::cause::Failures;
 
     #[test]
-    fn failures_while_driving_come_before_those_that_struck_a_standing_ego() {
+    fn failures_come_before_those_that_struck_a_standing_ego_and_who_was_struck_as_it_slowed_is_counted_apart() {
         assert!(Verdict::Fail < Verdict::Struck && Verdict::Struck < Verdict::Pass && Verdict::Pass < Verdict::Parked);
-        let told = failures(&TestedRuns { ran: 54, met: 51, failed: 38, struck: 12 });
-        assert_eq!(told, "38 of 51: 26 while driving, 12 struck while it stood");
+        let counted = Failures { struck_standing: 12, struck_moving: 9, otherwise: 17 };
+        let told = failures(&TestedRuns { ran: 54, met: 51, failures: counted });
+        let words = "38 of 51: 12 struck while it stood, 9 struck from where it does not look while it moved or had just stopped, 17 otherwise";
+        assert_eq!(told, words);
     }
 }

@@ -8,7 +8,7 @@ use crate::options::RecordSource;
 use crate::suite::Suite;
 use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
-use recrash_model::cause::Cause;
+use recrash_model::cause::{Cause, Failures};
 use recrash_model::coverage::CorpusCoverage;
 use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
 use recrash_model::narrative::Origin;
@@ -285,9 +285,7 @@ pub struct TestedRuns {
     /// Of those, runs that came into the situation of the record.
     pub met: usize,
     /// Of those, failures.
-    pub failed: usize,
-    /// Of those, failures while it stood: nothing to do with what it drove.
-    pub struck: usize,
+    pub failures: Failures,
 }
 
 impl Summary {
@@ -348,8 +346,7 @@ impl Summary {
             TestedRuns {
                 ran: runs.len(),
                 met: met.len(),
-                failed: met.iter().filter(|run| run.failed).count(),
-                struck: met.iter().filter(|run| run.struck_standing()).count(),
+                failures: Failures::of(met.iter().filter(|run| run.failed).map(|run| run.cause)),
             }
         };
         [of(|case| &case.first), of(|case| &case.tuned)]

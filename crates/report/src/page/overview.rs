@@ -8,6 +8,7 @@ use crate::words::{self, fixed, thousands};
 use crate::{anchor, search, thumbnail};
 use maud::{Markup, html};
 use recrash_model::account::{AccountSet, TypeShare};
+use recrash_model::cause::Failures;
 use recrash_model::narrative::Origin;
 use recrash_model::severity::Severity;
 use std::fmt::Write;
@@ -64,6 +65,11 @@ fn sentence(context: &Context) -> Markup {
     }
 }
 
+/// Failures by how they came about.
+fn manners(failures: Failures) -> Markup {
+    html! { @for (i, (count, words)) in failures.told().into_iter().enumerate() { @if i > 0 { ", " } b { (thousands(count)) } " " (words) } }
+}
+
 /// The same of a suite that goes by accounts.
 fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
@@ -73,8 +79,8 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
-        b { (thousands(first.failed)) " of those " (thousands(first.met)) } ": " (thousands(first.driving())) " while driving, " (thousands(first.struck)) " struck while it stood, which has nothing to do with what it drove. "
-        "After tuning within what the reports leave open it fails " b { (thousands(last.failed)) " of " (thousands(last.met)) } " (" (thousands(last.driving())) " and " (thousands(last.struck)) "), " (thousands(s.by_tuning)) " of them after tuning alone"
+        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } ": " (manners(first.failures)) ". A blow to an ego that stood has nothing to do with what it drove, and one from where it does not look hardly has. "
+        "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } ": " (manners(last.failures)) "; " (thousands(s.by_tuning)) " of them after tuning alone"
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
@@ -130,19 +136,19 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
             ))
             (tile(
                 "Ego fails, as reconstructed",
-                html! { (thousands(first.failed)) span.of { " of " (thousands(first.met)) } },
-                html! { b { (thousands(first.driving())) } " while driving, " b { (thousands(first.struck)) } " struck while it stood" },
-                Some((share(first.failed, first.met), "bad")),
+                html! { (thousands(first.failures.total())) span.of { " of " (thousands(first.met)) } },
+                manners(first.failures),
+                Some((share(first.failures.total(), first.met), "bad")),
             ))
             (tile(
                 "Ego fails, after tuning",
-                html! { (thousands(last.failed)) span.of { " of " (thousands(last.met)) } },
+                html! { (thousands(last.failures.total())) span.of { " of " (thousands(last.met)) } },
                 html! {
-                    b { (thousands(last.driving())) } " while driving, " b { (thousands(last.struck)) } " struck while it stood; " (thousands(s.by_tuning)) " found by tuning alone"
+                    (manners(last.failures)) "; " (thousands(s.by_tuning)) " found by tuning alone"
                     @if !s.classes.is_empty() { ". Against other egos: " }
                     @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
                 },
-                Some((share(last.failed, last.met), "bad")),
+                Some((share(last.failures.total(), last.met), "bad")),
             ))
         }
     }
@@ -237,7 +243,7 @@ fn controls(accounts: bool) -> Markup {
     let by_account = [
         ("all", "All"),
         ("failed", "Fails"),
-        ("driving", "Fails while driving"),
+        ("driving", "Fails, not struck standing"),
         ("struck", "Struck while it stood"),
         ("tuning", "Found by tuning"),
         ("passed", "Passes"),
