@@ -1,5 +1,6 @@
 //! What `recrash run` and `recrash report` print of a suite that goes by accounts: the worst scenarios, then the result.
 
+use super::reconstruct::not_drawn;
 use super::simulate::REGULATION_DRIVERS;
 use crate::output::title;
 use crate::screen::{bold, println, yellow};
@@ -91,11 +92,13 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     result(summary);
     let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
     println!(
-        "records: {} of {} readable incidents are told, no told fact shown otherwise; {whole} of them with every told fact shown; {} are in \
-         this suite; invented: 0",
+        "records: {} of {} readable incidents are told, no told fact shown otherwise: {whole} with every told fact shown, {} with told facts \
+         that are not drawn; {} are in this suite; invented: 0\n  {}",
         accounts.told,
         accounts.readable,
+        accounts.told.saturating_sub(whole),
         summary.cases.len(),
+        not_drawn(&accounts.facts),
     );
     if summary.sample {
         println!("  the built-in sample, invented; give real crash files with --records FILE");

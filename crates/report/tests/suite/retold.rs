@@ -2,7 +2,7 @@
 //! told apart everywhere, and who was struck while it stood, or while it moved from where it does not look, is counted apart.
 
 use crate::suite;
-use recrash_model::account::{AccountSet, CrashType};
+use recrash_model::account::{AccountSet, CrashType, FactShare};
 use recrash_model::cause::Cause;
 use recrash_model::metrics::{Check, CheckKind, CheckResult, Finding, FindingKind};
 use recrash_report::{AccountRow, RunRow, SuiteView, html, junit, results_csv};
@@ -29,7 +29,7 @@ fn retold() -> SuiteView {
         incidents: 9,
         readable: 8,
         types: Vec::new(),
-        facts: Vec::new(),
+        facts: vec![FactShare { fact: CheckKind::Others, told: 7, shown: 4, not_drawn: 2 }],
         told: Vec::new(),
         untold: Vec::new(),
     });
@@ -118,6 +118,8 @@ fn the_page_counts_the_runs_of_the_system_alone_and_both_of_them() {
     ] {
         assert!(text.contains(words), "{words}");
     }
+    assert!(page.contains("2 of 7 told facts are not drawn: neither shown nor shown otherwise."));
+    assert!(page.contains(", 2 not drawn"), "with the fact");
     assert!(!page.contains("while driving"), "some of them were struck as they slowed");
     // Contacts by kind: two as reconstructed, three after tuning, and none of the recorded driver's four.
     let by_kind = page.split("Number of scenarios with a finding of each kind").nth(1).unwrap();
