@@ -107,6 +107,15 @@ fn numbers_go_back_to_the_record_where_the_failure_does_not_need_them() {
 }
 
 #[test]
+fn what_was_taken_away_does_not_come_back_from_the_record() {
+    let (mut record, profile) = crossing();
+    record.traffic.density = 0.1;
+    let found = minimal(&record, Some(&record), &Native::new(Ego::MetadriveIdm), &profile).unwrap();
+    assert!(found.taken.iter().any(|name| name == "background traffic"), "{:?}", found.taken);
+    assert_eq!(found.draft.traffic.density, 0.0);
+}
+
+#[test]
 fn robustness_repeats_and_finds_what_lives_on_little() {
     let (simulator, profile) = (Native::new(Ego::MetadriveIdm), profile());
     let failing = failing(&simulator);
