@@ -38,11 +38,14 @@ pub struct Table {
     spare: Vec<usize>,
     /// The column that names the row.
     name: usize,
+    /// The column that is not wrapped while there is one that may be left out.
+    whole: Option<usize>,
 }
 
 /// A table with a header.
 pub fn table(header: &[&str]) -> Table {
-    Table { header: header.iter().map(|name| one_line(name)).collect(), rows: Vec::new(), spare: Vec::new(), name: 0 }
+    let header = header.iter().map(|name| one_line(name)).collect();
+    Table { header, rows: Vec::new(), spare: Vec::new(), name: 0, whole: None }
 }
 
 impl Table {
@@ -61,22 +64,49 @@ impl Table {
         self
     }
 
+    /// The same with this column whole: others are left out before it is wrapped.
+    #[must_use]
+    pub fn whole(mut self, name: &str) -> Self {
+        self.whole = self.header.iter().position(|other| other == name);
+        self
+    }
+
     /// Adds a row.
     pub fn add_row(&mut self, row: impl IntoIterator<Item = Cell>) {
         self.rows.push(row.into_iter().collect());
     }
 
+    /// The widest cell of a column. [characters]
+    fn widest(&self, at: usize) -> usize {
+        self.rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.text.chars().count()).max().unwrap_or(0)
+    }
+
+    /// Whether a column holds numbers, or nothing in their place.
+    fn holds_numbers(&self, at: usize) -> bool {
+        self.rows.iter().filter_map(|row| row.get(at)).all(|cell| cell.right || cell.text == "-")
+    }
+
+    /// The longest word of a header: it may be wrapped between words.
+    fn word(&self, at: usize) -> usize {
+        self.header[at].split(' ').map(|word| word.chars().count()).max().unwrap_or(0)
+    }
+
+    /// What columns take at least. [characters]
+    fn least(&self, shown: &[usize]) -> usize {
+        let of = |at: usize| match self.widest(at).max(self.header[at].chars().count()) {
+            natural if at == self.name || Some(at) == self.whole => natural,
+            _ if self.holds_numbers(at) => self.widest(at).max(self.word(at)),
+            natural => natural.min(LEAST_COLUMN),
+        };
+        shown.iter().map(|&at| PADDING + of(at)).sum()
+    }
+
     /// Columns that fit, and those left out.
     fn fitting(&self, width: usize) -> (Vec<usize>, Vec<usize>) {
-        let natural = |at: usize| {
-            let cells = self.rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.text.chars().count());
-            cells.chain([self.header[at].chars().count()]).max().unwrap_or(0)
-        };
-        let least = |at: usize| PADDING + if at == self.name { natural(at) } else { natural(at).min(LEAST_COLUMN) };
         let mut shown: Vec<usize> = (0..self.header.len()).collect();
         let mut left_out = Vec::new();
         for &spare in &self.spare {
-            if shown.iter().map(|&at| least(at)).sum::<usize>() <= width {
+            if self.least(&shown) <= width {
                 break;
             }
             shown.retain(|&at| at != spare);
@@ -102,6 +132,7 @@ impl Table {
         }
         self.keep_name_whole(&mut table, &shown, width);
         self.keep_numbers_whole(&mut table, &shown, width);
+        self.keep_one_whole(&mut table, &shown, width);
         let mut text = with_bold_header(&table.trim_fmt());
         if !left_out.is_empty() {
             let names: Vec<&str> = left_out.iter().map(|&at| self.header[at].as_str()).collect();
@@ -124,12 +155,22 @@ impl Table {
         }
     }
 
+    /// The column that is to be whole is, where the others still have what they need.
+    fn keep_one_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
+        let Some(place) = shown.iter().position(|&at| Some(at) == self.whole) else { return };
+        let bound = u16::try_from(self.widest(shown[place]).max(self.word(shown[place])) + PADDING);
+        if self.least(shown) <= width
+            && let (Some(column), Ok(bound)) = (table.column_mut(place), bound)
+        {
+            column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(bound)));
+        }
+    }
+
     /// Columns of numbers are wrapped no more than the names of the rows are, where all of them have room.
     fn keep_numbers_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
-        let cells = |at: usize| self.rows.iter().filter_map(move |row| row.get(at));
-        let widest = |at: usize| cells(at).map(|cell| cell.text.chars().count()).max().unwrap_or(0) + PADDING;
-        let of_numbers = |at: usize| at == 0 || at == self.name || cells(at).all(|cell| cell.right || cell.text == "-");
-        let word = |at: usize| self.header[at].split(' ').map(|word| word.chars().count()).max().unwrap_or(0) + PADDING;
+        let widest = |at: usize| self.widest(at) + PADDING;
+        let of_numbers = |at: usize| at == 0 || at == self.name || self.holds_numbers(at);
+        let word = |at: usize| self.word(at) + PADDING;
         let with_headers = |&at: &usize| widest(at).max(word(at));
         let numbers: Vec<usize> = (0..shown.len()).filter(|&place| of_numbers(shown[place])).collect();
         let room = if self.name == 0 { PADDING + 1 } else { LEAST_COLUMN };
@@ -223,6 +264,27 @@ mod tests {
                 assert!(line.chars().count() <= width, "{width}: {line}");
             }
         }
+    }
+
+    #[test]
+    fn at_100_columns_what_failed_stands_on_one_line_with_the_delta_v() {
+        let header = ["verdict", "scenario", "what failed", "found", "delta-v ego / partner [m/s]", "as told"];
+        let spare = ["as told", "found", "delta-v ego / partner [m/s]"];
+        let mut table = table(&header).named_by("scenario").whole("what failed").without_first(&spare);
+        let rows = [
+            ("intersection-straight-departure-30270-6878", "did not react to crossing traffic", "10.6 / 7.0"),
+            ("highway-straight-straight-30530-9093", "was struck by somebody not ahead", "0.2 / 25.6"),
+        ];
+        for (name, what, delta_v) in rows {
+            let [verdict, found, told] = ["FAIL", "by tuning", "yes"].map(Cell::new);
+            table.add_row([verdict, Cell::new(name), Cell::new(what), found, number(delta_v), told]);
+        }
+        let plain = crate::screen::plain(&table.render(100));
+        for (name, what, delta_v) in rows {
+            let row = plain.lines().find(|line| line.contains(name)).unwrap_or_default();
+            assert!(row.contains(what) && row.contains(delta_v) && row.chars().count() <= 100, "{plain}");
+        }
+        assert!(plain.contains("not shown in 100 columns: as told, found"), "{plain}");
     }
 
     #[test]

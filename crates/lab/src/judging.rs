@@ -54,7 +54,7 @@ pub fn judge_by(scenario: &Scenario, rollout: Rollout, profile: &SystemProfile, 
     let metrics = measure(scenario, &rollout, &profile.failure);
     let handover_s = scenario.draft().ego.handover_s.unwrap_or(0.0);
     let found = findings(&rollout, handover_s, &metrics, &profile.failure);
-    let severity = severity_of(&rollout);
+    let severity = severity_of(&rollout, &metrics);
     let cause = cause(scenario.network(), &rollout, &metrics, &found);
     let mut run = JudgedRun::new(rollout, metrics, found, severity, verdict);
     run.judgement.cause = cause;

@@ -10,7 +10,7 @@ use recrash_model::profile::SystemProfile;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_roads::{RunError, Simulator};
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Number, Value};
 
 /// How far somebody is moved to find a twin that passes, in order. [m]
 const MOVES_M: [f64; 13] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0];
@@ -214,10 +214,17 @@ fn lists(document: &Value, parent: &str, names: &[&str], all: &mut Vec<Element>)
     }
 }
 
+/// Numbers that an element leaves at nought when it is taken away: they do not go back to the record, or it would come and go for ever.
+const NOUGHT: [&str; 4] = ["/traffic/density", "/start/delta_t_m", "/start/t_m", "/start/heading_deg"];
+
+fn is_taken(now: &Number, pointer: &str) -> bool {
+    now.as_f64() == Some(0.0) && NOUGHT.iter().any(|name| pointer.ends_with(name))
+}
+
 /// Numbers that are not the record's. Where a list is another one, its numbers say nothing.
 fn numbers(whole: &Value, [document, record]: [&Value; 2], pointer: String, all: &mut Vec<Element>) {
     match (document, record) {
-        (Value::Number(now), Value::Number(told)) if now != told => {
+        (Value::Number(now), Value::Number(told)) if now != told && !is_taken(now, &pointer) => {
             let name = format!("{}: {now} where the record has {told}", spoken(whole, &pointer));
             all.push(Element { pointer, name, set_back: Some(record.clone()) });
         }

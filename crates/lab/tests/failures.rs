@@ -7,10 +7,7 @@ use recrash_lab::robustness::{Robustness, robustness};
 use recrash_lab::{Scoring, run_scenario, run_scenario_in};
 use recrash_model::Seed;
 use recrash_model::geometry::OrientedBox;
-use recrash_model::metrics::CollisionKind;
-use recrash_model::profile::{
-    Dedupe, Excluded, Expressible, FailureCriteria, PROFILE_FORMAT, RecordRules, SystemProfile, Tells,
-};
+use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorState, Substeps};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Aim;
@@ -19,33 +16,9 @@ use recrash_sim::{Ego, Native};
 /// Failures that are looked at.
 const FAILURES: usize = 100;
 
+/// The profile that every command takes without `--profile`.
 fn profile() -> SystemProfile {
-    SystemProfile {
-        format: PROFILE_FORMAT.to_owned(),
-        name: "test".to_owned(),
-        description: String::new(),
-        ego: "metadrive-idm".to_owned(),
-        records: RecordRules { dedupe: Dedupe::None, tells: Tells::Templates },
-        expresses: Expressible {
-            road_types: Vec::new(),
-            sv_movements: Vec::new(),
-            cp_movements: Vec::new(),
-            work_zone: true,
-            partner_kinds: Vec::new(),
-            min_speed_mps: 0.0,
-            max_speed_mps: 30.0,
-            max_traffic_density: 1.0,
-        },
-        excludes: Excluded { collisions: Vec::<CollisionKind>::new() },
-        failure: FailureCriteria {
-            min_gap_m: 1.0,
-            hard_braking_mps2: 4.0,
-            phantom_braking_mps2: 3.0,
-            oscillation_reversals: 4,
-            oscillation_window_s: 5.0,
-            lane_departure_m: 0.2,
-        },
-    }
+    toml::from_str(include_str!("../../../profiles/open.toml")).expect("a profile")
 }
 
 /// Random scenarios that the ego fails.
@@ -104,6 +77,15 @@ fn numbers_go_back_to_the_record_where_the_failure_does_not_need_them() {
         looked_at += usize::from(found.taken.iter().any(|name| name.contains("where the record has")));
     }
     assert!(looked_at >= 10, "{looked_at}");
+}
+
+#[test]
+fn what_was_taken_away_does_not_come_back_from_the_record() {
+    let (mut record, profile) = crossing();
+    record.traffic.density = 0.1;
+    let found = minimal(&record, Some(&record), &Native::new(Ego::MetadriveIdm), &profile).unwrap();
+    assert!(found.taken.iter().any(|name| name == "background traffic"), "{:?}", found.taken);
+    assert_eq!(found.draft.traffic.density, 0.0);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! Models and thresholds: `docs/models/ego-behaviour.md`.
 
 use crate::following::Following;
-use crate::scene::{Along, EgoWay, Scene, time_of};
+use crate::scene::{Along, EgoWay, STANDSTILL_MPS, Scene, time_of};
 use crate::swept::time_to_collision;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::math;
@@ -17,9 +17,6 @@ const LEAST_BRAKING_MPS2: f64 = 0.5;
 
 /// A weaker command to the brake is none: this one gives those 0.5 m/s^2. [share of full brake]
 const LEAST_BRAKE: f64 = 0.02;
-
-/// Slower than this the ego stands, and its jitter is no oscillation. [m/s] (full brakes make MetaDrive vehicles jitter by 0.24 m/s)
-const STANDSTILL_MPS: f64 = 0.3;
 
 /// Whatever lies in the corridor within this time at present speed is a reason to brake. [s] (assumed)
 const LOOK_AHEAD_S: f64 = 3.0;

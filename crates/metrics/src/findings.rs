@@ -1,12 +1,9 @@
 //! Findings: what a rollout shows about the ego, one sentence each.
 
-use crate::scene::{first_step, time_of};
+use crate::scene::{STANDSTILL_MPS, first_step, time_of};
 use recrash_model::metrics::{Finding, FindingKind, Metrics, Timed};
 use recrash_model::profile::FailureCriteria;
 use recrash_model::rollout::{EventKind, Role, Rollout, TerminationKind};
-
-/// Slower than this the ego stands. [m/s]
-const STANDSTILL_MPS: f64 = 0.3;
 
 /// A near miss is one of somebody who came at least this much nearer than the scene (or the system's part of it) begins with: a conflict is two road
 /// users who approach each other (amundsen1977), and lanes side by side are nearer than some limits. Assumed: more than

@@ -9,6 +9,9 @@ use recrash_roads::path::SegmentShape;
 use recrash_roads::{LanePath, PathPoint, RoadNetwork, Scenario};
 use std::ops::Range;
 
+/// Slower than this the ego stands, and its jitter is no oscillation. [m/s] (full brakes make MetaDrive vehicles jitter by 0.24 m/s)
+pub const STANDSTILL_MPS: f64 = 0.3;
+
 /// Who drives a run that shows the record alone: nothing is handed over in it.
 const RECORDED: &str = "recorded";
 

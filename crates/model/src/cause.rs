@@ -84,3 +84,65 @@ impl Cause {
         }
     }
 }
+
+/// Failures by how they came about, as every headline counts them. Somebody who drives into an ego that has stood for long has nothing
+/// to do with what it drove, and into one that slows, rolls or has just stopped, from where it does not look, hardly has.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Failures {
+    /// It was struck while it stood.
+    pub struck_standing: usize,
+    /// It was struck while it moved or had just stopped, by somebody it could not have seen ahead.
+    pub struck_moving: usize,
+    /// Any other, by what it did or did not do.
+    pub otherwise: usize,
+}
+
+impl Failures {
+    /// Of the causes of failures.
+    pub fn of(causes: impl IntoIterator<Item = Option<Cause>>) -> Self {
+        let mut counts = Self::default();
+        for cause in causes {
+            match cause {
+                Some(Cause::StruckStanding) => counts.struck_standing += 1,
+                Some(Cause::WasStruck) => counts.struck_moving += 1,
+                _ => counts.otherwise += 1,
+            }
+        }
+        counts
+    }
+
+    /// All of them.
+    pub fn total(self) -> usize {
+        self.struck_standing + self.struck_moving + self.otherwise
+    }
+
+    /// Each count with its words, in the order of sentences.
+    pub fn told(self) -> [(usize, &'static str); 3] {
+        [
+            (self.struck_standing, "struck while it stood"),
+            (self.struck_moving, "struck from where it does not look while it moved or had just stopped"),
+            (self.otherwise, "otherwise"),
+        ]
+    }
+}
+
+impl std::fmt::Display for Failures {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [standing, moving, otherwise] = self.told().map(|(count, words)| format!("{count} {words}"));
+        write!(f, "{standing}, {moving}, {otherwise}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_is_struck_as_it_slows_is_not_counted_with_what_it_drove() {
+        let causes = [Some(Cause::WasStruck), Some(Cause::StruckStanding), Some(Cause::BrakedLate), None];
+        let counts = Failures::of(causes);
+        assert_eq!((counts.struck_standing, counts.struck_moving, counts.otherwise, counts.total()), (1, 1, 2, 4));
+        let words = "1 struck while it stood, 1 struck from where it does not look while it moved or had just stopped, 2 otherwise";
+        assert_eq!(counts.to_string(), words);
+    }
+}

@@ -89,6 +89,18 @@ pub enum Edition {
     Mapped,
 }
 
+impl Edition {
+    /// For tables.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::First => "first",
+            Self::Second => "second",
+            Self::Third => "third",
+            Self::Mapped => "mapped",
+        }
+    }
+}
+
 /// Where a record came from.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Provenance {

@@ -315,6 +315,20 @@ pub enum TerminationKind {
     Diverged,
 }
 
+impl TerminationKind {
+    /// For tables and sentences.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Arrived => "arrived",
+            Self::Contact => "contact",
+            Self::Timeout => "timeout",
+            Self::Stuck => "stuck",
+            Self::OffRoad => "off road",
+            Self::Diverged => "diverged",
+        }
+    }
+}
+
 impl Rollout {
     /// The hash of all states, actor by actor: FNV-1a (64 bits) over the little-endian bits of x, y, heading, vx,
     /// vy, steer and throttle, in hexadecimal.

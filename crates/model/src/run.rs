@@ -42,7 +42,7 @@ pub struct Judgement {
     pub findings: Vec<Finding>,
     /// Whether the rollout is true to its record.
     pub verdict: Verdict,
-    /// How bad the ego's first contact with a road user is, where there is one.
+    /// How bad the ego's first contact with a road user is, or else with an obstacle, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub severity: Option<Severity>,
     /// What led to the failure, where it is one.

@@ -1,5 +1,6 @@
 //! How bad a contact is.
 
+use crate::scenario::ObstacleKind;
 use serde::{Deserialize, Serialize};
 
 /// What a collision does at the place where two bodies touch.
@@ -27,7 +28,7 @@ impl Default for Impact {
     }
 }
 
-/// One contact of two road users: what the collision does to both, by momentum.
+/// One contact of two road users, or of one with an obstacle: what the collision does to both, by momentum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Severity {
     /// Magnitude of the relative velocity. [m/s]
@@ -40,12 +41,24 @@ pub struct Severity {
     pub first: Suffered,
     /// The other.
     pub second: Suffered,
+    /// What the other is, where it is an obstacle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<ObstacleKind>,
 }
 
 impl Severity {
-    /// What findings are ranked by: the greater change of velocity of the two. [m/s]
+    /// What findings are ranked by: the greater change of velocity of the two; of a contact with an obstacle, in which nobody sits, that
+    /// of who struck it. [m/s]
     pub fn harm_mps(&self) -> f64 {
-        self.first.delta_v_mps.max(self.second.delta_v_mps)
+        match self.obstacle {
+            None => self.first.delta_v_mps.max(self.second.delta_v_mps),
+            Some(_) => self.first.delta_v_mps,
+        }
+    }
+
+    /// What the other is called in tables.
+    pub fn other(&self) -> &'static str {
+        self.obstacle.map_or("partner", ObstacleKind::label)
     }
 
     /// The greater probability that somebody on one of the two sides is at least seriously injured; `None` where no published

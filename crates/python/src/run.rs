@@ -4,7 +4,6 @@ use crate::errors::{input, of_library, to_python};
 use crate::table::Table;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
-use recrash_metrics::severity_of;
 use recrash_model::rollout::STEP_S;
 use recrash_model::run::JudgedRun;
 use recrash_pipeline::{Column, parse_scenario};
@@ -83,10 +82,10 @@ impl Run {
         to_python(py, &self.run.finding_kinds())
     }
 
-    /// Change of the ego's velocity in its first contact; `None` without one. [m/s]
+    /// Change of the ego's velocity in its first contact with a road user, or else with an obstacle; `None` without one. [m/s]
     #[getter]
     fn delta_v_mps(&self) -> Option<f64> {
-        severity_of(&self.run.rollout).map(|severity| severity.first.delta_v_mps)
+        self.run.severity.as_ref().map(|severity| severity.first.delta_v_mps)
     }
 
     /// Everything that was measured.
@@ -95,10 +94,10 @@ impl Run {
         to_python(py, &self.run.metrics)
     }
 
-    /// How bad the ego's first contact is; `None` without one.
+    /// How bad the ego's first contact with a road user is, or else with an obstacle (`obstacle`); `None` without one.
     #[getter]
     fn severity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        to_python(py, &severity_of(&self.run.rollout))
+        to_python(py, &self.run.severity)
     }
 
     /// Least gap between the ego's box and a partner's; `None` without one. [m]

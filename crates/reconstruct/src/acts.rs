@@ -1,6 +1,7 @@
 //! What each of the two is told to have done before the contact, one after the other, found in the way that was driven.
 
-use crate::movement::{LEFT_LINE_M, STANDS_MPS};
+use crate::extras::STANDS_MPS;
+use crate::movement::LEFT_LINE_M;
 use recrash_model::account::{Act, ActFact, ContactState, LeftRight, Party, StandReason};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;

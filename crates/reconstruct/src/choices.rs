@@ -1,5 +1,6 @@
 //! What an account leaves open and a staging chooses: the part of a crash that may be varied.
 
+use crate::pace::{ROLLING_MPS, STOOD_S};
 use crate::told::Told;
 use recrash_model::account::{Account, ContactState, SpeedMeaning};
 use recrash_model::tuning::Parameter;
@@ -17,7 +18,7 @@ pub(crate) struct Choices {
 
 impl Default for Choices {
     fn default() -> Self {
-        Self { partner_speed: 1.0, rolling_mps: 7.0, stood_s: 2.0 }
+        Self { partner_speed: 1.0, rolling_mps: ROLLING_MPS, stood_s: STOOD_S }
     }
 }
 

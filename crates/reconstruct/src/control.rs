@@ -1,5 +1,6 @@
 //! Signals and signs: drawn as they are told, and held against who drove past them when.
 
+use crate::extras::STANDS_MPS;
 use crate::ground::Ground;
 use crate::others::Role;
 use crate::side::{Side, Turning};
@@ -26,9 +27,6 @@ const YELLOW_S: f64 = 4.0;
 
 /// Who stands no farther before a line stands at it. [m]
 const AT_LINE_M: f64 = 8.0;
-
-/// Slower than this is standing. [m/s]
-const STANDS_MPS: f64 = 0.1;
 
 /// A line is taken to be so much longer on both sides. [m]
 const BESIDE_M: f64 = 1.5;
@@ -217,7 +215,7 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
         Some(Obeyed::Yes) => kept,
         Some(Obeyed::No) => !kept,
     };
-    let color = shows(time_s).map_or(String::new(), |aspect| format!("{} ", format!("{aspect:?}").to_lowercase()));
+    let color = shows(time_s).map_or(String::new(), |aspect| format!("{} ", aspect.label()));
     let did = match passage.crossed_s {
         None => "it stayed before the line".to_owned(),
         Some(at_s) => format!("it crossed the line at {at_s:.1} s"),

@@ -5,7 +5,7 @@ use crate::ground::{Ground, LANE_M, corner_m};
 use crate::others::{Extra, Role, waits_ahead};
 use crate::pace::{first_time, next, when};
 use crate::side::{Turning, size_of as size_of_kind};
-use crate::told::Told;
+use crate::told::{Told, WALKS_MPS};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight};
 use recrash_model::geometry::{Pose, Vec2};
@@ -43,8 +43,7 @@ const CROSSES_BEFORE_S: f64 = 1.0;
 const MET_BEFORE_S: f64 = 0.5;
 const CLEARED_S: f64 = 0.8;
 
-/// Speeds of those who cross. [m/s]
-const WALKS_MPS: f64 = 1.4;
+/// Who rides crosses so. [m/s]
 const RIDES_MPS: f64 = 3.5;
 const RUNS_MPS: f64 = 3.0;
 const CROSSES_MPS: f64 = 7.0;

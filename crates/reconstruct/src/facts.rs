@@ -3,6 +3,7 @@
 use crate::acts;
 use crate::control;
 use crate::door;
+use crate::extras::STANDS_MPS;
 use crate::lateral::is_on_foot;
 use crate::movement::{self, Way};
 use crate::others;
@@ -28,9 +29,6 @@ use recrash_model::scenario::MissionStop;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::Scenario;
-
-/// Slower than this is standing. [m/s]
-const STANDS_MPS: f64 = 0.1;
 
 /// Nearer to the middle than this a contact is on neither side. [m]
 const MIDDLE_M: f64 = 0.1;
@@ -263,7 +261,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         }
     }
     if told.sv.state.stands() && !told.reasons.is_empty() {
-        let said: Vec<String> = told.reasons.iter().map(|reason| format!("{reason:?}").to_lowercase()).collect();
+        let said: Vec<&str> = told.reasons.iter().map(|reason| reason.label()).collect();
         held(CheckKind::Reason, said.join(", "), reason(told, scenario, rollout, touch.time_s));
     }
     if told.others > 0 {

@@ -1,5 +1,6 @@
 //! Told movements, held against the way that was driven.
 
+use crate::extras::STANDS_MPS;
 use crate::side::{Side, Turning};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
@@ -7,9 +8,6 @@ use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorState, ActorTrack};
 use recrash_model::template::Movement;
 use recrash_roads::{RoadPart, Scenario};
-
-/// Slower than this is standing. [m/s]
-pub(crate) const STANDS_MPS: f64 = 0.1;
 
 /// Who changes lanes has left the middle of its own by at least this: the box reaches the next one. [m]
 const CHANGED_M: f64 = 0.8;

@@ -14,7 +14,7 @@ const ABREAST_M: f64 = 15.0;
 
 /// Who drives has come so far, who slows has lost so much. [m, m/s]
 const DROVE_M: f64 = 2.0;
-const SLOWED_MPS: f64 = 0.8;
+pub(crate) const SLOWED_MPS: f64 = 0.8;
 
 /// What somebody near is told to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

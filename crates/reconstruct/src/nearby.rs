@@ -8,7 +8,7 @@ use crate::others::{Extra, Role};
 use crate::pace::when;
 use crate::seen::Seen;
 use crate::side::size_of as size_of_kind;
-use crate::told::Told;
+use crate::told::{TURNS_MPS, Told, WALKS_MPS};
 use recrash_model::account::{Kind, KindGroup, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -21,11 +21,9 @@ use recrash_sim::Ego;
 /// Nobody comes closer to it. [m]
 const CLEAR_M: f64 = 0.5;
 
-/// Usual speeds: on a street, in a lot, in a turn, on foot, of who rides. [m/s]
+/// Usual speeds: on a street, in a lot, of who rides. [m/s]
 const DRIVES_MPS: f64 = 7.0;
 const LOT_MPS: f64 = 3.0;
-const TURNS_MPS: f64 = 5.0;
-const WALKS_MPS: f64 = 1.4;
 const RIDES_MPS: f64 = 4.0;
 
 /// Who slows does so long before the contact, by so much; who passes is faster than the ego by so much. [s, m/s]

@@ -7,7 +7,7 @@ use crate::phases::{self, Lead, MOVES_UP_M, Phase};
 use crate::roadside;
 use crate::side::{Side, Turning};
 use crate::things;
-use crate::told::Told;
+use crate::told::{Told, WALKS_MPS};
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{ContactState, ControlDevice, Obeyed, Origin, Striker};
 use recrash_model::kinds::PartnerKind;
@@ -210,7 +210,7 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
 /// The partner's last pace, where it does not depend on what the ego does.
 fn last_pace(told: &Told) -> Pace {
     let (cp, contact_s) = (&told.cp, told.contact_s);
-    let rolling_mps = if cp.kind == PartnerKind::Pedestrian { 1.4 } else { 5.0 };
+    let rolling_mps = if cp.kind == PartnerKind::Pedestrian { WALKS_MPS } else { 5.0 };
     let usual = pace(contact_s, cp, rolling_mps, STOOD_S);
     // Who stood behind an ego that moved up stood behind where that was; who comes round it has room for that.
     let moved_up = told.sv.state.stands() && told.sv.phases.iter().skip(1).any(|phase| *phase == Phase::Drives);

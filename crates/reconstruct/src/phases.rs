@@ -1,5 +1,6 @@
 //! What somebody did before the last thing that it does: it came and stood, moved up and stood again, or reversed first.
 
+use crate::extras::STANDS_MPS;
 use crate::pace::{Pace, first_time, when};
 use recrash_model::account::{Act, ActFact, ContactState, Party, Standing, Striker};
 use recrash_model::geometry::{Pose, Vec2};
@@ -92,9 +93,6 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
 
 /// A phase that is shorter than this on the way from one gear to the other is none. [steps]
 const LEAST_STEPS: usize = 4;
-
-/// Slower than this is standing. [m/s]
-const STANDS_MPS: f64 = 0.1;
 
 /// The phases that somebody shows until a step.
 fn shown(track: &ActorTrack, until: usize) -> Vec<Phase> {

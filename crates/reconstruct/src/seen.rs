@@ -3,6 +3,7 @@
 use crate::control;
 use crate::extras::{STANDS_MPS, stands, stood_behind};
 use crate::ground::LANE_M;
+use crate::near::SLOWED_MPS;
 use crate::others::{Extra, Role, waits_ahead};
 use crate::told::Told;
 use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
@@ -25,9 +26,6 @@ const CREEPS_MPS: f64 = 0.6;
 
 /// Who stands in the next lane is no farther ahead or behind. [m]
 const BESIDE_M: f64 = 10.0;
-
-/// Who slowed has lost so much. [m/s]
-const SLOWED_MPS: f64 = 0.8;
 
 /// A rollout, and when the two touch.
 pub(crate) struct Seen<'a> {

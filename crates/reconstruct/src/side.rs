@@ -138,7 +138,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     let came_to_park = who == "ego" && state == ContactState::Parked && came_there(party);
     let state = if came_to_park { ContactState::Stopped } else { state };
     if !state_told {
-        assumed.push(format!("the {who} is {state:?} at the contact"));
+        assumed.push(format!("the {who} is {} at the contact", state.label()));
     }
     let turned = |side: LeftRight| {
         party.acts.iter().any(|fact| fact.act == Act::Turn && fact.side == Some(side) && !fact.after_contact)

@@ -133,8 +133,8 @@ fn is_thing(kind: Kind) -> bool {
 /// Usual masses of things that move, assumed; none of what stands fast. [kg]
 pub(crate) const fn mass_kg(kind: Kind) -> Option<f64> {
     match kind {
-        Kind::Cone => Some(5.0),
-        Kind::Debris | Kind::Object | Kind::Scooter | Kind::Sign | Kind::TreeBranch => Some(20.0),
+        Kind::Cone => ObstacleKind::Cone.mass_kg(),
+        Kind::Debris | Kind::Object | Kind::Scooter | Kind::Sign | Kind::TreeBranch => ObstacleKind::Debris.mass_kg(),
         Kind::LooseWheel | Kind::Cart => Some(30.0),
         Kind::Cargo | Kind::Barrier => Some(50.0),
         _ => None,

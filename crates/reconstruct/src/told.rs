@@ -54,8 +54,11 @@ const NEARED_MPS: f64 = 1.2;
 /// Who merges in front of an ego that stops for it does so slowly. [m/s]
 const MERGES_MPS: f64 = 1.5;
 
+/// Usual speed on foot. [m/s]
+pub(crate) const WALKS_MPS: f64 = 1.4;
+
 /// Speed in a turn, usual and at most. [m/s]
-const TURNS_MPS: f64 = 5.0;
+pub(crate) const TURNS_MPS: f64 = 5.0;
 const FASTEST_TURN_MPS: f64 = 7.0;
 
 /// An account, in the terms of a staging.
@@ -452,7 +455,7 @@ impl Told {
         }
         let with = |origin: Origin| {
             let mut told = Self { origin, ..self.clone() };
-            told.assumed.push(format!("the partner comes from {origin:?}"));
+            told.assumed.push(format!("the partner comes {}", origin.words()));
             told.speeds();
             told
         };
@@ -509,7 +512,7 @@ impl Told {
             ContactState::Moving if side.is_slow() => 3.0,
             ContactState::Moving if side.stood_first => 4.0,
             ContactState::Moving => match side.kind {
-                PartnerKind::Pedestrian => 1.4,
+                PartnerKind::Pedestrian => WALKS_MPS,
                 PartnerKind::Animal => 4.0,
                 PartnerKind::FixedObject if slides => SLIDES_MPS,
                 PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,

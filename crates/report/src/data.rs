@@ -117,8 +117,8 @@ fn finding_weight(kinds: &[FindingKind]) -> f64 {
     kinds.iter().map(|kind| if kind.is_failure() { 100.0 } else { 1.0 }).sum()
 }
 
-/// The order of a list that begins with the worst, which has the smallest number: failures while driving, then those while
-/// it stood, each by the largest change of velocity; then what came nearest to one.
+/// The order of a list that begins with the worst, which has the smallest number: failures, those in which it was struck while it
+/// stood last, each by the largest change of velocity; then what came nearest to one.
 fn badness(case: &CaseRow) -> f64 {
     let Some(run) = case.last_run() else { return 4000.0 };
     let harm = run.severity.as_ref().map_or(0.0, Severity::harm_mps).min(999.0);
@@ -232,7 +232,7 @@ fn trace(run: &JudgedRun, series: &Series) -> Value {
     json!({
         "step": STEP_S,
         "end": short(rollout.termination.time_s, 3),
-        "why": words::name(&rollout.termination.kind),
+        "why": rollout.termination.kind.label(),
         "actors": rollout.actors.iter().map(actor).collect::<Vec<_>>(),
         "obstacles": obstacles.collect::<Vec<_>>(),
         "contacts": contacts(rollout),
@@ -281,7 +281,7 @@ fn events(run: &JudgedRun) -> Vec<Value> {
             events.push((finding.time_s, kind, finding.kind.label().to_owned()));
         }
     }
-    events.push((rollout.termination.time_s, "end", format!("end: {}", words::name(&rollout.termination.kind))));
+    events.push((rollout.termination.time_s, "end", format!("end: {}", rollout.termination.kind.label())));
     events.retain(|(time_s, ..)| time_s.is_finite());
     events.sort_by(|a, b| a.0.total_cmp(&b.0));
     events.into_iter().map(|(time_s, kind, text)| json!([short(time_s, 3), kind, words::clean(&text, 120)])).collect()

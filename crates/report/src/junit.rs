@@ -110,11 +110,13 @@ fn counted(suite: &SuiteView) -> Vec<(&'static str, String)> {
     let [first, last] = summary.tested;
     let numbers = [
         ("as-reconstructed.situation-met", first.met),
-        ("as-reconstructed.failed-while-driving", first.driving()),
-        ("as-reconstructed.struck-while-it-stood", first.struck),
+        ("as-reconstructed.struck-while-it-stood", first.failures.struck_standing),
+        ("as-reconstructed.struck-while-it-moved-or-had-just-stopped", first.failures.struck_moving),
+        ("as-reconstructed.failed-otherwise", first.failures.otherwise),
         ("after-tuning.situation-met", last.met),
-        ("after-tuning.failed-while-driving", last.driving()),
-        ("after-tuning.struck-while-it-stood", last.struck),
+        ("after-tuning.struck-while-it-stood", last.failures.struck_standing),
+        ("after-tuning.struck-while-it-moved-or-had-just-stopped", last.failures.struck_moving),
+        ("after-tuning.failed-otherwise", last.failures.otherwise),
         ("failed-after-tuning-alone", summary.by_tuning),
     ];
     numbers.into_iter().map(|(name, number)| (name, number.to_string())).collect()
@@ -200,7 +202,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
         let risk = severity
             .serious_injury()
             .map_or_else(String::new, |risk| format!("; serious injury: {} %", number(100.0 * risk)));
-        format!("\ndelta-v: ego {ego} m/s, partner {other} m/s{risk}")
+        format!("\ndelta-v: ego {ego} m/s, {} {other} m/s{risk}", severity.other())
     });
     let others = triage_of(case, run).map_or_else(String::new, |triage| {
         format!(
@@ -226,7 +228,7 @@ fn told(case: &CaseRow, run: &RunRow) -> String {
     format!(
         "{what}template: {}\ntells: {origin}\nleast gap: {gap}{severity}{cause}{bracket}\nended by: {}\nfaithful: {faithful}{others}{edited}\nagain: {}",
         case.template,
-        words::name(&run.metrics.termination),
+        run.metrics.termination.label(),
         run.rerun_command
     )
 }

@@ -186,7 +186,7 @@ fn measured(case: &CaseRow, run: &RunRow) -> Vec<String> {
         number(contact.map(|contact| contact.other_speed_mps)),
         number(Some(m.ego.max_deceleration.value)),
         number(Some(m.ego.max_lane_departure.value)),
-        words::name(&m.termination),
+        m.termination.label().to_owned(),
         number(Some(m.duration_s)),
         run.id.clone(),
         run.state_hash.clone(),

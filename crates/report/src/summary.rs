@@ -1,7 +1,7 @@
 //! The headline numbers, computed once, so that no two places of the report can disagree.
 
 use crate::view::{CaseRow, RunRow, SuiteView};
-use recrash_model::cause::Cause;
+use recrash_model::cause::{Cause, Failures};
 use recrash_model::metrics::Answer;
 use recrash_model::run::Judgement;
 use recrash_model::triage::FailureClass;
@@ -9,7 +9,7 @@ use recrash_model::triage::FailureClass;
 /// How a run ended for the ego.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Result {
-    /// It failed while it drove.
+    /// It failed, and was not struck while it stood.
     Failed,
     /// It failed, and stood in its own way when it was struck: nothing to do with what it drove.
     Struck,
@@ -46,35 +46,23 @@ pub fn struck_standing(run: &Judgement) -> bool {
     run.failed() && run.cause == Some(Cause::StruckStanding)
 }
 
-/// Failures of a number of runs of the system under test.
+/// Runs of the system under test.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Failures {
+pub struct Tested {
     /// Runs.
     pub ran: usize,
     /// Of those, runs that came into the situation of the record.
     pub met: usize,
     /// Of those, failures.
-    pub failed: usize,
-    /// Of those, failures while it stood.
-    pub struck: usize,
+    pub failures: Failures,
 }
 
-impl Failures {
+impl Tested {
     fn of<'a>(runs: impl Iterator<Item = &'a RunRow>) -> Self {
-        runs.fold(Self::default(), |sum, run| {
-            let met = run.situation_met() == Some(true);
-            Self {
-                ran: sum.ran + 1,
-                met: sum.met + usize::from(met),
-                failed: sum.failed + usize::from(met && run.failed()),
-                struck: sum.struck + usize::from(met && struck_standing(run)),
-            }
-        })
-    }
-
-    /// Failures while it drove.
-    pub fn driving(self) -> usize {
-        self.failed - self.struck
+        let runs: Vec<&RunRow> = runs.collect();
+        let met: Vec<&RunRow> = runs.iter().copied().filter(|run| run.situation_met() == Some(true)).collect();
+        let failures = Failures::of(met.iter().filter(|run| run.failed()).map(|run| run.cause));
+        Self { ran: runs.len(), met: met.len(), failures }
     }
 }
 
@@ -97,7 +85,7 @@ pub struct Summary {
     /// Scenarios with nothing to test: who was parked has nothing to answer for.
     pub parked: usize,
     /// In a suite that goes by accounts: the system under test in the crashes as reconstructed, and after tuning.
-    pub tested: [Failures; 2],
+    pub tested: [Tested; 2],
     /// Scenarios that the system under test fails after tuning alone.
     pub by_tuning: usize,
     /// Scenarios that tell their own record and whose run shows every fact told.
@@ -139,7 +127,7 @@ impl Summary {
             origins: ["own", "other", "invented"].map(|name| count(&|case| tells(case, name))),
             parked: count(&|case| case.account.is_some() && case.before.is_some() && case.after.is_none()),
             tested: [CaseRow::first_run, CaseRow::last_run]
-                .map(|run: fn(&CaseRow) -> Option<&RunRow>| Failures::of(suite.cases.iter().filter_map(run))),
+                .map(|run: fn(&CaseRow) -> Option<&RunRow>| Tested::of(suite.cases.iter().filter_map(run))),
             by_tuning: count(&CaseRow::found_by_tuning),
             own_faithful: count(&|case| tells(case, "own") && answers(case, Answer::Yes)),
             own_unfaithful: count(&|case| tells(case, "own") && answers(case, Answer::No)),

@@ -275,7 +275,8 @@ fn replace_partner(facts: &mut Vec<Fact>, brief: &Brief, diagnostics: &mut Vec<D
     let why = match Facts(facts).partner() {
         Some(kind) if brief.profile.expresses.partner_kinds.contains(&kind) => return,
         Some(kind) => {
-            format!("the profile \"{}\" cannot simulate a partner of the kind {kind:?}", brief.profile.name)
+            let (name, kind) = (&brief.profile.name, kind.label());
+            format!("the profile \"{name}\" cannot simulate a partner of the kind \"{kind}\"")
         }
         None => "the kind of partner is not told".to_owned(),
     };

@@ -71,7 +71,7 @@ fn show(fetched: &Fetched) {
     let state = if fetched.unchanged { "unchanged" } else { "saved" };
     println!("{state} {}", fetched.path.display());
     println!("{} bytes, SHA-256 {}", fetched.bytes, fetched.sha256);
-    let edition = format!("{:?}", fetched.edition).to_lowercase();
+    let edition = fetched.edition.label();
     let modified = fetched.last_modified.as_ref().map(|when| format!(", last modified {when}")).unwrap_or_default();
     println!("{} rows, {edition} edition{modified}", fetched.rows);
     println!("use it with: recrash run --records {}", fetched.name);

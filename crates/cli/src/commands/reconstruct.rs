@@ -122,14 +122,15 @@ fn types(read: &Accounts, retold: &[Retold]) {
     type_table(&type_shares(&read.accounts, retold));
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
     println!(
-        "not checked yet: lanes for bicycles and buses, others in the story of whom nobody says where they were, acts beside turns, stops and lanes"
+        "told, and not drawn yet: lanes for bicycles and buses, others in the story of whom nobody says where they were, acts beside turns, stops and lanes"
     );
 }
 
 /// Prints how much of each crash type is told.
 pub fn type_table(types: &[TypeShare]) {
-    title("Readable incidents whose every checked fact is shown");
-    let mut table = table(&["type", "incidents", "told", "share", "of it all checked", "facts per 100 words"]);
+    title("Readable incidents of which no told fact is shown otherwise");
+    let mut table =
+        table(&["type", "incidents", "told", "share", "all facts shown", "a fact not drawn", "facts per 100 words"]);
     let mut row = |label: &str, incidents: usize, told: usize, whole: usize, facts: String| {
         let share = format!("{:.1} %", 100.0 * told as f64 / incidents.max(1) as f64);
         table.add_row(vec![
@@ -138,6 +139,7 @@ pub fn type_table(types: &[TypeShare]) {
             number(told),
             number(share),
             number(whole),
+            number(told - whole),
             number(facts),
         ]);
     };
@@ -169,15 +171,29 @@ fn reasons(retold: &[Retold]) {
     println!("{table}");
 }
 
+/// How many told facts no reconstruction draws, in a sentence.
+pub fn not_drawn(facts: &[FactShare]) -> String {
+    let sum = |of: fn(&FactShare) -> usize| facts.iter().map(of).sum::<usize>();
+    format!(
+        "{} of {} told facts are not drawn: neither shown nor shown otherwise",
+        sum(|share| share.not_drawn),
+        sum(|share| share.told)
+    )
+}
+
 /// Prints the share of told facts that are shown.
 pub fn fact_table(facts: &[FactShare]) {
     title("Told facts, over all readable incidents");
-    let mut table = table(&["fact", "told", "shown", "share"]);
+    let mut table = table(&["fact", "told", "shown", "share", "not drawn", "shown otherwise, or no scene"]);
     for share in facts.iter().filter(|share| share.told > 0) {
         let percent = format!("{:.1} %", 100.0 * share.shown as f64 / share.told as f64);
-        table.add_row(vec![Cell::new(share.fact.label()), number(share.told), number(share.shown), number(percent)]);
+        let otherwise = share.told.saturating_sub(share.shown + share.not_drawn);
+        let numbers =
+            [number(share.told), number(share.shown), number(percent), number(share.not_drawn), number(otherwise)];
+        table.add_row([Cell::new(share.fact.label())].into_iter().chain(numbers));
     }
     println!("{table}");
+    println!("{}", not_drawn(facts));
 }
 
 /// Prints one reconstruction.
@@ -193,7 +209,7 @@ fn one(read: &Accounts, retold: &[Retold]) {
                     let shown = match fact.result {
                         CheckResult::Shown => "yes",
                         CheckResult::NotShown => "no",
-                        CheckResult::CannotBeShown => "not checked",
+                        CheckResult::CannotBeShown => "not drawn",
                         CheckResult::NotTold => "not told",
                     };
                     let cells = [fact.kind.label(), shown, &fact.expected, &fact.observed];

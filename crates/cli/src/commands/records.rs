@@ -121,10 +121,9 @@ fn files(records: &RecordSet) {
     title("Files");
     let mut table = table(&["file", "edition", "rows", "SHA-256"]);
     for file in &records.files {
-        let edition = format!("{:?}", file.edition).to_lowercase();
         table.add_row(vec![
             Cell::new(&file.name),
-            Cell::new(edition),
+            Cell::new(file.edition.label()),
             number(file.rows),
             Cell::new(&file.sha256[..12.min(file.sha256.len())]),
         ]);

@@ -1,5 +1,6 @@
 //! What `recrash run` and `recrash report` print of a suite that goes by accounts: the worst scenarios, then the result.
 
+use super::reconstruct::not_drawn;
 use super::simulate::REGULATION_DRIVERS;
 use crate::output::title;
 use crate::screen::{bold, println, yellow};
@@ -11,13 +12,15 @@ use std::path::Path;
 
 /// Scenarios that the terminal lists; the page and results.csv have all.
 const CASES_SHOWN: usize = 10;
+/// The column of what a contact does to both.
+pub(super) const DELTA_V: &str = "delta-v ego / partner [m/s]";
 /// Remarks on scenarios that the terminal tells one by one.
 const REMARKS_SHOWN: usize = 5;
 
 /// How a scenario ended for the system under test, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
-    /// It failed while it drove.
+    /// It failed, and was not struck while it stood.
     Fail,
     /// It failed, and stood when it was struck.
     Struck,
@@ -79,7 +82,7 @@ fn found(case: &CaseSummary) -> &'static str {
 }
 
 fn delta_v(run: Option<&RunSummary>) -> String {
-    run.and_then(|run| run.delta_v_mps).map_or("-".into(), |[ego, partner]| format!("{ego:.1} / {partner:.1} m/s"))
+    run.and_then(|run| run.delta_v_mps).map_or("-".into(), |[ego, partner]| format!("{ego:.1} / {partner:.1}"))
 }
 
 /// Prints a run of a suite that goes by accounts.
@@ -89,11 +92,13 @@ pub fn show(summary: &Summary, accounts: &AccountSummary, dir: &Path) {
     result(summary);
     let whole: usize = accounts.types.iter().map(|share| share.whole).sum();
     println!(
-        "records: {} of {} readable incidents are told, no told fact shown otherwise; {whole} of them with every told fact shown; {} are in \
-         this suite; invented: 0",
+        "records: {} of {} readable incidents are told, no told fact shown otherwise: {whole} with every told fact shown, {} with told facts \
+         that are not drawn; {} are in this suite; invented: 0\n  {}",
         accounts.told,
         accounts.readable,
+        accounts.told.saturating_sub(whole),
         summary.cases.len(),
+        not_drawn(&accounts.facts),
     );
     if summary.sample {
         println!("  the built-in sample, invented; give real crash files with --records FILE");
@@ -121,15 +126,9 @@ fn remarks(summary: &Summary) {
 
 fn worst(cases: &[CaseSummary]) {
     title(&format!("Scenarios, the worst {} of {}", CASES_SHOWN.min(cases.len()), cases.len()));
-    let header =
-        ["verdict", "scenario", "what failed", "found", "delta-v ego / partner", "situation", "crash type", "as told"];
-    let mut rows = table(&header).named_by("scenario").without_first(&[
-        "as told",
-        "crash type",
-        "situation",
-        "delta-v ego / partner",
-        "found",
-    ]);
+    let header = ["verdict", "scenario", "what failed", "found", DELTA_V, "situation", "crash type", "as told"];
+    let spare = ["as told", "crash type", "situation", "found", DELTA_V];
+    let mut rows = table(&header).named_by("scenario").whole("what failed").without_first(&spare);
     for case in worst_first(cases).into_iter().take(CASES_SHOWN) {
         let as_told = match case.faithful() {
             Some(Answer::Yes) => "yes",
@@ -162,13 +161,7 @@ fn worst(cases: &[CaseSummary]) {
 }
 
 fn failures(runs: &TestedRuns) -> String {
-    format!(
-        "{} of {}: {} while driving, {} struck while it stood",
-        runs.failed,
-        runs.met,
-        runs.failed - runs.struck,
-        runs.struck
-    )
+    format!("{} of {}: {}", runs.failures.total(), runs.met, runs.failures)
 }
 
 fn result(summary: &Summary) {
@@ -210,11 +203,14 @@ fn result(summary: &Summary) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use recrash_model::cause::Failures;
 
     #[test]
-    fn failures_while_driving_come_before_those_that_struck_a_standing_ego() {
+    fn failures_come_before_those_that_struck_a_standing_ego_and_who_was_struck_as_it_slowed_is_counted_apart() {
         assert!(Verdict::Fail < Verdict::Struck && Verdict::Struck < Verdict::Pass && Verdict::Pass < Verdict::Parked);
-        let told = failures(&TestedRuns { ran: 54, met: 51, failed: 38, struck: 12 });
-        assert_eq!(told, "38 of 51: 26 while driving, 12 struck while it stood");
+        let counted = Failures { struck_standing: 12, struck_moving: 9, otherwise: 17 };
+        let told = failures(&TestedRuns { ran: 54, met: 51, failures: counted });
+        let words = "38 of 51: 12 struck while it stood, 9 struck from where it does not look while it moved or had just stopped, 17 otherwise";
+        assert_eq!(told, words);
     }
 }

@@ -82,10 +82,10 @@ pub(super) fn show(result: &FileRun) {
     let run = &result.run;
     result.diagnostics.iter().for_each(output::remark);
     println!(
-        "{} under {}: {:?} after {:.1} s",
+        "{} under {}: {} after {:.1} s",
         bold(&run.rollout.scenario_id),
         run.rollout.ego,
-        run.metrics.termination,
+        run.metrics.termination.label(),
         run.metrics.duration_s
     );
     let mut rows = table(&["with", "min gap", "at", "centres", "TTC", "PET", "DRAC", "headway"]);
@@ -113,13 +113,13 @@ pub(super) fn show(result: &FileRun) {
             contact.other_zone.label(),
             contact.relative_speed_mps
         );
-        if let Some(severity) = &run.severity {
-            println!("  {}", suffered("the ego", &severity.first));
-            println!("  {}", suffered("the partner", &severity.second));
-        }
-        if let Some(prevented) = preventability(&run.rollout) {
-            println!("  {REGULATION_DRIVERS}: {}", in_their_place(&prevented));
-        }
+    }
+    if let Some(severity) = &run.severity {
+        println!("  {}", suffered("the ego", &severity.first));
+        println!("  {}", suffered(&format!("the {}", severity.other()), &severity.second));
+    }
+    if let Some(prevented) = run.metrics.contact.as_ref().and_then(|_| preventability(&run.rollout)) {
+        println!("  {REGULATION_DRIVERS}: {}", in_their_place(&prevented));
     }
     for finding in &run.findings {
         let struck = run.cause == Some(Cause::StruckStanding);

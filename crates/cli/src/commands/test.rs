@@ -1,12 +1,13 @@
 //! `recrash test` and `recrash compare`: a frozen suite run with an ego, and held against a baseline.
 
+use super::retold::DELTA_V;
 use super::simulate::REGULATION_DRIVERS;
 use crate::options::{EgoArgs, one_change, patience};
 use crate::output::{self, Output};
 use crate::screen::{self, println};
 use crate::table::{Cell, number, table};
 use clap::Args;
-use recrash_model::cause::Cause;
+use recrash_model::cause::{Cause, Failures};
 use recrash_model::comparison::{Change, Comparison, TypeRow, shown_p};
 use recrash_model::preventability::Bracket;
 use recrash_model::results::{TestOutcome, TestResult, TestResults, TestVerdict};
@@ -276,17 +277,15 @@ fn show_failures(results: &TestResults) {
         return;
     }
     let gap = |outcome: &TestOutcome| outcome.least_gap.map_or(f64::MAX, |gap| gap.value);
-    let struck = failed.iter().filter(|(_, outcome)| struck_standing(outcome)).count();
     failed.sort_by(|(a, one), (b, other)| {
         let by_kind = struck_standing(one).cmp(&struck_standing(other));
         let by_harm = other.harm_mps().total_cmp(&one.harm_mps());
         by_kind.then(by_harm).then(gap(one).total_cmp(&gap(other))).then(a.id.cmp(&b.id))
     });
-    output::title("Failures while driving, then those that struck it while it stood, the most harmful first");
-    let header =
-        ["verdict", "test", "what failed", "delta-v ego / partner", "least gap", "failed", "UN R157 reference drivers"];
-    let spare = ["failed", "UN R157 reference drivers", "least gap", "delta-v ego / partner"];
-    let mut rows = table(&header).named_by("test").without_first(&spare);
+    output::title("Failures, the most harmful first, then those in which it was struck while it stood");
+    let header = ["verdict", "test", "what failed", DELTA_V, "least gap", "failed", "UN R157 reference drivers"];
+    let spare = ["failed", "UN R157 reference drivers", "least gap", DELTA_V];
+    let mut rows = table(&header).named_by("test").whole("what failed").without_first(&spare);
     for (test, outcome) in failed.iter().take(SHOWN) {
         let kinds: Vec<&str> = outcome.kinds().iter().map(|kind| kind.label()).collect();
         let what = outcome.cause.map_or_else(|| kinds.join(", "), |cause| cause.label().to_owned());
@@ -295,7 +294,7 @@ fn show_failures(results: &TestResults) {
             Cell::new(&test.id),
             Cell::new(what),
             number(outcome.severity.as_ref().map_or("-".to_owned(), |severity| {
-                format!("{:.1} / {:.1} m/s", severity.first.delta_v_mps, severity.second.delta_v_mps)
+                format!("{:.1} / {:.1}", severity.first.delta_v_mps, severity.second.delta_v_mps)
             })),
             number(outcome.least_gap.map_or_else(|| "-".to_owned(), |gap| format!("{:.2} m", gap.value))),
             number(format!("{} of {}", test.failures(), test.runs.len())),
@@ -306,11 +305,8 @@ fn show_failures(results: &TestResults) {
     if failed.len() > SHOWN {
         println!("and {} more, told by --json and --out", failed.len() - SHOWN);
     }
-    println!(
-        "{} failed: {} while driving, {struck} struck while it stood (STRUCK: nothing to do with what it drove)",
-        failed.len(),
-        failed.len() - struck
-    );
+    let failures = Failures::of(failed.iter().map(|(_, outcome)| outcome.cause));
+    println!("{} failed: {failures} (STRUCK: it stood, which has nothing to do with what it drove)", failures.total());
 }
 
 /// Whether it failed by being struck while it stood.

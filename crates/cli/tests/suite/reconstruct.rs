@@ -9,11 +9,12 @@ fn shares_reasons_and_facts_are_shown_on_a_screen() {
     let (code, shown, remarks) = place.run(&["reconstruct"]);
     assert_eq!(code, 0, "{remarks}");
     for words in [
-        "Readable incidents whose every checked fact is shown",
-        "not checked yet: lanes for bicycles",
+        "Readable incidents of which no told fact is shown otherwise",
+        "told, and not drawn yet: lanes for bicycles",
         "Front to rear",
         "Why the others are not",
         "facts per 100 words",
+        "told facts are not drawn: neither shown nor shown otherwise",
     ] {
         assert!(shown.contains(words), "{words}:\n{shown}");
     }
@@ -34,6 +35,15 @@ fn every_incident_is_shown_or_has_a_reason() {
         assert_eq!(each["told"] == true, !facts.is_empty() && !missed, "{each}");
         assert_eq!(each["told"] == true, each["reason"].is_null(), "{each}");
     }
+    let facts = all.iter().flat_map(|each| each["facts"].as_array().unwrap());
+    let open: Vec<&Value> = facts.filter(|fact| fact["result"] == "cannot_be_shown").collect();
+    let mut counted = 0;
+    for share in value["facts"].as_array().unwrap() {
+        let of_kind = open.iter().filter(|fact| fact["kind"] == share["fact"]).count() as u64;
+        assert_eq!(share["not_drawn"].as_u64().unwrap(), of_kind, "{share}");
+        counted += of_kind;
+    }
+    assert_eq!(counted, open.len() as u64, "every one has a row");
 }
 
 #[test]

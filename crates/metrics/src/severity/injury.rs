@@ -2,10 +2,10 @@
 
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
+use recrash_model::record::MPS_PER_MPH;
 use recrash_model::severity::{InjuryOutcome, InjuryRisk, RiskCurve};
 use recrash_model::zones::ContactZone;
 
-const MPS_PER_MPH: f64 = 0.44704;
 const KMH_PER_MPS: f64 = 3.6;
 
 /// One side of a contact, as the curves ask for it.

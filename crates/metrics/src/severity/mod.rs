@@ -1,4 +1,5 @@
-//! Severity of a contact: plane impact of two boxes by momentum, and the risk of injury by published curves.
+//! Severity of a contact, with a road user or with an obstacle: plane impact of two boxes by momentum, and the risk of injury by
+//! published curves.
 //!
 //! Formulas, masses, sources and where they are valid: `docs/models/severity.md`.
 
@@ -9,7 +10,8 @@ use injury::Struck;
 use recrash_model::geometry::{OrientedBox, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::{ActorState, ActorTrack, Rollout};
+use recrash_model::metrics::Metrics;
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, PlacedObstacle, Rollout};
 pub use recrash_model::severity::Impact;
 use recrash_model::severity::{Severity, Suffered};
 
@@ -31,13 +33,31 @@ impl Party {
         let outline = OrientedBox::new(state.pose(), track.length_m, track.width_m);
         Self { kind: track.kind, mass_kg: track.mass_kg(), outline, velocity: state.velocity() }
     }
+
+    /// An obstacle, which stands. What stands firm has no share in the yielding of brach1983, as if its mass were infinite.
+    fn standing(obstacle: &PlacedObstacle) -> Self {
+        let mass_kg = obstacle.kind.mass_kg();
+        Self { kind: PartnerKind::FixedObject, mass_kg, outline: obstacle.outline(), velocity: Vec2::default() }
+    }
 }
 
-/// Severity of the ego's first contact with a road user; `None` where there is none.
-pub fn severity_of(rollout: &Rollout) -> Option<Severity> {
-    let (actor, _, ego, other) = rollout.first_ego_contact()?;
-    let (first, second) = (rollout.actors.first()?, rollout.actors.get(actor)?);
-    Some(severity(&Party::of(first, &ego), &Party::of(second, &other), Impact::default()))
+/// Severity of the ego's first contact with a road user; where it touches none, of its first with an obstacle that stands up, among
+/// those that were measured (none before the handover). `None` where there is neither.
+pub fn severity_of(rollout: &Rollout, metrics: &Metrics) -> Option<Severity> {
+    let ego = rollout.actors.first()?;
+    if let Some((actor, _, state, other)) = rollout.first_ego_contact() {
+        let second = rollout.actors.get(actor)?;
+        return Some(severity(&Party::of(ego, &state), &Party::of(second, &other), Impact::default()));
+    }
+    metrics.obstacles_hit.iter().find_map(|&hit| {
+        let thing = rollout.obstacles.get(hit).filter(|thing| thing.kind.stands_up())?;
+        let state = rollout.events.iter().find_map(|event| match event.kind {
+            EventKind::ObstacleContact { actor: 0, obstacle, state } if obstacle == hit => Some(state),
+            _ => None,
+        })?;
+        let found = severity(&Party::of(ego, &state), &Party::standing(thing), Impact::default());
+        Some(Severity { obstacle: Some(thing.kind), ..found })
+    })
 }
 
 /// Severity of a contact.
@@ -59,6 +79,7 @@ pub fn severity(first: &Party, second: &Party, impact: Impact) -> Severity {
         overlap: overlap(&first.outline, &second.outline, normal.left()),
         first: suffered(first, -impulse, &pair, 0),
         second: suffered(second, impulse, &pair, 1),
+        obstacle: None,
     }
 }
 

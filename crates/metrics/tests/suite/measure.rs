@@ -1,12 +1,15 @@
 //! Metrics of rollouts whose numbers can be worked out by hand.
 
 use crate::world::*;
-use recrash_metrics::{findings, series};
+use recrash_metrics::{EgoWay, findings, series};
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math::FRAC_PI_2;
 use recrash_model::metrics::{CollisionKind, FindingKind, Metrics};
 use recrash_model::rollout::ActorState;
-use recrash_model::rollout::{Event, EventKind, Role, Rollout, TerminationKind};
-use recrash_model::scenario::{Approach, Turn};
+use recrash_model::rollout::{Event, EventKind, PlacedObstacle, Role, Rollout, TerminationKind};
+use recrash_model::scenario::{Approach, ObstacleKind, Turn};
+use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 
 fn kinds(rollout: &Rollout, metrics: &Metrics) -> Vec<FindingKind> {
@@ -266,6 +269,63 @@ fn cones_hit_and_missed() {
     assert_eq!((metrics.obstacle_gaps[1].value, metrics.obstacle_gaps[1].time_s), (0.0, 4.26));
     assert_eq!(metrics.obstacles_hit, [1]);
     assert_eq!(kinds(&rollout, &metrics), [FindingKind::ObstacleContact]);
+}
+
+#[test]
+fn what_stands_firm_takes_all_speed_of_who_strikes_it_and_a_light_thing_hardly_any() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    // Struck square with the front at 10 m/s, the thing's middle ahead of the ego's.
+    let struck = |kind: ObstacleKind, before_s: f64| {
+        let mut rollout = rollout(drive(&way, 5.0, 60, |_| 10.0), vec![]);
+        let state = rollout.actors[0].states[30];
+        let (length_m, width_m) = kind.size_m();
+        let ahead_m = 0.5 * LENGTH_M + 0.5 * length_m - 0.01;
+        let position = state.position() + Vec2::from_heading(state.heading) * ahead_m;
+        rollout.obstacles = vec![PlacedObstacle { kind, pose: Pose { position, ..state.pose() }, length_m, width_m }];
+        let hit = EventKind::ObstacleContact { actor: 0, obstacle: 0, state };
+        rollout.events.push(Event { time_s: 3.0, kind: hit });
+        let way = EgoWay { handover_s: before_s, ..EgoWay::plain(&network, &way, 10.0) };
+        let metrics = recrash_metrics::measure_on(&way, &rollout, &CRITERIA);
+        recrash_metrics::severity_of(&rollout, &metrics)
+    };
+    let car_kg = VehicleSpec::mass_kg(PartnerKind::PassengerCar).expect("it is no wall");
+    for kind in ObstacleKind::ALL.into_iter().filter(|kind| kind.stands_up()) {
+        let found = struck(kind, 0.0).expect("it was struck");
+        let share = kind.mass_kg().map_or(1.0, |mass_kg| mass_kg / (mass_kg + car_kg));
+        close(found.first.delta_v_mps, 10.0 * share, 1e-6);
+        close(found.second.delta_v_mps, if kind.mass_kg().is_some() { 10.0 * (1.0 - share) } else { 0.0 }, 1e-6);
+        close(found.harm_mps(), found.first.delta_v_mps, 1e-9);
+        assert_eq!((found.obstacle, found.first.force_clock, found.other()), (Some(kind), Some(12), kind.label()));
+    }
+    assert_eq!(struck(ObstacleKind::Pothole, 0.0), None, "nothing stands there");
+    assert_eq!(struck(ObstacleKind::Wall, 4.0), None, "that was the recorded driver");
+}
+
+#[test]
+fn a_wall_along_its_way_takes_what_goes_across_it_and_a_contact_with_a_road_user_comes_first() {
+    let network = straight();
+    let way = path(&network, Approach::Same, Turn::Straight, 1);
+    let mut rollout = rollout(drive(&way, 5.0, 60, |_| 10.0), vec![]);
+    // At 10 m/s it goes 1 m/s sideways into a wall along its right side, 6 m long, abreast of its middle.
+    let mut state = rollout.actors[0].states[30];
+    let (forward, left) = (Vec2::from_heading(state.heading), Vec2::from_heading(state.heading).left());
+    let velocity = forward * 10.0 - left;
+    (state.vx, state.vy) = (velocity.x, velocity.y);
+    let position = state.position() - left * (0.5 * WIDTH_M + 0.14);
+    let pose = Pose { position, ..state.pose() };
+    rollout.obstacles = vec![PlacedObstacle { kind: ObstacleKind::Wall, pose, length_m: 6.0, width_m: 0.3 }];
+    rollout.events.push(Event { time_s: 3.0, kind: EventKind::ObstacleContact { actor: 0, obstacle: 0, state } });
+    let of = |rollout: &Rollout| recrash_metrics::severity_of(rollout, &measure(&network, &way, 10.0, rollout));
+    let found = of(&rollout).expect("it scrapes along");
+    close(found.normal_speed_mps, 1.0, 1e-9);
+    // Friction of half the blow drags it back.
+    close(found.first.delta_v_mps, 1.25_f64.sqrt(), 1e-6);
+    let mut later = rollout.clone();
+    let (a_state, b_state) = (later.actors[0].states[50], later.actors[0].states[50]);
+    later.actors.push(later.actors[0].clone());
+    later.events.push(Event { time_s: 5.0, kind: EventKind::Contact { a: 0, b: 1, a_state, b_state } });
+    assert_eq!(of(&later).map(|severity| severity.obstacle), Some(None));
 }
 
 #[test]

@@ -184,6 +184,27 @@ pub enum StandReason {
     Barrier,
 }
 
+impl StandReason {
+    /// For tables and sentences.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::PickupDropoff => "pick-up or drop-off",
+            Self::Yield => "giving way",
+            Self::Queue => "queue",
+            Self::RedLight => "red light",
+            Self::LeadVehicle => "vehicle ahead",
+            Self::StopSign => "stop sign",
+            Self::Parked => "parked",
+            Self::Pedestrian => "pedestrian",
+            Self::BlockedPath => "blocked path",
+            Self::BlockedJunction => "blocked junction",
+            Self::Animal => "animal",
+            Self::EmergencyVehicle => "emergency vehicle",
+            Self::Barrier => "railway crossing, gate or toll",
+        }
+    }
+}
+
 /// What a speed is the speed of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

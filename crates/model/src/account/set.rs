@@ -17,6 +17,9 @@ pub struct FactShare {
     pub told: usize,
     /// Of those, the ones whose reconstruction shows it.
     pub shown: usize,
+    /// Of those, the ones whose reconstruction neither shows it nor anything else in its place: it is told, and not drawn.
+    #[serde(default)]
+    pub not_drawn: usize,
 }
 
 /// How much of a crash type is told.
@@ -28,7 +31,7 @@ pub struct TypeShare {
     pub incidents: usize,
     /// Of those, the ones whose reconstruction shows every told fact that is checked.
     pub told: usize,
-    /// Of those, the ones of which every told fact is checked.
+    /// Of those, the ones of which every told fact is shown; in the others some are told and not drawn.
     pub whole: usize,
     /// Facts that stand in the narratives, for every 100 words of them: so that silence does not pass for truth.
     pub facts_per_100_words: f64,

@@ -65,6 +65,19 @@ pub enum Aspect {
     Dark,
 }
 
+impl Aspect {
+    /// For sentences.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Green => "green",
+            Self::Yellow => "yellow",
+            Self::Red => "red",
+            Self::FlashingRed => "flashing red",
+            Self::Dark => "dark",
+        }
+    }
+}
+
 impl Device {
     /// What a signal shows at a time; `None` for signs. [s]
     pub fn aspect(&self, time_s: f64) -> Option<Aspect> {

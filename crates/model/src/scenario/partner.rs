@@ -289,6 +289,27 @@ impl ObstacleKind {
             Self::Container => 1.8,
         }
     }
+
+    /// Mass of what gives way where it is hit; `None` for what stands firm, and is taken for infinitely heavy. Usual masses, assumed. [kg]
+    pub const fn mass_kg(self) -> Option<f64> {
+        match self {
+            Self::Cone => Some(5.0),
+            Self::Warning | Self::Debris => Some(20.0),
+            Self::Barrier
+            | Self::Pole
+            | Self::Wall
+            | Self::Gate
+            | Self::Chain
+            | Self::Kerb
+            | Self::Pothole
+            | Self::Container => None,
+        }
+    }
+
+    /// Whether it stands up, so that something can strike against it: a hole and a plate in the road do not.
+    pub const fn stands_up(self) -> bool {
+        !matches!(self, Self::Pothole)
+    }
 }
 
 /// A static obstacle beside or on the ego's way.

@@ -70,15 +70,15 @@ pub fn fact_shares(accounts: &[Account], retold: &[Retold]) -> Vec<FactShare> {
     let told_by: Vec<Vec<CheckKind>> = accounts.par_iter().map(told_kinds).collect();
     let share = |fact: CheckKind| {
         let tells = |each: &&Retold| told_by[each.account].contains(&fact);
-        let shows = |each: &&Retold| {
-            let checks = each.result.as_ref().map_or(&[][..], |made| &made.verdict.checks);
-            checks.iter().any(|check| check.kind == fact && check.result == CheckResult::Shown)
+        let of = |result: CheckResult| {
+            let holds = |each: &&Retold| {
+                let checks = each.result.as_ref().map_or(&[][..], |made| &made.verdict.checks);
+                checks.iter().any(|check| check.kind == fact && check.result == result)
+            };
+            retold.iter().filter(tells).filter(holds).count()
         };
-        FactShare {
-            fact,
-            told: retold.iter().filter(tells).count(),
-            shown: retold.iter().filter(tells).filter(shows).count(),
-        }
+        let (shown, not_drawn) = (of(CheckResult::Shown), of(CheckResult::CannotBeShown));
+        FactShare { fact, told: retold.iter().filter(tells).count(), shown, not_drawn }
     };
     CheckKind::OF_ACCOUNTS.into_iter().map(share).collect()
 }

@@ -8,7 +8,7 @@ use crate::options::RecordSource;
 use crate::suite::Suite;
 use recrash_lab::coverage::{Incident, Tested, coverage};
 use recrash_model::account::{AccountSet, CrashType, FactShare, TypeShare, Untold};
-use recrash_model::cause::Cause;
+use recrash_model::cause::{Cause, Failures};
 use recrash_model::coverage::CorpusCoverage;
 use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
 use recrash_model::narrative::Origin;
@@ -213,7 +213,7 @@ pub struct RunSummary {
     pub min_centre_distance_m: Option<f64>,
     /// Contact with a road user: kind of collision.
     pub contact: Option<String>,
-    /// Change of velocity of the ego and of the other in that contact. [m/s]
+    /// Change of velocity of the ego and of the other in that contact; where there is none, in that with an obstacle. [m/s]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delta_v_mps: Option<[f64; 2]>,
     /// Probability that it injures somebody seriously, where a published curve covers it.
@@ -266,9 +266,14 @@ impl RunSummary {
         self.failed && self.cause == Some(Cause::StruckStanding)
     }
 
-    /// What findings are ranked by: the greater change of velocity of the two; 0 without a contact of two road users. [m/s]
+    /// What findings are ranked by: the greater change of velocity of the two, of a contact with an obstacle the ego's; 0 without any.
+    /// [m/s]
     pub fn harm_mps(&self) -> f64 {
-        self.delta_v_mps.map_or(0.0, |[ego, other]| ego.max(other))
+        match (self.delta_v_mps, &self.contact) {
+            (Some([ego, other]), Some(_)) => ego.max(other),
+            (Some([ego, _]), None) => ego,
+            (None, _) => 0.0,
+        }
     }
 }
 
@@ -280,9 +285,7 @@ pub struct TestedRuns {
     /// Of those, runs that came into the situation of the record.
     pub met: usize,
     /// Of those, failures.
-    pub failed: usize,
-    /// Of those, failures while it stood: nothing to do with what it drove.
-    pub struck: usize,
+    pub failures: Failures,
 }
 
 impl Summary {
@@ -343,8 +346,7 @@ impl Summary {
             TestedRuns {
                 ran: runs.len(),
                 met: met.len(),
-                failed: met.iter().filter(|run| run.failed).count(),
-                struck: met.iter().filter(|run| run.struck_standing()).count(),
+                failures: Failures::of(met.iter().filter(|run| run.failed).map(|run| run.cause)),
             }
         };
         [of(|case| &case.first), of(|case| &case.tuned)]

@@ -3,7 +3,7 @@
 
 use crate::error::PipelineError;
 use crate::files::output::Outputs;
-use crate::stages::{CaseSummary, Cases, Summary};
+use crate::stages::{CaseSummary, Cases, RunSummary, Summary};
 use crate::suite::{Stage, Suite, names};
 use recrash_lab::{HarmCase, severity_agreement};
 use recrash_model::account::{Account, Party, SpeedMeaning, told};
@@ -87,18 +87,14 @@ pub fn suite_severity(dir: &Path) -> Result<SuiteSeverity, PipelineError> {
     }
     let told: Vec<(&CaseSummary, &Account, &CrashRecord)> =
         summary.cases.iter().filter_map(|case| of_case(&cases, case)).collect();
-    let mut failures: Vec<SevereFailure> = told.iter().filter_map(|&(case, _, record)| failure(case, record)).collect();
-    failures.sort_by(|a, b| b.harm_mps().total_cmp(&a.harm_mps()).then_with(|| a.id.cmp(&b.id)));
+    let harm_mps = |case: &CaseSummary| case.tuned.as_ref().map_or(0.0, RunSummary::harm_mps);
+    let mut failures: Vec<(f64, SevereFailure)> =
+        told.iter().filter_map(|&(case, _, record)| Some((harm_mps(case), failure(case, record)?))).collect();
+    failures.sort_by(|(a_mps, a), (b_mps, b)| b_mps.total_cmp(a_mps).then_with(|| a.id.cmp(&b.id)));
+    let failures = failures.into_iter().map(|(_, failure)| failure).collect();
     let crashes: Vec<HarmCase> =
         told.iter().filter_map(|&(case, account, record)| harm(case, account, record)).collect();
     Ok(SuiteSeverity { ego: summary.ego, failures, agreement: severity_agreement(&crashes) })
-}
-
-impl SevereFailure {
-    /// What failures are ranked by. [m/s]
-    fn harm_mps(&self) -> f64 {
-        self.delta_v_mps[0].max(self.delta_v_mps[1])
-    }
 }
 
 fn summary(suite: &Suite) -> Result<Summary, PipelineError> {
@@ -141,7 +137,7 @@ fn failure(case: &CaseSummary, record: &CrashRecord) -> Option<SevereFailure> {
 /// What the recorded driver's crash does, where it is told with a contact of two road users.
 fn harm(case: &CaseSummary, account: &Account, record: &CrashRecord) -> Option<HarmCase> {
     let run = case.recorded.as_ref().filter(|run| run.faithful != Answer::No)?;
-    run.delta_v_mps?;
+    run.contact.as_ref().and(run.delta_v_mps)?;
     Some(HarmCase {
         delta_v_mps: run.harm_mps(),
         speeds_told: [Some(&account.sv), account.partner.as_ref()].into_iter().flatten().all(speed_is_told),

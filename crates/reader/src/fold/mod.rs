@@ -595,7 +595,7 @@ fn contradictions(account: &Account, record: &CrashRecord) -> Vec<Contradiction>
             .collect();
         let near = told.iter().any(|zone| column.iter().any(|other| steps(*zone, *other) <= 1));
         if !told.is_empty() && !column.is_empty() && !near {
-            add(about, format!("{told:?} in words"), format!("{column:?} in {name}"));
+            add(about, format!("{} in words", joined(&told)), format!("{} in {name}", joined(column)));
         }
     }
     if let (Some(state), Some(speed)) = (&account.sv.state, record.sv_speed_mps)
@@ -603,16 +603,22 @@ fn contradictions(account: &Account, record: &CrashRecord) -> Vec<Contradiction>
         && state.value.stands()
         && speed > 0.9
     {
-        add("sv.state", format!("{:?} in words", state.value), format!("{speed:.1} m/s in SV Precrash Speed"));
+        add("sv.state", format!("{} in words", state.value.label()), format!("{speed:.1} m/s in SV Precrash Speed"));
     }
     if let (Some(kind), Coded::Known(column)) =
         (account.partner.as_ref().and_then(|partner| partner.kind.as_ref()), &record.partner)
         && kind.source.is_told()
-        && kind.value.partner_kind().is_some_and(|told| told != *column && !alike(told, *column))
+        && let Some(told) = kind.value.partner_kind()
+        && told != *column
+        && !alike(told, *column)
     {
-        add("partner.kind", format!("{:?} in words", kind.value), format!("{column:?} in Crash With"));
+        add("partner.kind", format!("{} in words", told.label()), format!("{} in Crash With", column.label()));
     }
     all
+}
+
+fn joined(zones: &[ContactZone]) -> String {
+    zones.iter().map(|zone| zone.label()).collect::<Vec<_>>().join(", ")
 }
 
 fn alike(one: PartnerKind, other: PartnerKind) -> bool {

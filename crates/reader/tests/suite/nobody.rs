@@ -1,7 +1,10 @@
 //! Nouns that name nobody beside the two, and those that do.
 
-use crate::common::account_of;
+use crate::common::{self, account_of};
 use recrash_model::account::Kind;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::record::Coded;
+use recrash_model::zones::ContactZone;
 
 fn others(text: &str) -> Vec<Kind> {
     account_of(text).expect("an account").others.iter().map(|other| other.kind.value).collect()
@@ -53,4 +56,25 @@ fn whom_only_the_headline_calls_so_is_a_vehicle() {
     let again = "The AV was in a collision involving a van on Elm Street. The AV was traveling west on Elm Street and came to a stop behind a \
                  parked van. Another van approached from behind and made contact with the rear of the AV.";
     assert_eq!(others(again), [Kind::Van]);
+}
+
+#[test]
+fn what_columns_say_against_the_words_is_said_in_words() {
+    let mut told = common::record(
+        "1-1",
+        1,
+        "The AV was stopped at a red light on Elm Street when a pickup truck made contact with the rear of the AV with its front.",
+    );
+    told.sv_zones = vec![ContactZone::Front, ContactZone::FrontLeft];
+    told.partner = Coded::Known(PartnerKind::Pedestrian);
+    told.sv_speed_mps = Some(4.0);
+    let account = recrash_reader::account(&recrash_reader::incidents(&[told])[0]).expect("an account");
+    let said: Vec<_> = account.contradictions.iter().map(|one| (one.kept.as_str(), one.against.as_str())).collect();
+    for both in [
+        ("rear in words", "front, front left in SV Contact Area"),
+        ("stopped in words", "4.0 m/s in SV Precrash Speed"),
+        ("pickup truck in words", "pedestrian in Crash With"),
+    ] {
+        assert!(said.contains(&both), "{said:?}");
+    }
 }

@@ -57,6 +57,21 @@ fn who_stands_for_passengers_stands_where_its_task_has_it_stop() {
 }
 
 #[test]
+fn why_somebody_stood_and_what_is_assumed_is_said_in_words() {
+    let said = |words: &str, kind: CheckKind| {
+        let made = made(&story(words));
+        let check = made.verdict.checks.iter().find(|check| check.kind == kind).map(|check| check.expected.clone());
+        (check, made.assumed)
+    };
+    assert_eq!(said(BOARDS, CheckKind::Reason).0.as_deref(), Some("pick-up or drop-off"));
+    assert_eq!(said(STOP_SIGN, CheckKind::Reason).0.as_deref(), Some("stop sign"));
+    for words in [BOARDS, NARROW, STOP_SIGN, SWINGS] {
+        let assumed = said(words, CheckKind::Reason).1;
+        assert!(!assumed.iter().any(|text| text.contains(['{', '}']) || *text != text.to_lowercase()), "{assumed:?}");
+    }
+}
+
+#[test]
 fn who_gives_way_to_its_partner_or_at_a_sign_waits_for_nobody_else() {
     let account = story(NARROW);
     assert_eq!(result(&made(&account).draft, &account, CheckKind::Reason), None);

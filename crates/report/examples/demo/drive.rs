@@ -345,6 +345,7 @@ fn severity(contact: &Contact) -> Severity {
         overlap: 1.0,
         first: side(contact.ego_speed_mps),
         second: side(contact.other_speed_mps),
+        obstacle: None,
     }
 }
 

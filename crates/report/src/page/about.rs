@@ -77,7 +77,7 @@ fn files(context: &Context) -> Markup {
             tbody { @for file in &context.suite.records.files {
                 tr {
                     th scope="row" { (words::clean(&file.name, 120)) }
-                    td { (words::name(&file.edition)) }
+                    td { (file.edition.label()) }
                     td.right.number { (thousands(file.rows)) }
                     td { code.hash { (words::clean(&file.sha256, 64)) } }
                 }
@@ -144,8 +144,8 @@ const OF_ACCOUNTS: [(&str, &str); 11] = [
         "The system under test came within a few metres or seconds of what the record's vehicle crashed with. Without that a pass says nothing of the crash.",
     ),
     (
-        "Fails while driving, struck standing",
-        "A failure while the ego stood in its own way and somebody drove into it is counted apart: it has nothing to do with what it drove.",
+        "Struck standing, struck moving, otherwise",
+        "Failures are counted by how they came about. The ego had stood in its own way for a second and somebody drove into it: that has nothing to do with what it drove. It moved, slowed or had just stopped, and was struck from where it does not look, mostly from behind: that hardly has. All others are by what it did or did not do.",
     ),
     (
         "Quirk, avoidable, beyond reference, unavoidable",

@@ -62,7 +62,7 @@ pub fn metrics(case: Case) -> Markup {
                     caption.hidden-text { "Metrics, run by run" }
                     thead { tr { th scope="col" { "Metric" } @for (name, _) in &runs { th scope="col" { (words::capital(name)) } } } }
                     tbody {
-                        (line("Ended by", &runs, |run| html! { (words::name(&run.metrics.termination)) span.at { " at " } (parts::quantity(Some(run.metrics.duration_s), 1, "s", "")) }))
+                        (line("Ended by", &runs, |run| html! { (run.metrics.termination.label()) span.at { " at " } (parts::quantity(Some(run.metrics.duration_s), 1, "s", "")) }))
                         (line("Contact", &runs, |run| match &run.metrics.contact {
                             Some(c) => html! { (c.kind.label()) " with " (words::clean(&c.id, 40)) span.at { " at " } (parts::quantity(Some(c.time_s), 2, "s", "")) },
                             None => parts::missing("no contact"),

@@ -6,7 +6,6 @@ use crate::view::RunRow;
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
 use recrash_model::metrics::{Finding, FindingKind};
-use recrash_model::severity::Severity;
 
 /// Findings listed; the rest stand with their scenarios. [count]
 const LONGEST_LIST: usize = 200;
@@ -101,16 +100,20 @@ fn meaning(kind: FindingKind, context: &Context) -> String {
     }
 }
 
+/// Of the contact that was measured, what it does to the velocity of the two.
+fn harm(run: &RunRow, finding: &Finding) -> Option<f64> {
+    let severity = run.severity.as_ref()?;
+    let of = if severity.obstacle.is_some() { FindingKind::ObstacleContact } else { FindingKind::Contact };
+    let first = run.findings.iter().find(|other| other.kind == of)?;
+    std::ptr::eq(first, finding).then(|| severity.harm_mps())
+}
+
 fn every(context: &Context) -> Markup {
     let runs = context
         .suite
         .cases
         .iter()
         .flat_map(|case| case.system_runs().into_iter().map(move |(name, run)| (case, name, run)));
-    // Of a contact, what it does to the velocity of the two.
-    let harm = |run: &RunRow, finding: &Finding| {
-        run.severity.as_ref().filter(|_| finding.kind == FindingKind::Contact).map(Severity::harm_mps)
-    };
     let mut rows: Vec<_> = runs
         .flat_map(|(case, name, run)| run.judgement.findings.iter().map(move |f| (case, name, f, harm(run, f))))
         .collect();
@@ -129,7 +132,7 @@ fn every(context: &Context) -> Markup {
                             th scope="row" { a href={ "#" (anchor::anchor(&case.scenario_id)) } { (words::clean(&case.scenario_id, 80)) } }
                             td { (name) }
                             td.right { (parts::quantity(Some(finding.time_s), 1, "s", "")) }
-                            td.right { (parts::quantity(harm, 1, "m/s", "no contact of two road users")) }
+                            td.right { (parts::quantity(harm, 1, "m/s", "no contact, or not the one that is measured")) }
                             td { (parts::finding_chip(finding.kind)) }
                             td { (words::clean(&finding.sentence, 300)) }
                         }

@@ -8,7 +8,9 @@ use crate::words::{self, fixed, thousands};
 use crate::{anchor, search, thumbnail};
 use maud::{Markup, html};
 use recrash_model::account::{AccountSet, TypeShare};
+use recrash_model::cause::Failures;
 use recrash_model::narrative::Origin;
+use recrash_model::severity::Severity;
 use std::fmt::Write;
 
 /// The overview.
@@ -63,6 +65,11 @@ fn sentence(context: &Context) -> Markup {
     }
 }
 
+/// Failures by how they came about.
+fn manners(failures: Failures) -> Markup {
+    html! { @for (i, (count, words)) in failures.told().into_iter().enumerate() { @if i > 0 { ", " } b { (thousands(count)) } " " (words) } }
+}
+
 /// The same of a suite that goes by accounts.
 fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
@@ -72,8 +79,8 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
         (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
-        b { (thousands(first.failed)) " of those " (thousands(first.met)) } ": " (thousands(first.driving())) " while driving, " (thousands(first.struck)) " struck while it stood, which has nothing to do with what it drove. "
-        "After tuning within what the reports leave open it fails " b { (thousands(last.failed)) " of " (thousands(last.met)) } " (" (thousands(last.driving())) " and " (thousands(last.struck)) "), " (thousands(s.by_tuning)) " of them after tuning alone"
+        b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } ": " (manners(first.failures)) ". A blow to an ego that stood has nothing to do with what it drove, and one from where it does not look hardly has. "
+        "After tuning within what the reports leave open it fails " b { (thousands(last.failures.total())) " of " (thousands(last.met)) } ": " (manners(last.failures)) "; " (thousands(s.by_tuning)) " of them after tuning alone"
         @if s.parked > 0 { "; in " (thousands(s.parked)) " it was parked, and there is nothing to test" }
         ". A failure is a contact, a box gap below " (fixed(suite.profile.failure.min_gap_m, 1).unwrap_or_default())
         "\u{a0}m, leaving the road, or getting stuck."
@@ -129,19 +136,19 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
             ))
             (tile(
                 "Ego fails, as reconstructed",
-                html! { (thousands(first.failed)) span.of { " of " (thousands(first.met)) } },
-                html! { b { (thousands(first.driving())) } " while driving, " b { (thousands(first.struck)) } " struck while it stood" },
-                Some((share(first.failed, first.met), "bad")),
+                html! { (thousands(first.failures.total())) span.of { " of " (thousands(first.met)) } },
+                manners(first.failures),
+                Some((share(first.failures.total(), first.met), "bad")),
             ))
             (tile(
                 "Ego fails, after tuning",
-                html! { (thousands(last.failed)) span.of { " of " (thousands(last.met)) } },
+                html! { (thousands(last.failures.total())) span.of { " of " (thousands(last.met)) } },
                 html! {
-                    b { (thousands(last.driving())) } " while driving, " b { (thousands(last.struck)) } " struck while it stood; " (thousands(s.by_tuning)) " found by tuning alone"
+                    (manners(last.failures)) "; " (thousands(s.by_tuning)) " found by tuning alone"
                     @if !s.classes.is_empty() { ". Against other egos: " }
                     @for (i, (class, count)) in s.classes.iter().enumerate() { @if i > 0 { ", " } (thousands(*count)) " " (class.label()) }
                 },
-                Some((share(last.failed, last.met), "bad")),
+                Some((share(last.failures.total(), last.met), "bad")),
             ))
         }
     }
@@ -236,7 +243,7 @@ fn controls(accounts: bool) -> Markup {
     let by_account = [
         ("all", "All"),
         ("failed", "Fails"),
-        ("driving", "Fails while driving"),
+        ("driving", "Fails, not struck standing"),
         ("struck", "Struck while it stood"),
         ("tuning", "Found by tuning"),
         ("passed", "Passes"),
@@ -297,11 +304,17 @@ fn table(context: &Context) -> Markup {
     }
 }
 
+fn delta_v(severity: &Severity) -> Markup {
+    let [ego, other] = [&severity.first, &severity.second].map(|side| fixed(side.delta_v_mps, 1).unwrap_or_default());
+    html! { .muted { "delta-v ego " (ego) ", " (severity.other()) " " (other) } }
+}
+
 fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
     let last = case.last_run();
     let anchor = anchor::anchor(&case.scenario_id);
     let not_run = if case.refused.is_some() { "refused" } else { words::not_run(case) };
     let contact = last.and_then(|run| run.metrics.contact.as_ref());
+    let severity = last.and_then(|run| run.severity.as_ref());
     html! {
         tr data-row=(position) {
             td.scene { (scene(case)) }
@@ -324,9 +337,15 @@ fn row(context: &Context, position: usize, case: &CaseRow) -> Markup {
                     Some(contact) => {
                         b { (fixed(contact.relative_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
                         .muted { "ego " (fixed(contact.ego_speed_mps, 1).unwrap_or_default()) ", partner " (fixed(contact.other_speed_mps, 1).unwrap_or_default()) }
-                        @if let Some(severity) = last.and_then(|run| run.severity.as_ref()) { .muted { "delta-v ego " (fixed(severity.first.delta_v_mps, 1).unwrap_or_default()) ", partner " (fixed(severity.second.delta_v_mps, 1).unwrap_or_default()) } }
+                        @if let Some(severity) = severity { (delta_v(severity)) }
                     },
-                    None => (missing(if last.is_some() { "no contact" } else { not_run })),
+                    None => {
+                        @if let Some(severity) = severity.filter(|severity| severity.obstacle.is_some()) {
+                            b { (fixed(severity.closing_speed_mps, 1).unwrap_or_default()) "\u{a0}m/s" }
+                            .muted { "on a " (severity.other()) }
+                            (delta_v(severity))
+                        } @else { (missing(if last.is_some() { "no contact" } else { not_run })) }
+                    },
                 }
             }
             td.injury { @match context.told.at(position) { Some(record) => (search::injury(record)), None => (missing("no record is told")) } }

@@ -20,13 +20,13 @@ pub fn of_case(case: Case) -> Markup {
     let record = case.context.case_records(case.row).find(|record| Some(&record.id) == told);
     html! {
         details.severity {
-            summary { "Severity of the contact" @if let Some((_, _, worst)) = contacts.last() { ": delta-v of the ego " (number(worst.first.delta_v_mps)) "\u{a0}m/s, of the partner " (number(worst.second.delta_v_mps)) "\u{a0}m/s" } }
+            summary { "Severity of the contact" @if let Some((_, _, worst)) = contacts.last() { ": delta-v of the ego " (number(worst.first.delta_v_mps)) "\u{a0}m/s, of the " (worst.other()) " " (number(worst.second.delta_v_mps)) "\u{a0}m/s" } }
             .table-wrap { table.plain {
                 caption.hidden-text { "What the first contact of each run does to both" }
                 thead { tr { th scope="col" { "Run" } th scope="col" { "Who" } th.right scope="col" { "Speed at the contact" } th.right scope="col" { "Delta-v" } th.right scope="col" title="as on a clock, 12 straight ahead" { "Force from" } th scope="col" { "Risks to one person" } } }
                 tbody { @for (name, run, severity) in &contacts {
                     (side(&words::capital(name), "ego", &severity.first))
-                    (side("", run.metrics.contact.as_ref().map_or("other", |contact| contact.id.as_str()), &severity.second))
+                    (side("", run.metrics.contact.as_ref().map_or(severity.other(), |contact| contact.id.as_str()), &severity.second))
                 } }
             } }
             @match record { Some(record) => (reported(record)), None => p.muted { "No record is told, so none reports any harm." } }

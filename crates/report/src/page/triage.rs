@@ -179,7 +179,7 @@ fn row(
             td { @if avoids { "yes" } @else { "no" } }
             td { (parts::result_chip(result)) }
             td { (parts::timed(gap, 2, "m", "no scripted partner took part")) }
-            td { (words::name(&ended)) }
+            td { (ended.label()) }
             td { @for kind in findings { (parts::finding_chip(*kind)) " " } @if findings.is_empty() { (parts::missing("no finding")) } }
         }
     }

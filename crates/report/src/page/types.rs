@@ -4,7 +4,7 @@ use super::{Context, parts};
 use crate::view::{CaseRow, RunRow};
 use crate::words::{self, fixed, thousands};
 use maud::{Markup, html};
-use recrash_model::account::{AccountSet, CrashType, Untold};
+use recrash_model::account::{AccountSet, CrashType, FactShare, Untold};
 use std::collections::BTreeMap;
 
 /// Two tables: by crash type, and by reason; and by kind of fact.
@@ -26,12 +26,14 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
     }
     let mut reasons: Vec<(Untold, usize)> = reasons.into_iter().collect();
     reasons.sort_by_key(|(why, count)| (std::cmp::Reverse(*count), *why));
+    let facts = |of: fn(&FactShare) -> usize| accounts.facts.iter().map(of).sum::<usize>();
     html! {
         .table-wrap { table.plain {
             caption.hidden-text { "Readable incidents by crash type" }
             thead { tr {
-                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="every told fact that could be checked is shown" { "Told: no fact shown otherwise" }
+                th scope="col" { "Type" } th.number scope="col" { "Readable incidents" } th.number scope="col" title="a told fact is shown, or not drawn" { "Told: no fact shown otherwise" }
                 th.number scope="col" title="no told fact was left open" { "Of those, every fact shown" }
+                th.number scope="col" title="a told fact that the scene neither shows nor shows otherwise" { "A fact not drawn" }
                 th.number scope="col" title="facts that stand in the narratives, for every 100 words" { "Facts per 100 words" }
                 th.number scope="col" { "Scenarios here" } th.number scope="col" title="in the crash as reconstructed" { "Situation met" }
                 th.number scope="col" title="of those, in the crash as reconstructed" { "Ego fails" } th.number scope="col" title="within what the report leaves open" { "After tuning" }
@@ -43,6 +45,7 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
                     td.number { (thousands(share.incidents)) }
                     td.number { (thousands(share.told)) span.muted { " (" (percent(share.told, share.incidents)) "\u{a0}%)" } }
                     td.number { (thousands(share.whole)) }
+                    td.number { (thousands(share.told - share.whole)) }
                     td.number { (parts::quantity(Some(share.facts_per_100_words), 1, "", "")) }
                     @if share.crash_type.is_some() { td.number { (thousands(scenarios)) } td.number { (thousands(met)) } @for failed in failed { td.number { (thousands(failed)) } } }
                     @else { td {} td {} td {} td {} }
@@ -58,8 +61,9 @@ pub fn types(context: &Context, accounts: &AccountSet) -> Markup {
             }
             div {
                 h3 { "Told facts that are shown, over all readable incidents" }
+                p.muted { (thousands(facts(|share| share.not_drawn))) " of " (thousands(facts(|share| share.told))) " told facts are not drawn: neither shown nor shown otherwise." }
                 table.plain { tbody { @for share in accounts.facts.iter().filter(|share| share.told > 0) {
-                    tr { th scope="row" { (words::capital(share.fact.label())) } td.number { (thousands(share.shown)) " of " (thousands(share.told)) span.muted { " (" (percent(share.shown, share.told)) "\u{a0}%)" } } }
+                    tr { th scope="row" { (words::capital(share.fact.label())) } td.number { (thousands(share.shown)) " of " (thousands(share.told)) span.muted { " (" (percent(share.shown, share.told)) "\u{a0}%)" @if share.not_drawn > 0 { ", " (thousands(share.not_drawn)) " not drawn" } } } }
                 } } }
             }
         }

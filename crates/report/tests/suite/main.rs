@@ -5,6 +5,7 @@ mod browser;
 mod drive;
 mod golden;
 mod hostile;
+mod obstacles;
 mod retold;
 #[path = "../../examples/demo/roads.rs"]
 mod roads;

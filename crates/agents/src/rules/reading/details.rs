@@ -49,7 +49,7 @@ pub(super) fn read(
     add: &mut impl FnMut(FactValue, FactSource),
 ) {
     if let Some(kind) = record.partner.known() {
-        add(FactValue::Partner { kind }, column(record, "Crash With", format!("{kind:?}")));
+        add(FactValue::Partner { kind }, column(record, "Crash With", kind.label()));
     }
     speeds(record, sentences, add);
     lanes(record, sentences, add);

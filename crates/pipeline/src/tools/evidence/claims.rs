@@ -102,7 +102,7 @@ pub fn all(
     all.add(
         "G2",
         "goal",
-        "Each verdict, least gap, contact, speed and delta-v is what the rollout shows; the greatest delta-v of anybody is {greatest_delta_v}.",
+        "Each verdict, least gap, contact, speed and delta-v is what the rollout shows; the greatest delta-v of anybody in a contact of two road users is {greatest_delta_v}.",
         &["Sn1"],
         &["C4"],
     );

@@ -125,7 +125,7 @@ impl Parity {
         };
         by("map", &|pair| vec![pair.map.to_string()]);
         by("policy", &|pair| vec![pair.policy.to_owned()]);
-        by("with", &|pair| pair.kind.iter().map(word).collect());
+        by("with", &|pair| pair.kind.iter().map(|kind| kind.label().to_owned()).collect());
         by("with", &|pair| pair.extras.iter().map(|extra| (*extra).to_owned()).collect());
         ParityTable {
             caption: "Agreement, by map and by the first partner's policy and kind",
@@ -167,7 +167,8 @@ impl Parity {
     /// Every scenario's verdict on both.
     fn verdicts(&self) -> ParityTable {
         let verdict = |outcome: &PairOutcome| {
-            let kinds: Vec<String> = outcome.findings.iter().filter(|kind| kind.is_failure()).map(word).collect();
+            let kinds: Vec<&str> =
+                outcome.findings.iter().filter(|kind| kind.is_failure()).map(|kind| kind.label()).collect();
             if kinds.is_empty() { "passed".to_owned() } else { kinds.join(", ") }
         };
         let row = |pair: &Pair| {
@@ -265,7 +266,7 @@ fn gap(outcome: &PairOutcome) -> String {
 }
 
 fn told(outcome: &PairOutcome) -> String {
-    format!("{} at {:.1} s, {}", word(&outcome.end), outcome.end_s, gap(outcome))
+    format!("{} at {:.1} s, {}", outcome.end.label(), outcome.end_s, gap(outcome))
 }
 
 fn outcome_cells(outcome: Option<&PairOutcome>) -> Vec<String> {
