@@ -1,11 +1,14 @@
 //! Tokens of one sentence into chunks: who is named, verbs, where, lanes, and the small words between them.
 
+mod behind;
 mod noun;
+mod piece;
 mod places;
+mod verb;
 
 use crate::lexicon::{Adjective, Form, Lexicon, Meaning, Occupant, Part, Relation, Sense};
 use crate::token::{Token, TokenKind};
-use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
+use recrash_model::account::{Compass, Kind, KindGroup, LaneWord, LeftRight};
 
 /// How a noun is introduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -183,9 +186,6 @@ pub fn is_determiner(word: &str) -> bool {
     DETERMINERS.contains(&word)
 }
 
-/// Most tokens that name one part.
-const LONGEST_PIECE: usize = 14;
-
 const COLOURS: [&str; 14] = [
     "white", "black", "red", "blue", "silver", "gray", "grey", "green", "yellow", "orange", "brown", "tan", "gold",
     "beige",
@@ -263,49 +263,33 @@ impl Chunker<'_> {
         if let Some((joint, length)) = joins {
             return (Some(Chunk::Joint(joint)), length);
         }
-        let relation = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(_)));
-        let relation = relation.filter(|found| !self.is_no_relation(at, found.length));
-        let verb = self.verb(at, before);
-        let piece = self.piece(at);
+        self.longest(at, before)
+            .or_else(|| self.compass(at).map(|(compass, length)| (Chunk::Compass(compass), length)))
+            .map_or_else(|| self.small_word(at), |(chunk, length)| (Some(chunk), length))
+    }
+
+    /// The longest of relation, place, verb, part and noun; of two as long, the first of these.
+    fn longest(&self, at: usize, before: &[Placed]) -> Option<(Chunk, usize)> {
+        let relation = self.relation(at).map(|(relation, length)| (Chunk::Relation(relation), length));
+        let spot = self.spot(at).map(|(spot, length)| (Chunk::Spot(spot), length));
+        let verb = self.verb(at, before).map(|(sense, form, length)| (Chunk::Verb(sense, form), length));
         let noun = self.noun(at);
-        let spot = self.spot(at);
-        let candidates = [
-            relation.map(|found| found.length),
-            verb.map(|(_, _, length)| length),
-            piece.as_ref().map(|(_, length)| *length),
-            noun.as_ref().map(|(_, length)| *length),
-            spot.map(|(_, length)| length),
-        ];
-        let longest = candidates.iter().flatten().copied().max().unwrap_or(0);
-        if longest > 0 {
-            if let (Some(found), Some(length)) = (relation, candidates[0])
-                && length == longest
-                && let Meaning::Relation(relation) = found.meaning
-            {
-                return (Some(Chunk::Relation(relation)), length);
-            }
-            if let Some((spot, length)) = spot.filter(|(_, length)| *length == longest) {
-                return (Some(Chunk::Spot(spot)), length);
-            }
-            if let Some((sense, form, length)) = verb.filter(|(_, _, length)| *length == longest) {
-                return (Some(Chunk::Verb(sense, form)), length);
-            }
-            let thing = noun.as_ref().is_some_and(|(noun, length)| {
-                *length == longest && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
-            });
-            if let Some((piece, length)) =
-                piece.filter(|(piece, length)| *length == longest && (piece.owner.is_some() || piece.its || !thing))
-            {
-                return (Some(Chunk::Piece(piece)), length);
-            }
-            if let Some((noun, length)) = noun {
-                return (Some(Chunk::Noun(noun)), length);
-            }
-        }
-        if let Some((compass, length)) = self.compass(at) {
-            return (Some(Chunk::Compass(compass)), length);
-        }
-        self.small_word(at)
+        let thing = noun.as_ref().filter(|(noun, _)| noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object));
+        let thing = thing.map(|(_, length)| *length);
+        // A thing is named before a part of nobody as long.
+        let piece =
+            self.piece(at).filter(|(piece, length)| piece.owner.is_some() || piece.its || thing != Some(*length));
+        let piece = piece.map(|(piece, length)| (Chunk::Piece(piece), length));
+        let noun = noun.map(|(noun, length)| (Chunk::Noun(noun), length));
+        let all = [relation, spot, verb, piece, noun];
+        all.into_iter().flatten().reduce(|best, next| if next.1 > best.1 { next } else { best })
+    }
+
+    /// Where somebody is, seen from somebody else.
+    fn relation(&self, at: usize) -> Option<(Relation, usize)> {
+        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Relation(_)))?;
+        let Meaning::Relation(relation) = found.meaning else { return None };
+        (!self.is_no_relation(at, found.length)).then_some((relation, found.length))
     }
 
     fn small_word(&self, at: usize) -> (Option<Chunk>, usize) {
@@ -396,273 +380,5 @@ impl Chunker<'_> {
             _ => return None,
         };
         number.parse().ok()
-    }
-
-    fn verb(&self, at: usize, before: &[Placed]) -> Option<(Sense, Form, usize)> {
-        let token = &self.tokens[at];
-        // "AV stationary at a red light", in the style of telegrams.
-        let named = matches!(before, [Placed { chunk: Chunk::Noun(noun), end, .. }] if noun.subject && *end == at);
-        if named && matches!(token.text.as_str(), "stationary" | "motionless" | "idle" | "static") {
-            return Some((Sense::Act(Act::Hold), Form::Past, 1));
-        }
-        if token.capital && at > self.first {
-            return None;
-        }
-        let mut found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
-        // "rolled into the roadway" touches nobody.
-        if matches!(found.meaning, Meaning::Verb(Sense::Contact | Sense::OpenDoorInto, _))
-            && self.goes_to_a_place(at + found.length)
-        {
-            let others = |meaning: Meaning| matches!(meaning, Meaning::Verb(sense, _) if !matches!(sense, Sense::Contact | Sense::OpenDoorInto));
-            found = self.lexicon.longest(self.tokens, at, others)?;
-        }
-        let Meaning::Verb(sense, form) = found.meaning else { return None };
-        // "climbed the curb"; a hill is climbed too.
-        let over = ["climb", "mount", "hop", "jump", "ride", "rode", "roll", "go", "went"];
-        if sense == Sense::Contact
-            && over.iter().any(|stem| token.text.starts_with(stem))
-            && matches!(
-                self.text(at + found.length - 1),
-                "up" | "over"
-                    | "onto"
-                    | "on"
-                    | "climbed"
-                    | "climbs"
-                    | "climbing"
-                    | "climb"
-                    | "mounted"
-                    | "mounting"
-                    | "mounts"
-                    | "hopped"
-                    | "hopping"
-                    | "hops"
-                    | "jumped"
-                    | "jumping"
-                    | "jumps"
-            )
-            && !self.noun(at + found.length).is_some_and(|(noun, _)| {
-                noun.subject || noun.kind.is_some_and(|kind| kind.group() == recrash_model::account::KindGroup::Object)
-            })
-            && self.piece(at + found.length).is_none()
-        {
-            return None;
-        }
-        let word_before = if at > self.first { self.text(at - 1) } else { "" };
-        // Behind an article or an adjective it is a noun: "the stop", "a lane change", "initial contact".
-        let article = DETERMINERS.contains(&word_before) && word_before != "that" && word_before != "this";
-        let adjective = matches!(
-            word_before,
-            "left"
-                | "right"
-                | "complete"
-                | "full"
-                | "initial"
-                | "first"
-                | "second"
-                | "this"
-                | "unprotected"
-                | "physical"
-                | "rear"
-                | "front"
-                | "of"
-                | "'s"
-                | "light"
-                | "hard"
-                | "minor"
-                | "lane"
-                | "no"
-                | "any"
-                | "further"
-                | "secondary"
-                | "three"
-                | "u"
-        );
-        let single = found.length == 1;
-        // "was run into".
-        let done = self.text(at) == "run" && matches!(before.last().map(|placed| &placed.chunk), Some(Chunk::Be));
-        let form = if done && sense == Sense::Contact { Form::Past } else { form };
-        if form == Form::Base && !self.takes_base(at, before) {
-            return None;
-        }
-        if sense == Sense::ContactMade {
-            return Some((sense, form, found.length));
-        }
-        if article && (form == Form::Base || single) {
-            return None;
-        }
-        if adjective && form == Form::Base && single {
-            return None;
-        }
-        if matches!(word_before, "left" | "right") && matches!(self.text(at), "turn" | "turns" | "turning") && single {
-            return None;
-        }
-        // A bare noun at the end of a prepositional phrase: "in contact", "under braking", "without impact".
-        let behind_preposition =
-            matches!(before.last().map(|placed| &placed.chunk), Some(Chunk::Preposition(word)) if *word != "to");
-        if behind_preposition && form == Form::Base && single {
-            return None;
-        }
-        // "minor scratches to both vehicles".
-        let mark = matches!(self.text(at), "scratches" | "scrapes" | "dents" | "marks" | "bumps" | "dings" | "scuffs");
-        if mark
-            && matches!(
-                word_before,
-                "minor"
-                    | "slight"
-                    | "light"
-                    | "small"
-                    | "some"
-                    | "surface"
-                    | "visible"
-                    | "cosmetic"
-                    | "superficial"
-                    | "few"
-                    | "multiple"
-                    | "several"
-                    | "paint"
-                    | "and"
-                    | "of"
-                    | "with"
-                    | "had"
-            )
-        {
-            return None;
-        }
-        // "right turn" as a noun: "during the right turn".
-        if matches!(self.text(at), "left" | "right")
-            && matches!(self.text(at + 1), "turn")
-            && found.length == 2
-            && form == Form::Base
-        {
-            return None;
-        }
-        // "parking lot", "driving lane", "parking space" are places.
-        if matches!(self.text(at), "parking") && self.spot(at).is_some() {
-            return None;
-        }
-        // "its rear parking sensor", "in a parallel parking space", "from a parked position".
-        let named = at + found.length;
-        let of_parking = matches!(self.text(named - 1), "parking" | "parked")
-            && matches!(
-                self.text(named),
-                "sensor"
-                    | "sensors"
-                    | "brake"
-                    | "light"
-                    | "lights"
-                    | "camera"
-                    | "lot"
-                    | "garage"
-                    | "structure"
-                    | "area"
-                    | "space"
-                    | "spot"
-                    | "stall"
-                    | "bay"
-                    | "lane"
-                    | "meter"
-                    | "position"
-                    | "attendant"
-                    | "enforcement"
-                    | "aisle"
-            );
-        if of_parking && (self.text(at) != "parking" || word_before != "was") && found.length <= 2 {
-            return None;
-        }
-        if matches!(self.text(at), "traveling" | "driving" | "turning" | "merging")
-            && matches!(self.text(at + 1), "lane" | "lanes")
-        {
-            return None;
-        }
-        if self.text(at) == "back"
-            && matches!(self.text(at + 1), "to" | "onto" | "into" | "of" | "pain" | "injury")
-            && single
-        {
-            return None;
-        }
-        // "at walking pace", "from crossing streets", "behind a driveway opening".
-        let paced = matches!(self.text(at + 1), "pace" | "speed" | "speeds");
-        if form == Form::Ing && single && (paced || matches!(self.text(at + 1), "street" | "streets" | "roads")) {
-            return None;
-        }
-        // "moved left without signaling".
-        let moves = |word: &str| {
-            ["mov", "veer", "turn", "steer", "swerv", "merg", "drift", "shift", "slid", "swung", "pull"]
-                .iter()
-                .any(|stem| word.starts_with(stem))
-        };
-        if self.text(at) == "left" && moves(word_before) {
-            return None;
-        }
-        if self.text(at) == "opening"
-            && single
-            && matches!(word_before, "driveway" | "gate" | "fence" | "median" | "wall" | "an" | "the")
-        {
-            return None;
-        }
-        if self.text(at) == "cross" && matches!(self.text(at + 1), "traffic" | "street" | "road" | "walk") {
-            return None;
-        }
-        // "the sliding door".
-        if self.text(at) == "sliding" && matches!(self.text(at + 1), "door" | "doors" | "gate") {
-            return None;
-        }
-        if self.text(at) == "contacts" || (self.text(at) == "stop" && self.text(at + 1) == "sign") {
-            return None;
-        }
-        // "coming from the left": where it comes from stands behind.
-        let behind = at + found.length;
-        let side =
-            self.text(behind) == "the" && matches!(self.text(behind + 1), "left" | "right" | "opposite" | "rear");
-        if sense == Sense::Approach && found.length > 1 && self.text(behind - 1) == "from" && side {
-            return Some((sense, form, found.length - 1));
-        }
-        Some((sense, form, found.length))
-    }
-
-    /// Whether the words behind "into" or "onto" name a place: "the roadway", "the van's lane".
-    fn goes_to_a_place(&self, at: usize) -> bool {
-        if !matches!(self.text(at - 1), "into" | "onto") {
-            return false;
-        }
-        if self.text(at) == "traffic" {
-            return true;
-        }
-        let begins = match self.noun(at) {
-            Some((_, length)) if self.text(at + length) == "'s" => at + length + 1,
-            Some(_) => return false,
-            None => at,
-        };
-        (begins..begins + 4).any(|at| {
-            matches!(
-                self.text(at),
-                "roadway" | "road" | "street" | "lane" | "lanes" | "intersection" | "path" | "crosswalk" | "traffic"
-            )
-        })
-    }
-
-    /// A base form is a verb only behind the words that call for one: "to stop", "did not stop", "to stop and wait".
-    fn takes_base(&self, at: usize, before: &[Placed]) -> bool {
-        let Some(word) = at.checked_sub(1).filter(|before| *before >= self.first).map(|at| self.text(at)) else {
-            return false;
-        };
-        if word == "to"
-            && at >= 2
-            && matches!(self.text(at - 2), "prior" | "leading" | "due" | "led" | "subsequent" | "up" | "response")
-        {
-            return false;
-        }
-        if word.ends_with("ly") && at >= 2 && self.text(at - 2) == "to" {
-            return true;
-        }
-        match word {
-            "to" | "not" | "had" | "has" | "have" | "will" | "would" | "could" | "can" | "may" | "might" | "should"
-            | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"
-            | "safely" | "almost" | "nearly" => true,
-            "and" | "or" => {
-                before.iter().rev().skip(1).take(4).any(|placed| matches!(placed.chunk, Chunk::Verb(_, Form::Base)))
-            }
-            _ => false,
-        }
     }
 }

@@ -4,6 +4,37 @@ use super::{Chunker, Spot};
 use crate::token::TokenKind;
 use recrash_model::account::{Compass, LaneWord};
 
+/// Most tokens of the name of a lane before "lane".
+const LONGEST_LANE_NAME: usize = 7;
+
+const LEFT: &[&str] = &["left", "leftmost", "inside", "fast"];
+const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow"];
+const TURN: &[&str] = &["turn", "turning"];
+
+/// What the words before "lane" make of it: the first whose words are all there.
+const LANES: [(&[&[&str]], LaneWord); 10] = [
+    (&[&["bike", "bicycle"]], LaneWord::Bike),
+    (&[&["bus"]], LaneWord::Bus),
+    (&[&["opposing", "opposite", "oncoming"]], LaneWord::Opposing),
+    (&[&["parking", "curb"]], LaneWord::Curb),
+    (&[&["emergency"]], LaneWord::Shoulder),
+    (&[TURN, LEFT], LaneWord::LeftTurn),
+    (&[TURN, RIGHT], LaneWord::RightTurn),
+    (&[LEFT], LaneWord::Left),
+    (&[RIGHT], LaneWord::Right),
+    (&[&["center", "middle", "centre"]], LaneWord::Center),
+];
+
+/// Words that stand before "lane" in its name.
+fn in_lane_names(word: &str) -> bool {
+    matches!(word, "left" | "right" | "leftmost" | "rightmost" | "most" | "far" | "center" | "centre" | "middle")
+        || matches!(word, "turn" | "turning" | "only" | "hand" | "through" | "thru" | "straight" | "dedicated")
+        || matches!(word, "travel" | "driving" | "traffic" | "bike" | "bicycle" | "bus" | "hov" | "carpool" | "merge")
+        || matches!(word, "adjacent" | "next" | "neighboring" | "same" | "inside" | "outside" | "curb" | "parking")
+        || matches!(word, "opposing" | "opposite" | "oncoming" | "designated" | "emergency" | "slow" | "fast")
+        || matches!(word, "passing" | "number" | "second" | "of" | "and" | "two" | "three" | "four")
+}
+
 impl Chunker<'_> {
     /// One of eight directions, and its tokens.
     pub(super) fn compass(&self, at: usize) -> Option<(Compass, usize)> {
@@ -71,137 +102,54 @@ impl Chunker<'_> {
             .map_or(Some((compass, length)), |()| None)
     }
 
+    /// A lane, and its tokens: "the left turn lane", "the shoulder".
     pub(super) fn lane(&self, at: usize) -> Option<(LaneWord, usize)> {
         let word = self.text(at);
         if word == "shoulder" {
             return Some((LaneWord::Shoulder, 1));
         }
-        // "the second lane from the right", "the second from the right lane": neither the first nor the last.
-        if matches!(word, "second" | "third" | "2nd" | "3rd" | "number") {
-            let words: Vec<&str> = (at + 1..at + 6).map(|at| self.text(at)).collect();
-            match words.as_slice() {
-                ["lane", "from", "the", "left" | "right", ..] | ["from", "the", "left" | "right", "lane", ..] => {
-                    return Some((LaneWord::Center, 5));
-                }
-                ["lane", "from", "left" | "right", ..] => return Some((LaneWord::Center, 4)),
-                ["lane", "from", "the", "leftmost" | "rightmost", ..]
-                | ["from", "the", "leftmost" | "rightmost", "lane", ..] => {
-                    return Some((LaneWord::Center, 5));
-                }
-                ["from", "leftmost" | "rightmost", "lane", ..] => return Some((LaneWord::Center, 4)),
-                ["to", "the", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 5)),
-                ["to" | "from", "left" | "right", "lane", ..] => return Some((LaneWord::Center, 4)),
-                ["leftmost" | "rightmost", "lane", ..] => return Some((LaneWord::Center, 3)),
-                _ => {}
-            }
+        if let Some(length) = self.counted_lane(at) {
+            return Some((LaneWord::Center, length));
         }
-        let modifier = |word: &str| {
-            matches!(
-                word,
-                "left"
-                    | "of"
-                    | "two"
-                    | "three"
-                    | "four"
-                    | "right"
-                    | "leftmost"
-                    | "rightmost"
-                    | "most"
-                    | "center"
-                    | "centre"
-                    | "middle"
-                    | "turn"
-                    | "turning"
-                    | "only"
-                    | "hand"
-                    | "through"
-                    | "dedicated"
-                    | "travel"
-                    | "bike"
-                    | "bicycle"
-                    | "bus"
-                    | "hov"
-                    | "far"
-                    | "adjacent"
-                    | "number"
-                    | "inside"
-                    | "outside"
-                    | "curb"
-                    | "parking"
-                    | "opposing"
-                    | "opposite"
-                    | "oncoming"
-                    | "designated"
-                    | "and"
-                    | "second"
-                    | "carpool"
-                    | "same"
-                    | "thru"
-                    | "traffic"
-                    | "driving"
-                    | "merge"
-                    | "slow"
-                    | "fast"
-                    | "passing"
-                    | "straight"
-                    | "next"
-                    | "neighboring"
-                    | "emergency"
-            )
-        };
-        if !modifier(word) || matches!(word, "and" | "of" | "two" | "three" | "four") {
+        if !in_lane_names(word) || matches!(word, "and" | "of" | "two" | "three" | "four") {
             return None;
         }
-        let mut end = at;
-        while end < self.tokens.len() && end < at + 7 {
-            let here = self.text(end);
-            if matches!(here, "lane" | "lanes") {
-                break;
-            }
-            if !modifier(here) && self.compass(end).is_none() && self.tokens[end].kind != TokenKind::Number {
-                return None;
-            }
-            end += 1;
-        }
+        let end = (at..self.tokens.len().min(at + LONGEST_LANE_NAME)).find(|&at| {
+            let inside = in_lane_names(self.text(at)) || self.compass(at).is_some();
+            !inside && self.tokens[at].kind != TokenKind::Number
+        });
+        let end = end.unwrap_or(self.tokens.len().min(at + LONGEST_LANE_NAME));
         if !matches!(self.text(end), "lane" | "lanes") {
             return None;
         }
-        let words: Vec<&str> = (at..end).map(|at| self.text(at)).collect();
-        let has = |word: &str| words.contains(&word);
-        let left = has("left") || has("leftmost") || has("inside") || has("fast");
-        let right = has("right") || has("rightmost") || has("outside") || has("slow");
-        let turn = has("turn") || has("turning");
-        let adjacent = has("adjacent") || has("next") || has("neighboring");
+        let has = |words: &[&str]| (at..end).any(|at| words.contains(&self.text(at)));
         // "the left adjacent lane" is a place beside somebody, and is told as a relation.
-        if adjacent {
+        if has(&["adjacent", "next", "neighboring"]) {
             return None;
         }
-        let lane = if has("bike") || has("bicycle") {
-            LaneWord::Bike
-        } else if has("bus") {
-            LaneWord::Bus
-        } else if has("opposing") || has("opposite") || has("oncoming") {
-            LaneWord::Opposing
-        } else if has("parking") || has("curb") {
-            LaneWord::Curb
-        } else if has("emergency") {
-            LaneWord::Shoulder
-        } else if turn && left {
-            LaneWord::LeftTurn
-        } else if turn && right {
-            LaneWord::RightTurn
-        } else if left {
-            LaneWord::Left
-        } else if right {
-            LaneWord::Right
-        } else if has("center") || has("middle") || has("centre") {
-            LaneWord::Center
-        } else {
-            return None;
-        };
-        Some((lane, end + 1 - at))
+        let (_, lane) = LANES.iter().find(|(names, _)| names.iter().all(|words| has(words)))?;
+        Some((*lane, end + 1 - at))
     }
 
+    /// "the second lane from the right", "the second from the right lane": neither the first nor the last.
+    fn counted_lane(&self, at: usize) -> Option<usize> {
+        if !matches!(self.text(at), "second" | "third" | "2nd" | "3rd" | "number") {
+            return None;
+        }
+        let words: Vec<&str> = (at + 1..at + 6).map(|at| self.text(at)).collect();
+        Some(match words.as_slice() {
+            ["lane", "from", "the", "left" | "right" | "leftmost" | "rightmost", ..]
+            | ["from", "the", "left" | "right" | "leftmost" | "rightmost", "lane", ..]
+            | ["to", "the", "left" | "right", "lane", ..] => 5,
+            ["lane", "from", "left" | "right", ..]
+            | ["from", "left" | "right" | "leftmost" | "rightmost", "lane", ..]
+            | ["to", "left" | "right", "lane", ..] => 4,
+            ["leftmost" | "rightmost", "lane", ..] => 3,
+            _ => return None,
+        })
+    }
+
+    /// A place beside the road, and its tokens: "a parking stall", "an alley".
     pub(super) fn spot(&self, at: usize) -> Option<(Spot, usize)> {
         let (one, two) = (self.text(at), self.text(at + 1));
         Some(match (one, two) {

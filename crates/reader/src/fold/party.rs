@@ -667,7 +667,7 @@ fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
         } else {
             SpeedMeaning::Approach
         };
-        all.push(reading.told(Speed { mps: mph * MPS_PER_MPH, meaning }, at, at + 2));
+        all.push(reading.told(Speed { mps: mph * MPS_PER_MPH, meaning }, at, tokens.len().min(at + 2)));
     }
     all
 }

@@ -1,7 +1,7 @@
 //! Where others than the two are, seen from the subject vehicle.
 
 use super::Reading;
-use super::origin::{Clues, first_relation, lane_place};
+use super::origin::{Clues, first_relation, side_of_lane};
 use crate::frame::Frame;
 use crate::lexicon::Relation;
 use crate::world::{Actor, SUBJECT};
@@ -55,12 +55,7 @@ fn in_other_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     }
     let beside = |side: LeftRight| Origin::Beside { side };
     if let Some((lane, first, end)) = reading.story.world.actors[clues.actor].lane {
-        let side = match lane_place(lane)? - lane_place(own)? {
-            0 => return None,
-            difference if difference < 0 => LeftRight::Left,
-            _ => LeftRight::Right,
-        };
-        return Some(reading.told(beside(side), first, end));
+        return Some(reading.told(beside(side_of_lane(own, lane)?), first, end));
     }
     // In the adjacent lane: of the leftmost one on the right.
     let side = match own {

@@ -1,4 +1,4 @@
-//! Where one clause ends and the next begins: "and", "when", "after", "before", "because".
+//! Where one clause ends and the next begins: "and", "when", "after", "before", "because", a comma, "that".
 
 use super::parser::{Carry, Parser};
 use crate::chunk::{Chunk, Joint, Placed};
@@ -78,6 +78,59 @@ impl Parser<'_> {
         if joint != Joint::And && !matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_) | Chunk::Pronoun)) {
             // "while stopped", "before turning": of whom the clause is about, or of who is named next.
             carry.has_verb = carry.subject.is_some();
+        }
+    }
+
+    /// "that", "which", "who": the clause behind it is about the noun named last.
+    pub(super) fn relative(&mut self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        // "at which time the operator ...": the operator is not behind "at".
+        (carry.preposition, carry.relation) = (None, None);
+        // "the bracket that holds the sensor": of a thing without a name.
+        if self.of_a_word(all, at) {
+            (carry.outer, carry.subject) = (carry.subject.take(), None);
+            (carry.frame, carry.has_verb, carry.stranger) = (None, false, true);
+            carry.relative = true;
+            return true;
+        }
+        if let Some(last) = carry.last.clone() {
+            if !carry.relative {
+                carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
+            }
+            (carry.subject, carry.frame, carry.has_verb) = (Some(last), None, false);
+            (carry.relative, carry.fresh, carry.governed) = (true, false, false);
+            (carry.be, carry.to, carry.progress) = (false, false, None);
+        }
+        false
+    }
+
+    pub(super) fn comma(&mut self, next: Option<&Chunk>, carry: &mut Carry) -> bool {
+        self.leave_place(carry);
+        carry.after_comma = true;
+        // "The van, unable to stop, struck it": the comma ends what did not happen.
+        carry.negated &= carry.nobody || !carry.has_verb && carry.frame.is_none() && carry.fresh;
+        (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
+        carry.progress = None;
+        // "It waited and, although a message came, opened its door": who the sentence is about goes on.
+        let goes_on = matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present)));
+        if goes_on && carry.stranger && carry.joint.is_some() && carry.main.is_some() {
+            (carry.stranger, carry.row, carry.has_verb) = (false, true, true);
+            (carry.subject, carry.frame) = (carry.main.clone(), None);
+        }
+        carry.described = carry.subject.clone().filter(|_| carry.relative);
+        if carry.relative && carry.has_verb {
+            // A relative clause ends at its comma.
+            carry.relative = false;
+            carry.subject = carry.main.clone();
+            carry.has_verb = carry.pending.is_empty() && carry.main.is_some();
+        }
+        true
+    }
+
+    /// Behind a clause that tells of a place the sentence goes on with whom it is about.
+    fn leave_place(&self, carry: &mut Carry) {
+        if std::mem::take(&mut carry.place) && carry.subject.is_none() {
+            carry.subject = carry.main.clone();
+            carry.has_verb = carry.main.is_some();
         }
     }
 }

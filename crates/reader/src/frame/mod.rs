@@ -4,10 +4,14 @@ mod adverbs;
 mod attach;
 mod build;
 mod joint;
+mod named;
 mod parser;
 mod pronoun;
 mod row;
+mod sense;
 mod subject;
+mod verb;
+mod word;
 
 use crate::chunk::{Joint, Piece, Spot};
 use crate::lexicon::{COMPANY, Form, Lexicon, Meaning, Occupant, Part, Progress, Relation, Sense};

@@ -1,10 +1,11 @@
 //! What stands before and behind in the row of chunks, and what verbs and kinds allow.
 
 use super::parser::{Carry, Parser};
+use super::verb::Spoken;
 use crate::chunk::{Article, Chunk, Noun, Placed};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::token::TokenKind;
-use crate::world::{Actor, SUBJECT, World, same_kind};
+use crate::world::{Actor, SUBJECT, same_kind};
 use recrash_model::account::{Act, Kind, KindGroup};
 
 impl Parser<'_> {
@@ -117,17 +118,10 @@ impl Parser<'_> {
 
     /// Whether a verb of moving has somebody as its object: "driving it forward into the van", "the impact moved the bus", "was driven
     /// into the rear".
-    pub(super) fn drives_another(
-        &self,
-        sense: Sense,
-        form: Form,
-        word: &str,
-        all: &[Placed],
-        at: usize,
-        carry: &Carry,
-    ) -> bool {
+    pub(super) fn drives_another(&self, verb: &Spoken<'_>, carry: &Carry) -> bool {
+        let Spoken { sense, form, all, at } = *verb;
         let moves = matches!(
-            word,
+            verb.word(self),
             "drive"
                 | "drove"
                 | "driven"
@@ -148,7 +142,7 @@ impl Parser<'_> {
                 | "turning"
                 | "rotated"
         );
-        if !moves || all[at].end != all[at].first + 1 && !matches!(sense, Sense::Act(Act::Follow)) {
+        if !moves || !single(&all[at]) && sense != Sense::Act(Act::Follow) {
             return false;
         }
         let behind = || {
@@ -233,6 +227,12 @@ impl Parser<'_> {
     }
 }
 
+/// Whether a chunk is one word.
+pub(super) fn single(placed: &Placed) -> bool {
+    placed.end == placed.first + 1
+}
+
+/// Whether somebody of this kind does things.
 pub(super) fn acts(kind: Option<Kind>) -> bool {
     kind.is_none_or(|kind| kind.group() != KindGroup::Object)
 }
@@ -305,7 +305,7 @@ pub(super) fn names_doer(all: &[Placed], at: usize) -> bool {
 }
 
 /// Where the words behind a noun say that it is, seen from the subject vehicle.
-pub(super) fn relation_behind(all: &[Placed], at: usize, _world: &World) -> Option<Relation> {
+pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
     // "the vehicle traveling behind was unable to stop".
     let mut further = at + 1;
     while further < at + 4

@@ -4,7 +4,7 @@ use crate::common::{account_of, each_source};
 use proptest::prelude::*;
 
 /// Words that the grammar takes apart, in any order.
-const WORDS: [&str; 64] = [
+const WORDS: [&str; 65] = [
     "the",
     "a",
     "AV",
@@ -52,6 +52,7 @@ const WORDS: [&str; 64] = [
     "[XXX]",
     "[REDACTED",
     "25 mph",
+    "25mph",
     "driver",
     "opened the",
     "door",
@@ -96,6 +97,12 @@ proptest! {
         let text = picks.iter().map(|pick| WORDS[*pick]).collect::<Vec<_>>().join(" ");
         prop_assert_eq!(account_of(&text), account_of(&text));
     }
+}
+
+#[test]
+fn a_speed_may_be_the_last_word() {
+    let account = account_of("A van struck the rear of the AV, which was traveling at 25mph").expect("an account");
+    assert_eq!(account.sv.speeds.len(), 1);
 }
 
 #[test]

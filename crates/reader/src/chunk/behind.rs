@@ -1,0 +1,165 @@
+//! What stands behind a noun and belongs to it: "(Vehicle 2)", "of the bus", "on a scooter", "'s trailer"; and loose wheels.
+
+use super::noun::can_own;
+use super::{Article, Chunker, Noun};
+use crate::lexicon::{Meaning, Occupant};
+use crate::token::TokenKind;
+use recrash_model::account::{Kind, KindGroup};
+
+impl Chunker<'_> {
+    /// A noun with what stands behind it from `at` on and belongs to it; "'s rear bumper" is left to others.
+    pub(super) fn finish(&self, mut noun: Noun, first: usize, at: usize) -> Option<(Noun, usize)> {
+        let at = self.alias_behind(&mut noun, at);
+        let at = self.vehicle_behind(&mut noun, at);
+        // "a person in the driver's seat of the van" is somebody in the van.
+        if noun.kind == Some(Kind::Pedestrian)
+            && let Some((owner, behind)) = self.seated(at)
+        {
+            (noun.owner, noun.occupant, noun.kind) = (Some(Box::new(owner)), Some((Occupant::Rider, false)), None);
+            return Some((noun, behind - first));
+        }
+        let at = self.ride_behind(&mut noun, at);
+        if self.text(at) != "'s" {
+            return Some((noun, at - first));
+        }
+        // "the truck's flatbed trailer" is the truck.
+        if let Some(behind) = self.trailer(at + 1)
+            && noun.kind.is_some_and(Kind::is_vehicle)
+        {
+            if noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
+                noun.kind = Some(Kind::SemiTrailerTruck);
+            }
+            return Some((noun, behind - first));
+        }
+        // "the van's driver": the owner of somebody inside.
+        if let Some((mut person, length)) = self.owned_person(at + 1) {
+            person.owner = Some(Box::new(noun));
+            return Some((person, at + 1 + length - first));
+        }
+        Some((noun, at - first))
+    }
+
+    /// "the car (Vehicle 2)", "the motorcycle (Vehicle 2) operator".
+    fn alias_behind(&self, noun: &mut Noun, at: usize) -> usize {
+        let Some(number) = self.alias(at) else { return at };
+        noun.subject |= number == 1;
+        noun.number = Some(number).filter(|number| *number > 1);
+        let behind = at + self.parenthesis(at);
+        let Some((Meaning::Occupant(who), length)) = self.head(behind).filter(|_| noun.occupant.is_none()) else {
+            return at;
+        };
+        let owner = noun.clone();
+        (noun.owner, noun.occupant, noun.kind, noun.subject) = (Some(Box::new(owner)), Some((who, false)), None, false);
+        behind + length
+    }
+
+    /// "the driver of the bus", "a passenger inside the van".
+    fn vehicle_behind(&self, noun: &mut Noun, at: usize) -> usize {
+        if noun.occupant.is_none() || noun.owner.is_some() {
+            return at;
+        }
+        let behind = at + if self.text(at) == "(" { self.parenthesis(at) } else { 0 };
+        if matches!(
+            self.text(behind),
+            "of" | "in" | "inside" | "from" | "operating" | "driving" | "on" | "within" | "aboard"
+        ) && let Some((owner, length)) = self.noun(behind + 1)
+            && (owner.subject || owner.kind.is_some_and(can_own))
+            && owner.occupant.is_none()
+        {
+            noun.owner = Some(Box::new(owner));
+            return behind + 1 + length;
+        }
+        at
+    }
+
+    /// "a person on a scooter", "a rider of a bicycle" is who rides it.
+    fn ride_behind(&self, noun: &mut Noun, at: usize) -> usize {
+        let on_foot = noun
+            .kind
+            .is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle))
+            || (noun.occupant.is_some() && noun.owner.is_none());
+        let rides = |at: usize| {
+            matches!(self.text(at), "on" | "riding" | "operating" | "using" | "driving" | "who" | "was" | "were")
+                || matches!(self.text(at), "of" | "in" | "his" | "her" | "top")
+        };
+        let ride = (at..at + 4).find(|&at| !rides(at)).unwrap_or(at + 4);
+        if !on_foot || ride == at {
+            return at;
+        }
+        let Some((ridden, length)) = self.noun(ride) else { return at };
+        let wheels = matches!(
+            ridden.kind,
+            Some(
+                Kind::Bicycle
+                    | Kind::EBike
+                    | Kind::ScooterRider
+                    | Kind::Skateboarder
+                    | Kind::Motorcycle
+                    | Kind::Moped
+                    | Kind::Wheelchair
+            )
+        );
+        if !wheels || ridden.occupant.is_some() {
+            return at;
+        }
+        (noun.kind, noun.occupant, noun.owner) = (ridden.kind, None, None);
+        ride + length
+    }
+
+    /// The vehicle in which somebody is by the words here, and the token behind it: "sitting in the back seat of the van".
+    fn seated(&self, at: usize) -> Option<(Noun, usize)> {
+        let mut behind = at;
+        while matches!(self.text(behind), "who" | "was" | "sitting" | "seated" | "sat" | "waiting") {
+            behind += 1;
+        }
+        if !matches!(self.text(behind), "in" | "inside" | "aboard") {
+            return None;
+        }
+        behind += 1;
+        if let Some(seat) = (behind..behind + 6).find(|&at| self.text(at) == "seat") {
+            behind = seat + 1 + usize::from(matches!(self.text(seat + 1), "of" | "in"));
+        }
+        let (owner, length) = self.noun(behind)?;
+        let vehicle = owner.subject
+            || owner.kind.is_some_and(Kind::is_vehicle)
+                && (owner.kind != Some(Kind::Vehicle) || !owner.names.is_empty());
+        (vehicle && owner.occupant.is_none() && !owner.several).then_some((owner, behind + length))
+    }
+
+    /// Behind a trailer that stands here, with at most two words before it.
+    fn trailer(&self, at: usize) -> Option<usize> {
+        let found = (at..at + 3).find(|&at| matches!(self.text(at), "trailer" | "chassis" | "container" | "load"))?;
+        (at..found).all(|at| self.tokens[at].kind == TokenKind::Word).then_some(found + 1)
+    }
+
+    fn owned_person(&self, at: usize) -> Option<(Noun, usize)> {
+        let (noun, length) = self.noun(at).filter(|(noun, _)| noun.article == Article::None)?;
+        (noun.occupant.is_some() && noun.owner.is_none()).then_some((noun, length))
+    }
+
+    /// Behind a wheel or a tire that is on no vehicle: "a wheel came off a truck", and "the wheel" further on.
+    pub(super) fn loose_wheel(&self, first: usize) -> Option<usize> {
+        let wheel = |at: usize| matches!(self.text(at), "wheel" | "tire");
+        let loose = |at: usize| {
+            wheel(at + 1)
+                && matches!(self.text(at), "a" | "loose" | "detached" | "stray" | "spare" | "runaway")
+                && !matches!(
+                    self.text(at + 2),
+                    "of" | "well"
+                        | "rim"
+                        | "tread"
+                        | "debris"
+                        | "carcass"
+                        | "scrap"
+                        | "change"
+                        | "shop"
+                        | "stop"
+                        | "arch"
+                )
+        };
+        let begins = loose(first);
+        let again =
+            self.text(first) == "the" && wheel(first + 1) && self.text(first + 2) != "of" && (0..first).any(loose);
+        (begins || again).then_some(first + 2)
+    }
+}

@@ -1,0 +1,219 @@
+//! Parts of vehicles: "the rear bumper of the van", "its left side mirror".
+
+use super::noun::can_own;
+use super::{Chunker, DETERMINERS, Noun, Piece};
+use crate::lexicon::{Meaning, Part};
+use crate::token::TokenKind;
+
+/// Most tokens that name one part.
+const LONGEST_PIECE: usize = 14;
+
+/// A part that is being read.
+struct Draft {
+    piece: Piece,
+    /// The token behind what is read.
+    at: usize,
+    /// How many words name a part, and not only where it is.
+    nouns: usize,
+}
+
+impl Draft {
+    fn add(&mut self, part: Part) {
+        if !self.piece.parts.contains(&part) {
+            self.piece.parts.push(part);
+        }
+    }
+}
+
+impl Chunker<'_> {
+    /// A part of a vehicle, with whose it is.
+    pub(super) fn piece(&self, first: usize) -> Option<(Piece, usize)> {
+        if self.loose_wheel(first).is_some() {
+            return None;
+        }
+        let determined = DETERMINERS.contains(&self.text(first));
+        let its = matches!(self.text(first), "its" | "their" | "his" | "her");
+        let piece = Piece { parts: Vec::new(), door: false, mirror: false, open: false, owner: None, its };
+        let mut draft = Draft { piece, at: first + usize::from(determined), nouns: 0 };
+        // "a van, left of it, turned": where it was.
+        let aside = matches!(self.text(first), "left" | "right") && self.text(first + 1) == "of";
+        if aside && first > self.first && self.tokens[first - 1].kind == TokenKind::Mark {
+            return None;
+        }
+        self.parts(first, &mut draft);
+        if draft.piece.parts.is_empty() || draft.at == first {
+            return None;
+        }
+        if self.text(first) == "our" {
+            draft.piece.owner = Some(Noun { subject: true, ..Noun::unnamed() });
+        }
+        let draft = match self.text(draft.at) {
+            "of" => match self.of_a_door(&draft) {
+                Some((piece, end)) => return Some((piece, end - first)),
+                None => self.of_whom(draft)?,
+            },
+            "on" if draft.nouns > 0 => self.of_whom(draft)?,
+            _ => draft,
+        };
+        (self.is_sure(first, &draft) && !self.is_side_of_road(&draft)).then_some((draft.piece, draft.at - first))
+    }
+
+    /// Reads the words of a part: "open rear passenger side door".
+    fn parts(&self, first: usize, draft: &mut Draft) {
+        let mut at = draft.at;
+        let mut read = at;
+        while at < self.tokens.len().min(first + LONGEST_PIECE) {
+            let word = self.text(at);
+            if matches!(word, "open" | "opened" | "opening") && self.tokens.get(at + 1).is_some() {
+                (draft.piece.open, at) = (true, at + 1);
+                continue;
+            }
+            if self.goes_on(at, &draft.piece.parts) {
+                at += 1;
+                continue;
+            }
+            let Some((part, length)) = self.part(at) else { break };
+            let named = |names: &[&str]| (at..at + length).any(|at| names.contains(&self.text(at)));
+            draft.piece.door |= named(&["door", "doors"]);
+            draft.piece.mirror |= named(&["mirror"]);
+            draft.nouns += usize::from(part == Part::Noun || named(&["side", "end"]));
+            draft.add(part);
+            at += length;
+            read = at;
+        }
+        draft.at = at.min(read.max(first));
+    }
+
+    /// Whether a small word here stands within a part.
+    fn goes_on(&self, at: usize, parts: &[Part]) -> bool {
+        if parts.is_empty() {
+            return false;
+        }
+        match self.text(at) {
+            // "the roof-mounted sensor dome".
+            "mounted" => self.part(at + 1).is_some(),
+            "and" => self.part(at + 1).is_some() && self.noun(at + 1).is_none(),
+            // "its front, passenger side bumper".
+            "," => {
+                let side = matches!(self.part(at + 1), Some((Part::Left | Part::Right, length)) if self.part(at + 1 + length).is_some());
+                parts.iter().all(|part| matches!(part, Part::Front | Part::Rear)) && side
+            }
+            _ => false,
+        }
+    }
+
+    /// The first word of the owner: "the rear of both the van and the bus" has one, the first.
+    fn owner_at(&self, draft: &Draft) -> usize {
+        let behind = draft.at + 1;
+        behind + usize::from(self.text(behind) == "both")
+    }
+
+    /// "the edge of the open door": the door, and the token behind it.
+    fn of_a_door(&self, draft: &Draft) -> Option<(Piece, usize)> {
+        let behind = self.owner_at(draft);
+        let door = (behind + 1..behind + 4).find(|&at| matches!(self.text(at), "door" | "doors"))?;
+        if !DETERMINERS.contains(&self.text(behind)) {
+            return None;
+        }
+        let (inner, length) = self.piece(behind).filter(|(inner, _)| inner.door)?;
+        if door >= behind + length {
+            return None;
+        }
+        let Piece { mut parts, mirror, open, its, .. } = draft.piece.clone();
+        for part in inner.parts {
+            if !parts.contains(&part) {
+                parts.push(part);
+            }
+        }
+        let (open, its) = (open || inner.open, its || inner.its);
+        Some((Piece { parts, door: true, mirror, open, owner: inner.owner, its }, behind + length))
+    }
+
+    /// Whose it is by the words behind "of" or "on"; `None` where it is of nobody.
+    fn of_whom(&self, mut draft: Draft) -> Option<Draft> {
+        let behind = self.owner_at(&draft);
+        let owner = self.noun(behind).filter(|(noun, _)| noun.subject || noun.kind.is_some_and(can_own));
+        if let Some((owner, length)) = owner {
+            draft.piece.owner = Some(owner);
+            draft.at = behind + length;
+            // "the center of the van's front bumper".
+            if self.text(draft.at) == "'s" && self.part(draft.at + 1).is_some() {
+                self.further_parts(draft.at + 1, &mut draft);
+            }
+        } else if matches!(self.text(behind), "its" | "their") && self.part(behind + 1).is_some() {
+            draft.piece.its = true;
+            self.further_parts(behind + 1, &mut draft);
+        } else if self.text(behind) == "it" {
+            (draft.piece.its, draft.at) = (true, behind + 1);
+        } else if self.text(draft.at) == "of" {
+            return None;
+        }
+        Some(draft)
+    }
+
+    fn further_parts(&self, at: usize, draft: &mut Draft) {
+        draft.at = at;
+        while let Some((part, length)) = self.part(draft.at) {
+            draft.add(part);
+            draft.at += length;
+        }
+    }
+
+    /// "the front", "the left" alone are places unless somebody owns them or a part is named.
+    fn is_sure(&self, first: usize, draft: &Draft) -> bool {
+        let Draft { piece, at, nouns } = draft;
+        let placed = piece.parts.iter().any(|part| *part != Part::Noun);
+        let possessed = first > self.first && self.text(first - 1) == "'s" && placed;
+        let owned = piece.owner.is_some() || piece.its;
+        let bare = placed && self.text(first) == "the" && self.ends_clause(*at);
+        let plain_noun = piece.parts == [Part::Noun] && !owned && !piece.door;
+        let of_vehicles = matches!(
+            self.text(at - 1),
+            "mirror" | "bumper" | "sensor" | "wheel" | "tire" | "handlebar" | "handlebars" | "fender"
+        );
+        (owned || *nouns > 0 || possessed || bare) && (!plain_noun || of_vehicles)
+    }
+
+    /// "on the left side of the road".
+    fn is_side_of_road(&self, draft: &Draft) -> bool {
+        let Draft { piece, at, .. } = draft;
+        matches!(self.text(at - 1), "side" | "lane" | "edge" | "hand")
+            && piece.owner.is_none()
+            && !piece.its
+            && !piece.parts.iter().any(|part| matches!(part, Part::Front | Part::Rear))
+            && matches!(self.text(at.wrapping_sub(2)), "left" | "right" | "hand")
+            && self.text(*at) == "of"
+    }
+
+    fn ends_clause(&self, at: usize) -> bool {
+        at >= self.tokens.len() || matches!(self.text(at), "," | "." | "and" | "by" | "when" | "while" | "as")
+    }
+
+    pub(super) fn part(&self, at: usize) -> Option<(Part, usize)> {
+        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Part(_)))?;
+        let Meaning::Part(part) = found.meaning else { return None };
+        // "driver" and "passenger" are sides only before a part.
+        let alone = found.length == 1 && matches!(self.text(at), "driver" | "drivers" | "passenger" | "passengers");
+        if alone || (found.length == 2 && self.text(at + 1) == "'s") {
+            let behind = at + found.length;
+            let next = self.lexicon.longest(self.tokens, behind, |meaning| matches!(meaning, Meaning::Part(_)))?;
+            let is_part = matches!(next.meaning, Meaning::Part(Part::Noun | Part::Front | Part::Rear));
+            let person =
+                matches!(self.text(behind), "side") || !matches!(self.text(behind), "back" | "body" | "arm" | "window");
+            if !is_part || !person {
+                return None;
+            }
+        }
+        if matches!(self.text(at), "back")
+            && matches!(self.text(at + 1), "to" | "into" | "onto" | "out" | "up" | "down" | "and" | "in")
+        {
+            return None;
+        }
+        if matches!(self.text(at), "light")
+            && !matches!(self.text(at.wrapping_sub(1)), "tail" | "head" | "brake" | "side")
+        {
+            return None;
+        }
+        Some((part, found.length))
+    }
+}

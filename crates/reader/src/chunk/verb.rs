@@ -1,0 +1,334 @@
+//! Verbs: the longest phrase of the lexicon that is one, unless the words around it make it a noun, an adjective or a place.
+//!
+//! A new rule of English that says "here it is no verb" goes into [`NO_VERB`].
+
+use super::{Chunk, Chunker, DETERMINERS, Placed};
+use crate::lexicon::{Form, Found, Meaning, Sense};
+use recrash_model::account::{Act, KindGroup};
+
+/// A phrase that the lexicon knows as a verb, and what stands around it.
+struct Candidate<'a> {
+    chunker: &'a Chunker<'a>,
+    /// Chunks before it.
+    before: &'a [Placed],
+    sense: Sense,
+    form: Form,
+    /// First token.
+    at: usize,
+    /// Tokens that it takes.
+    length: usize,
+    /// The word before it in its sentence.
+    word_before: &'a str,
+}
+
+/// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 16] = [
+    |verb| verb.is_determined(),
+    |verb| verb.is_described(),
+    |verb| verb.is_turn_of_a_side(),
+    |verb| verb.ends_a_prepositional_phrase(),
+    |verb| verb.is_a_mark(),
+    |verb| verb.is_bare_turn(),
+    |verb| verb.is_a_parking_place(),
+    |verb| verb.is_of_parking(),
+    |verb| verb.is_of_a_lane(),
+    |verb| verb.is_the_back(),
+    |verb| verb.is_of_a_pace_or_street(),
+    |verb| verb.is_a_side_moved_to(),
+    |verb| verb.is_an_opening(),
+    |verb| verb.is_cross_traffic(),
+    |verb| verb.is_a_sliding_door(),
+    |verb| verb.is_contacts_or_stop_sign(),
+];
+
+impl Candidate<'_> {
+    fn word(&self, ahead: usize) -> &str {
+        self.chunker.text(self.at + ahead)
+    }
+
+    /// The word that stands `ahead` words behind the phrase.
+    fn behind(&self, ahead: usize) -> &str {
+        self.chunker.text(self.at + self.length + ahead)
+    }
+
+    fn last_word(&self) -> &str {
+        self.chunker.text(self.at + self.length - 1)
+    }
+
+    fn is_single(&self) -> bool {
+        self.length == 1
+    }
+
+    /// Behind an article: "the stop", "a lane change".
+    fn is_determined(&self) -> bool {
+        let article = DETERMINERS.contains(&self.word_before) && !matches!(self.word_before, "that" | "this");
+        article && (self.form == Form::Base || self.is_single())
+    }
+
+    /// Behind an adjective: "initial contact", "a complete stop".
+    fn is_described(&self) -> bool {
+        let adjective = matches!(
+            self.word_before,
+            "left"
+                | "right"
+                | "complete"
+                | "full"
+                | "initial"
+                | "first"
+                | "second"
+                | "this"
+                | "unprotected"
+                | "physical"
+                | "rear"
+                | "front"
+                | "of"
+                | "'s"
+                | "light"
+                | "hard"
+                | "minor"
+                | "lane"
+                | "no"
+                | "any"
+                | "further"
+                | "secondary"
+                | "three"
+                | "u"
+        );
+        adjective && self.form == Form::Base && self.is_single()
+    }
+
+    /// "in the left turning lane", "after its right turn".
+    fn is_turn_of_a_side(&self) -> bool {
+        matches!(self.word_before, "left" | "right")
+            && matches!(self.word(0), "turn" | "turns" | "turning")
+            && self.is_single()
+    }
+
+    /// A bare noun at the end of a prepositional phrase: "in contact", "under braking", "without impact".
+    fn ends_a_prepositional_phrase(&self) -> bool {
+        let governed =
+            matches!(self.before.last().map(|placed| &placed.chunk), Some(Chunk::Preposition(word)) if *word != "to");
+        governed && self.form == Form::Base && self.is_single()
+    }
+
+    /// "minor scratches to both vehicles".
+    fn is_a_mark(&self) -> bool {
+        matches!(self.word(0), "scratches" | "scrapes" | "dents" | "marks" | "bumps" | "dings" | "scuffs")
+            && matches!(
+                self.word_before,
+                "minor"
+                    | "slight"
+                    | "light"
+                    | "small"
+                    | "some"
+                    | "surface"
+                    | "visible"
+                    | "cosmetic"
+                    | "superficial"
+                    | "few"
+                    | "multiple"
+                    | "several"
+                    | "paint"
+                    | "and"
+                    | "of"
+                    | "with"
+                    | "had"
+            )
+    }
+
+    /// "during the right turn".
+    fn is_bare_turn(&self) -> bool {
+        matches!(self.word(0), "left" | "right")
+            && self.word(1) == "turn"
+            && self.length == 2
+            && self.form == Form::Base
+    }
+
+    /// "in a parking lot", "a parking space".
+    fn is_a_parking_place(&self) -> bool {
+        self.word(0) == "parking" && self.chunker.spot(self.at).is_some()
+    }
+
+    /// "its rear parking sensor", "in a parallel parking space", "from a parked position".
+    fn is_of_parking(&self) -> bool {
+        let named = matches!(self.last_word(), "parking" | "parked")
+            && matches!(
+                self.behind(0),
+                "sensor"
+                    | "sensors"
+                    | "brake"
+                    | "light"
+                    | "lights"
+                    | "camera"
+                    | "lot"
+                    | "garage"
+                    | "structure"
+                    | "area"
+                    | "space"
+                    | "spot"
+                    | "stall"
+                    | "bay"
+                    | "lane"
+                    | "meter"
+                    | "position"
+                    | "attendant"
+                    | "enforcement"
+                    | "aisle"
+            );
+        named && (self.word(0) != "parking" || self.word_before != "was") && self.length <= 2
+    }
+
+    /// "the driving lane".
+    fn is_of_a_lane(&self) -> bool {
+        matches!(self.word(0), "traveling" | "driving" | "turning" | "merging")
+            && matches!(self.word(1), "lane" | "lanes")
+    }
+
+    /// "it moved back into its lane", "back pain".
+    fn is_the_back(&self) -> bool {
+        self.word(0) == "back"
+            && matches!(self.word(1), "to" | "onto" | "into" | "of" | "pain" | "injury")
+            && self.is_single()
+    }
+
+    /// "at walking pace", "from crossing streets".
+    fn is_of_a_pace_or_street(&self) -> bool {
+        self.form == Form::Ing
+            && self.is_single()
+            && matches!(self.word(1), "pace" | "speed" | "speeds" | "street" | "streets" | "roads")
+    }
+
+    /// "moved left without signaling".
+    fn is_a_side_moved_to(&self) -> bool {
+        let moves = ["mov", "veer", "turn", "steer", "swerv", "merg", "drift", "shift", "slid", "swung", "pull"];
+        self.word(0) == "left" && moves.iter().any(|stem| self.word_before.starts_with(stem))
+    }
+
+    /// "behind a driveway opening".
+    fn is_an_opening(&self) -> bool {
+        self.word(0) == "opening"
+            && self.is_single()
+            && matches!(self.word_before, "driveway" | "gate" | "fence" | "median" | "wall" | "an" | "the")
+    }
+
+    /// "the cross traffic".
+    fn is_cross_traffic(&self) -> bool {
+        self.word(0) == "cross" && matches!(self.word(1), "traffic" | "street" | "road" | "walk")
+    }
+
+    /// "the sliding door".
+    fn is_a_sliding_door(&self) -> bool {
+        self.word(0) == "sliding" && matches!(self.word(1), "door" | "doors" | "gate")
+    }
+
+    /// "the stop sign".
+    fn is_contacts_or_stop_sign(&self) -> bool {
+        self.word(0) == "contacts" || self.word(0) == "stop" && self.word(1) == "sign"
+    }
+
+    /// "climbed the curb" is a contact; a hill is climbed too.
+    fn climbs_nothing(&self) -> bool {
+        let over = ["climb", "mount", "hop", "jump", "ride", "rode", "roll", "go", "went"];
+        let last = self.last_word();
+        let climbs = matches!(last, "up" | "over" | "onto" | "on" | "climb")
+            || matches!(last, "climbed" | "climbs" | "climbing" | "mounted" | "mounting" | "mounts")
+            || matches!(last, "hopped" | "hopping" | "hops" | "jumped" | "jumping" | "jumps");
+        let behind = self.at + self.length;
+        self.sense == Sense::Contact
+            && over.iter().any(|stem| self.word(0).starts_with(stem))
+            && climbs
+            && !self.chunker.noun(behind).is_some_and(|(noun, _)| {
+                noun.subject || noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object)
+            })
+            && self.chunker.piece(behind).is_none()
+    }
+}
+
+impl Chunker<'_> {
+    /// The verb that begins here: what it says, its form, and the tokens that it takes.
+    pub(super) fn verb(&self, at: usize, before: &[Placed]) -> Option<(Sense, Form, usize)> {
+        let token = &self.tokens[at];
+        // "AV stationary at a red light", in the style of telegrams.
+        let named = matches!(before, [Placed { chunk: Chunk::Noun(noun), end, .. }] if noun.subject && *end == at);
+        if named && matches!(token.text.as_str(), "stationary" | "motionless" | "idle" | "static") {
+            return Some((Sense::Act(Act::Hold), Form::Past, 1));
+        }
+        if token.capital && at > self.first {
+            return None;
+        }
+        let found = self.verb_phrase(at)?;
+        let Meaning::Verb(sense, form) = found.meaning else { return None };
+        // "was run into".
+        let done = self.text(at) == "run" && matches!(before.last().map(|placed| &placed.chunk), Some(Chunk::Be));
+        let form = if done && sense == Sense::Contact { Form::Past } else { form };
+        let word_before = if at > self.first { self.text(at - 1) } else { "" };
+        let verb = Candidate { chunker: self, before, sense, form, at, length: found.length, word_before };
+        if verb.climbs_nothing() || form == Form::Base && !self.takes_base(at, before) {
+            return None;
+        }
+        if sense != Sense::ContactMade && NO_VERB.iter().any(|says| says(&verb)) {
+            return None;
+        }
+        // "coming from the left": where it comes from stands behind.
+        let side = verb.behind(0) == "the" && matches!(verb.behind(1), "left" | "right" | "opposite" | "rear");
+        let from = sense == Sense::Approach && found.length > 1 && verb.last_word() == "from" && side;
+        Some((sense, form, if from { found.length - 1 } else { found.length }))
+    }
+
+    /// The longest verb of the lexicon here: "rolled into the roadway" touches nobody.
+    fn verb_phrase(&self, at: usize) -> Option<Found> {
+        let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
+        let touches = |meaning| matches!(meaning, Meaning::Verb(Sense::Contact | Sense::OpenDoorInto, _));
+        if touches(found.meaning) && self.goes_to_a_place(at + found.length) {
+            let others = |meaning| matches!(meaning, Meaning::Verb(..)) && !touches(meaning);
+            return self.lexicon.longest(self.tokens, at, others);
+        }
+        Some(found)
+    }
+
+    /// Whether the words behind "into" or "onto" name a place: "the roadway", "the van's lane".
+    fn goes_to_a_place(&self, at: usize) -> bool {
+        if !matches!(self.text(at - 1), "into" | "onto") {
+            return false;
+        }
+        if self.text(at) == "traffic" {
+            return true;
+        }
+        let begins = match self.noun(at) {
+            Some((_, length)) if self.text(at + length) == "'s" => at + length + 1,
+            Some(_) => return false,
+            None => at,
+        };
+        (begins..begins + 4).any(|at| {
+            matches!(
+                self.text(at),
+                "roadway" | "road" | "street" | "lane" | "lanes" | "intersection" | "path" | "crosswalk" | "traffic"
+            )
+        })
+    }
+
+    /// A base form is a verb only behind the words that call for one: "to stop", "did not stop", "to stop and wait".
+    fn takes_base(&self, at: usize, before: &[Placed]) -> bool {
+        let Some(word) = at.checked_sub(1).filter(|before| *before >= self.first).map(|at| self.text(at)) else {
+            return false;
+        };
+        if word == "to"
+            && at >= 2
+            && matches!(self.text(at - 2), "prior" | "leading" | "due" | "led" | "subsequent" | "up" | "response")
+        {
+            return false;
+        }
+        if word.ends_with("ly") && at >= 2 && self.text(at - 2) == "to" {
+            return true;
+        }
+        match word {
+            "to" | "not" | "had" | "has" | "have" | "will" | "would" | "could" | "can" | "may" | "might" | "should"
+            | "must" | "did" | "t" | "fully" | "suddenly" | "immediately" | "abruptly" | "slowly" | "also" | "then"
+            | "safely" | "almost" | "nearly" => true,
+            "and" | "or" => {
+                before.iter().rev().skip(1).take(4).any(|placed| matches!(placed.chunk, Chunk::Verb(_, Form::Base)))
+            }
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! What the words say of the place that somebody comes from: a kerb, a stall, a side street, a side of the road.
+
+use crate::fold::Reading;
+use crate::fold::types::turning;
+use crate::lexicon::{Relation, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Account, Act, Compass, LeftRight, Source};
+
+/// The side of the road from which somebody comes, where its words name it: "from the north side of the street", "between cars on the
+/// right side of the road".
+pub(super) fn side_of_road(reading: &Reading<'_>, actor: Actor, account: &Account) -> Option<LeftRight> {
+    let own = after_its_turn(account);
+    let tokens = &reading.story.tokens;
+    let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+    let compass = |at: usize| match word(at) {
+        "north" | "northern" => Some(Compass::North),
+        "east" | "eastern" => Some(Compass::East),
+        "south" | "southern" => Some(Compass::South),
+        "west" | "western" => Some(Compass::West),
+        _ => None,
+    };
+    let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
+    let comes =
+        |act: Option<Act>| matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve));
+    reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(_, frame)| {
+        let (first, end) = (frame.first, reading.story.sentences[frame.sentence].end);
+        (first..end).find_map(|at| {
+            let kerb = matches!(word(at + 1), "sidewalk" | "curb");
+            match word(at) {
+                "left" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Left),
+                "right" if kerb || word(at + 1) == "side" && road(at + 2) => Some(LeftRight::Right),
+                _ if kerb || word(at + 1) == "side" => match own?.eighths_to(compass(at)?) {
+                    1..=3 => Some(LeftRight::Right),
+                    5..=7 => Some(LeftRight::Left),
+                    _ => None,
+                },
+                _ => None,
+            }
+        })
+    })
+}
+
+/// Whether somebody is told to go uphill (or downhill).
+pub(super) fn climbs(reading: &Reading<'_>, actor: Actor) -> Option<bool> {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).find_map(|(number, frame)| {
+        let (first, end) = reading.window(number);
+        let goes = matches!(frame.act(), Some(Act::Follow | Act::SetOff | Act::Drift | Act::Pass));
+        tokens[first..end].iter().filter(|_| goes).find_map(|token| match token.text.as_str() {
+            "uphill" => Some(true),
+            "downhill" => Some(false),
+            _ => None,
+        })
+    })
+}
+
+/// Whether the words put somebody at the kerb.
+pub(super) fn at_curb(reading: &Reading<'_>, actor: Actor) -> bool {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).any(|(number, _)| {
+        let (first, end) = reading.window(number);
+        tokens[first..end].iter().any(|token| matches!(token.text.as_str(), "curb" | "curbside" | "kerb" | "parallel"))
+    })
+}
+
+/// Whether the words put somebody on a road that crosses.
+pub(super) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).any(|(number, frame)| {
+        let (first, end) = reading.window(number);
+        // "A coupe on the cross street ran the light": between its name and its verb.
+        let named = reading.story.world.actors[actor].kind_tokens.map_or(first, |(_, end)| end);
+        let sentence = reading.story.sentences[frame.sentence];
+        let first = if (sentence.first..first).contains(&named) { named } else { first };
+        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+        (first..end).any(|at| {
+            let road = matches!(word(at + 1), "street" | "road" | "streets");
+            let crosses = matches!(word(at), "side" | "cross" | "crossing" | "intersecting" | "perpendicular");
+            // "the street on its left".
+            let there = matches!(word(at), "street" | "road")
+                && matches!(word(at + 1), "on" | "to")
+                && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
+            crosses && road || there
+        })
+    })
+}
+
+/// Whether the direction of somebody is the one that it faces, and not the one that it drives.
+pub(super) fn faces_only(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading.story.world.actors[actor].heading.is_some_and(|(_, first, _)| {
+        reading.story.tokens[first.saturating_sub(2)..first]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "facing" | "faced" | "oriented" | "pointed" | "pointing"))
+    })
+}
+
+/// Direction of the subject vehicle, after a turn that is done where no street is told.
+pub(super) fn after_its_turn(account: &Account) -> Option<Compass> {
+    let heading = account.sv.heading.as_ref()?.value;
+    let mut turns = account.sv.acts.iter().filter(|fact| !fact.after_contact && matches!(fact.act, Act::Turn));
+    let (only, more) = (turns.next(), turns.next());
+    match only {
+        Some(only) if more.is_none() && !turning(&account.sv) => match only.side {
+            Some(LeftRight::Left) => Some(heading.turned(6)),
+            Some(LeftRight::Right) => Some(heading.turned(2)),
+            None => Some(heading),
+        },
+        _ => Some(heading),
+    }
+}
+
+pub(super) fn passes_subject(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading
+        .before(actor)
+        .any(|(_, frame)| frame.act() == Some(Act::Pass) && frame.object.is_none_or(|object| object == SUBJECT))
+}
+
+/// The subject vehicle stood behind it, or followed it.
+pub(super) fn lead_of_subject(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading.before(SUBJECT).any(|(_, frame)| {
+        frame.relations.contains(&(Relation::Behind, Some(actor)))
+            || (frame.sense == Sense::Yield && frame.object == Some(actor))
+    })
+}
+
+/// The words that place somebody in a stall.
+pub(super) fn in_stall(reading: &Reading<'_>, actor: Actor) -> Option<Source> {
+    stood_in(reading, actor, &["stall", "stalls", "space", "spot", "carport", "spaces"])
+}
+
+/// Where it stood in a place of one of these names.
+pub(super) fn stood_in(reading: &Reading<'_>, actor: Actor, names: &[&str]) -> Option<Source> {
+    let tokens = &reading.story.tokens;
+    reading.before(actor).find_map(|(number, frame)| {
+        let (first, end) = reading.window(number);
+        let at = (first..end).find(|&at| names.contains(&tokens[at].text.as_str()))?;
+        (frame.sense == Sense::Parked || frame.act() == Some(Act::Hold) || frame.sense == Sense::Face)
+            .then(|| reading.words(frame.first, at + 1))
+    })
+}

@@ -1,0 +1,594 @@
+//! From where a road user comes: rules in an order, the first that says something counts. What is told goes before what zones and
+//! lanes show, and a place beside the road before a direction on it.
+//!
+//! A new rule goes into [`RULES`], before all that would say something else of its case.
+
+use super::places::{
+    after_its_turn, at_curb, climbs, faces_only, in_stall, lead_of_subject, on_side_street, passes_subject,
+    side_of_road, stood_in,
+};
+use super::{Clues, changed_from, first_relation, lane_side, relation_to};
+use crate::chunk::Spot;
+use crate::fold::Reading;
+use crate::fold::fallback::{square_front, zone_side};
+use crate::fold::party::has_zone;
+use crate::fold::types::{turn_side, turning};
+use crate::frame::Frame;
+use crate::lexicon::{Relation, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{
+    Account, Act, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
+};
+use recrash_model::zones::ContactZone as Z;
+
+/// A road user and what is known of its way.
+struct Case<'a> {
+    clues: &'a Clues<'a>,
+    reading: &'a Reading<'a>,
+    actor: Actor,
+    account: &'a Account,
+    partner: &'a Party,
+    /// The side on which it is, as told.
+    side: Option<LeftRight>,
+    /// The side of the subject vehicle that was touched.
+    touched: Option<LeftRight>,
+    heading: Option<&'a Fact<Compass>>,
+    /// Eighths of a turn from the direction of the subject vehicle to its own: 4 comes the other way.
+    turn: Option<u8>,
+    /// It was parked.
+    parked: bool,
+    ahead: bool,
+    behind: bool,
+    /// Where it is, as told first.
+    first: Option<Relation>,
+    sv_stands: bool,
+}
+
+type Told = Option<Fact<Origin>>;
+type Rule = fn(&Case<'_>) -> Told;
+
+const RULES: [Rule; 32] = [
+    |case| case.thrown_at_the_rear(),
+    |case| case.out_of_a_place(),
+    |case| case.stood_in_a_stall(),
+    |case| case.backwards_out_of_a_driveway(),
+    |case| case.ahead_in_the_lane_that_was_left(),
+    |case| case.backwards(),
+    |case| case.opens_a_door(),
+    |case| case.on_a_side_street(),
+    |case| case.enters_from_a_road(),
+    |case| case.leaves_the_kerb(),
+    |case| case.moves_over_from_behind(),
+    |case| case.comes_from_behind(),
+    |case| case.is_beside(),
+    |case| case.gives_no_way(),
+    |case| case.by_directions(),
+    |case| case.up_and_down_a_hill(),
+    |case| case.goes_the_wrong_way(),
+    |case| case.comes_the_other_way(),
+    |case| case.crosses(),
+    |case| case.moves_over_from_ahead(),
+    |case| case.is_ahead(),
+    |case| case.front_on_flank_at_a_junction(),
+    |case| case.is_on_a_side(),
+    |case| case.passes_the_other_way(),
+    |case| case.passes(),
+    |case| case.by_lanes(),
+    |case| case.changes_into_the_edge_lane(),
+    |case| case.both_turn(),
+    |case| case.subject_goes_backwards(),
+    |case| case.touched_from_a_side_street(),
+    |case| case.touched_in_a_turn(),
+    |case| case.is_rear_ended(),
+];
+
+/// From where a road user comes.
+pub(super) fn of_road_user(clues: &Clues<'_>, account: &Account) -> Told {
+    let case = Case::new(clues, account)?;
+    RULES.iter().find_map(|rule| rule(&case))
+}
+
+fn told_as(value: Origin, source: Source) -> Told {
+    Some(Fact { value, source })
+}
+
+fn by_rule(value: Origin, name: &str) -> Told {
+    Some(Fact::by_rule(value, name))
+}
+
+fn is_flank(zone: Z) -> bool {
+    matches!(zone, Z::Left | Z::Right)
+}
+
+/// Whether all zones that are told are wanted, and some are told.
+fn only(party: &Party, wanted: impl Fn(Z) -> bool) -> bool {
+    !party.zones.is_empty() && party.zones.iter().all(|zone| wanted(zone.value))
+}
+
+impl<'a> Case<'a> {
+    fn new(clues: &'a Clues<'a>, account: &'a Account) -> Option<Self> {
+        let (reading, actor) = (clues.reading, clues.actor);
+        let partner = account.partner.as_ref()?;
+        let walks = told(&partner.kind)
+            .is_some_and(|kind| matches!(kind.group(), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist));
+        let mut case = Self {
+            clues,
+            reading,
+            actor,
+            account,
+            partner,
+            side: clues.side().or_else(|| side_of_road(reading, actor, account).filter(|_| walks)),
+            touched: zone_side(account),
+            heading: partner.heading.as_ref(),
+            turn: None,
+            parked: told(&partner.state) == Some(ContactState::Parked),
+            ahead: clues.any(Relation::Ahead),
+            behind: clues.any(Relation::Behind),
+            first: first_relation(clues),
+            sv_stands: told(&account.sv.state).is_some_and(ContactState::stands),
+        };
+        let parked = case.frames().any(|(_, frame)| frame.sense == Sense::Parked);
+        case.parked |= parked;
+        // After a turn that is done, its new direction counts.
+        let turned = if turning(&account.sv) { None } else { account.sv.heading_after.as_ref() };
+        let own = turned.map(|fact| fact.value).or_else(|| after_its_turn(account));
+        // Who faces one way and goes backwards comes from there.
+        let backs_from = case.did(Act::Reverse) && faces_only(reading, actor);
+        let other = case.heading.map(|other| other.value.turned(if backs_from { 4 } else { 0 }));
+        case.turn = own.zip(other).map(|(own, other)| own.eighths_to(other));
+        Some(case)
+    }
+
+    /// What it did up to the contact.
+    fn frames(&self) -> impl Iterator<Item = (usize, &'a Frame)> {
+        self.reading.before(self.actor).filter(|(_, frame)| frame.happened())
+    }
+
+    fn did(&self, act: Act) -> bool {
+        self.frames().any(|(_, frame)| frame.act() == Some(act))
+    }
+
+    fn moved_over(&self) -> bool {
+        self.did(Act::LaneChange) || self.did(Act::Swerve) || self.did(Act::Drift)
+    }
+
+    /// The words of the first frame of an act.
+    fn words_of(&self, act: Act) -> Source {
+        self.clues.source(|frame| frame.act() == Some(act))
+    }
+
+    /// The side that is told, else the one that was touched.
+    fn side_or_touched(&self) -> Option<LeftRight> {
+        self.side.or(self.touched)
+    }
+
+    fn beside(&self, side: LeftRight) -> Told {
+        told_as(Origin::Beside { side }, self.clues.has(relation_to(side)))
+    }
+
+    fn across(&self, side: LeftRight) -> Told {
+        told_as(Origin::Cross { side }, self.clues.has(relation_to(side)))
+    }
+
+    fn first_is_side(&self) -> bool {
+        matches!(self.first, Some(Relation::Left | Relation::Right))
+    }
+
+    fn behind_first(&self) -> bool {
+        self.first == Some(Relation::Behind)
+    }
+
+    fn sv_reverses(&self) -> bool {
+        told(&self.account.sv.state) == Some(ContactState::Reversing)
+    }
+
+    /// Out of a spot at the other side of the road, and then on: it comes the other way.
+    fn drove_on(&self, number: usize) -> bool {
+        let drives = |act: Option<Act>| matches!(act, Some(Act::Follow | Act::SetOff | Act::Drift));
+        self.turn == Some(4) && self.frames().any(|(later, frame)| later > number && drives(frame.act()))
+    }
+
+    /// Who drives the other way comes from there, and is beside it then.
+    fn other_way(&self) -> bool {
+        self.turn == Some(4)
+            && !(self.did(Act::Turn) || self.did(Act::UTurn) || self.did(Act::WrongWay))
+            && told(&self.partner.state) == Some(ContactState::Moving)
+    }
+
+    /// Thrown at its plain rear, from whatever lane it was in.
+    fn thrown_at_the_rear(&self) -> Told {
+        let thrown = self.did(Act::Pushed) || !self.reading.contacts.earlier.is_empty();
+        if thrown && only(&self.account.sv, |zone| zone == Z::Rear) && !self.sv_reverses() {
+            return by_rule(Origin::Behind, "thrown at the rear");
+        }
+        None
+    }
+
+    /// "pulled out of a stall", "came from a driveway".
+    fn out_of_a_place(&self) -> Told {
+        let (number, frame) = self.frames().find(|(_, frame)| frame.out_of.is_some())?;
+        if self.drove_on(number) {
+            return None;
+        }
+        let side = self.side_or_touched();
+        let origin = match frame.out_of? {
+            Spot::Stall => self.out_of_a_stall(),
+            Spot::SideStreet if self.side.is_some() => {
+                self.side.map_or(Origin::Opposite, |side| Origin::Cross { side })
+            }
+            Spot::Driveway | Spot::SideStreet => Origin::Driveway { side },
+            Spot::Curb => Origin::Parked { side },
+            Spot::Sidewalk => Origin::Sidewalk { side },
+        };
+        let (first, end) = self.reading.window(number);
+        told_as(origin, self.reading.words(first, end))
+    }
+
+    fn out_of_a_stall(&self) -> Origin {
+        let side = self.side_or_touched();
+        let curb = at_curb(self.reading, self.actor);
+        if self.did(Act::Reverse) {
+            // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
+            if square_front(self.account) && (curb || self.ahead) {
+                return Origin::Ahead;
+            }
+            // Both go backwards, and meet at their rears.
+            if self.sv_reverses() && only(&self.account.sv, Z::is_rear) {
+                return Origin::Behind;
+            }
+        } else if self.parked && self.behind_first() {
+            // Out of the space behind it, or a row of them there.
+            return Origin::Behind;
+        }
+        if curb { Origin::Parked { side } } else { Origin::Stall { side } }
+    }
+
+    /// "was parked in a stall and turned out".
+    fn stood_in_a_stall(&self) -> Told {
+        let reverses = self.did(Act::Reverse);
+        let leaves =
+            reverses || [Act::Turn, Act::PullOut, Act::SetOff, Act::Follow].into_iter().any(|act| self.did(act));
+        // Parked ahead of it, and backwards: no stall across.
+        let along = reverses && self.ahead && square_front(self.account);
+        if !self.parked || !leaves || along {
+            return None;
+        }
+        let source = in_stall(self.reading, self.actor)?;
+        if self.behind_first() && !reverses {
+            return told_as(Origin::Behind, source);
+        }
+        told_as(Origin::Stall { side: self.side_or_touched() }, source)
+    }
+
+    /// It stood in a driveway, and came out of it backwards.
+    fn backwards_out_of_a_driveway(&self) -> Told {
+        if !self.parked || !self.did(Act::Reverse) {
+            return None;
+        }
+        let source = stood_in(self.reading, self.actor, &["driveway", "driveways"])?;
+        let across = self.clues.any(Relation::Opposite).then_some(LeftRight::Left);
+        told_as(Origin::Driveway { side: self.side.or(across).or(self.touched) }, source)
+    }
+
+    /// It was ahead in one lane, and the subject vehicle left that lane.
+    fn ahead_in_the_lane_that_was_left(&self) -> Told {
+        let mut acts = self.account.sv.acts.iter();
+        let change = acts.find(|fact| fact.act == Act::LaneChange && !fact.after_contact)?;
+        let moves = || self.did(Act::Swerve) || self.did(Act::LaneChange) || self.did(Act::Turn);
+        if self.first != Some(Relation::Ahead) || !moves() {
+            return None;
+        }
+        told_as(Origin::Beside { side: change.side?.other() }, change.source.clone())
+    }
+
+    /// "reversed toward it".
+    fn backwards(&self) -> Told {
+        if !self.did(Act::Reverse) || self.behind {
+            return None;
+        }
+        // Backwards out of a way across.
+        if let (Some(2 | 6), Some(heading), false) = (self.turn, self.heading, square_front(self.account)) {
+            let side = if self.turn == Some(2) { LeftRight::Left } else { LeftRight::Right };
+            return told_as(Origin::Cross { side }, heading.source.clone());
+        }
+        if self.ahead || lead_of_subject(self.reading, self.actor) {
+            return told_as(Origin::Ahead, self.words_of(Act::Reverse));
+        }
+        if self.clues.any(Relation::Opposite) {
+            // In the opposing lane, which is on the left.
+            let side = self.side.unwrap_or(LeftRight::Left);
+            return told_as(Origin::Beside { side }, self.clues.has(Relation::Opposite));
+        }
+        if let Some(side) = self.side {
+            // Its rear on a flank: it stood across.
+            let across = only(&self.account.sv, is_flank) && only(self.partner, |zone| zone == Z::Rear);
+            let value = if across { Origin::Cross { side } } else { Origin::Beside { side } };
+            return told_as(value, self.words_of(Act::Reverse));
+        }
+        if has_zone(&self.account.sv, Z::is_front) && !matches!(self.turn, Some(2..=6)) {
+            return by_rule(Origin::Ahead, "who goes backwards into the front was ahead");
+        }
+        None
+    }
+
+    /// A door of a parked one.
+    fn opens_a_door(&self) -> Told {
+        if !self.parked || !self.did(Act::OpenDoor) {
+            return None;
+        }
+        let opens = |frame: &Frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor);
+        told_as(Origin::Parked { side: self.side_or_touched() }, self.clues.source(opens))
+    }
+
+    /// "on the cross street to its left".
+    fn on_a_side_street(&self) -> Told {
+        let side = self.side?;
+        let there = on_side_street(self.reading, self.actor) && !self.did(Act::Pass);
+        if there { self.across(side) } else { None }
+    }
+
+    /// "entered traffic from a stop sign on the right", "from a side street": no kerb.
+    fn enters_from_a_road(&self) -> Told {
+        if self.parked {
+            return None;
+        }
+        let side = self.side_or_touched()?;
+        let road = |word: &str| matches!(word, "intersection" | "sign" | "street" | "avenue" | "road" | "alley");
+        let curb = |word: &str| matches!(word, "curb" | "side" | "parked" | "spot" | "space" | "stall" | "lane");
+        let (number, _) = self.frames().find(|(number, frame)| {
+            let (first, end) = self.reading.window(*number);
+            let mut words =
+                self.reading.story.tokens[first..end.min(first + 14)].iter().map(|token| token.text.as_str());
+            let from = words.find(|word| *word == "from").is_some();
+            let rest: Vec<&str> = words.collect();
+            let of_road = rest.iter().any(|word| road(word)) && !rest.iter().any(|word| curb(word));
+            frame.act() == Some(Act::PullOut) && from && of_road
+        })?;
+        let (first, end) = self.reading.window(number);
+        told_as(Origin::Cross { side }, self.reading.words(first, end))
+    }
+
+    /// "pulled out from the kerb".
+    fn leaves_the_kerb(&self) -> Told {
+        let (number, _) = self.frames().find(|(_, frame)| frame.act() == Some(Act::PullOut))?;
+        let elsewhere = self.behind_first() || matches!(self.turn, Some(2 | 6));
+        if self.drove_on(number) || !self.parked && elsewhere {
+            return None;
+        }
+        told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
+    }
+
+    fn moves_over_from_behind(&self) -> Told {
+        let side = lane_side(self.account)?;
+        if self.behind && self.moved_over() { by_rule(Origin::Beside { side }, "lanes of both") } else { None }
+    }
+
+    fn comes_from_behind(&self) -> Told {
+        let elsewhere = matches!(
+            self.first,
+            Some(Relation::Left | Relation::Right | Relation::Ahead | Relation::Opposite | Relation::Beside)
+        );
+        if !self.behind || elsewhere {
+            return None;
+        }
+        told_as(Origin::Behind, self.clues.has(Relation::Behind))
+    }
+
+    /// Beside it, before it passes or changes lanes: on the side of its lane, else the one that was touched.
+    fn is_beside(&self) -> Told {
+        if self.first != Some(Relation::Beside) || self.other_way() {
+            return None;
+        }
+        let side = lane_side(self.account).or(self.touched)?;
+        told_as(Origin::Beside { side }, self.clues.has(Relation::Beside))
+    }
+
+    /// "entered the circle without giving way".
+    fn gives_no_way(&self) -> Told {
+        let gave_no_way = self.did(Act::Enter) && self.partner.did(Act::FailToYield) && !self.sv_stands;
+        if !gave_no_way || self.side.is_some() || self.turn.is_some() {
+            return None;
+        }
+        by_rule(Origin::Cross { side: self.touched? }, "the side that was touched by one who came in")
+    }
+
+    /// "the AV was northbound, the van westbound".
+    fn by_directions(&self) -> Told {
+        let (eighths, source) = (self.turn?, self.heading?.source.clone());
+        match eighths {
+            // Facing the other way and going backwards it goes the same way, beside.
+            4 if self.touched.is_some() && self.did(Act::Reverse) && !self.other_way() => {
+                told_as(Origin::Beside { side: self.touched? }, source)
+            }
+            2 => told_as(Origin::Cross { side: LeftRight::Left }, source),
+            6 => told_as(Origin::Cross { side: LeftRight::Right }, source),
+            4 => told_as(Origin::Opposite, source),
+            3 | 5 => {
+                let opposite = self.clues.any(Relation::Opposite) || self.partner.did(Act::WrongWay);
+                if opposite || !self.did(Act::Pass) { told_as(Origin::Opposite, source) } else { None }
+            }
+            _ => self.same_way(),
+        }
+    }
+
+    /// Both go the same way.
+    fn same_way(&self) -> Told {
+        let lane = lane_side(self.account);
+        if self.ahead {
+            return match self.side.or(lane) {
+                Some(side) => self.beside(side),
+                None => told_as(Origin::Ahead, self.clues.has(Relation::Ahead)),
+            };
+        }
+        let passes = self.did(Act::Pass);
+        if let Some(side) = self.side.filter(|_| !passes || self.first_is_side()) {
+            return self.beside(side);
+        }
+        if let Some(side) = lane {
+            return by_rule(Origin::Beside { side }, "directions of both");
+        }
+        if passes {
+            return told_as(Origin::Behind, self.words_of(Act::Pass));
+        }
+        let moved_over = || self.touched.filter(|_| self.did(Act::LaneChange));
+        if let Some(side) = changed_from(self.account).or_else(moved_over) {
+            return told_as(Origin::Beside { side }, self.words_of(Act::LaneChange));
+        }
+        if let (true, false, Some(side)) = (only(&self.account.sv, is_flank), self.sv_stands, self.touched) {
+            return by_rule(Origin::Beside { side }, "directions of both");
+        }
+        if self.sv_stands || has_zone(&self.account.sv, Z::is_rear) {
+            return by_rule(Origin::Behind, "directions of both");
+        }
+        None
+    }
+
+    fn up_and_down_a_hill(&self) -> Told {
+        if self.turn.is_some() {
+            return None;
+        }
+        let (own, other) = (climbs(self.reading, SUBJECT)?, climbs(self.reading, self.actor)?);
+        if own != other { by_rule(Origin::Opposite, "one uphill, the other downhill") } else { None }
+    }
+
+    fn goes_the_wrong_way(&self) -> Told {
+        if matches!(self.turn, Some(2 | 6)) || !self.did(Act::WrongWay) {
+            return None;
+        }
+        told_as(Origin::Opposite, self.words_of(Act::WrongWay))
+    }
+
+    /// "the oncoming van", "in the opposite direction".
+    fn comes_the_other_way(&self) -> Told {
+        if !self.clues.any(Relation::Opposite) || self.did(Act::Pass) {
+            return None;
+        }
+        told_as(Origin::Opposite, self.clues.has(Relation::Opposite))
+    }
+
+    /// "entered the intersection from the left", "ran the light".
+    fn crosses(&self) -> Told {
+        let side = self.side?;
+        let sided = |frame: &Frame| {
+            frame.relations.iter().any(|(relation, _)| matches!(relation, Relation::Left | Relation::Right))
+        };
+        let enters = |frame: &Frame| matches!(frame.sense, Sense::Act(Act::Enter | Act::RunRed | Act::RunStop));
+        let ran = self.partner.did(Act::RunRed) || self.partner.did(Act::RunStop);
+        let crossing = self.did(Act::Cross)
+            || ran && self.first_is_side()
+            || self.frames().any(|(_, frame)| enters(frame) && sided(frame))
+            || self.frames().any(|(_, frame)| frame.sense == Sense::Approach && sided(frame)) && !self.did(Act::Pass)
+            || on_side_street(self.reading, self.actor);
+        if crossing { self.across(side) } else { None }
+    }
+
+    fn moves_over_from_ahead(&self) -> Told {
+        if !self.ahead || self.side.is_some() || !self.moved_over() {
+            return None;
+        }
+        by_rule(Origin::Beside { side: lane_side(self.account)? }, "lanes of both")
+    }
+
+    fn is_ahead(&self) -> Told {
+        if !self.ahead || self.side.is_some() {
+            return None;
+        }
+        told_as(Origin::Ahead, self.clues.has(Relation::Ahead))
+    }
+
+    /// Front on flank at a junction, from that side: across.
+    fn front_on_flank_at_a_junction(&self) -> Told {
+        let side = self.side.filter(|_| self.side == self.touched)?;
+        let mut features = self.account.place.features.iter();
+        let stops = features.any(|feature| matches!(feature.value, RoadFeature::StopSign | RoadFeature::Signal));
+        let flank = only(&self.account.sv, is_flank) && only(self.partner, |zone| zone == Z::Front);
+        let plain = !self.sv_stands && !self.moved_over() && !self.did(Act::Pass) && !self.did(Act::Turn);
+        if flank && stops && plain { self.across(side) } else { None }
+    }
+
+    /// "from its left", "to its right".
+    fn is_on_a_side(&self) -> Told {
+        let side = self.side?;
+        if !self.first_is_side() && self.did(Act::Pass) {
+            return None;
+        }
+        let group = told(&self.partner.kind).map(|kind| kind.group());
+        let walks = matches!(group, Some(KindGroup::OnFoot | KindGroup::Animal));
+        if walks { self.across(side) } else { self.beside(side) }
+    }
+
+    fn passes_the_other_way(&self) -> Told {
+        let opposite = self.clues.any(Relation::Opposite);
+        opposite.then(|| Fact { value: Origin::Opposite, source: self.clues.has(Relation::Opposite) })
+    }
+
+    fn passes(&self) -> Told {
+        let passes = self.did(Act::Pass) && passes_subject(self.reading, self.actor);
+        passes.then(|| Fact::by_rule(Origin::Behind, "who passes comes from behind"))
+    }
+
+    fn by_lanes(&self) -> Told {
+        let side = lane_side(self.account).or_else(|| changed_from(self.account))?;
+        by_rule(Origin::Beside { side }, "lanes of both")
+    }
+
+    /// Who changes lanes into the leftmost one comes from the right.
+    fn changes_into_the_edge_lane(&self) -> Told {
+        let side = match self.account.sv.lane.as_ref()?.value {
+            LaneWord::Left | LaneWord::LeftTurn => LeftRight::Right,
+            LaneWord::Right | LaneWord::RightTurn | LaneWord::Curb => LeftRight::Left,
+            _ => return None,
+        };
+        let ours = |frame: &Frame| frame.act() == Some(Act::LaneChange) && frame.object == Some(SUBJECT);
+        if self.touched.is_some_and(|touched| touched != side) || !self.frames().any(|(_, frame)| ours(frame)) {
+            return None;
+        }
+        by_rule(Origin::Beside { side }, "into the lane at the edge of the road")
+    }
+
+    /// Both turn the same way, side by side.
+    fn both_turn(&self) -> Told {
+        let side = self.touched?;
+        let both = self.reading.did(SUBJECT, Act::Turn) && self.did(Act::Turn);
+        both.then(|| Fact::by_rule(Origin::Beside { side }, "the side that was touched, where both turn"))
+    }
+
+    fn subject_goes_backwards(&self) -> Told {
+        let side = self.touched.filter(|_| self.sv_reverses())?;
+        by_rule(Origin::Beside { side }, "the side that was touched, where it goes backwards")
+    }
+
+    fn touched_from_a_side_street(&self) -> Told {
+        let side = self.touched?;
+        let there = on_side_street(self.reading, self.actor) && !self.did(Act::Pass);
+        there.then(|| Fact::by_rule(Origin::Cross { side }, "the side that was touched by one on a road that crosses"))
+    }
+
+    /// Who turns and is met by one of whom no direction is told: the side that was touched tells it.
+    fn touched_in_a_turn(&self) -> Told {
+        let side = self.touched?;
+        let turns = turning(&self.account.sv) && !turning(self.partner) && !self.did(Act::Pass);
+        if !turns || has_zone(&self.account.sv, Z::is_rear) {
+            return None;
+        }
+        if self.parked {
+            return by_rule(Origin::Beside { side }, "the side that a parked one is touched with");
+        }
+        let left = turn_side(&self.account.sv) == Some(LeftRight::Left);
+        // Who ran a red light where it had green crossed.
+        let ran_red = |frame: &Frame| frame.who != Some(SUBJECT) && frame.act() == Some(Act::RunRed);
+        if left && side == LeftRight::Right && !self.reading.story.frames.iter().any(ran_red) {
+            return by_rule(Origin::Opposite, "the right side of a vehicle turning left that was touched");
+        }
+        by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched")
+    }
+
+    fn is_rear_ended(&self) -> Told {
+        let frame = &self.reading.story.frames[self.reading.contacts.first?];
+        if frame.sense != Sense::RearEnd {
+            return None;
+        }
+        let by_subject = frame.who == Some(SUBJECT);
+        by_rule(if by_subject { Origin::Ahead } else { Origin::Behind }, "front on rear")
+    }
+}

@@ -1,0 +1,233 @@
+//! Nouns, parts and pronouns: who is meant by them, and whether a clause begins with them or they belong to the verb before.
+
+use super::parser::{Carry, Mention, Parser};
+use super::row::{relation_behind, transitive};
+use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
+use crate::lexicon::Sense;
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, Kind, KindGroup};
+
+impl Parser<'_> {
+    pub(super) fn noun(&mut self, noun: &Noun, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        let placed = &all[at];
+        let next = all.get(at + 1).map(|placed| &placed.chunk);
+        let tokens = (placed.first, placed.end);
+        if self.is_own_thing(noun, all, at) {
+            let actor = self.its(carry);
+            self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
+            return false;
+        }
+        let hint = relation_behind(all, at);
+        if let Some(actor) = self.apposed(noun, all, at, carry) {
+            self.world.describe(actor, noun, tokens);
+            self.attribute(noun, actor, placed, carry);
+            (carry.governed, carry.after_comma) = (false, false);
+            return true;
+        }
+        let actor = self.world.resolve(noun, tokens, hint);
+        let verb = matches!(next, Some(Chunk::Be | Chunk::Verb(..)));
+        let actor = if verb && self.is_vehicle_of_story(noun, actor, carry) { SUBJECT } else { actor };
+        // "one standing passenger": the vehicle does not stand.
+        let described = if noun.occupant.is_some() { noun.owner.as_deref() } else { Some(noun) };
+        if let Some(described) = described {
+            self.attribute(described, actor, placed, carry);
+        }
+        // "in a queue of westbound traffic": the direction is also that of who stands in it.
+        if let (Some(compass), true, Some("of" | "in" | "behind")) = (noun.compass, noun.several, carry.preposition) {
+            self.compass(compass, placed, carry);
+            carry.preposition = Some("of");
+        }
+        // "At this time a van ...": the van is not behind "at".
+        if carry.filled && noun.article != Article::None {
+            (carry.preposition, carry.relation) = (None, None);
+            // "It opened its door at the moment a van was driving by": the van begins a clause.
+            if matches!(next, Some(Chunk::Be)) {
+                carry.frame = None;
+            }
+        }
+        let person = noun.occupant.map(|(who, _)| who);
+        self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
+        false
+    }
+
+    /// "its toolbox scratched the door": whose it is does so.
+    fn is_own_thing(&self, noun: &Noun, all: &[Placed], at: usize) -> bool {
+        let thing = noun.kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Cargo);
+        let its = matches!(self.tokens[all[at].first].text.as_str(), "its" | "their" | "his" | "her");
+        let verb = || all[at + 1..].iter().find(|placed| !matches!(placed.chunk, Chunk::Word | Chunk::Piece(_)));
+        its && thing && verb().is_some_and(|placed| matches!(placed.chunk, Chunk::Verb(Sense::Contact, _)))
+    }
+
+    /// "A van left its stall as the vehicle was going by": not the van.
+    fn is_vehicle_of_story(&self, noun: &Noun, actor: Actor, carry: &Carry) -> bool {
+        let plain = noun.kind == Some(Kind::Vehicle)
+            && noun.article == Article::Definite
+            && noun.adjectives.is_empty()
+            && noun.names.is_empty()
+            && noun.number.is_none()
+            && !noun.several
+            && noun.occupant.is_none();
+        let of_main = carry.main.as_ref().is_some_and(|main| main.actor == actor && actor != SUBJECT);
+        plain && of_main && carry.fresh && carry.joint == Some(Joint::While) && self.world.topic == SUBJECT
+    }
+
+    pub(super) fn piece(&mut self, piece: &Piece, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        let placed = &all[at];
+        let next = all.get(at + 1).map(|placed| &placed.chunk);
+        if carry.filled {
+            (carry.preposition, carry.relation) = (None, None);
+        }
+        let Some(actor) = self.whose(piece, all, at, carry) else {
+            self.loose_piece(piece, placed, carry);
+            return false;
+        };
+        let mention = Mention { actor, piece: Some(piece.clone()), person: None, end: placed.end };
+        self.mention(mention, placed, carry, next);
+        false
+    }
+
+    /// Whose a part is.
+    fn whose(&mut self, piece: &Piece, all: &[Placed], at: usize, carry: &mut Carry) -> Option<Actor> {
+        let placed = &all[at];
+        if let Some(owner) = &piece.owner {
+            let actor = self.world.resolve(owner, (placed.first, placed.end), None);
+            let actor = self.as_a_result(actor, placed.first);
+            self.attribute(owner, actor, placed, carry);
+            return Some(actor);
+        }
+        // "a van whose door".
+        if at > 0
+            && self.tokens[all[at - 1].first].text == "whose"
+            && let Some(last) = &carry.last
+        {
+            carry.frame = None;
+            return Some(last.actor);
+        }
+        if piece.its {
+            return Some(self.its(carry));
+        }
+        // "The edge of the open door touched": of whom it was opened.
+        let door = if piece.door && carry.fresh { self.door_of() } else { None };
+        // "It set off, and the rear tire touched": of whom the sentence is about.
+        let verb = matches!(all.get(at + 1).map(|placed| &placed.chunk), Some(Chunk::Verb(..) | Chunk::Be));
+        door.or_else(|| (carry.fresh && verb).then(|| self.its(carry)))
+    }
+
+    pub(super) fn pronoun(&mut self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        let chunk = |ahead: usize| all.get(at + ahead).map(|placed| &placed.chunk);
+        // "It is at this time that ...": nobody.
+        if matches!(chunk(1), Some(Chunk::Be))
+            && matches!(chunk(2), Some(Chunk::Preposition("at" | "within") | Chunk::Relative))
+        {
+            return false;
+        }
+        let struck = self.waits_struck(all, at, carry);
+        let actor = struck.unwrap_or_else(|| self.not_itself(self.its(carry), carry));
+        let mention = Mention { actor, piece: None, person: None, end: all[at].end };
+        self.mention(mention, &all[at], carry, chunk(1));
+        false
+    }
+
+    /// Somebody is named: where somebody is, behind a preposition, as the object of the verb before, or as who a clause is about.
+    pub(super) fn mention(&mut self, mention: Mention, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
+        if let Some(relation) = carry.relation.take() {
+            self.relate(relation, Some(mention.actor), carry);
+            // "was eastbound alongside cars parked there": the cars.
+            (carry.be, carry.governed, carry.preposition) = (false, true, None);
+            carry.last = Some(mention);
+            return;
+        }
+        if self.is_own_trailer(&mention, carry) {
+            if let Some(last) = &carry.last {
+                self.world.tow(last.actor, mention.actor);
+            }
+            carry.preposition = None;
+            return;
+        }
+        if let Some(preposition) = carry.preposition.take() {
+            self.object_of(preposition, &mention, placed, carry);
+            carry.last = Some(mention);
+            (carry.governed, carry.to) = (true, false);
+            return;
+        }
+        let open = carry.frame.filter(|&frame| {
+            let frame = &self.frames[frame];
+            frame.object.is_none() && transitive(frame.sense) && !carry.fresh
+        });
+        match open {
+            Some(frame) if !carry.after_comma => self.object(frame, mention, placed, carry),
+            _ => self.subject(mention, carry, next),
+        }
+    }
+
+    /// "a heavy truck with a trailer": they are one.
+    fn is_own_trailer(&self, mention: &Mention, carry: &Carry) -> bool {
+        let vehicle = |last: &Mention| self.world.actors[last.actor].kind.is_some_and(Kind::is_vehicle);
+        carry.preposition == Some("with")
+            && self.world.actors[mention.actor].kind == Some(Kind::Trailer)
+            && !carry.governed
+            && carry.last.as_ref().is_some_and(|last| last.piece.is_none() && vehicle(last))
+    }
+
+    /// The object of the verb before.
+    fn object(&mut self, frame: usize, mention: Mention, placed: &Placed, carry: &mut Carry) {
+        let actor = mention.actor;
+        let taken = &mut self.frames[frame];
+        // Nobody touches itself: "the van made contact with the van that was turning".
+        let itself = taken.sense == Sense::Contact && taken.who == Some(actor) && actor != SUBJECT;
+        let actor = if itself { self.world.like(actor).unwrap_or(actor) } else { actor };
+        taken.object = Some(actor);
+        taken.on.clone_from(&mention.piece);
+        taken.end = placed.end;
+        let (sense, who) = (taken.sense, taken.who);
+        carry.last = Some(Mention { actor, ..mention });
+        (carry.governed, carry.fresh) = (false, false);
+        match (sense, who) {
+            (Sense::Act(Act::Follow), who) => self.follows(who, actor),
+            (Sense::Push, _) => carry.pushed = true,
+            (Sense::Headline, _) if actor != SUBJECT => self.world.actors[actor].announced = true,
+            (Sense::Tow, Some(tower)) => {
+                self.world.tow(tower, actor);
+                // "a truck towing a trailer that was facing east": they are one.
+                let one = self.world.actors[actor].towed_by == Some(tower);
+                if let Some(last) = carry.last.as_mut().filter(|_| one) {
+                    last.actor = tower;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Who a clause is about; behind a comma the main one: "As the van turned, it touched the wall".
+    fn subject(&mut self, mention: Mention, carry: &mut Carry, next: Option<&Chunk>) {
+        let actor = mention.actor;
+        if carry.after_comma && carry.has_verb && !carry.relative && carry.joint.is_some() {
+            carry.joint = None;
+            carry.clause += 1;
+        }
+        let list = carry.has_verb && !carry.after_comma && !carry.fresh;
+        if list && !matches!(next, Some(Chunk::Verb(..) | Chunk::Be | Chunk::Relation(_) | Chunk::Relative)) {
+            carry.last = Some(mention);
+            carry.governed = true;
+            return;
+        }
+        self.settle(actor, carry);
+        if carry.main.is_none() || carry.joint == Some(Joint::And) || !carry.relative {
+            carry.main = Some(mention.clone());
+            carry.mains.push(actor);
+        }
+        if carry.also.as_ref().is_some_and(|also| carry.subject.as_ref() != Some(also) || also.actor == actor) {
+            carry.also = None;
+        }
+        self.world.actors[actor].acted = true;
+        if let Some(relation) = carry.lead.take().filter(|_| actor != SUBJECT) {
+            self.note(actor, relation);
+        }
+        carry.subject = Some(mention.clone());
+        carry.last = Some(mention);
+        (carry.has_verb, carry.relative, carry.governed, carry.fresh) = (false, false, false, false);
+        (carry.be, carry.to, carry.progress) = (false, false, None);
+        carry.negated = std::mem::take(&mut carry.nobody);
+        (carry.frame, carry.stranger) = (None, false);
+    }
+}

@@ -1,0 +1,83 @@
+//! What a verb says here, where the words around it make another thing of it than the lexicon knows.
+//!
+//! A new rule goes into [`SENSES`]; each sees what the ones before it made of the verb.
+
+use super::parser::{Carry, Parser};
+use super::row::single;
+use super::verb::Spoken;
+use crate::chunk::Chunk;
+use crate::lexicon::{Form, Sense};
+use recrash_model::account::Act;
+
+type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
+
+const SENSES: [Rule; 7] =
+    [stands_backed_up, remains_so, is_ridden, blows_another, nearly_stops, moves_another, holds_a_thing];
+
+impl Parser<'_> {
+    /// What a verb says here.
+    pub(super) fn sense_here(&self, verb: &Spoken<'_>, carry: &Carry) -> Sense {
+        let mut verb = *verb;
+        for rule in SENSES {
+            verb.sense = rule(self, &verb, carry).unwrap_or(verb.sense);
+        }
+        verb.sense
+    }
+}
+
+/// "traffic was backed up" stands.
+fn stands_backed_up(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let backed = verb.sense == Sense::Act(Act::Reverse) && verb.form == Form::Past && verb.word(parser) == "backed";
+    let remains = matches!(verb.chunk_before(), Some(Chunk::Verb(Sense::Act(Act::Hold), _)));
+    let next = parser.tokens.get(placed.end).map_or("", |token| token.text.as_str());
+    let away = matches!(next, "out" | "into" | "from") || !single(placed) && parser.tokens[placed.end - 1].text != "up";
+    (backed && (carry.be || remains) && !away).then_some(Sense::Other)
+}
+
+/// "remained consistent", "remained in autonomous mode": nobody stands.
+fn remains_so(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    if !verb.word(parser).starts_with("remain") || !single(placed) {
+        return None;
+    }
+    let next = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+    let so = matches!(
+        next(0),
+        "consistent" | "constant" | "engaged" | "unchanged" | "upright" | "active" | "green" | "red" | "steady" | "the"
+    );
+    let mode = next(0) == "in" && (1..4).any(|at| matches!(next(at), "mode" | "control" | "motion"));
+    (so || mode).then_some(Sense::Other)
+}
+
+/// "a bicycle ridden by a courier" passes nobody.
+fn is_ridden(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let ridden = verb.sense == Sense::Act(Act::Pass) && matches!(verb.word(parser), "ridden" | "driven");
+    ridden.then_some(Sense::Other)
+}
+
+/// "The wind blew a cart into it".
+fn blows_another(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let blows = verb.sense == Sense::Act(Act::Fall) && matches!(verb.word(parser), "blew" | "blow" | "blowing");
+    (blows && matches!(verb.next(), Some(Chunk::Noun(_)))).then_some(Sense::Push)
+}
+
+/// "had almost come to rest".
+fn nearly_stops(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
+    let nearly = verb.sense == Sense::Act(Act::Stop) && matches!(before, "almost" | "nearly");
+    nearly.then_some(Sense::Act(Act::Slow))
+}
+
+/// "driving it forward into the van", "the impact moved the bus".
+fn moves_another(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    parser.drives_another(verb, carry).then_some(Sense::Push)
+}
+
+/// "holding a phone", "held on to the rail".
+fn holds_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let word = verb.word(parser);
+    let held = (word.starts_with("hold") || word == "held") && single(verb.placed());
+    let thing = matches!(verb.next(), Some(Chunk::Word | Chunk::Preposition("on") | Chunk::Piece(_) | Chunk::Noun(_)));
+    (held && thing).then_some(Sense::Other)
+}

@@ -1,0 +1,317 @@
+//! Verbs make frames: of whom, in which state, how far it came, by whom it was done.
+
+use super::Frame;
+use super::adverbs::goes_about;
+use super::parser::{Carry, Mention, Parser};
+use super::row::{another_finite, looks_somewhere, names_doer, next_is_verb, next_preposition, single};
+use super::sided;
+use crate::chunk::{Chunk, Joint, Placed};
+use crate::lexicon::{Form, Occupant, Progress, Sense};
+use crate::world::SUBJECT;
+use recrash_model::account::Act;
+
+/// A verb where it stands.
+#[derive(Clone, Copy)]
+pub(super) struct Spoken<'a> {
+    pub(super) sense: Sense,
+    pub(super) form: Form,
+    /// Chunks of the sentence.
+    pub(super) all: &'a [Placed],
+    /// Place of the verb among them.
+    pub(super) at: usize,
+}
+
+impl<'a> Spoken<'a> {
+    pub(super) fn placed(&self) -> &'a Placed {
+        &self.all[self.at]
+    }
+
+    pub(super) fn word<'t>(&self, parser: &Parser<'t>) -> &'t str {
+        parser.tokens[self.all[self.at].first].text.as_str()
+    }
+
+    pub(super) fn next(&self) -> Option<&'a Chunk> {
+        self.all.get(self.at + 1).map(|placed| &placed.chunk)
+    }
+
+    pub(super) fn chunk_before(&self) -> Option<&'a Chunk> {
+        self.at.checked_sub(1).map(|at| &self.all[at].chunk)
+    }
+
+    /// "double-parked" is one word as well.
+    fn is_bare(&self, parser: &Parser<'_>) -> bool {
+        single(self.placed()) || self.sense == Sense::Act(Act::Park) && self.word(parser) != "pulled"
+    }
+
+    /// Whether it is done to somebody: "was struck", "was shoved back".
+    fn is_done_to(&self) -> bool {
+        self.form == Form::Past
+            && matches!(self.sense, Sense::Contact | Sense::RearEnd | Sense::ReverseContact | Sense::Push)
+    }
+}
+
+impl Parser<'_> {
+    /// A verb begins a frame.
+    pub(super) fn verb(&mut self, sense: Sense, form: Form, all: &[Placed], at: usize, carry: &mut Carry) {
+        if carry.place && carry.subject.is_none() {
+            return;
+        }
+        let mut verb = Spoken { sense, form, all, at };
+        verb.sense = self.sense_here(&verb, carry);
+        let finite = matches!(form, Form::Past | Form::Present) || form == Form::Ing && carry.be;
+        leave_relative(&verb, carry);
+        let own_progress = carry.progress;
+        let leads = self.leads(&verb, carry);
+        if leads && matches!(verb.sense, Sense::Other | Sense::Act(Act::Follow)) && next_is_verb(all, at) {
+            return self.only_leads(&verb, carry);
+        }
+        go_back(&verb, carry);
+        let both = self.of_both(verb.sense, all, at, carry);
+        verb.sense = if both { Sense::ContactMade } else { verb.sense };
+        let to = std::mem::take(&mut carry.to) && form == Form::Base;
+        let purpose = to && !carry.began;
+        let who = self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at));
+        let who = who.filter(|_| !carry.stranger && !both);
+        let mut frame = self.begun_frame(&verb, who.as_ref(), carry);
+        if leads {
+            frame.progress = own_progress.unwrap_or(Progress::Real);
+        }
+        let described = self.only_describes(&verb, carry);
+        let be = std::mem::take(&mut carry.be);
+        if self.tells_state(&verb, who.as_ref(), (be, described), carry) {
+            frame.state = true;
+            frame.sense = if verb.sense == Sense::Act(Act::Park) { Sense::Parked } else { Sense::Act(Act::Hold) };
+        }
+        self.how_far(&mut frame, &verb, purpose, carry);
+        let leading = self.done_to(&mut frame, &verb, be, carry);
+        if verb.sense == Sense::Push {
+            carry.pushed = false;
+        }
+        self.where_to(&mut frame, &verb, carry);
+        let unnamed = frame.who.is_none()
+            && !frame.passive
+            && !carry.stranger
+            && !matches!(verb.sense, Sense::ContactMade | Sense::LightGreen | Sense::LightRed | Sense::LightYellow);
+        let number = self.push(frame, carry);
+        if unnamed || leading {
+            carry.pending.push(number);
+        }
+        carry.has_verb |= finite && !described || unnamed || carry.stranger;
+        self.carry_on(&verb, number, leads, carry);
+    }
+
+    /// "began to", "attempted to", "was waiting to": how far the next verb came. Whether this one tells it.
+    fn leads(&mut self, verb: &Spoken<'_>, carry: &mut Carry) -> bool {
+        let Spoken { sense, form, all, at } = *verb;
+        if !single(verb.placed()) {
+            return false;
+        }
+        let Some(progress) = self.lexicon.progress(verb.word(self)) else { return false };
+        if !next_is_verb(all, at) && (sense != Sense::Other || looks_somewhere(all, at)) {
+            return false;
+        }
+        // "before proceeding to turn": not done.
+        let before = carry.joint == Some(Joint::Before) && carry.fresh && form == Form::Ing;
+        carry.progress = Some(if before { Progress::Wished } else { progress });
+        carry.began = true;
+        carry.to &= sense != Sense::Other;
+        true
+    }
+
+    /// A verb that only says how far the next one came makes no frame.
+    fn only_leads(&mut self, verb: &Spoken<'_>, carry: &mut Carry) {
+        let Spoken { form, all, at, .. } = *verb;
+        carry.began = false;
+        carry.lead_who =
+            self.who_of(Sense::Act(Act::Follow), form, verb.placed(), carry, false, another_finite(all, at));
+        carry.began = true;
+        carry.has_verb |= form != Form::Ing || carry.be;
+    }
+
+    /// The frame of a verb, with who does it.
+    fn begun_frame(&mut self, verb: &Spoken<'_>, who: Option<&Mention>, carry: &Carry) -> Frame {
+        let Spoken { sense, form, .. } = *verb;
+        let mut frame = self.frame(who.map(|mention| mention.actor), sense, form, verb.placed(), carry);
+        frame.person = who.and_then(|mention| mention.person);
+        frame.with = who.and_then(|mention| mention.piece.clone());
+        if sense == Sense::TakeOver && frame.person == Some(Occupant::Driver) {
+            frame.who = Some(SUBJECT);
+            self.world.own_driver = true;
+        }
+        frame.described |= form == Form::Ing && !carry.be && who.is_some() && who != carry.subject.as_ref();
+        frame
+    }
+
+    /// "a van parked on the left began to move": the first verb describes, the second one tells.
+    fn only_describes(&self, verb: &Spoken<'_>, carry: &Carry) -> bool {
+        let describes = matches!(
+            verb.sense,
+            Sense::Act(Act::Stop | Act::Park | Act::Hold) | Sense::Parked | Sense::Face | Sense::Tow
+        );
+        describes
+            && verb.form == Form::Past
+            && verb.is_bare(self)
+            && !carry.be
+            && !carry.has_verb
+            && carry.last_is(carry.subject.as_ref())
+            && another_finite(verb.all, verb.at)
+    }
+
+    /// Whether a verb of stopping tells that somebody stood: "was stopped", "a truck stopped in the road", "while stopped".
+    fn tells_state(
+        &self,
+        verb: &Spoken<'_>,
+        who: Option<&Mention>,
+        (be, described): (bool, bool),
+        carry: &Carry,
+    ) -> bool {
+        if verb.form != Form::Past || !matches!(verb.sense, Sense::Act(Act::Stop | Act::Park | Act::Hold)) {
+            return false;
+        }
+        if be || verb.sense == Sense::Act(Act::Hold) {
+            return be;
+        }
+        let last = who.is_some() && carry.last_is(who);
+        let inner = carry.governed || carry.joint.is_some_and(|joint| joint != Joint::And);
+        let participle = inner && last && (carry.fresh || carry.governed);
+        // "approached a truck stopped in the road": it stood there.
+        let of_object = carry.has_verb && last && who != carry.subject.as_ref();
+        let while_so = carry.fresh && carry.joint == Some(Joint::While);
+        described || verb.is_bare(self) && (participle || of_object || while_so)
+    }
+
+    /// How far a verb came that is told as a purpose, or behind "before".
+    fn how_far(&self, frame: &mut Frame, verb: &Spoken<'_>, purpose: bool, carry: &Carry) {
+        let waits = matches!(verb.sense, Sense::Yield | Sense::Act(Act::Hold | Act::Stop | Act::Slow));
+        if purpose && !waits && frame.progress == Progress::Real {
+            frame.progress = self.purpose(frame, verb, carry);
+        }
+        let before = carry.joint == Some(Joint::Before) && carry.fresh && verb.form == Form::Ing;
+        if before && frame.progress == Progress::Real {
+            frame.progress = Progress::Wished;
+        }
+    }
+
+    /// "moved forward to pass it": begun. "slowed to turn": not.
+    fn purpose(&self, frame: &Frame, verb: &Spoken<'_>, carry: &Carry) -> Progress {
+        let before = carry.frame.map(|before| &self.frames[before]);
+        let before = before.filter(|before| before.who == frame.who && before.happened());
+        let going = before.is_some_and(|before| goes_about(before.act()));
+        // "entered the intersection to make a left turn": so it did.
+        let enters = before.is_some_and(|before| {
+            let words = &self.tokens[before.first..verb.placed().first];
+            before.act() == Some(Act::Enter)
+                && words.iter().any(|token| matches!(token.text.as_str(), "intersection" | "junction"))
+        });
+        match frame.act() {
+            // "pushed the van, causing it to turn": so it did.
+            _ if carry.pushed => Progress::Real,
+            Some(Act::Pass | Act::Park | Act::LaneChange) if going => Progress::Tried,
+            Some(Act::Turn) if enters => Progress::Real,
+            _ => Progress::Wished,
+        }
+    }
+
+    /// "was struck", "was shoved back", with or without a "by" behind it: who was named is to whom it was done. Whether he is named
+    /// only later: "Struck by a coupe, a parked van ...".
+    fn done_to(&mut self, frame: &mut Frame, verb: &Spoken<'_>, be: bool, carry: &Carry) -> bool {
+        let Spoken { sense, form, all, at } = *verb;
+        frame.passive = be && form == Form::Past && next_preposition(all, at) == Some("by");
+        if be && verb.is_done_to() {
+            frame.object = frame.who.take();
+            frame.on = frame.with.take();
+            frame.passive = true;
+        }
+        let first = carry.fresh && !be && carry.subject.is_none() && verb.is_done_to();
+        let leading = first && (matches!(verb.next(), Some(Chunk::Preposition("by"))) || sense == Sense::RearEnd);
+        frame.passive |= leading;
+        let of_subject = frame.object == Some(SUBJECT) || leading && frame.object.is_none();
+        if frame.passive && of_subject && frame.who.is_none() && !names_doer(all, at) {
+            frame.who = self.struck_by(sense, verb.word(self));
+        }
+        leading
+    }
+
+    /// The side and the place that the words of a verb, or those before it, name.
+    fn where_to(&self, frame: &mut Frame, verb: &Spoken<'_>, carry: &mut Carry) {
+        if frame.side.is_none() && frame.act().is_some_and(sided) {
+            frame.side = self.side_in(verb.placed());
+        }
+        if frame.act() == Some(Act::PullOut) {
+            frame.out_of = self.spot_in(verb.placed());
+        }
+        let comes = matches!(
+            frame.act(),
+            Some(Act::PullOut | Act::Enter | Act::Follow | Act::Reverse | Act::SetOff | Act::Drift | Act::Turn)
+        );
+        if comes && frame.out_of.is_none() && frame.who.is_some_and(|who| who != SUBJECT) {
+            frame.out_of = carry.out_of.take();
+        }
+    }
+
+    /// Keeps a frame, and one of the other of two subjects before it. Its number.
+    fn push(&mut self, frame: Frame, carry: &Carry) -> usize {
+        if let (Some(also), false) = (&carry.also, frame.passive) {
+            let twin = Frame { who: Some(also.actor), with: also.piece.clone(), ..frame.clone() };
+            self.frames.push(twin);
+        }
+        if let (Some(who), Some(Act::Hold | Act::Park | Act::Stop)) = (frame.who, frame.act()) {
+            self.world.actors[who].parked = true;
+        }
+        self.frames.push(frame);
+        self.frames.len() - 1
+    }
+
+    /// What a verb leaves for the chunks behind it.
+    fn carry_on(&mut self, verb: &Spoken<'_>, number: usize, leads: bool, carry: &mut Carry) {
+        carry.frame = Some(number);
+        (carry.fresh, carry.governed, carry.row, carry.negated) = (false, false, false, false);
+        (carry.preposition, carry.relation) = (None, None);
+        let row = carry.progress.is_some() && matches!(verb.next(), Some(Chunk::Joint(Joint::And)));
+        if !(leads || row) {
+            carry.progress = None;
+        }
+        carry.began = leads;
+        carry.lead_who = None;
+        let placed = verb.placed();
+        let last = self.tokens[placed.end - 1].text.as_str();
+        match verb.sense {
+            Sense::ContactMade if last == "between" => carry.preposition = Some("between"),
+            // "contact by a cyclist was made".
+            Sense::ContactMade if last == "by" => {
+                let frame = &mut self.frames[number];
+                (frame.form, frame.who, frame.with) = (Form::Past, None, None);
+                carry.preposition = Some("by");
+            }
+            // "fell from a truck": the truck is behind "from".
+            Sense::Act(Act::Fall | Act::Roll | Act::Enter) if !single(placed) => {
+                let known = ["from", "off", "onto", "into", "over", "between", "behind"];
+                carry.preposition = known.into_iter().find(|known| *known == last);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A finite verb behind a finished relative clause is of the clause around it.
+fn leave_relative(verb: &Spoken<'_>, carry: &mut Carry) {
+    if carry.relative
+        && carry.has_verb
+        && matches!(verb.form, Form::Past | Form::Present)
+        && !carry.be
+        && !carry.after_comma
+        && !matches!(verb.chunk_before(), Some(Chunk::Joint(_)))
+        && let Some(outer) = carry.outer.take()
+    {
+        carry.subject = Some(outer);
+        (carry.has_verb, carry.relative) = (false, false);
+    }
+}
+
+/// "The van slid back as the light changed, tapping its bumper": who the sentence is about.
+fn go_back(verb: &Spoken<'_>, carry: &mut Carry) {
+    let tells = matches!(verb.sense, Sense::Contact | Sense::Push | Sense::RearEnd) && verb.form == Form::Ing;
+    if tells && carry.after_comma && !carry.be && carry.stranger && carry.joint.is_some() && carry.main.is_some() {
+        (carry.subject, carry.stranger, carry.frame) = (carry.main.clone(), false, None);
+    }
+}

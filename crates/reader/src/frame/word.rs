@@ -1,0 +1,60 @@
+//! Words that are nothing of the grammar: what they still say of those around them.
+
+use super::parser::{Carry, Mention, Parser};
+use crate::chunk::{Chunk, Placed, is_determiner};
+use crate::lexicon::{Form, Sense};
+
+impl Parser<'_> {
+    /// Whether a comma before it still stands before what follows.
+    pub(super) fn word(&mut self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
+        let placed = &all[at];
+        let token = &self.tokens[placed.first];
+        let word = token.text.as_str();
+        if self.touches_by_parts(word, all, at, carry) || self.guesses && self.may_touch(all, at, carry) {
+            self.verb(Sense::Contact, Form::Past, all, at, carry);
+            return false;
+        }
+        // "The AV misjudged a van's speed and turned": what it did to the van.
+        if self.does_something(all, at, carry) {
+            self.verb(Sense::Other, Form::Past, all, at, carry);
+            return false;
+        }
+        let next = all.get(at + 1).map(|placed| &placed.chunk);
+        // "time to turn" is no turn; "at which time it turned" is one.
+        let waits_for = !matches!(word, "time" | "space" | "room" | "set" | "order" | "ready" | "route")
+            || matches!(next, Some(Chunk::Preposition("to" | "for")));
+        if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for) {
+            (carry.progress, carry.began) = (Some(progress), true);
+        }
+        // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
+        if word == "where" {
+            (carry.subject, carry.frame, carry.has_verb) = (None, None, false);
+            (carry.place, carry.fresh) = (true, true);
+        }
+        // "The Fusion" of "a red Ford Fusion".
+        if token.capital
+            && placed.first > 0
+            && self.tokens[placed.first - 1].text == "the"
+            && let Some(actor) = self.world.by_name(word)
+        {
+            self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
+            return false;
+        }
+        // "a child chasing a ball": who chases goes on.
+        let beside_noun = at > 0 && matches!(all[at - 1].chunk, Chunk::Noun(_));
+        if word.ends_with("ing") && beside_noun && matches!(next, Some(Chunk::Noun(_))) {
+            carry.preposition = Some("of");
+            return true;
+        }
+        let waits = carry.preposition.is_some() || carry.relation.is_some();
+        // "at about 6 mph its bumper touched", "at this time", "on Elm Street".
+        let measures =
+            matches!(word, "mph" | "miles" | "feet" | "seconds" | "a.m" | "p.m" | "am" | "pm" | "mode" | "time");
+        carry.filled |= waits && (measures || is_determiner(word) || token.capital);
+        // "a panel fell off".
+        let clause = carry.fresh || carry.after_comma && carry.has_verb && carry.joint.is_some();
+        let begins = matches!(word, "a" | "an" | "the" | "several" | "some" | "two" | "one");
+        carry.stranger |= clause && !waits && begins && matches!(next, Some(Chunk::Word));
+        true
+    }
+}

@@ -1,0 +1,290 @@
+//! Who is meant by a noun: rules in an order, each of which may say who it is, or that it is somebody new.
+//!
+//! A new rule goes into [`RULES`], before all that would say something else of its noun.
+
+use super::kinds::{acts, contradicts, introduces, is_big_truck, relation_of, same_kind};
+use super::{Actor, Known, SUBJECT, World};
+use crate::chunk::{Article, Noun};
+use crate::lexicon::{Adjective, Occupant, Relation};
+use recrash_model::account::{Kind, KindGroup};
+
+/// A noun with a kind, of whom it is asked who is meant.
+struct Sought<'a> {
+    noun: &'a Noun,
+    kind: Kind,
+    /// Where the words behind it say that it is, seen from the subject vehicle.
+    hint: Option<Relation>,
+}
+
+/// What a rule says.
+enum Meant {
+    /// Somebody who is known.
+    Known(Actor),
+    /// Somebody new.
+    New,
+}
+
+type Rule = fn(&mut World, &Sought<'_>) -> Option<Meant>;
+
+/// Who is meant by a noun with a kind: the first rule that says something counts.
+const RULES: [Rule; 12] = [
+    World::told_of_first,
+    World::own_bus,
+    World::behind_own_name,
+    World::own_truck,
+    World::own_tractor,
+    World::another,
+    World::brought_on,
+    World::group,
+    World::first,
+    World::there,
+    World::parked,
+    World::of_kind,
+];
+
+impl Sought<'_> {
+    fn has(&self, adjective: Adjective) -> bool {
+        self.noun.adjectives.contains(&adjective)
+    }
+
+    fn is_definite(&self) -> bool {
+        self.noun.article == Article::Definite
+    }
+
+    /// Whether kind, number and names allow that somebody is meant.
+    fn fits(&self, known: &Known) -> bool {
+        let noun = self.noun;
+        known.kind.is_none_or(|known| same_kind(known, self.kind))
+            && (noun.number.is_none() || known.number.is_none() || noun.number == known.number)
+            && !contradicts(&known.names, &noun.names)
+    }
+}
+
+impl World {
+    /// Who is meant by a noun; `None` where it is somebody new.
+    pub(super) fn find(&mut self, noun: &Noun, hint: Option<Relation>) -> Option<Actor> {
+        if let Some((who, plain)) = noun.occupant {
+            return Some(self.occupant(noun, who, plain, hint));
+        }
+        if noun.subject {
+            return Some(SUBJECT);
+        }
+        if let Some(known) = self.by_number(noun) {
+            return Some(known);
+        }
+        if self.is_own_name(noun) {
+            return Some(SUBJECT);
+        }
+        let sought = Sought { noun, kind: noun.kind?, hint };
+        match RULES.iter().find_map(|rule| rule(self, &sought)) {
+            Some(Meant::Known(actor)) => Some(actor),
+            Some(Meant::New) | None => None,
+        }
+    }
+
+    /// "Vehicle 2".
+    fn by_number(&self, noun: &Noun) -> Option<Actor> {
+        let number = noun.number?;
+        self.latest(|known| known.number == Some(number))
+    }
+
+    /// "The Volvo", in the report of whose vehicle is one.
+    fn is_own_name(&mut self, noun: &Noun) -> bool {
+        if noun.article != Article::Definite {
+            return false;
+        }
+        let unnamed = self.actors.len() == 1 && self.actors[SUBJECT].mentions == 0;
+        let vehicle = noun.names.iter().find(|name| self.vehicle.contains(*name));
+        if let (true, Some(name)) = (unnamed, vehicle) {
+            self.actors[SUBJECT].names.push(name.clone());
+            return true;
+        }
+        let called = |known: &Known| known.names.iter().any(|name| noun.names.contains(name));
+        called(&self.actors[SUBJECT]) && !self.actors[1..].iter().any(called)
+    }
+
+    /// "The shuttle was in its lane": the first whom a story names as known is whom it is told of.
+    fn told_of_first(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let known = sought.is_definite() && sought.noun.adjectives.is_empty() && !sought.noun.several;
+        let things = self.actors[1..].iter().all(|known| known.kind.is_some_and(|kind| !acts(kind)));
+        let unnamed = things && self.actors[SUBJECT].mentions == 0;
+        if !(unnamed && known && sought.hint.is_none() && sought.kind.group() == KindGroup::Truck) {
+            return None;
+        }
+        self.actors[SUBJECT].kind.get_or_insert(sought.kind);
+        Some(Meant::Known(SUBJECT))
+    }
+
+    /// "Shuttle was stopped", told by a shuttle.
+    fn own_bus(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let bare = sought.noun.article == Article::None && !sought.noun.several;
+        let own = sought.kind == Kind::Bus && self.actors[SUBJECT].kind == Some(Kind::Bus);
+        (bare && own).then_some(Meant::Known(SUBJECT))
+    }
+
+    /// "An Acme AV ("AV") Peterbilt semi-truck": what it is, behind its name.
+    fn behind_own_name(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let alone = self.actors.len() == 1 && self.actors[SUBJECT].mentions > 0;
+        let bare = sought.noun.article == Article::None && !sought.noun.several;
+        if !(bare && alone && sought.kind == Kind::SemiTrailerTruck && !sought.noun.names.is_empty()) {
+            return None;
+        }
+        self.actors[SUBJECT].kind.get_or_insert(sought.kind);
+        Some(Meant::Known(SUBJECT))
+    }
+
+    /// "The shuttle" of a story that a shuttle tells, and that knows no other one.
+    fn own_truck(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let alike = |known: Kind| known == sought.kind || is_big_truck(known) && is_big_truck(sought.kind);
+        let own = self.actors[SUBJECT].kind.is_some_and(|own| alike(own) && own.group() == KindGroup::Truck);
+        let same = !sought.has(Adjective::Other) && !sought.has(Adjective::Another);
+        let only = || !self.actors[1..].iter().any(|known| known.kind.is_some_and(alike));
+        (own && sought.is_definite() && !sought.noun.several && same && only()).then_some(Meant::Known(SUBJECT))
+    }
+
+    /// "The front of the tractor": of a truck that tells, unless another one was called so.
+    fn own_tractor(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let own = self.actors[SUBJECT].kind.is_some_and(is_big_truck);
+        let only = || !self.actors[1..].iter().any(|known| known.tractor);
+        (sought.noun.tractor && sought.is_definite() && own && only()).then_some(Meant::Known(SUBJECT))
+    }
+
+    /// "Another van" is a second one of a kind: the announced one only where nobody of the kind was met. "The second van" may be
+    /// who was brought on so.
+    fn another(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        if !sought.has(Adjective::Another) {
+            return None;
+        }
+        let again = self.latest(|known| sought.is_definite() && known.another && sought.fits(known));
+        let met = || self.latest(|known| sought.fits(known) && !known.announced).is_some();
+        let announced = || self.latest(|known| known.announced && sought.fits(known));
+        let actor = again.or_else(|| if met() { None } else { announced() });
+        Some(actor.map_or(Meant::New, Meant::Known))
+    }
+
+    /// "A van" brings on somebody: who was announced, or somebody new.
+    fn brought_on(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let noun = sought.noun;
+        let bare = noun.article == Article::None && noun.names.is_empty() && !noun.several;
+        if noun.article != Article::Indefinite && !bare {
+            return None;
+        }
+        let announced = self.latest(|known| {
+            known.announced
+                && sought.fits(known)
+                && known.several == noun.several
+                && known.kind.is_none_or(|known| introduces(known, sought.kind))
+        });
+        Some(announced.map_or(Meant::New, Meant::Known))
+    }
+
+    /// "Parked cars": a group, the one that was named or a new one.
+    fn group(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        if !sought.noun.several || sought.noun.article != Article::None {
+            return None;
+        }
+        Some(self.latest(|known| known.several && sought.fits(known)).map_or(Meant::New, Meant::Known))
+    }
+
+    /// "The first van".
+    fn first(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        if !sought.has(Adjective::First) {
+            return None;
+        }
+        let is_first = |known: &Known| {
+            sought.fits(known) && known.mentions > 0 && known.several == sought.noun.several && !known.another
+        };
+        (1..self.actors.len()).find(|&actor| is_first(&self.actors[actor])).map(Meant::Known)
+    }
+
+    /// "The oncoming van", "the van behind it": who is known to be there.
+    fn there(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let relation = relation_of(sought.noun).or(sought.hint)?;
+        let there = |known: &Known| known.relations.iter().any(|(place, _)| *place == relation);
+        self.latest(|known| known.several == sought.noun.several && sought.fits(known) && there(known))
+            .map(Meant::Known)
+    }
+
+    /// "The parked car" is who was called so.
+    fn parked(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        if !sought.has(Adjective::Parked) || sought.noun.several {
+            return None;
+        }
+        self.latest(|known| known.parked && sought.fits(known) && !known.several).map(Meant::Known)
+    }
+
+    /// "The van": who is called by its names, else is of just this kind, else of one that this may mean; else the subject vehicle,
+    /// where nobody else can be meant.
+    fn of_kind(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let Sought { noun, kind, hint } = *sought;
+        // Who drives is not "the parked car".
+        let parked = sought.has(Adjective::Parked) && !noun.several;
+        let fits = |known: &Known| sought.fits(known) && !(parked && known.acted && !known.parked);
+        let as_many = |known: &Known| known.several == noun.several && fits(known);
+        let called = |known: &Known| known.names.iter().any(|name| noun.names.contains(name));
+        // "the scooter rider" of "two people riding scooters".
+        let rider = matches!(kind.group(), KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle);
+        let one_of = rider && !noun.several;
+        let found = self
+            .latest(|known| called(known) && fits(known))
+            .or_else(|| self.latest(|known| known.kind == Some(kind) && as_many(known)))
+            .or_else(|| self.latest(as_many))
+            .or_else(|| self.latest(|known| one_of && known.several && known.kind == Some(kind) && fits(known)));
+        let known = sought.is_definite() && !sought.has(Adjective::Other);
+        let Some(found) = found else {
+            // "The vehicle" of a story that knows no other one.
+            let only = kind == Kind::Vehicle || kind == Kind::PassengerCar && self.plain && self.actors.len() == 1;
+            if known && only && hint.is_none() && noun.names.is_empty() {
+                self.plain |= self.actors[SUBJECT].mentions == 0;
+                return Some(Meant::Known(SUBJECT));
+            }
+            // "The truck" of a story that a shuttle tells.
+            let own = self.actors[SUBJECT].kind.is_some_and(|own| same_kind(own, kind));
+            return (known && own && kind.group() == KindGroup::Truck).then_some(Meant::Known(SUBJECT));
+        };
+        // "The vehicle" is whom the story is about rather than a van that was named before.
+        let plain = kind == Kind::Vehicle && noun.names.is_empty() && noun.adjectives.is_empty();
+        let goes_on = self.topic == SUBJECT && self.actors[SUBJECT].last > self.actors[found].last;
+        let other_kind = self.actors[found].kind != Some(Kind::Vehicle);
+        Some(Meant::Known(if plain && known && other_kind && goes_on { SUBJECT } else { found }))
+    }
+
+    /// Whose driver, passenger or rider is meant.
+    fn occupant(&mut self, noun: &Noun, who: Occupant, plain: bool, hint: Option<Relation>) -> Actor {
+        if let Some(owner) = &noun.owner {
+            // "The driver of the vehicle behind it".
+            let placed = hint.filter(|_| !owner.subject);
+            return self.find(owner, placed).unwrap_or_else(|| self.add(owner));
+        }
+        match who {
+            // "A driver ran the light": nobody who was named.
+            Occupant::Driver if plain && noun.article == Article::Indefinite => {
+                self.latest(|known| known.announced).unwrap_or_else(|| self.add_vehicle())
+            }
+            // "The driver behind it": of another vehicle.
+            Occupant::Driver if plain && hint.is_some() => {
+                let there = |known: &Known| known.relations.iter().any(|(place, _)| Some(*place) == hint);
+                let known = self.latest(|known| known.kind.is_some_and(Kind::is_vehicle) && there(known));
+                known.unwrap_or_else(|| self.add_vehicle())
+            }
+            Occupant::Driver if plain && !self.own_driver => {
+                self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT)
+            }
+            // "The rider came off", told of a motorcycle.
+            Occupant::Rider if noun.article == Article::Definite && !noun.several => self
+                .latest(|known| known.acted)
+                .filter(|&actor| {
+                    let kind = self.actors[actor].kind.map(Kind::group);
+                    let rides = matches!(kind, Some(KindGroup::Motorcycle | KindGroup::Cyclist));
+                    rides && self.actors[actor].last > self.actors[SUBJECT].last
+                })
+                .unwrap_or(SUBJECT),
+            _ => SUBJECT,
+        }
+    }
+
+    fn add_vehicle(&mut self) -> Actor {
+        self.actors.push(Known { kind: Some(Kind::Vehicle), ..Known::default() });
+        self.actors.len() - 1
+    }
+}

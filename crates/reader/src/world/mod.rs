@@ -1,0 +1,269 @@
+//! Who is in the story, and who is meant by a noun.
+
+mod kinds;
+mod meant;
+
+use crate::chunk::Noun;
+use crate::lexicon::{Adjective, Relation};
+use kinds::{acts, relation_of};
+use recrash_model::account::{Compass, Kind, KindGroup, LaneWord};
+
+pub use kinds::same_kind;
+
+/// Somebody or something in the story, by its place in [`World::actors`].
+pub type Actor = usize;
+
+/// The subject vehicle.
+pub const SUBJECT: Actor = 0;
+
+/// What is known of somebody.
+#[derive(Debug, Clone, Default)]
+pub struct Known {
+    /// Kind.
+    pub kind: Option<Kind>,
+    /// Tokens of the noun that told the kind.
+    pub kind_tokens: Option<(usize, usize)>,
+    /// Makes and colours.
+    pub names: Vec<String>,
+    /// The number of "Vehicle 2".
+    pub number: Option<u8>,
+    /// "A second one", "another": it was brought on as another one of its kind.
+    pub another: bool,
+    /// More than one.
+    pub several: bool,
+    /// The headline named it, and the story has not yet.
+    pub announced: bool,
+    /// Where it is, seen from the subject vehicle, and the sentence that says so.
+    pub relations: Vec<(Relation, usize)>,
+    /// Direction first told, with its tokens.
+    pub heading: Option<(Compass, usize, usize)>,
+    /// Lane first told, with its tokens.
+    pub lane: Option<(LaneWord, usize, usize)>,
+    /// When it was named last.
+    pub last: usize,
+    /// The sentence that named it last.
+    pub sentence: Option<usize>,
+    /// How often it was named.
+    pub mentions: usize,
+    /// A clause was about it.
+    pub acted: bool,
+    /// The group that it is one of.
+    pub group: Option<Actor>,
+    /// It was called a tractor.
+    pub tractor: bool,
+    /// It was called parked, or told to stand.
+    pub parked: bool,
+    /// Who tows it.
+    pub towed_by: Option<Actor>,
+}
+
+impl Known {
+    /// Notes where it is, once.
+    pub fn place(&mut self, relation: Relation, sentence: usize) {
+        if !self.relations.iter().any(|(known, _)| *known == relation) {
+            self.relations.push((relation, sentence));
+        }
+    }
+}
+
+/// Everybody in the story.
+#[derive(Debug, Clone)]
+pub struct World {
+    /// The subject vehicle first.
+    pub actors: Vec<Known>,
+    clock: usize,
+    /// Words of what the record calls the subject vehicle.
+    vehicle: Vec<String>,
+    /// "The driver" drives the subject vehicle.
+    pub own_driver: bool,
+    /// The subject vehicle was first called "the vehicle".
+    pub plain: bool,
+    /// Number of the sentence that is read.
+    pub sentence: usize,
+    /// Who the sentence, or the one before, is about.
+    pub topic: Actor,
+}
+
+impl World {
+    /// A world with the subject vehicle in it.
+    pub fn new(own: crate::frame::Own<'_>) -> Self {
+        let names = own.make.into_iter().map(str::to_owned).collect();
+        let words = own.vehicle.split(|c: char| !c.is_alphanumeric());
+        let vehicle = words.filter(|word| word.len() > 2).map(str::to_lowercase).collect();
+        let subject = Known { kind: own.kind, names, ..Known::default() };
+        Self { actors: vec![subject], clock: 0, vehicle, own_driver: false, plain: false, sentence: 0, topic: SUBJECT }
+    }
+
+    /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
+    pub fn resolve(&mut self, noun: &Noun, tokens: (usize, usize), hint: Option<Relation>) -> Actor {
+        // "One of the cyclists" comes from where they all do.
+        let group = noun.kind.filter(|_| noun.one_of).and_then(|kind| {
+            let fits = |known: Kind| known == kind || kind == Kind::Vehicle;
+            (1..self.actors.len())
+                .rfind(|&group| self.actors[group].several && self.actors[group].kind.is_some_and(fits))
+        });
+        let actor = self.find(noun, hint).unwrap_or_else(|| self.add(noun));
+        if let Some(group) = group.filter(|group| *group != actor) {
+            let of = self.actors[group].clone();
+            let known = &mut self.actors[actor];
+            known.heading = known.heading.or(of.heading);
+            known.group = Some(group);
+            if known.relations.is_empty() {
+                known.relations = of.relations;
+            }
+            if noun.kind == Some(Kind::Vehicle) && known.kind.is_none_or(|kind| kind == Kind::Vehicle) {
+                (known.kind, known.kind_tokens) = (of.kind, of.kind_tokens);
+            }
+        }
+        let actor = self.actors[actor].towed_by.unwrap_or(actor);
+        self.clock += 1;
+        let known = &mut self.actors[actor];
+        known.sentence = Some(self.sentence);
+        known.tractor |= noun.tractor;
+        known.parked |= noun.occupant.is_none() && noun.adjectives.contains(&Adjective::Parked);
+        known.last = self.clock;
+        known.mentions += 1;
+        if actor == SUBJECT && noun.subject {
+            // "The Prius" of "a Parcelway Prius".
+            let new = noun.names.iter().filter(|name| crate::lexicon::Lexicon::get().is_model(name));
+            known.names.extend(new.cloned());
+        }
+        if actor != SUBJECT
+            && let Some(owner) = noun.owner.as_deref().filter(|_| noun.occupant.is_some())
+        {
+            refine(known, owner, tokens);
+        } else if actor != SUBJECT && noun.occupant.is_none() {
+            refine(known, noun, tokens);
+        } else if noun.subject && noun.kind.is_some_and(|kind| kind.group() == KindGroup::Truck) {
+            known.kind = known.kind.or(noun.kind);
+        }
+        if let Some(relation) = relation_of(noun)
+            && noun.occupant.is_none()
+            && actor != SUBJECT
+        {
+            known.place(relation, self.sentence);
+        }
+        if let (Some(compass), true, None) = (noun.compass, noun.occupant.is_none(), known.heading) {
+            known.heading = Some((compass, tokens.0, tokens.1));
+        }
+        actor
+    }
+
+    /// What a noun besides its own says of somebody: "Vehicle 2, a black van".
+    pub fn describe(&mut self, actor: Actor, noun: &Noun, tokens: (usize, usize)) {
+        if actor != SUBJECT {
+            refine(&mut self.actors[actor], noun, tokens);
+        } else if self.actors[SUBJECT].kind.is_none() {
+            self.actors[SUBJECT].kind = noun.kind;
+        }
+        for name in &noun.names {
+            if !self.actors[actor].names.contains(name) {
+                self.actors[actor].names.push(name.clone());
+            }
+        }
+    }
+
+    /// Who struck the subject vehicle where nobody is named: who is known to be behind it, or acted last; else somebody who is
+    /// named later.
+    pub fn striker(&mut self, behind: bool) -> Actor {
+        let there = |known: &Known| known.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
+        let known = self.latest(|known| {
+            known.kind.is_some_and(|kind| kind.is_vehicle() || kind.group() == KindGroup::Motorcycle)
+                && !known.several
+                && if behind { there(known) } else { known.acted }
+        });
+        known.unwrap_or_else(|| {
+            self.actors.push(Known { kind: Some(Kind::Vehicle), announced: true, ..Known::default() });
+            self.actors.len() - 1
+        })
+    }
+
+    /// One tows the other: from here on they are one.
+    pub fn tow(&mut self, tower: Actor, towed: Actor) {
+        if tower == towed || towed == SUBJECT || self.actors[tower].towed_by.is_some() {
+            return;
+        }
+        self.actors[towed].towed_by = Some(tower);
+        let kind = match self.actors[tower].kind {
+            Some(Kind::HeavyTruck | Kind::SemiTrailerTruck) => Kind::SemiTrailerTruck,
+            Some(kind) if !kind.is_vehicle() => kind,
+            Some(Kind::TowTruck) => Kind::TowTruck,
+            _ => Kind::PickupWithTrailer,
+        };
+        let trailer = self.actors[towed].kind == Some(Kind::Trailer);
+        if tower != SUBJECT && trailer {
+            self.actors[tower].kind = Some(kind);
+        }
+    }
+
+    /// Who is meant by `it`.
+    pub fn pronoun(&self) -> Actor {
+        self.topic
+    }
+
+    fn latest(&self, wanted: impl Fn(&Known) -> bool) -> Option<Actor> {
+        (1..self.actors.len())
+            .filter(|&actor| wanted(&self.actors[actor]))
+            .max_by_key(|&actor| (self.actors[actor].acted, self.actors[actor].last))
+    }
+
+    fn add(&mut self, noun: &Noun) -> Actor {
+        let another = noun.adjectives.contains(&Adjective::Another);
+        self.actors.push(Known { several: noun.several, another, ..Known::default() });
+        self.actors.len() - 1
+    }
+
+    /// Who else was named last.
+    pub fn other(&self) -> Option<Actor> {
+        self.latest(|known| known.kind.is_none_or(acts) && known.mentions > 0)
+    }
+
+    /// The thing that was named last.
+    pub fn thing(&self) -> Option<Actor> {
+        // "a bin that stood away from the curb": a curb is a place first.
+        (1..self.actors.len())
+            .max_by_key(|&actor| (self.actors[actor].kind != Some(Kind::Curb), self.actors[actor].last))
+    }
+
+    /// Somebody else of its kind, the one named last.
+    pub fn like(&self, actor: Actor) -> Option<Actor> {
+        let kind = self.actors[actor].kind?;
+        (1..self.actors.len())
+            .filter(|&other| other != actor && !self.actors[other].announced && !self.actors[other].several)
+            .filter(|&other| self.actors[other].kind.is_some_and(|known| same_kind(known, kind)))
+            .max_by_key(|&other| self.actors[other].last)
+    }
+
+    /// Who is called by this name.
+    pub fn by_name(&self, name: &str) -> Option<Actor> {
+        (1..self.actors.len()).rfind(|&actor| self.actors[actor].names.iter().any(|known| known == name))
+    }
+}
+
+/// Takes over what a noun says of somebody: its kind where that says more, names, number.
+fn refine(known: &mut Known, noun: &Noun, tokens: (usize, usize)) {
+    let finer = match (known.kind, noun.kind) {
+        (None, Some(_)) => true,
+        (Some(Kind::Vehicle), Some(kind)) => kind != Kind::Vehicle,
+        (Some(Kind::HeavyTruck), Some(kind)) => {
+            kind.group() == KindGroup::Truck && kind != Kind::HeavyTruck && kind != Kind::Trailer
+        }
+        (Some(Kind::Pickup), Some(Kind::PickupWithTrailer)) => true,
+        (Some(Kind::Bicycle), Some(Kind::EBike)) => true,
+        (Some(Kind::PassengerCar), Some(Kind::PoliceCar)) => true,
+        _ => false,
+    };
+    if finer {
+        known.kind = noun.kind;
+        known.kind_tokens = Some(tokens);
+    }
+    for name in &noun.names {
+        if !known.names.contains(name) {
+            known.names.push(name.clone());
+        }
+    }
+    known.number = known.number.or(noun.number);
+    known.several |= noun.several;
+    let real = noun.kind.is_some();
+    known.announced &= !real;
+}
