@@ -508,7 +508,7 @@ impl Parser<'_> {
         let who = taken.who;
         // "Turned to enter the center lane": it was not there before.
         let purpose = taken.first.checked_sub(1).is_some_and(|at| self.tokens[at].text == "to");
-        let stepped = (taken.first..taken.end).any(|at| self.tokens[at].text == "into");
+        let stepped = lane != LaneWord::Opposing && (taken.first..taken.end).any(|at| self.tokens[at].text == "into");
         let enters = taken.act() == Some(Act::Enter) && preposition.is_none() && purpose || stepped;
         if let Some(who) = who.filter(|_| !(into || enters) || from) {
             self.world.actors[who].lane.get_or_insert(stands);
