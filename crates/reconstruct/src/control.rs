@@ -72,8 +72,10 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
             None if side.state.stands() => told.contact_s - CHANGED_S,
             None => told.contact_s - CHANGED_BEFORE_DRIVING_S,
         };
-        let stood_there =
-            is_ego && told.sv.state.stands() && told.sv.turning != Turning::No && said.state == Some(SignalState::Red);
+        // Who stood at red, and drives over its line without running it, does so at green.
+        let drives_on = told.sv.state.stands() && told.sv.turning != Turning::No
+            || told.sv.stood_first && said.obeyed == Some(Obeyed::Yes) && told.origin != Origin::Behind;
+        let stood_there = is_ego && drives_on && said.state == Some(SignalState::Red);
         let state = if stood_there && sets_off_s(ego).is_some() { Some(SignalState::TurnedGreen) } else { said.state };
         Some(program(state, side, told.contact_s, changed_s.max(0.1)))
     };
@@ -84,9 +86,12 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     // Two arms that face each other show the same, and the other two the opposite.
     let along = own.clone().or_else(|| other.clone().map(|of| if crosses { opposite(&of) } else { of }));
     let across = other.filter(|_| crosses).or_else(|| along.as_deref().map(opposite));
+    // A light of its own that is told of who comes from ahead may show something else.
+    let ahead = said[1].as_ref().filter(|(arm, ..)| *arm == "ahead-").and_then(|_| signal(&said[1]));
     for (arms, program) in [(["own-", "ahead-"], along), (["left-", "right-"], across)] {
         for arm in arms {
-            if let Some(program) = program.clone().filter(|_| !list.iter().any(|control| control.at == arm)) {
+            let program = if arm == "ahead-" { ahead.as_ref().or(program.as_ref()) } else { program.as_ref() };
+            if let Some(program) = program.cloned().filter(|_| !list.iter().any(|control| control.at == arm)) {
                 list.push(at(arm, Device::Signal { program, offset_s: 0.0 }));
             }
         }

@@ -11,6 +11,7 @@ use crate::phases;
 use crate::roadside;
 use crate::seen::Seen;
 use crate::side::Slant;
+use crate::strips;
 use crate::things;
 use crate::told::Told;
 use crate::touch::{side_of, zones_off};
@@ -28,7 +29,7 @@ use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout, STEP_S}
 use recrash_model::scenario::MissionStop;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
-use recrash_roads::Scenario;
+use recrash_roads::{RoadPart, Scenario};
 
 /// Nearer to the middle than this a contact is on neither side. [m]
 const MIDDLE_M: f64 = 0.1;
@@ -319,23 +320,39 @@ fn lane(
 ) -> (CheckResult, String) {
     let network = scenario.network();
     let turn_lanes = if told.turns_abreast() { 2 } else { 1 };
-    // Who is told to be on the opposite side went there.
-    let at = if word == LaneWord::Opposing { ((time_s * 10.0) as usize).min(track.states.len() - 1) } else { 0 };
+    // Who is told to be on the opposite side went there, or comes from there into its own.
+    let at = if word == LaneWord::Opposing && !told.leaves_opposite() {
+        ((time_s * 10.0) as usize).min(track.states.len() - 1)
+    } else {
+        0
+    };
     let first = &track.states[at];
     let Some(id) = network.lane_at(first.position(), first.heading) else {
         return (CheckResult::CannotBeShown, "on no lane".to_owned());
     };
-    let lanes = &network.road(network.lane(id).road).lanes;
+    let road = network.road(network.lane(id).road);
+    if let Some(strip) = strips::strip_of(word) {
+        return match strips::is_on(network, road.part, strip) {
+            None => (CheckResult::CannotBeShown, "no such lane is drawn".to_owned()),
+            Some(true) => (CheckResult::Shown, lane_words(word).to_owned()),
+            Some(false) => (CheckResult::NotShown, "in another lane".to_owned()),
+        };
+    }
+    let lanes = &road.lanes;
     let number = lanes.iter().position(|lane| *lane == id).unwrap_or(0);
     let last = lanes.len() - 1;
     let shown = match word {
+        // Beside the driving lanes.
+        _ if matches!(road.part, RoadPart::Beside(_)) => false,
         LaneWord::Left => number == 0,
         LaneWord::Right => number == last,
         LaneWord::LeftTurn => number < turn_lanes,
         LaneWord::RightTurn => number + turn_lanes > last,
         LaneWord::Center => number > 0 && number < last,
         LaneWord::Opposing => {
-            let heading = network.lane(id).heading(0.0) - ego.states[0].heading;
+            // Of who came over from its own side: the ego's.
+            let own = if told.comes_over && ego.id != track.id { first.heading } else { ego.states[0].heading };
+            let heading = network.lane(id).heading(0.0) - own;
             math::wrap_angle(heading).abs() > math::FRAC_PI_2
         }
         LaneWord::Bike | LaneWord::Bus | LaneWord::Shoulder | LaneWord::Curb => {
@@ -591,6 +608,9 @@ const ASIDE_M: f64 = 1.0;
 /// Who is farther aside than this does not come along the ego's lane. [m]
 const BESIDE_M: f64 = 5.0;
 
+/// Who comes along the opposite side behind the ego is not farther aside than this. [m]
+const OPPOSITE_M: f64 = 8.5;
+
 /// Who comes over from its own side, or from the kerb, is farther aside than this when it sets out. [m]
 const OVER_M: f64 = 2.0;
 
@@ -641,7 +661,10 @@ fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bo
         false => facing.abs() < 60.0 || state == ContactState::Reversing,
     };
     let shown = match told.origin {
-        Origin::Behind => ahead < 2.0 && same_way && left.abs() < BESIDE_M,
+        Origin::Behind => {
+            let lane_m = if told.leaves_opposite() { OPPOSITE_M } else { BESIDE_M };
+            ahead < 2.0 && same_way && left.abs() < lane_m
+        }
         Origin::Ahead => {
             let faces = same_way || on_foot && !told.comes_across() || state.stands();
             ahead > -2.0 && faces && left.abs() < beside_m

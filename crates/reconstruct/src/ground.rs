@@ -2,6 +2,7 @@
 
 use crate::others::Role;
 use crate::side::Turning;
+use crate::strips::strip_of;
 use crate::things::Lies;
 use crate::told::{Aside, Told};
 use crate::touch::size_of;
@@ -40,12 +41,17 @@ pub(crate) struct Ground {
     places: Vec<f64>,
     /// Whether crossing roads are there.
     pub(crate) junction: bool,
-    /// In one direction.
+    /// In one direction, and in the other.
     pub(crate) lanes: usize,
+    oncoming: usize,
     /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
     pub(crate) kerbs_m: [f64; 2],
     /// From the ego's line to where it stands, to the right: it is parked at the kerb. [m]
     pub(crate) stands_m: f64,
+    /// What lies beside the lanes of the partner's road, from them outwards.
+    pub(crate) beside: Vec<StripKind>,
+    /// From the ego's line to the outer edge of the lanes on the left, and on the right. [m]
+    pub(crate) lane_edges_m: [f64; 2],
     /// From the ego's line to the middle of the nearest lane of those who come towards it. [m]
     pub(crate) opposing_m: f64,
     /// The drift that brings the ego to what stands at the edge of its road.
@@ -80,7 +86,7 @@ impl Ground {
 
     /// The same, with the ego's front so far behind where the road begins that it turns into.
     fn at_entry(self, ego_m: f64, behind_m: &[f64]) -> Self {
-        let centre_y_m = (self.lanes as f64 - 0.5) * LANE_M;
+        let centre_y_m = self.centre_y_m();
         let entry_m = (0..1000)
             .map(|step| APPROACH_M + 0.05 * f64::from(step))
             .find(|s_m| (self.sv_pose(*s_m).position.y - centre_y_m).abs() >= corner_m(self.lanes))
@@ -102,9 +108,24 @@ impl Ground {
         Self { drift: Some(drift), ..self.clone() }
     }
 
+    /// Where the middle of a junction is. [m]
+    pub(crate) fn centre_y_m(&self) -> f64 {
+        (self.lanes as f64 - 0.5) * LANE_M
+    }
+
     /// Where the middle of the nearest lane of those is who come towards the ego. [m]
     pub(crate) fn opposing_y_m(&self) -> f64 {
         self.sv_pose(0.0).position.y + self.opposing_m
+    }
+
+    /// Where the middle of a told lane of those is who come towards the ego, else that of the nearest. [m]
+    pub(crate) fn oncoming_y_m(&self, lane: Option<LaneWord>) -> f64 {
+        let number = match lane {
+            Some(LaneWord::Center) => self.oncoming / 2,
+            Some(LaneWord::Right | LaneWord::RightTurn) => self.oncoming.saturating_sub(1),
+            _ => 0,
+        };
+        self.opposing_y_m() + number as f64 * LANE_M
     }
 
     pub(crate) fn sv_pose(&self, s_m: f64) -> Pose {
@@ -160,15 +181,17 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let oncoming = if one_sided || told.place == PlaceKind::Highway { 0 } else { 1 };
     let (right, left) = match told.place {
         _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
-        PlaceKind::Highway => (strips(lanes_for(told, 3), &[StripKind::Shoulder]), Vec::new()),
+        PlaceKind::Highway => (strips(lanes_for(told, 3), &told.beside_lanes(&[StripKind::Shoulder])), Vec::new()),
         _ if lot => (strips(1, &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
         _ => {
             let stalls = matches!(told.origin, Origin::Stall { .. });
-            let beside = [if stalls { StripKind::Stalls } else { StripKind::Parking }, StripKind::Sidewalk];
+            let usual = [if stalls { StripKind::Stalls } else { StripKind::Parking }, StripKind::Sidewalk];
+            let beside = told.beside_lanes(&usual);
             (strips(lanes_for(told, 2), &beside), strips(oncoming, &beside))
         }
     };
     let lanes = right.iter().filter(|strip| strip.kind == StripKind::Driving).count();
+    let beside = right.iter().map(|strip| strip.kind).filter(|kind| *kind != StripKind::Driving).collect();
     // The rightmost lane, but for a partner that comes by on the right.
     let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
     let usual = match lanes {
@@ -184,7 +207,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         junctions: Vec::new(),
         areas: Vec::new(),
     };
-    let across = Across { lanes, lane, oncoming };
+    let across = Across { lanes, lane, oncoming, beside };
     let ground = with_way(map, vec!["main+".to_owned()], across, vec![APPROACH_M], false);
     let at_kerb = told.is_at_kerb() && !lot && told.place != PlaceKind::Highway && !one_way;
     let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
@@ -281,9 +304,12 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
     if let Some(word) = told.sv.lane {
         return number(word);
     }
-    // The partner's lane tells the ego's, where the two go one way.
+    // The partner's lane tells the ego's, where the two go one way; of who changes into it that beside it.
     let other = number(told.cp.lane?)?;
+    let left_m = told.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
     match told.origin {
+        Origin::Behind | Origin::Ahead if left_m >= LANE_M => (other + 1 < lanes).then_some(other + 1),
+        Origin::Behind | Origin::Ahead if left_m <= -LANE_M => other.checked_sub(1),
         Origin::Behind | Origin::Ahead => Some(other),
         Origin::Beside { side: LeftRight::Left } => (other + 1 < lanes).then_some(other + 1),
         Origin::Beside { side: LeftRight::Right } => other.checked_sub(1),
@@ -297,13 +323,18 @@ fn has(told: &Told, role: Role) -> bool {
 }
 
 fn passes_right(told: &Told) -> bool {
-    matches!(told.origin, Origin::Beside { side: LeftRight::Right })
-        || told.origin == Origin::Behind
+    let in_lane = told.cp.lane.and_then(strip_of).is_none();
+    in_lane && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
+        || in_lane
+            && told.origin == Origin::Behind
             && told.cp.state == ContactState::Moving
             && told.sv.zones.iter().any(|zone| {
                 matches!(zone, recrash_model::zones::ContactZone::Right | recrash_model::zones::ContactZone::FrontRight)
             })
 }
+
+/// Who is no longer than this has room between the ego and the stop line. [m]
+const USUAL_M: f64 = 6.0;
 
 /// From a junction's centre to where its arms begin, wider with more lanes. [m]
 pub(crate) fn corner_m(lanes: usize) -> f64 {
@@ -320,11 +351,15 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::No | Turning::Round => "own",
     };
     let one_way = is_one_way(told);
+    let usual: &[StripKind] =
+        if has(told, Role::Kerb) { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
+    // Of the partner's road, on both sides of the junction.
+    let beside = told.beside_lanes(usual);
+    let crosses = matches!(told.origin, Origin::Cross { .. });
+    let along = if crosses { ["left", "right"] } else { ["own", "ahead"] };
     let arm = |id: &str, bearing_deg: f64, length_m: f64| {
         let start = RoadStart::Arm { junction: "j".to_owned(), bearing_deg, from_m: corner_m };
-        let beside: &[StripKind] =
-            if has(told, Role::Kerb) { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
-        let usual = || strips(lanes, beside);
+        let usual = || strips(lanes, if along.contains(&id) { &beside } else { usual });
         let (away, towards) = match told.edge.filter(|_| id == exits_by) {
             Some(LeftRight::Right) if id == "own" => (usual(), strips(lanes, &told.beside_edge())),
             Some(LeftRight::Left) if id == "own" => (behind_median(usual()), usual()),
@@ -391,27 +426,37 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     } else {
         // At the line, or behind who stands there.
         let behind = has(told, Role::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
-        let before_m = if behind { 13.0 } else { 5.0 };
+        // What is long stands before the line too.
+        let longer_m = if told.origin == Origin::Ahead { (size_of(&told.cp).0 - USUAL_M).max(0.0) } else { 0.0 };
+        let before_m = if behind { 13.0 + longer_m } else { 5.0 };
         let both = has(told, Role::Lead) && told.origin == Origin::Ahead;
         vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }]
     };
-    let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes } };
+    let beside = if crosses { usual.to_vec() } else { beside };
+    let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes }, beside };
     let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
     if told.sv.turned { ground.after_turn() } else { ground }
 }
 
-/// Lanes in the ego's direction, the ego's, 0 is the leftmost, and those of who comes towards it.
+/// Lanes in the ego's direction, the ego's, 0 is the leftmost, those of who comes towards it, and what lies beside them.
 struct Across {
     lanes: usize,
     lane: usize,
     oncoming: usize,
+    beside: Vec<StripKind>,
 }
 
 impl Across {
     /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
     fn kerbs_m(&self) -> [f64; 2] {
-        let half_m = 0.5 * StripKind::Parking.usual_width_m();
-        [self.oncoming + self.lane, self.lanes - self.lane - 1].map(|between| (between as f64 + 0.5) * LANE_M + half_m)
+        let moving = self.beside.iter().take_while(|kind| **kind == StripKind::Bike);
+        let half_m = 0.5 * StripKind::Parking.usual_width_m() + moving.map(|kind| kind.usual_width_m()).sum::<f64>();
+        self.lane_edges_m().map(|edge_m| edge_m + half_m)
+    }
+
+    /// From the ego's line to the outer edge of the lanes on the left, and on the right. [m]
+    fn lane_edges_m(&self) -> [f64; 2] {
+        [self.oncoming + self.lane, self.lanes - self.lane - 1].map(|between| (between as f64 + 0.5) * LANE_M)
     }
 }
 
@@ -428,7 +473,10 @@ fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>,
         places,
         junction,
         lanes: across.lanes,
+        oncoming: across.oncoming,
         kerbs_m,
+        lane_edges_m: across.lane_edges_m(),
+        beside: across.beside,
         stands_m: 0.0,
         opposing_m,
         drift: None,

@@ -4,6 +4,7 @@ use crate::ground::{Ground, LANE_M};
 use crate::pace::{Pace, first_time, start_over, when};
 use crate::phases::STOPS_SHORT_M;
 use crate::side::{Slant, Turning};
+use crate::strips::strip_of;
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, Party, PlaceKind, Standing, told};
@@ -60,6 +61,7 @@ impl Told {
     /// Whether the partner comes along the ego's lane behind it and passes it.
     pub(crate) fn passes_from_behind(&self) -> bool {
         let own_lane = match (self.cp.lane, self.sv.lane) {
+            (Some(cp), sv) if strip_of(cp).is_some() => sv != Some(cp),
             (Some(LaneWord::Opposing), _) => false,
             (Some(cp), Some(sv)) => cp != sv,
             _ => false,
@@ -96,6 +98,12 @@ impl Told {
             && self.thing.is_none()
             && self.door.is_none()
             && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+    }
+
+    /// Whether the partner came along behind the ego on the opposite side, and changed from there into a lane of its own direction.
+    pub(crate) fn leaves_opposite(&self) -> bool {
+        let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
+        self.origin == Origin::Behind && self.cp.lane == Some(LaneWord::Opposing) && changes
     }
 
     /// Whether the partner has to keep to the lanes of the ego's direction: nobody tells that it left them.
@@ -174,9 +182,13 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
         return Some(0.0);
     }
     if told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp) {
-        return Some(staging.ground.opposing_y_m().max(staging.cp.position.y));
+        return Some(staging.ground.oncoming_y_m(told.cp.lane).max(staging.cp.position.y));
+    }
+    if told.leaves_opposite() {
+        return Some(staging.ground.opposing_y_m());
     }
     kerb_y_m(told, staging)
+        .or_else(|| told.strip_y_m(&staging.ground))
         .or_else(|| told.cp_from_left_m().map(|from_left_m| staging.cp.position.y + from_left_m))
         .or_else(|| {
             beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })
@@ -202,7 +214,8 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
         )
     );
     let leaves = leaves && !told.passes_from_behind()
-        || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind();
+        || told.comes_along_kerb() && staging.ground.stands_m > 0.0 && !told.passes_from_behind()
+        || told.strip_y_m(&staging.ground).is_some() && told.cp.turning == Turning::No;
     let over = told.comes_over || told.is_met_on_wrong_side(&staging.ground, staging.cp);
     if !(leaves || told.cp.dodges || over) || told.cp.state != ContactState::Moving || pace.speed_mps == 0.0 {
         return None;

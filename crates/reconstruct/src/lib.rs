@@ -25,6 +25,7 @@ mod phases;
 mod roadside;
 mod seen;
 mod side;
+mod strips;
 mod things;
 mod told;
 mod touch;

@@ -1,6 +1,6 @@
 //! How the speed of each of the two comes to what it is at the contact.
 
-use crate::ground::Ground;
+use crate::ground::{Ground, corner_m};
 use crate::kerb;
 use crate::lateral::{self, PULL_OUT_M};
 use crate::phases::{self, Lead, MOVES_UP_M, Phase};
@@ -9,7 +9,7 @@ use crate::side::{Side, Turning};
 use crate::things;
 use crate::told::{Told, WALKS_MPS};
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{ContactState, ControlDevice, Obeyed, Origin, Striker};
+use recrash_model::account::{ContactState, ControlDevice, LeftRight, Obeyed, Origin, Striker};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::STEP_S;
@@ -181,6 +181,7 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
     let before_s = if told.backs_early { Some(ego_moves_s) } else { ego_backs_s };
     let last = things::pace(told)
         .or_else(|| beside_from_line(told, staging))
+        .or_else(|| cross_from_line(told, staging))
         .or_else(|| lateral::from_kerb(told, staging))
         .unwrap_or_else(|| partner_pace(told, staging, (&ego, ego_m, before_s)));
     let stands = cp.state.stands();
@@ -505,6 +506,20 @@ fn beside_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
     }
     let line_m = ground.first_m() - 0.5 * size_of(cp).0 - AT_LINE_M;
     start_over(told.contact_s, cp.speed_mps, ground.beside(staging.cp.position).0 - line_m)
+}
+
+/// Who stood at a signal or a sign on the crossing road sets off from its stop line.
+fn cross_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
+    let (cp, ground) = (&told.cp, &staging.ground);
+    let Origin::Cross { side } = told.origin else { return None };
+    let stood = cp.stood_first || cp.state == ContactState::SettingOff;
+    if !stood || cp.control.is_none() || !ground.junction || cp.state == ContactState::Reversing {
+        return None;
+    }
+    let line_m = corner_m(ground.lanes) + AT_LINE_M + 0.5 * size_of(cp).0;
+    let left_m = staging.cp.position.y - ground.centre_y_m();
+    let to_line_m = if side == LeftRight::Left { line_m - left_m } else { line_m + left_m };
+    start_over(told.contact_s, cp.speed_mps, to_line_m)
 }
 
 /// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.

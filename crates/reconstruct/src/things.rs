@@ -48,7 +48,9 @@ impl Lies {
         let turns_in = matches!(sv.turning, Turning::Left | Turning::Right)
             || matches!(place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
         match told(&thing.kind)? {
-            Kind::Curb | Kind::Pothole if any(&["speed bump", "speed hump", "speed table"]) => Some(Self::Bump),
+            Kind::Curb | Kind::Pothole if any(&["speed bump", "speed hump", "speed table", "gate track"]) => {
+                Some(Self::Bump)
+            }
             Kind::Debris if any(&["spikes"]) => Some(Self::Bump),
             Kind::Pothole if any(&["water meter"]) => Some(Self::Hole),
             Kind::Pothole if any(&["water", "flood", "wet cement"]) => Some(Self::Water),

@@ -35,6 +35,10 @@ const CHANGES_M: f64 = 2.2;
 const CONTACT_S: f64 = 9.0;
 const LATE_CONTACT_S: f64 = 12.0;
 
+/// Who drives through a junction comes along for so far, and so long at most. [m, s]
+const OVER_LINE_M: f64 = 19.5;
+const LATEST_CONTACT_S: f64 = 22.0;
+
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
 
@@ -361,6 +365,13 @@ impl Told {
         }
         let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty() || self.backs_out();
         self.contact_s = if more { LATE_CONTACT_S } else { CONTACT_S };
+        // Who is slow has come over the line of its signal or sign.
+        let drives = self.sv.state == ContactState::Moving && self.sv.slowed_from.is_none() && !self.sv.stood_first;
+        let over_line = self.sv.control.is_some() && drives && self.origin != Origin::Behind;
+        if let Some(mps) = self.sv.impact_mps.filter(|_| over_line && self.sv.turning == Turning::No) {
+            self.contact_s =
+                (OVER_LINE_M / mps.max(0.4)).ceil().clamp(self.contact_s, LATEST_CONTACT_S.max(self.contact_s));
+        }
     }
 
     /// The kinds of facts that are told and can be held against a rollout.
@@ -505,8 +516,10 @@ impl Told {
         if neared && self.sv.phases.is_empty() {
             self.sv.slowed_from = self.sv.slowed_from.or(Some(Slowed(None)));
         }
+        let crosses = matches!(self.origin, Origin::Cross { .. });
         let usual = |side: &Side| match side.state {
             ContactState::Stopped | ContactState::Parked => 0.0,
+            ContactState::SettingOff if side.control.is_some() && crosses => 4.0,
             ContactState::SettingOff => 1.5,
             ContactState::Reversing => 1.2,
             ContactState::Moving if side.is_slow() => 3.0,
@@ -638,12 +651,15 @@ impl Told {
             // From the kerb, or the one told.
             Movement::EnteringTraffic => (if self.sv.aside == Some(right) { -KERB_M } else { KERB_M }, 0.0),
             Movement::ParkingManeuver => (0.0, by(right, KERB_M)),
+            // It changed lanes on its way.
+            Movement::Straight if self.sv.changed_lanes && self.sv.aside.is_some() => (0.0, by(left, LANE_M)),
             // It dodged, or drifted, while it drove on.
             Movement::Straight | Movement::Passing if self.sv.aside.is_some() => (0.0, by(left, DEPARTS_M)),
             _ => return None,
         };
         let back = self.sv.returns && matches!(movement, Movement::ChangingLanes | Movement::Merging);
-        Some(Aside { from_t_m, to_t_m, done: self.lane_changed && stopped.is_none(), back })
+        let changed = movement == Movement::Straight && self.sv.changed_lanes;
+        Some(Aside { from_t_m, to_t_m, done: (self.lane_changed || changed) && stopped.is_none(), back })
     }
 
     /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]

@@ -4,7 +4,7 @@
 
 use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
-use crate::ground::{Ground, ground_for};
+use crate::ground::{Ground, LANE_M, ground_for};
 use crate::kerb;
 use crate::lateral::{is_on_foot, turn_m};
 use crate::roadside;
@@ -133,6 +133,7 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                             (late, LATE),
                             (squeezed, SQUEEZED),
                             (other_way, OTHER_WAY),
+                            (told.crosses_off_lanes(ground, cp), OFF_LANES),
                         ];
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
                         let cost = (off + worse, trial);
@@ -166,6 +167,9 @@ const SWINGS_RAD: f64 = 0.35;
 
 /// Of an oncoming partner, that the ego, which turns, has not come to its lane.
 const BEFORE_LANE: u32 = 3;
+
+/// Of who has a signal or a sign on the crossing road, that it does not come along the lanes that lead there.
+const OFF_LANES: u32 = 1;
 
 /// Of who strikes the other with parts that nobody tells, that the other one's front does.
 const OTHER_WAY: u32 = 1;
@@ -270,6 +274,15 @@ impl Told {
     fn goes_right_way(&self, cp: Pose) -> bool {
         let wrong_way = self.cp.movement == Some(Movement::WrongWay);
         matches!(self.origin, Origin::Cross { side } if wrong_way && sign(side) * cp.position.x < RIGHT_SIDE_M)
+    }
+
+    /// Whether a partner that has a signal or a sign on the crossing road, and goes straight on, is beside the lanes that lead there.
+    fn crosses_off_lanes(&self, ground: &Ground, cp: Pose) -> bool {
+        let own_way = !matches!(self.cp.movement, Some(Movement::WrongWay | Movement::Backing));
+        let straight = self.cp.turning == Turning::No && self.cp.state != ContactState::Reversing && own_way;
+        let lanes_m = ground.lanes as f64 * LANE_M;
+        let told = straight && self.cp.control.is_some() && ground.junction;
+        matches!(self.origin, Origin::Cross { side } if told && !(0.0..=lanes_m).contains(&(-sign(side) * cp.position.x)))
     }
 
     /// Whether the partner drives straight on behind an ego that leaves its lane.

@@ -58,6 +58,9 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     party
 }
 
+/// That somebody begins to be in a junction or a lane.
+const ENTERS: [&str; 3] = ["beginning to enter", "began to enter", "begins to enter"];
+
 fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<recrash_model::account::Compass>> {
     let (_, frame) = reading
         .before(actor)
@@ -292,6 +295,10 @@ fn state(reading: &Reading<'_>, actor: Actor) -> (Option<Fact<ContactState>>, Op
             Act::Hold | Act::Stop if parked => ContactState::Parked,
             Act::Hold | Act::Stop => ContactState::Stopped,
             Act::Park if text.starts_with("parked") => ContactState::Parked,
+            // Who comes along and "was beginning to enter" the junction had not stood.
+            Act::SetOff if state.is_some() && !stands && ENTERS.iter().any(|words| text.starts_with(words)) => {
+                ContactState::Moving
+            }
             Act::SetOff => ContactState::SettingOff,
             Act::Reverse => ContactState::Reversing,
             Act::Follow | Act::Enter if stands && text.starts_with("continu") => continue,

@@ -478,7 +478,11 @@ impl Parser<'_> {
             carry.preposition = None;
             return;
         }
-        (carry.preposition, carry.to) = (None, false);
+        let preposition = carry.preposition.take();
+        carry.to = false;
+        if self.is_lane_of_others(placed.first) {
+            return;
+        }
         let stands = (lane, placed.first, placed.end);
         let Some(frame) = carry.frame else {
             if let Some(subject) = &carry.subject {
@@ -502,9 +506,27 @@ impl Parser<'_> {
         }
         taken.lane.get_or_insert(stands);
         let who = taken.who;
-        if let Some(who) = who.filter(|_| !into || from) {
+        // "Turned to enter the center lane": it was not there before.
+        let purpose = taken.first.checked_sub(1).is_some_and(|at| self.tokens[at].text == "to");
+        let stepped = lane != LaneWord::Opposing && (taken.first..taken.end).any(|at| self.tokens[at].text == "into");
+        let enters = taken.act() == Some(Act::Enter) && preposition.is_none() && purpose || stepped;
+        if let Some(who) = who.filter(|_| !(into || enters) || from) {
             self.world.actors[who].lane.get_or_insert(stands);
         }
+    }
+
+    /// Whether a lane is that of others between whom somebody comes out, of a place in it, or one that the own is adjacent to: "from a gap
+    /// between vehicles in the left lane", "passing traffic in the center lane", "a parking spot in the curb lane", "in the lane adjacent to the rightmost, bus-only lane".
+    fn is_lane_of_others(&self, first: usize) -> bool {
+        let text = |back: usize| first.checked_sub(back).map_or("", |at| self.tokens[at].text.as_str());
+        let article = usize::from(text(1) == "the");
+        let (before, noun, by) = (text(1 + article), text(2 + article), text(3 + article));
+        let between_them = by == "between" && ["vehicles", "cars"].contains(&noun);
+        let passing = noun == "traffic" && ["passing", "cross", "oncoming"].contains(&by);
+        let in_it = before == "in" && (between_them || passing || ["spot", "space"].contains(&noun));
+        let between = |back: &usize| ["the", "rightmost", "leftmost", "right", "left", ",", "-"].contains(&text(*back));
+        let behind = (1..6).take_while(between).count() + 1;
+        in_it || text(behind) == "to" && ["adjacent", "next"].contains(&text(behind + 1))
     }
 
     pub(super) fn spot(&mut self, spot: Spot, carry: &mut Carry) {

@@ -100,3 +100,28 @@ fn an_animal_that_was_struck_first_is_the_partner_whatever_the_column_says() {
                 cat, and the AV came to a stop. The front of a van behind the AV then made contact with the rear of the AV.";
     assert_eq!(beside_columns(text, PartnerKind::Van, None)["cp_kind"], "animal");
 }
+
+#[test]
+fn a_lane_of_others_or_one_that_is_only_aimed_at_is_nobodys_own() {
+    use recrash_model::account::{ContactState, LaneWord, told};
+    let partner = |text: &str| account_of(text).expect("an account").partner.expect("a partner");
+    let touched = "and the front of the AV made contact with the dog.";
+    let between = format!("A dog emerged from between vehicles in the left lane and ran in front of the AV, {touched}");
+    assert_eq!(partner(&between).lane, None);
+    let spot = "The AV was stopped behind a sedan. The sedan reversed, attempting to park in a parking spot in the curb lane, and the rear \
+                of the sedan made contact with the front of the AV.";
+    assert_eq!(partner(spot).lane, None);
+    let stepped = "The AV was stopped when a pedestrian stepped into the left turn lane and made contact with the left side of the AV.";
+    assert_eq!(partner(stepped).lane, None);
+    let beside = "The AV was traveling in the lane adjacent to the rightmost, bus-only lane when a sedan traveling in the bus lane made \
+                  contact with the right side of the AV.";
+    let account = account_of(beside).expect("an account");
+    assert_eq!((account.sv.lane, told(&account.partner.unwrap().lane)), (None, Some(LaneWord::Bus)));
+    let own = format!("A dog was running in the left lane, {touched}");
+    assert_eq!(told(&partner(&own).lane), Some(LaneWord::Left));
+    // Who was coming along had not stood.
+    let enters = "The AV was stopped when a scooter rider who was traveling in the curb lane was beginning to enter the intersection and \
+                  made contact with the right side of the AV.";
+    let rider = partner(enters);
+    assert_eq!((told(&rider.state), told(&rider.lane)), (Some(ContactState::Moving), Some(LaneWord::Curb)));
+}

@@ -12,6 +12,7 @@ mod roadside;
 mod sabotage;
 mod steps;
 mod stories;
+mod strips;
 mod task;
 mod things;
 mod ways;
