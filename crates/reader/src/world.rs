@@ -303,7 +303,8 @@ impl World {
             });
         }
         if noun.several && noun.article == Article::None {
-            return self.latest(|known| known.several && fits(known));
+            // Traffic that comes is not what is parked there.
+            return self.latest(|known| known.several && fits(known) && (known.parked || !has(Adjective::Parked)));
         }
         if has(Adjective::First) {
             let first = (1..self.actors.len()).find(|&actor| {
