@@ -168,13 +168,14 @@ fn opens(contact_s: f64, door: &Opening, plan: &mut ActorPlan, parts: &mut Vec<P
 /// stop. What made the recorded driver stop is then part of the task.
 fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
     let at_line = staging.ground.junction && told.sv.control.is_some();
-    let lead = told.extras.iter().any(|extra| extra.role == Role::Lead && !extra.goes);
+    let lead = told.extras.iter().any(|extra| matches!(extra.role, Role::Lead | Role::Thing) && !extra.goes);
     let by_itself = told.sv.state == ContactState::Stopped && !lead && !at_line;
     let boards = told.sv.state.stands() && told.reasons.contains(&StandReason::PickupDropoff);
     if !by_itself && !boards {
         return Vec::new();
     }
-    vec![MissionStop { s_m: staging.sv_s_m, t_m: staging.ground.stands_m, for_s: None }]
+    let (s_m, t_m) = staging.ground.beside(staging.sv.position);
+    vec![MissionStop { s_m, t_m, for_s: None }]
 }
 
 /// Straight on at a speed.

@@ -77,6 +77,10 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
             || told.sv.stood_first && said.obeyed == Some(Obeyed::Yes) && told.origin != Origin::Behind;
         let stood_there = is_ego && drives_on && said.state == Some(SignalState::Red);
         let state = if stood_there && sets_off_s(ego).is_some() { Some(SignalState::TurnedGreen) } else { said.state };
+        // Who turns right, and gives way to crossing traffic, does so at red.
+        let crossed = actors.iter().any(|actor| actor.id == Role::Crosser.id());
+        let on_red = is_ego && crossed && said.state.is_none() && said.obeyed.is_none();
+        let state = if on_red && told.sv.turning == Turning::Right { Some(SignalState::Red) } else { state };
         Some(program(state, side, told.contact_s, changed_s.max(0.1)))
     };
     let (own, other) = (signal(&said[0]), signal(&said[1]));

@@ -2,7 +2,7 @@
 
 use crate::came::straight_plan;
 use crate::ground::{Ground, LANE_M, corner_m};
-use crate::others::{Extra, Role, waits_ahead};
+use crate::others::{Extra, Role, leaves_lane, waits_ahead};
 use crate::pace::{first_time, next, when};
 use crate::side::{Turning, size_of as size_of_kind};
 use crate::told::{Told, WALKS_MPS};
@@ -139,7 +139,7 @@ impl Scene<'_> {
         let spec = VehicleSpec::of(kind);
         let (length_m, width_m) = size.map_or((spec.length_m, spec.width_m), |size| (size.length_m, size.width_m));
         let plans = match extra.role {
-            Role::Lead => self.lead(extra, length_m).into_iter().collect(),
+            Role::Lead | Role::Thing => self.lead(extra, length_m).into_iter().collect(),
             Role::Slower => self.slower(length_m).into_iter().collect(),
             Role::Walker if kind == PartnerKind::Pedestrian => vec![self.crosses(extra, WALKS_MPS, self.clears_s())],
             Role::Walker => vec![self.crosses(extra, RIDES_MPS, self.clears_s())],
@@ -236,7 +236,8 @@ impl Scene<'_> {
         let pose = match self.told.sv_aside() {
             // In the lane, or in that into which the ego changes.
             Some(aside) => {
-                let lane_m = if aside.to_t_m.abs() >= LANE_M { aside.to_t_m } else { 0.0 };
+                let changes = aside.to_t_m.abs() >= LANE_M && !leaves_lane(self.told);
+                let lane_m = if changes { aside.to_t_m } else { 0.0 };
                 self.ground.pose(s_m + ahead_m + ROOM_M, lane_m)
             }
             None => self.ahead(step, ahead_m),
@@ -260,7 +261,7 @@ impl Scene<'_> {
             return Some(ActorPlan { course, acts, ..ActorPlan::standing(at(0.0)) });
         }
         // Behind whom the ego moves up, that one has moved up before.
-        let Some((up_s, up_m)) = self.moved_up().filter(|_| !extra.parked) else {
+        let Some((up_s, up_m)) = self.moved_up().filter(|_| !extra.parked && extra.role != Role::Thing) else {
             return Some(ActorPlan::standing(at(0.0)));
         };
         let speed_mps = 0.9 * (GOES_MPS2 * up_m).sqrt();

@@ -162,8 +162,9 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let lot = matches!(told.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley)
         && !matches!(told.sv.turning, Turning::Left | Turning::Right);
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
-    // Who gives way to crossing traffic is at a junction.
-    let gives_way = told.place != PlaceKind::Highway && has(told, Role::Crosser);
+    // Who gives way to crossing traffic, or keeps a junction clear, is at one.
+    let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
+    let gives_way = told.place != PlaceKind::Highway && at_one;
     if (crossing || controlled || gives_way) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
         let behind_m: &[f64] = match (told.edge, told.lies) {

@@ -34,8 +34,9 @@ mod trailer;
 pub use choices::open_choices;
 
 use choices::Choices;
+use others::Extra;
 use recrash_model::account::{Account, Untold};
-use recrash_model::metrics::{Answer, CheckKind, Verdict};
+use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult, Verdict};
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Parameter;
@@ -96,7 +97,7 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 }
 
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    let mut best: Option<Best> = None;
+    let (mut best, mut fullest): (Option<Best>, Option<(usize, Best)>) = (None, None);
     let mut refused = 0;
     'tried: for told in told.variants() {
         for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
@@ -110,20 +111,45 @@ fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold>
             let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
             let others = facts::others_stray(&told, &scenario, &rollout);
             let cost = (verdict.failures().count(), others, facts::strays(&told, &scenario, &rollout));
-            if best.as_ref().is_none_or(|best| cost < best.cost) {
-                let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
+            let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
+            let better = best.as_ref().is_none_or(|best| cost < best.cost);
+            let fuller = fullest.as_ref().is_none_or(|(fewest, _)| missing < *fewest) && (cost.0, cost.1) == (0, false);
+            if better || fuller {
+                let draft = scenario.draft().clone();
+                let assumed =
+                    told.assumed.iter().cloned().chain(told.extras.iter().filter_map(Extra::assumed)).collect();
                 let made = Reconstruction { draft, rollout, verdict, assumed };
-                best = Some(Best { cost, made, told: told.clone(), ground: staging.ground });
+                let found = Best { cost, made, told: told.clone(), ground: staging.ground };
+                if fuller {
+                    fullest = Some((missing, found.clone()));
+                }
+                if better {
+                    best = Some(found);
+                }
             }
             if cost == (0, false, false) {
                 break 'tried;
             }
         }
     }
-    best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })
+    let made = best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
+    // A partner that strays is worth less than others who are told of.
+    let fuller = fullest.map(|(_, found)| found).filter(|found| found.cost.2 && made.is_true() && left_open(&made) > 0);
+    let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
+    Ok(fuller.unwrap_or(made))
+}
+
+/// Whether a fact of others in the story is told, and not shown.
+fn is_of_others(check: &Check) -> bool {
+    matches!(check.kind, CheckKind::Reason | CheckKind::Others) && check.result == CheckResult::CannotBeShown
+}
+
+fn left_open(made: &Reconstruction) -> usize {
+    made.verdict.checks.iter().filter(|check| is_of_others(check)).count()
 }
 
 /// The best of what was tried: told facts that are not shown, then whether others are not as told, and whether the partner strays.
+#[derive(Clone)]
 struct Best {
     cost: (usize, bool, bool),
     made: Reconstruction,
@@ -135,7 +161,7 @@ impl Best {
     /// The same with those who have no part in what the ego does, where nothing told is missed for them.
     fn with_near(self) -> Reconstruction {
         let Self { cost, made, told, ground } = self;
-        if cost.0 > 0 || told.wanted.iter().all(|extra| extra.of.is_empty()) {
+        if cost.0 > 0 || told.wanted.is_empty() {
             return made;
         }
         let (draft, rollout, assumed) = nearby::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));

@@ -30,6 +30,7 @@ pub(crate) enum Does {
     TurnsLeft,
     /// Changes lanes, to a side where told.
     Changes(Option<LeftRight>),
+    Backs,
 }
 
 /// What is told of somebody who has no part in what the ego does.
@@ -46,8 +47,12 @@ pub(crate) struct Near {
 impl Near {
     /// Nothing where something is told of it that is not drawn.
     pub(crate) fn of(other: &Other, words: &str, number: usize) -> Option<Self> {
-        if matches!(other.kind.value.group(), KindGroup::Object | KindGroup::Other) {
+        if !is_drawn(other) {
             return None;
+        }
+        if other.kind.value.group() == KindGroup::Object {
+            let place = other.place.as_ref().map(|fact| fact.value);
+            return Some(Self { place, across: false, does: Does::Stands, number });
         }
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
         let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
@@ -66,7 +71,8 @@ impl Near {
             other.acts.iter().filter(|fact| !fact.after_contact && !fact.begun && fact.act != Act::Leave).collect();
         let one = |fact: &&ActFact| match fact.act {
             Act::Follow | Act::SetOff | Act::Accelerate => Some(Does::Drives),
-            Act::Enter if place == Some(Origin::Ahead) => Some(Does::Drives),
+            Act::Enter if matches!(place, Some(Origin::Ahead | Origin::Beside { .. })) => Some(Does::Drives),
+            Act::Reverse => Some(Does::Backs),
             Act::Slow => Some(Does::Slows),
             Act::Hold | Act::Stop | Act::Park => Some(Does::Stands),
             Act::Pass => Some(Does::Passes),
@@ -75,17 +81,30 @@ impl Near {
             _ => None,
         };
         let all: Vec<Does> = before.iter().map(one).collect::<Option<_>>()?;
-        let deed = |does: &&Does| matches!(does, Does::Passes | Does::TurnsLeft | Does::Changes(_));
+        let deed = |does: &&Does| matches!(does, Does::Passes | Does::TurnsLeft | Does::Changes(_) | Does::Backs);
         let does = match all.iter().rev().find(deed) {
             Some(Does::Changes(side)) if matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. })) => {
                 Does::Changes(*side)
             }
             Some(Does::Passes) if matches!(place, None | Some(Origin::Behind | Origin::Beside { .. })) => Does::Passes,
             Some(Does::TurnsLeft) => Does::TurnsLeft,
+            Some(Does::Backs) if !matches!(place, Some(Origin::Ahead | Origin::Behind | Origin::Beside { .. })) => {
+                Does::Backs
+            }
             Some(_) => return None,
             None => all.last().copied().unwrap_or(Does::Untold),
         };
         Some(Self { place, across, does, number })
+    }
+
+    /// Whether somebody near moves while the ego stands, and is ahead of it then.
+    pub(crate) fn is_waited_for(ego: &ActorTrack, track: &ActorTrack, until: usize) -> bool {
+        let way = Vec2::from_heading(ego.states[0].heading);
+        (0..=until.min(track.states.len() - 1)).any(|step| {
+            let (own, other) = (&ego.states[step], &track.states[step]);
+            let stands = own.velocity().length() < STANDS_MPS;
+            stands && other.velocity().length() > STANDS_MPS && way.dot(other.position() - own.position()) > 0.0
+        })
     }
 
     /// The name of its actor.
@@ -98,6 +117,7 @@ impl Near {
         match (self.does, self.place) {
             (Does::TurnsLeft, _) => "one turns left from ahead",
             (Does::Passes, _) => "one passes",
+            (Does::Backs, _) => "one backs",
             (Does::Changes(_), _) => "one changes lanes",
             (_, Some(Origin::Ahead)) => "one is farther ahead",
             (_, Some(Origin::Behind)) => "one is behind",
@@ -150,6 +170,7 @@ impl Near {
         let done = match self.does {
             Does::Untold => true,
             Does::Drives => drove,
+            Does::Backs => (0..=until).any(|step| state(step).speed() < -STANDS_MPS),
             Does::Slows => (0..until).any(|step| mps(step) > mps(until) + SLOWED_MPS),
             Does::Stands => (until.saturating_sub(10)..=until).all(|step| mps(step) < STANDS_MPS),
             Does::Passes => {
@@ -168,6 +189,18 @@ impl Near {
             }
         };
         stays_ahead && done && (0..=until).any(there)
+    }
+}
+
+/// Whether somebody can be put somewhere near: no thing that moves, or that the ego goes over.
+fn is_drawn(other: &Other) -> bool {
+    let stands = |fact: &ActFact| fact.after_contact || matches!(fact.act, Act::Hold | Act::Park | Act::Drift);
+    match (other.kind.value, other.kind.value.group()) {
+        // What is fixed does nothing, whatever is told with it.
+        (Kind::Wall | Kind::Pole | Kind::Sign, _) => true,
+        (Kind::Barrier | Kind::Cone | Kind::Cart | Kind::Scooter, _) => other.acts.iter().all(stands),
+        (_, KindGroup::Object | KindGroup::Other) => false,
+        _ => true,
     }
 }
 

@@ -5,7 +5,7 @@ use crate::control;
 use crate::ground::{Ground, LANE_M, corner_m};
 use crate::near::{Does, NEAR_M, Near};
 use crate::others::{Extra, Role};
-use crate::pace::when;
+use crate::pace::{next, when};
 use crate::seen::Seen;
 use crate::side::size_of as size_of_kind;
 use crate::told::{TURNS_MPS, Told, WALKS_MPS};
@@ -32,9 +32,18 @@ const SLOWS_BY_MPS: f64 = 2.0;
 const PASSES_BY_MPS: f64 = 4.0;
 const BRAKES_MPS2: f64 = 2.5;
 
+/// Who backs begins to so long before the contact, and does so over this way. [s, m, m/s, m/s^2]
+const BACKS_BEFORE_S: f64 = 2.5;
+const BACKS_M: f64 = 1.5;
+const BACKS_MPS: f64 = 1.0;
+const BACKS_MPS2: f64 = 1.0;
+
 /// Who changes lanes takes so long, and has done so this long before the contact. [s]
 const CHANGES_S: f64 = 3.5;
 const CHANGED_BEFORE_S: f64 = 0.5;
+
+/// Who comes over ahead of an ego that stands does so slowly. [m/s]
+const MERGES_MPS: f64 = 2.0;
 
 /// How somebody comes to be near: where it is at first, what it drives, and where it goes.
 struct Way {
@@ -45,13 +54,15 @@ struct Way {
     slows: bool,
     /// It moves so far to the right before the contact. [m]
     shifts_m: f64,
+    /// It goes backwards.
+    backs: bool,
     /// Places on its way, after which it goes straight on.
     by: Vec<Pose>,
 }
 
 impl Way {
     fn stands(from: Pose) -> Self {
-        Self { from, speed_mps: 0.0, stops_m: None, slows: false, shifts_m: 0.0, by: Vec::new() }
+        Self { from, speed_mps: 0.0, stops_m: None, slows: false, shifts_m: 0.0, backs: false, by: Vec::new() }
     }
 
     /// Straight on, where it is at a place at a time.
@@ -62,6 +73,16 @@ impl Way {
 
     fn plan(&self, contact_s: f64) -> ActorPlan {
         let place = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
+        if self.backs {
+            let end = Pose { position: self.from.position - Vec2::from_heading(self.from.heading) * 20.0, ..self.from };
+            let begins_s = tenth((contact_s - BACKS_BEFORE_S).max(0.1));
+            let goes = when(begins_s, Deed::Speed { to_mps: BACKS_MPS, rate_mps2: BACKS_MPS2 });
+            return ActorPlan {
+                course: vec![Leg::Curve { to: place(end), reverse: true }],
+                acts: vec![goes, next(Deed::Stop { rate_mps2: BACKS_MPS2, at_m: Some(BACKS_M) })],
+                ..ActorPlan::standing(place(self.from))
+            };
+        }
         if self.speed_mps == 0.0 {
             return ActorPlan::standing(place(self.from));
         }
@@ -94,7 +115,8 @@ pub(crate) fn with_near(
 ) -> (ScenarioDraft, Rollout, Vec<String>) {
     let (mut draft, mut rollout) = begun;
     let mut assumed = Vec::new();
-    for extra in told.wanted.iter().filter(|extra| !extra.of.is_empty()) {
+    // Who stands ahead, and is told only by why the ego stood, may be the partner.
+    for extra in told.wanted.iter().filter(|extra| extra.role != Role::Lead || !extra.of.is_empty()) {
         let id = extra.id();
         if rollout.actors.iter().any(|track| track.id == id) {
             continue;
@@ -116,6 +138,7 @@ pub(crate) fn with_near(
             if let Some(near) = extra.near {
                 assumed.push(format!("where {id} is that has no part in what the ego does: {}", near.words()));
             }
+            assumed.extend(extra.assumed());
         }
     }
     (draft, rollout, assumed)
@@ -182,7 +205,9 @@ impl<'a> Scene<'a> {
         let spec = VehicleSpec::of(kind);
         let length_m = size.map_or(spec.length_m, |size| size.length_m);
         let ways = match (extra.near, extra.kind.group()) {
-            (Some(near), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist) => self.walks(extra.kind, near),
+            (Some(near), KindGroup::OnFoot | KindGroup::Animal | KindGroup::Cyclist | KindGroup::Object) => {
+                self.walks(extra.kind, near)
+            }
             (Some(near), _) => self.drives(near, length_m),
             (None, _) => self.elsewhere(extra, 0.5 * length_m),
         };
@@ -250,6 +275,7 @@ impl<'a> Scene<'a> {
         let mut list = Vec::new();
         match near.place {
             _ if near.does == Does::TurnsLeft => list.extend(self.turners()),
+            _ if near.does == Does::Backs => list.extend(self.backers(near.place, half_m)),
             _ if let Does::Changes(side) = near.does => list.extend(self.changers(side, half_m)),
             _ if near.does == Does::Passes => list.extend(self.passers(near.place, half_m)),
             Some(Origin::Opposite) => {
@@ -269,7 +295,7 @@ impl<'a> Scene<'a> {
                 if !stands {
                     list.extend(self.beside(side));
                 }
-                list.extend(self.stands_beside(side));
+                list.extend(self.stands_beside(side, half_m));
                 list.extend(self.kerb(side, half_m));
             }
             Some(Origin::Cross { side }) => list.extend(self.crosses(side, near.does, half_m)),
@@ -290,8 +316,8 @@ impl<'a> Scene<'a> {
                     list.extend(self.kerb(left, half_m));
                     list.extend(self.kerb(right, half_m));
                     list.extend(self.waits_opposite(half_m));
-                    list.extend(self.stands_beside(left));
-                    list.extend(self.stands_beside(right));
+                    list.extend(self.stands_beside(left, half_m));
+                    list.extend(self.stands_beside(right, half_m));
                     list.extend(self.crosses(left, Does::Stands, half_m));
                     list.extend(self.crosses(right, Does::Stands, half_m));
                     list.extend(self.stands_ahead(half_m, 12.0));
@@ -312,17 +338,18 @@ impl<'a> Scene<'a> {
         };
         match extra.role {
             Role::Kerb => sides.into_iter().flat_map(|side| self.kerb(side, half_m)).collect(),
-            Role::Beside => sides.into_iter().flat_map(|side| self.stands_beside(side)).collect(),
+            Role::Beside => sides.into_iter().flat_map(|side| self.stands_beside(side, half_m)).collect(),
             Role::Abreast => sides.into_iter().flat_map(|side| self.beside(side)).collect(),
             Role::Crosser => sides.into_iter().flat_map(|side| self.crosses(side, Does::Drives, half_m)).collect(),
-            Role::Oncoming if self.is_two_way() => [0.5, 1.0, 2.0, 3.0, 4.5]
+            Role::Oncoming if self.is_two_way() => [0.5, 1.0, 2.0, 3.0, 4.5, 5.2]
                 .map(|before_s| {
                     let at_s = (self.contact_s - before_s).max(0.5);
                     let (s_m, _) = self.at(((at_s * 10.0) as usize).min(self.until));
                     Way::straight(self.against(s_m), DRIVES_MPS, at_s)
                 })
                 .into(),
-            Role::Lead if !extra.goes => self.stands_ahead(half_m, 0.0),
+            Role::Lead | Role::Thing if !extra.goes => self.stands_ahead(half_m, 0.0),
+            Role::Merger => sides.into_iter().flat_map(|side| self.mergers(side, half_m)).collect(),
             _ => Vec::new(),
         }
     }
@@ -357,6 +384,17 @@ impl<'a> Scene<'a> {
         [10.0, 20.0, 30.0, 4.0].into_iter().map(place).collect()
     }
 
+    /// Backs a little: in the lane towards the ego, where it is told there; else out of where it is parked, or stands.
+    fn backers(&self, place: Option<Origin>, half_m: f64) -> Vec<Way> {
+        let sides = match place {
+            Some(Origin::Opposite) => Vec::new(),
+            Some(Origin::Stall { side: Some(side) } | Origin::Parked { side: Some(side) }) => vec![side],
+            _ => vec![LeftRight::Right, LeftRight::Left],
+        };
+        let parked = sides.into_iter().flat_map(|side| self.kerb(side, half_m));
+        parked.chain(self.waits_opposite(half_m)).map(|way| Way { backs: true, ..way }).collect()
+    }
+
     /// The ego's line, those of the lanes beside it, and that to which it goes. [m]
     fn lines(&self) -> Vec<f64> {
         let to_m = self.told.sv_aside().map(|aside| aside.to_t_m).filter(|to_m| to_m.abs() >= LANE_M);
@@ -381,7 +419,7 @@ impl<'a> Scene<'a> {
     fn stands_ahead(&self, half_m: f64, least_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
         let front_m = s_m + self.front_m() + half_m;
-        let far = [3.0, 5.0, 10.0, 16.0, 24.0, 30.0].into_iter().filter(|on_m| *on_m >= least_m);
+        let far = [3.0, 5.0, 7.5, 10.0, 16.0, 24.0, 30.0].into_iter().filter(|on_m| *on_m >= least_m);
         let places = far.flat_map(|on_m| self.lines().into_iter().map(move |t_m| (front_m + on_m, t_m)));
         let across_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes) + half_m;
         let inside = |s_m: f64| self.ground.junction && s_m + half_m > self.ground.first_m() && s_m < across_m;
@@ -435,11 +473,12 @@ impl<'a> Scene<'a> {
         list
     }
 
-    fn stands_beside(&self, side: LeftRight) -> Vec<Way> {
+    fn stands_beside(&self, side: LeftRight, half_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
         let t_m = self.beside_m(side, self.until);
         let inside = |s_m: f64| self.ground.junction && s_m + 2.0 > self.ground.first_m();
-        let places = [2.0, -6.0, 8.0, 12.0].into_iter().map(|on_m| s_m + on_m);
+        let at_line = self.ground.junction.then(|| self.ground.first_m() - half_m - 2.0);
+        let places = [2.0, -6.0, 8.0, 12.0].into_iter().map(|on_m| s_m + on_m).chain(at_line);
         places.filter(|s_m| !inside(*s_m)).map(|s_m| Way::stands(self.road(s_m, t_m))).collect()
     }
 
@@ -462,6 +501,18 @@ impl<'a> Scene<'a> {
             }
         }
         list
+    }
+
+    /// Changes from beside the ego's lane into that, ahead of it.
+    fn mergers(&self, from: LeftRight, half_m: f64) -> Vec<Way> {
+        let (s_m, t_m) = self.at(self.until);
+        let to_m = self.told.sv_aside().map_or(t_m, |aside| aside.from_t_m);
+        let shifts_m = if from == LeftRight::Left { LANE_M } else { -LANE_M };
+        let [mean_mps, _] = self.speeds();
+        let place = |on_m: f64| self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
+        let way = |speed_mps: f64, on_m: f64| Way { shifts_m, ..Way::straight(place(on_m), speed_mps, self.contact_s) };
+        let slow = [12.0, 16.0, 20.0].map(|on_m| way(MERGES_MPS, on_m));
+        slow.into_iter().chain([6.0, 10.0, 14.0, 20.0].map(|on_m| way(mean_mps, on_m))).collect()
     }
 
     /// Changes from one lane to the next, ahead of the ego or beside it.

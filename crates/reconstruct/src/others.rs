@@ -1,9 +1,10 @@
 //! Others than the two: who is told of besides them, and what they are to the ego.
 
+use crate::ground::LANE_M;
 use crate::near::Near;
 use crate::phases::Phase;
 use crate::side::Turning;
-use crate::told::Told;
+use crate::told::{Aside, Told};
 use crate::touch::side_of;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, Source, StandReason,
@@ -44,6 +45,8 @@ pub(crate) enum Role {
     Backer,
     /// Drives in the next lane as the ego does.
     Abreast,
+    /// A thing that stands or lies in its lane, ahead of it.
+    Thing,
     /// Has no part in what the ego does.
     Near,
 }
@@ -67,6 +70,7 @@ impl Role {
             Self::Beside => "beside",
             Self::Backer => "backer",
             Self::Abreast => "abreast",
+            Self::Thing => "thing",
             Self::Near => "near",
         }
     }
@@ -87,6 +91,7 @@ impl Extra {
             Role::Beside => "one stands in the next lane",
             Role::Backer => "one backs into its lane ahead",
             Role::Abreast => "one drives in the next lane",
+            Role::Thing => "a thing is in its lane ahead",
             Role::Kerb => "parked at the kerb",
             Role::Obstacle => "one stands that it goes round",
             Role::Passed => "one stands that the partner goes round",
@@ -137,6 +142,12 @@ impl Extra {
         }
     }
 
+    /// Of one whom nobody names, and who is there because the ego stood: that it is assumed.
+    pub(crate) fn assumed(&self) -> Option<String> {
+        let only = self.of.is_empty() && matches!(self.role, Role::Thing | Role::Crosser | Role::Oncoming);
+        only.then(|| format!("what the ego stands for: {}", self.words()))
+    }
+
     /// The name of its actor.
     pub(crate) fn id(&self) -> String {
         self.near.map_or_else(|| self.role.id().to_owned(), Near::id)
@@ -150,6 +161,23 @@ const NAMED_BEFORE: usize = 160;
 
 /// Who is named no farther behind the words that the ego passed is whom it passed. [byte]
 const PASSES_WITHIN: usize = 12;
+
+/// Those to whom an ego gives way.
+pub(crate) const GIVEN_WAY: [Role; 8] =
+    [Role::Walker, Role::Animal, Role::Crosser, Role::Oncoming, Role::Lead, Role::Merger, Role::Backer, Role::Blocker];
+
+/// Things in the way, by their words.
+const THINGS: [(&str, Kind); 9] = [
+    ("debris", Kind::Debris),
+    ("shrub", Kind::TreeBranch),
+    ("tree", Kind::TreeBranch),
+    ("object", Kind::Object),
+    ("cone", Kind::Cone),
+    ("barricade", Kind::Cone),
+    ("construction", Kind::Cone),
+    ("fencing", Kind::Barrier),
+    ("gate", Kind::Gate),
+];
 
 /// Why the ego stood. A crossing where nobody else is told of is nobody that it stood for, and the partner is not one of the others.
 pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
@@ -219,7 +247,7 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         let near = |list: &[Extra]| {
             let before = list.iter().filter(|extra| extra.role == Role::Near).count();
             let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
-            near.map(|near| Extra::near(near, number, kind))
+            near.map(|near| Extra { awaited: story.is_near(other), ..Extra::near(near, number, kind) })
         };
         let Some(role) = story.role(told, other).filter(|role| is_drawn(told, *role)) else {
             list.extend(near(&list));
@@ -227,7 +255,7 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         };
         let drives_on = story.drives_on(other).filter(|_| role == Role::Lead);
         let parked = other.acts.iter().any(|fact| text(&fact.source).contains("parked"));
-        let goes = role == Role::Lead && sets_off(told) && !parked || drives_on.is_some();
+        let goes = role == Role::Lead && sets_off(told) && !parked && !leaves_lane(told) || drives_on.is_some();
         let first = drives_on == Some(true);
         match list.iter_mut().find(|extra| extra.role == role) {
             Some(known) if kind.partner_kind().is_none_or(|kind| known.kind.partner_kind() == Some(kind)) => {
@@ -260,9 +288,27 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     if blocked && told.thing.is_none() && list.iter().all(|extra| extra.role != Role::Beyond) {
         list.push(Extra::of_reason(Role::Beyond));
     }
-    let queue = told.reasons.iter().any(|reason| matches!(reason, StandReason::Queue | StandReason::LeadVehicle));
+    // A queue that leaves no room behind a junction stands there.
+    let beyond = blocked && list.iter().any(|extra| extra.role == Role::Beyond);
+    let waits = |reason: &StandReason| match reason {
+        StandReason::Queue => !beyond,
+        reason => *reason == StandReason::LeadVehicle,
+    };
+    let queue = told.reasons.iter().any(waits);
     if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
         list.insert(0, Extra::of_reason(Role::Lead));
+    }
+    let in_way = list.iter().any(|extra| matches!(extra.role, Role::Lead | Role::Obstacle));
+    let thing = thing_in_way(account).filter(|_| !in_way && is_drawn(told, Role::Thing));
+    if let Some(kind) = thing.filter(|_| told.reasons.contains(&StandReason::BlockedPath)) {
+        list.push(Extra { kind, ..Extra::of_reason(Role::Thing) });
+    }
+    // It gave way, and nobody says to whom.
+    let named = account.others.iter().any(|other| story.is_near(other));
+    let named = named || list.iter().any(|extra| GIVEN_WAY.contains(&extra.role));
+    let role = if is_at_junction(told) { Role::Crosser } else { Role::Oncoming };
+    if told.reasons.contains(&StandReason::Yield) && !named && is_drawn(told, role) {
+        list.push(Extra::of_reason(role));
     }
     list
 }
@@ -313,7 +359,7 @@ fn is_drawn(told: &Told, role: Role) -> bool {
         Role::Passed => told.thing.is_none(),
         // Ahead of a partner that is ahead itself, and stands or backs there.
         Role::Lead => drives && told.thing.is_none() && (told.origin != Origin::Ahead || waits_ahead(told)),
-        Role::Slower => drives && told.thing.is_none() && told.origin != Origin::Ahead,
+        Role::Slower | Role::Thing => drives && told.thing.is_none() && told.origin != Origin::Ahead,
         _ => drives && told.thing.is_none(),
     }
 }
@@ -328,6 +374,24 @@ pub(crate) fn waits_ahead(told: &Told) -> bool {
 fn sets_off(told: &Told) -> bool {
     let stood = told.sv.stood_first || told.sv.phases.contains(&Phase::Stands);
     told.sv.state == ContactState::SettingOff || told.sv.state == ContactState::Moving && stood
+}
+
+/// Whether the ego stood, and leaves its lane.
+pub(crate) fn leaves_lane(told: &Told) -> bool {
+    let leaves = |aside: Aside| aside.from_t_m == 0.0 && aside.to_t_m.abs() >= LANE_M;
+    sets_off(told) && told.sv_aside().is_some_and(leaves)
+}
+
+/// Whether the road that the ego is on crosses another one there.
+fn is_at_junction(told: &Told) -> bool {
+    told.place == PlaceKind::Intersection || told.is_controlled() || told.sv.turning != Turning::No
+}
+
+/// What a thing is that stood in the ego's way, by the words for why it stood.
+fn thing_in_way(account: &Account) -> Option<Kind> {
+    let reason = account.sv.reasons.iter().find(|fact| fact.value == StandReason::BlockedPath)?;
+    let words = text(&reason.source);
+    THINGS.iter().find(|(word, _)| words.contains(word)).map(|(_, kind)| *kind)
 }
 
 /// Whether the ego goes round something.
@@ -362,9 +426,10 @@ impl Story<'_> {
     /// named it.
     fn is_near(&self, other: &Other) -> bool {
         let acts = before_contact(other).map(|fact| &fact.source).filter(|_| self.is_of_headline(other));
-        let named: Vec<usize> =
-            [&other.kind.source].into_iter().chain(acts).filter_map(|source| Some(span(source)?.0)).collect();
-        let near = |(start, end): (usize, usize)| named.iter().any(|at| (start..=end + NAMED_WITHIN).contains(at));
+        let named: Vec<(usize, usize)> = [&other.kind.source].into_iter().chain(acts).filter_map(span).collect();
+        let near = |(start, end): (usize, usize)| {
+            named.iter().any(|(first, last)| *first <= end + NAMED_WITHIN && (*first >= start || *last > start))
+        };
         self.reactions().any(near)
     }
 
@@ -412,7 +477,7 @@ impl Story<'_> {
         match other.kind.value.group() {
             KindGroup::OnFoot | KindGroup::Cyclist => self.is_met(other).then_some(Role::Walker),
             KindGroup::Animal => self.is_met(other).then_some(Role::Animal),
-            KindGroup::Car | KindGroup::Truck => self.vehicle(told, other),
+            KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle => self.vehicle(told, other),
             _ => None,
         }
     }
@@ -549,7 +614,7 @@ impl Story<'_> {
             return Some(Role::Backer);
         }
         if place == Some(Origin::Opposite) || said(&["oncoming", "opposing"]) {
-            let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park]);
+            let only_passes = !did(&[Act::Hold, Act::Stop, Act::Turn, Act::LaneChange, Act::Park, Act::Reverse]);
             // Of who turns across it, it is told only because that waits for it.
             let waits = near || other.several && (told.sv.turning == Turning::Left || acts_not);
             return (only_passes && (waits || did(&[Act::Follow]))).then_some(Role::Oncoming);
@@ -581,6 +646,7 @@ impl Story<'_> {
         let came_over = did(&[Act::LaneChange])
             || pulls_out
             || beside && did(&[Act::Swerve, Act::SetOff])
+            || ahead && near && did(&[Act::Drift])
             || self.merges_yet(other);
         let merges = came_over && !did(&[Act::Hold, Act::Stop, Act::Turn, Act::Cross]);
         let keeps_lane = is_straight(told) || self.makes_room(told, other);
@@ -593,10 +659,11 @@ impl Story<'_> {
             return Some(Role::Merger);
         }
         let junction = told.place == PlaceKind::Intersection || told.is_controlled();
-        let waits = near && told.sv.state == ContactState::Stopped && other.several && !queue;
+        let waits = near && told.sv.state == ContactState::Stopped && other.several;
         if waits && because(StandReason::BlockedJunction) {
             return Some(Role::Beyond);
         }
+        let waits = waits && !queue;
         // Who drives elsewhere does not stand ahead.
         let elsewhere = did(&[Act::Follow]) && !did(&[Act::Hold, Act::Stop]) && !ahead && !queue;
         if waits && junction && elsewhere {
@@ -623,7 +690,11 @@ impl Story<'_> {
             }
             .or(Some(LeftRight::Right)),
             // Who changes to its right comes from the left.
-            _ if role == Role::Merger => self.came_from(other),
+            // From the lane beside it of which is told.
+            _ if role == Role::Merger => self.came_from(other).or(match told.origin {
+                Origin::Beside { side } => Some(side),
+                _ => None,
+            }),
             _ if role == Role::Obstacle && self.is_back(other) => None,
             // On the side where the partner touches the ego.
             _ if role == Role::Beside && self.is_between(told) => {

@@ -3,11 +3,12 @@
 use crate::control;
 use crate::extras::{STANDS_MPS, stands, stood_behind};
 use crate::ground::LANE_M;
-use crate::near::SLOWED_MPS;
-use crate::others::{Extra, Role, waits_ahead};
+use crate::near::{Near, SLOWED_MPS};
+use crate::others::{Extra, GIVEN_WAY, Role, waits_ahead};
 use crate::told::Told;
 use recrash_model::account::{ContactState, Kind, LeftRight, Origin, StandReason};
 use recrash_model::geometry::Vec2;
+use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
 use recrash_roads::Scenario;
@@ -26,6 +27,9 @@ const CREEPS_MPS: f64 = 0.6;
 
 /// Who stands in the next lane is no farther ahead or behind. [m]
 const BESIDE_M: f64 = 10.0;
+
+/// Whom the ego stands for while it comes comes so much nearer then. [m]
+const COMES_M: f64 = 2.0;
 
 /// A rollout, and when the two touch.
 pub(crate) struct Seen<'a> {
@@ -73,17 +77,51 @@ impl<'a> Seen<'a> {
         let is = |role: Role| self.told.wanted.iter().any(|extra| extra.role == role && self.holds(extra));
         match reason {
             StandReason::LeadVehicle if self.told.origin == Origin::Ahead => is(Role::Lead) || self.partner_leads(),
+            // The queue ends behind the junction that the ego keeps clear.
+            StandReason::Queue if self.told.reasons.contains(&StandReason::BlockedJunction) => {
+                is(Role::Lead) || is(Role::Beyond)
+            }
             StandReason::Queue | StandReason::LeadVehicle => is(Role::Lead),
             StandReason::Pedestrian => is(Role::Walker),
             StandReason::Animal => is(Role::Animal),
-            StandReason::Yield => [Role::Walker, Role::Crosser, Role::Oncoming, Role::Lead, Role::Merger, Role::Backer]
-                .into_iter()
-                .any(is),
+            StandReason::Yield => {
+                GIVEN_WAY.into_iter().any(is)
+                    || self.told.origin == Origin::Ahead && self.partner_leads()
+                    || self.wanted().any(|(extra, track)| {
+                        extra.awaited && extra.near.is_some() && Near::is_waited_for(self.ego, track, self.until)
+                    })
+            }
             StandReason::BlockedJunction => is(Role::Beyond) || is(Role::Blocker),
-            StandReason::BlockedPath => is(Role::Lead) || is(Role::Obstacle),
+            StandReason::BlockedPath => {
+                is(Role::Lead)
+                    || is(Role::Obstacle)
+                    || is(Role::Thing)
+                    || self.told.origin == Origin::Ahead && self.partner_leads()
+            }
+            StandReason::EmergencyVehicle => {
+                let comes = |track: &ActorTrack| track.kind == PartnerKind::FirstResponder;
+                self.wanted().any(|(_, track)| comes(track)) || self.partner_comes(comes)
+            }
             StandReason::Parked => self.told.sv.state == ContactState::Parked || self.told.sv.came_to_park,
             _ => false,
         }
+    }
+
+    /// Those who are wanted and there as they are told, and the account names.
+    fn wanted(&self) -> impl Iterator<Item = (&Extra, &'a ActorTrack)> {
+        let named = self.told.wanted.iter().filter(|extra| !extra.of.is_empty());
+        named.filter_map(|extra| Some((extra, self.find(extra).filter(|_| self.holds(extra))?)))
+    }
+
+    /// Whether the ego stands, and the partner comes to it then.
+    fn partner_comes(&self, is: impl Fn(&ActorTrack) -> bool) -> bool {
+        let Some(track) = self.rollout.actors.iter().find(|track| track.id == "cp" && is(track)) else { return false };
+        let from = stands(self.ego, self.until).last().map_or(self.until, |(from, _)| *from);
+        let gap_m = |step: usize| {
+            let state = &track.states[step.min(track.states.len() - 1)];
+            state.position().distance(self.ego.states[step].position())
+        };
+        from < self.until && gap_m(from) > gap_m(self.until) + COMES_M
     }
 
     /// Whether the partner stands ahead of the ego where that came to stand.
@@ -124,7 +162,7 @@ impl<'a> Seen<'a> {
         let as_told = extra.kind.partner_kind().is_none_or(|kind| kind == track.kind);
         as_told
             && match extra.role {
-                Role::Lead => self.leads(extra, track),
+                Role::Lead | Role::Thing => self.leads(extra, track),
                 Role::Slower => self.slows_ahead(track),
                 Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.is_on_side(extra, track),
                 Role::Crosser => self.crosses(track, CROSSING_M) && self.is_on_side(extra, track),
@@ -230,8 +268,16 @@ impl<'a> Seen<'a> {
 
     /// Whether somebody stands ahead of the ego all the time, across its way or along it.
     fn blocks(&self, track: &ActorTrack, across: bool) -> bool {
-        let (ahead_m, left_m) = self.beside(track, self.until);
-        let facing = math::wrap_angle(track.states[0].heading - self.ego.states[self.until].heading).abs();
+        let (mut ahead_m, mut left_m) = self.beside(track, self.until);
+        let mut heading = self.ego.states[self.until].heading;
+        // Of an ego that stands aslant, as it came along the road.
+        if self.told.sv_aside().is_some() {
+            heading = self.ego.states[0].heading;
+            let (along, met) = (Vec2::from_heading(heading), self.ego.states[self.until].position());
+            let way = track.states[0].position() - met;
+            (ahead_m, left_m) = (along.dot(way) - 0.5 * self.ego.length_m, along.cross(way));
+        }
+        let facing = math::wrap_angle(track.states[0].heading - heading).abs();
         let stands = self.stays(track) && (across == (0.8..2.4).contains(&facing));
         stands && (0.0..PARKED_M).contains(&ahead_m) && left_m.abs() < LANE_M
     }

@@ -157,6 +157,9 @@ impl Chunker<'_> {
                 "parking" | "angled" | "perpendicular",
                 "space" | "spot" | "stall" | "spaces" | "spots" | "stalls" | "position",
             ) => (Spot::Stall, 2),
+            ("angled" | "perpendicular", "parking") if matches!(self.text(at + 2), "space" | "spot" | "stall") => {
+                (Spot::Stall, 3)
+            }
             ("parking", "lot" | "garage" | "area" | "structure") => (Spot::Driveway, 2),
             ("stall" | "carport", _) => (Spot::Stall, 1),
             // "out of a space", "from its spot".

@@ -1,7 +1,7 @@
 //! Nouns that name nobody beside the two: one of the two again, a part of it, or somebody who was not there.
 
 use super::{Reading, whereabouts};
-use crate::world::{Actor, SUBJECT};
+use crate::world::{Actor, Known, SUBJECT};
 use recrash_model::account::{Act, ActFact, Kind, KindGroup};
 
 /// Whether a noun names one of the two again, or a part of it. Its tokens; what it is told to have done.
@@ -24,14 +24,36 @@ pub(super) fn is_one_of_the_two(
     let class = idle_or_drives(acts) && back(2) == "class" && back(1).parse::<u8>().is_ok();
     let told_once = is_of_headline(reading, actor, (first, end)) && idle;
     let headline = told_once && (whereabouts::place_of(reading, actor).is_none() || kind == Kind::Pickup);
+    // "A collision involving two cars": of whom the story tells one by one.
+    let counted = known_as_two(reading, actor, (first, end));
+    // What anybody had to do: "causing vehicles to cross the line".
+    let anybody = story.world.actors[actor].several && (1..3).any(|by| back(by) == "causing");
+    // "Cut off by an oncoming vehicle, a pickup truck".
+    let partner_begins = partner.and_then(|partner| story.world.actors[partner].kind_tokens).map(|(begins, _)| begins);
+    let apposed = kind == Kind::Vehicle && word(Some(end)) == "," && partner_begins == Some(end + 1);
     let the_other = idle && partner.is_some() && word(Some(first)) == "the" && word(Some(first + 1)) == "other";
     own && !another
         || is
         || class
         || headline
         || the_other
+        || counted
+        || anybody
+        || apposed
         || is_towed_with(reading, (actor, kind), (first, end))
         || is_thing_again(reading, kind, end, another)
+}
+
+/// Whether the headline counts both vehicles beside the subject vehicle.
+fn known_as_two(reading: &Reading<'_>, actor: Actor, (first, _): (usize, usize)) -> bool {
+    let story = &reading.story;
+    let word = |at: Option<usize>| at.and_then(|at| story.tokens.get(at)).map_or("", |token| token.text.as_str());
+    let back = |by: usize| word(first.checked_sub(by));
+    let crash = matches!(back(2), "collision" | "crash" | "incident" | "accident");
+    let one = |known: &Known| known.mentions > 0 && !known.several && known.kind.is_some_and(Kind::is_vehicle);
+    let others = story.world.actors[1..].iter().filter(|known| one(known)).count();
+    let two = crash && matches!(back(1), "with" | "involving") && word(Some(first)) == "two";
+    two && others >= 2 && reading.contacts.partner.is_some_and(|partner| partner != actor)
 }
 
 /// Whether the headline of the crash names somebody so: "a collision with a van". It is the partner.
@@ -42,7 +64,8 @@ fn is_of_headline(reading: &Reading<'_>, actor: Actor, (first, end): (usize, usi
     let crash = matches!(back(2), "collision" | "crash" | "incident" | "accident");
     let another = (first..end).any(|at| matches!(word(Some(at)), "another" | "second" | "third"));
     let partner = reading.contacts.partner.map(|partner| &story.world.actors[partner]);
-    let vehicle = |kind: Option<Kind>| kind.is_some_and(|kind| kind.is_vehicle());
+    let vehicle =
+        |kind: Option<Kind>| kind.is_some_and(|kind| kind.is_vehicle() || kind.group() == KindGroup::Motorcycle);
     let known = &story.world.actors[actor];
     matches!(back(1), "with" | "involving")
         && crash
@@ -129,8 +152,11 @@ pub(super) fn is_remark(reading: &Reading<'_>, (first, end): (usize, usize), act
     let required = matches!(back(1), "require" | "requires" | "requiring");
     let taken_for = back(1) == "as"
         && (2..9).any(|by| ["misclassif", "misidentif", "mistook"].iter().any(|stem| back(by).starts_with(stem)));
+    // "Looking for cross traffic", "a truck-mounted sign".
+    let looked_for = back(1) == "for" && matches!(back(2), "looking" | "checking" | "watching");
+    let mounted = word(Some(end)) == "mounted";
     let valet = inside(&["valet"]) && (word(Some(end)) == "parking" || inside(&["automated"]));
     let restricted = inside(&["traffic"])
         && (end..end + 3).any(|at| matches!(word(Some(at)), "restricted" | "prohibited" | "permitted"));
-    either || called || required || taken_for || valet || restricted
+    either || called || required || taken_for || looked_for || mounted || valet || restricted
 }

@@ -399,8 +399,16 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
         let sentence = reading.story.sentences[frame.sentence];
         let begins = if all.is_empty() && !frame.aside { lead_in(reading, number).unwrap_or(first) } else { first };
         let end = end.min(sentence.end);
-        for (reason, at, length) in lexicon.reasons(&tokens[begins..end]) {
-            if !all.iter().any(|known| known.value == reason) {
+        // What happened while it stood is not why: "was stopped when an ambulance passed".
+        let stood = frame.act() == Some(Act::Hold);
+        let then = (frame.end..end).find(|at| stood && tokens[*at].text == "when").unwrap_or(end);
+        let named = lexicon.reasons(&tokens[begins..then]);
+        for (reason, at, length) in named.iter().copied() {
+            // Words that say more say all: "waiting for the" of "waiting for the intersection to clear".
+            let within = |(other, from, count): &(StandReason, usize, usize)| {
+                *other != reason && rank(*other) < rank(reason) && *from < at + length && at < from + count
+            };
+            if !all.iter().any(|known| known.value == reason) && !named.iter().any(within) {
                 all.push(reading.told(reason, begins + at, begins + at + length));
             }
         }

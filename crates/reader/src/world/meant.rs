@@ -183,7 +183,12 @@ impl World {
         if !sought.noun.several || sought.noun.article != Article::None {
             return None;
         }
-        Some(self.latest(|known| known.several && sought.fits(known)).map_or(Meant::New, Meant::Known))
+        // Traffic that comes is not what is parked there.
+        let as_parked = |known: &Known| known.parked || !sought.has(Adjective::Parked);
+        Some(
+            self.latest(|known| known.several && sought.fits(known) && as_parked(known))
+                .map_or(Meant::New, Meant::Known),
+        )
     }
 
     /// "The first van".

@@ -40,6 +40,8 @@ fn a_general_remark_names_nobody() {
         "There are stop signs that require vehicles to stop before entering the intersection.",
         "The AV had misclassified a speed limit sign as a pedestrian.",
         "This was in preparation for the Automated Valet Parking demonstration.",
+        "The passenger of the AV was looking for cross traffic.",
+        "There was a truck-mounted sign.",
     ];
     for remark in remarks {
         for text in [format!("{before} {remark}"), format!("{remark} {before}")] {
@@ -77,4 +79,32 @@ fn what_columns_say_against_the_words_is_said_in_words() {
     ] {
         assert!(said.contains(&both), "{said:?}");
     }
+}
+
+#[test]
+fn whom_the_headline_counts_the_story_tells_one_by_one() {
+    let text = "The AV was in a collision involving two cars on Elm Street. The AV was stopped on Elm Street. A red sedan approached the AV from behind, and a \
+                blue van made contact with the rear of the red sedan. The front of the red sedan then made contact with the rear of the AV.";
+    assert_eq!(others(text), [Kind::Van]);
+}
+
+#[test]
+fn what_stands_behind_a_comma_says_who_it_was() {
+    let text = "The AV was traveling east when it was cut off by an oncoming vehicle, a pickup truck heading west. The pickup truck was turning left and \
+                the front of the AV made contact with the right side of the pickup truck.";
+    assert_eq!(others(text), []);
+}
+
+#[test]
+fn traffic_that_comes_is_not_what_is_parked() {
+    let text = "The AV was stopped to yield to oncoming traffic on Elm Street with parked vehicles on both sides of the street. A van passed the stopped AV and the \
+                right side of the van made contact with the left side of the AV.";
+    assert_eq!(others(text), [Kind::Vehicle, Kind::Vehicle]);
+}
+
+#[test]
+fn a_motorcycle_that_only_the_headline_names_is_a_vehicle() {
+    let text = "The AV was in a collision involving a motorcycle on Elm Street. The AV slowed to a stop to yield to a vehicle stopped in its lane. A motorcycle \
+                approached from behind and made contact with the rear of the AV.";
+    assert_eq!(others(text), [Kind::Vehicle]);
 }

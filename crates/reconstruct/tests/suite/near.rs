@@ -21,6 +21,14 @@ const TURNS: &str = "The AV was traveling south on Elm Street and approached a g
 const CHANGES: &str = "The AV was traveling north in the rightmost lane of three lanes on Elm Street. An SUV in the leftmost lane changed lanes to the right \
                        in front of a sedan.";
 
+const BACKS: &str = "The AV was traveling west on Elm Street and came to a stop behind a van. Another sedan in a nearby angled parking space reversed. The van began \
+                     to reverse and the rear of the van made contact with the front of the AV.";
+const ALONGSIDE: &str = "The AV was stopped at a red light in the left lane on Elm Street alongside an SUV in the right lane. When the light turned green, both the AV \
+                         and the adjacent SUV proceeded into the intersection with Oak Street. A van traveling west on Oak Street ran the red light and the front left \
+                         of the van made contact with the front right of the AV.";
+const FENCE: &str =
+    "The AV was traveling west and began to slow due to construction fencing that was intruding into its lane.";
+
 fn far_off(actor: &mut Actor) {
     let start = match &actor.plan.start {
         Place::Plane { x_m, y_m, heading_deg, .. } => Place::at(x_m - 150.0, y_m + 90.0, *heading_deg),
@@ -93,4 +101,26 @@ fn who_changes_lanes_does_so_to_the_told_side() {
     let (near, last) = (track(&shown, "near"), before_contact(&shown));
     let ego = shown.rollout.ego_track().states[last];
     assert!(near.states[0].y > ego.y + 4.0 && near.states[last].y < near.states[0].y - 2.4, "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_backs_out_where_no_place_is_told_does_so_near() {
+    let shown = shown_but(BACKS, "near", stands);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert!((0..last).any(|step| near.states[step].speed() < -0.5), "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_drives_into_the_junction_beside_the_ego_is_beside_it() {
+    let shown = shown_but(ALONGSIDE, "near", far_off);
+    let (near, ego) = (track(&shown, "near"), shown.rollout.ego_track());
+    assert!((0..before_contact(&shown)).any(|step| near.states[step].y < ego.states[step].y - 1.5));
+}
+
+#[test]
+fn a_fence_that_is_told_of_stands_beside_the_way() {
+    let shown = shown_but(FENCE, "near", far_off);
+    let near = track(&shown, "near");
+    assert_eq!(near.kind, PartnerKind::FixedObject);
+    assert!(near.states.iter().all(|state| state.speed() == 0.0));
 }

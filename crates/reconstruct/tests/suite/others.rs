@@ -1,11 +1,12 @@
 //! Others of the story are there as they are told; and a rollout in which they are not does not pass for it.
 
 use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
-use recrash_model::account::Account;
+use recrash_model::account::{Account, Fact};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::rollout::ActorTrack;
 use recrash_model::scenario::{Actor, ActorPlan, Aspect, Deed, Device, Place, ScenarioDraft, Trigger};
+use recrash_model::template::Movement;
 use recrash_reconstruct::{Reconstruction, held_against};
 use recrash_sim::{Ego, simulate};
 
@@ -67,6 +68,26 @@ const ABREAST: &str = "The AV was traveling north in the center lane when a tire
                        the AV and the front of the AV made contact with the tire.";
 const IN_ITS_TURN: &str = "The AV was traveling north on Elm Street and was making a right turn onto Oak Street. The AV advanced and came to a stop to yield \
                            to cross traffic.";
+
+const DEBRIS: &str = "The AV was traveling north on Elm Street and slowed to a stop due to debris in its lane.";
+const FOR_ANIMAL: &str =
+    "The AV was traveling north on Elm Street and came to a stop to yield to a dog that ran into the road.";
+const TO_NOBODY: &str = "The AV was traveling north on Elm Street and came to a stop to give way.";
+const FOR_FIRE_TRUCK: &str = "The AV was traveling north on a narrow street and came to a stop to yield to a fire truck traveling south. As the fire truck passed \
+                              the stopped AV, the left side of the fire truck made contact with the rear left of the AV.";
+const FULL_BEHIND: &str = "The AV was traveling north in a queue of traffic on Elm Street and slowed to a stop before the intersection with Oak Street to keep the \
+                           intersection clear.";
+const CHANGES_BEHIND: &str = "The AV was stopped behind a bus that was stopped ahead of the AV, and began to change lanes to the left. The front left of the AV \
+                              made contact with the right side of a van that was traveling in the left lane.";
+const RIGHT_AT_LIGHT: &str = "The AV was making a right turn at a traffic light onto Oak Street. The AV advanced and came to a stop as it yielded to cross traffic. Just \
+                              when the AV began to move again, it was rear ended by a van behind.";
+const TRAILER_ACROSS: &str = "The AV was traveling north in the center of three lanes when it came to a stop, yielding to a heavy truck which crossed into the center \
+                              lane in front of the AV. A van traveling in the right lane changed lanes to the left, and the front left of the van made contact with the \
+                              rear right of the stationary AV.";
+const PASSED_IN_TRAFFIC: &str = "The AV was stopped in traffic on Elm Street at the intersection with Oak Street. A van that was stopped behind the AV passed it on the left, crossing the double \
+                                 yellow line, and the right side of the van made contact with the rear left of the AV.";
+const BUS_BACKS: &str = "The AV was traveling north and stopped behind a bus that was parked at the curb in front of the AV. The bus then reversed and the rear of the \
+                         bus made contact with the front of the stationary AV.";
 
 fn told(text: &str) -> Account {
     let whole = if text.contains("made contact") { text.to_owned() } else { format!("{text} {STRUCK}") };
@@ -431,4 +452,89 @@ fn crossing_traffic_that_stands_in_the_junction_is_across_it() {
                 traffic remained stopped in the intersection and the AV remained stationary.";
     let shown = shown_but(text, "blocker", |blocker| moved(&mut blocker.plan, 0.0, 14.0));
     assert!(degrees_between(track(&shown, "blocker").states[0].heading, 0.0) > 80.0);
+}
+
+#[test]
+fn a_thing_in_the_way_lies_ahead_and_is_said_to_be_assumed() {
+    let shown = shown_reason(DEBRIS, "thing");
+    let (thing, last) = (track(&shown, "thing"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[last];
+    assert_eq!(thing.kind, PartnerKind::FixedObject);
+    assert!((3.0..9.0).contains(&(thing.states[0].x - ego.x)), "{:?}", thing.states[0]);
+    assert!(shown.assumed.iter().any(|words| words.contains("a thing")), "{:?}", shown.assumed);
+}
+
+#[test]
+fn an_ego_gives_way_to_an_animal() {
+    shown_reason(FOR_ANIMAL, "animal");
+}
+
+#[test]
+fn who_gives_way_to_nobody_who_is_named_does_so_to_somebody_assumed() {
+    let shown = shown_reason(TO_NOBODY, "oncoming");
+    assert!(shown.assumed.iter().any(|words| words.contains("comes by from ahead")), "{:?}", shown.assumed);
+}
+
+/// Whether the ego stands for what is told, once one actor of the scene is changed so.
+fn reason_but(text: &str, id: &str, change: impl Fn(&mut Actor)) -> Option<CheckResult> {
+    let account = told(text);
+    let shown = made(&account);
+    let result = |draft: ScenarioDraft| {
+        let scenario = recrash_roads::check(draft).expect("it can run").value;
+        let verdict = held_against(&account, &scenario, &simulate(&scenario, Ego::Recorded)).expect("it can be staged");
+        verdict.checks.iter().find(|check| check.kind == CheckKind::Reason).map(|check| check.result)
+    };
+    assert_eq!(result(shown.draft.clone()), Some(CheckResult::Shown), "{:?}", shown.verdict);
+    let mut draft = shown.draft;
+    change(draft.actors.iter_mut().find(|actor| actor.id == id).expect("it is there"));
+    result(draft)
+}
+
+#[test]
+fn the_emergency_vehicle_that_the_ego_waits_for_may_be_the_partner() {
+    let open = Some(CheckResult::CannotBeShown);
+    assert_eq!(reason_but(FOR_FIRE_TRUCK, "cp", |actor| actor.kind = PartnerKind::Bus), open, "a bus is none");
+}
+
+#[test]
+fn a_parked_partner_ahead_blocks_the_way() {
+    assert_eq!(reason_but(BUS_BACKS, "cp", |_| {}), Some(CheckResult::Shown));
+}
+
+#[test]
+fn a_queue_that_leaves_no_room_stands_behind_the_junction() {
+    shown_reason(FULL_BEHIND, "beyond");
+}
+
+#[test]
+fn whom_the_ego_stood_behind_stays_where_the_ego_leaves_its_lane() {
+    let shown = shown_but(CHANGES_BEHIND, "lead", |actor| moved(&mut actor.plan, 60.0, 0.0));
+    let lead = &track(&shown, "lead").states[..before_contact(&shown)];
+    assert!(lead.iter().all(|state| state.speed() < 0.1), "{lead:?}");
+}
+
+#[test]
+fn who_turns_right_before_crossing_traffic_does_so_at_red() {
+    let mut account = story(RIGHT_AT_LIGHT);
+    let turns = || Some(Fact::by_rule(Movement::RightTurn, "a column"));
+    account.sv.movement = turns();
+    account.partner.as_mut().expect("a van").movement = turns();
+    let shown = made(&account);
+    assert_eq!(others(&shown.draft, &account), Some(CheckResult::Shown), "{:?}", shown.verdict);
+    let shows = |at: &str| shown.draft.control.iter().find(|control| control.at == at)?.device.aspect(0.0);
+    assert_eq!([shows("own-"), shows("left-")], [Some(Aspect::Red), Some(Aspect::Green)]);
+    let mut stands = shown.draft.clone();
+    stands_from_the_start(stands.actors.iter_mut().find(|actor| actor.id == "crosser").expect("it crosses"));
+    assert_eq!(others(&stands, &account), Some(CheckResult::CannotBeShown));
+}
+
+#[test]
+fn who_crosses_into_the_lane_ahead_of_an_ego_that_stands_does_not_touch_it() {
+    let shown = shown_but(TRAILER_ACROSS, "merger", |actor| moved(&mut actor.plan, 80.0, 0.0));
+    assert_eq!(track(&shown, "merger").kind, PartnerKind::HeavyTruck);
+}
+
+#[test]
+fn who_is_told_is_there_though_the_partner_swings_farther_than_it_would_alone() {
+    shown_but(PASSED_IN_TRAFFIC, "lead", |actor| moved(&mut actor.plan, 60.0, 0.0));
 }

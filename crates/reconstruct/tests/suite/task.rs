@@ -12,6 +12,9 @@ use recrash_sim::{Ego, simulate};
 const BOARDS: &str = "The AV was parked at the curb on Elm Street for a passenger drop-off with its hazard lights activated. A van approached \
                       from behind and the front right of the van made contact with the rear left of the stationary AV.";
 
+const PULLED_UP: &str = "The AV had pulled up to the curb on Elm Street for a passenger pickup. While the AV was stopped, a sedan reversed out of a driveway on the \
+                         right and the rear of the sedan made contact with the right side of the stopped AV.";
+
 const NARROW: &str = "The AV was traveling west on Elm Street when it came to a stop to yield to an oncoming van on a narrow road with parked \
                       vehicles on both sides of the street. As the van was passing the stopped AV, the front left of the van made contact with \
                       the front left of the AV.";
@@ -69,6 +72,16 @@ fn why_somebody_stood_and_what_is_assumed_is_said_in_words() {
         let assumed = said(words, CheckKind::Reason).1;
         assert!(!assumed.iter().any(|text| text.contains(['{', '}']) || *text != text.to_lowercase()), "{assumed:?}");
     }
+}
+
+#[test]
+fn who_pulled_up_for_passengers_stands_where_it_pulled_up_to() {
+    let account = story(PULLED_UP);
+    let shown = made(&account).draft;
+    assert_eq!(result(&shown, &account, CheckKind::Reason), Some(CheckResult::Shown));
+    let mut in_the_lane = shown;
+    in_the_lane.ego.stops[0].t_m = 0.0;
+    assert_eq!(result(&in_the_lane, &account, CheckKind::Reason), Some(CheckResult::CannotBeShown), "it pulled over");
 }
 
 #[test]
