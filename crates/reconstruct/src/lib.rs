@@ -24,6 +24,7 @@ mod phases;
 mod roadside;
 mod seen;
 mod side;
+mod sweep;
 mod things;
 mod told;
 mod touch;
@@ -40,8 +41,10 @@ use recrash_model::tuning::Parameter;
 use recrash_roads::Scenario;
 use recrash_sim::Ego;
 
-/// Stagings that are tried for one account, at most.
-const MOST_TRIES: usize = 24;
+/// Stagings of a variant that are tried first; and at most, where none of those of all variants shows every told fact, and in all.
+const FIRST_TRIES: usize = 24;
+pub(crate) const MOST_TRIES: usize = 400;
+const MOST_RUNS: usize = 1000;
 
 /// A crash, reconstructed.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,27 +98,38 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
     let mut best: Option<Best> = None;
-    let mut refused = 0;
-    'tried: for told in told.variants() {
-        for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
-            let draft = came::draft(account, &told, &staging);
-            let Ok(checked) = recrash_roads::check(draft) else {
-                refused += 1;
-                continue;
-            };
-            let scenario = checked.value;
-            let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
-            let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
-            let others = facts::others_stray(&told, &scenario, &rollout);
-            let cost = (verdict.failures().count(), others, facts::strays(&told, &scenario, &rollout));
-            if best.as_ref().is_none_or(|best| cost < best.cost) {
-                let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
-                let made = Reconstruction { draft, rollout, verdict, assumed };
-                best = Some(Best { cost, made, told: told.clone(), ground: staging.ground });
+    let (mut refused, mut runs) = (0, 0);
+    let mut variants: Vec<_> = told.variants().into_iter().map(|told| (told, None)).collect();
+    'tried: for tries in [0..FIRST_TRIES, FIRST_TRIES..MOST_TRIES] {
+        for (told, stagings) in &mut variants {
+            let (told, stagings) = (&*told, stagings.get_or_insert_with(|| touch::stagings(told)));
+            for staging in stagings.iter().take(tries.end).skip(tries.start) {
+                let draft = came::draft(account, told, staging);
+                let Ok(checked) = recrash_roads::check(draft) else {
+                    refused += 1;
+                    continue;
+                };
+                if runs == MOST_RUNS {
+                    break 'tried;
+                }
+                runs += 1;
+                let scenario = checked.value;
+                let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
+                let verdict = Verdict { checks: facts::facts(told, &scenario, &rollout) };
+                let others = facts::others_stray(told, &scenario, &rollout);
+                let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout));
+                if best.as_ref().is_none_or(|best| cost < best.cost) {
+                    let (draft, assumed) = (scenario.draft().clone(), told.assumed.clone());
+                    let made = Reconstruction { draft, rollout, verdict, assumed };
+                    best = Some(Best { cost, made, told: told.clone(), ground: staging.ground.clone() });
+                }
+                if cost == (0, false, false) {
+                    break 'tried;
+                }
             }
-            if cost == (0, false, false) {
-                break 'tried;
-            }
+        }
+        if best.as_ref().is_some_and(|best| best.cost.0 == 0) {
+            break;
         }
     }
     best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })

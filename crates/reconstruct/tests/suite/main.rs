@@ -11,6 +11,7 @@ mod roadside;
 mod sabotage;
 mod steps;
 mod stories;
+mod sweeps;
 mod task;
 mod things;
 mod ways;
