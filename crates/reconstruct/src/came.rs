@@ -12,6 +12,7 @@ use crate::pace::{
 };
 use crate::phases;
 use crate::side::{Turning, size_of as size_of_kind};
+use crate::sweep;
 use crate::things;
 use crate::told::{Aside, Told};
 use crate::touch::{Staging, size_of};
@@ -461,8 +462,28 @@ fn pusher(told: &Told) -> (PartnerKind, Option<Size>, f64) {
     (kind, size, size.map_or(VehicleSpec::of(kind).length_m, |size| size.length_m))
 }
 
-/// The line by which the partner comes to the contact, as long as its pace needs.
+/// The line by which the partner comes to the contact, as long as its pace needs. Of who turns as it touches a bend is the last of it.
 fn course_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
+    if let Some(bend) = staging.bend.filter(|bend| bend.length_m + LEAST_BEFORE_M < pace.driven_m) {
+        let before = Staging { cp: bend.from, bend: None, ..staging.clone() };
+        let pace = Pace { acts: pace.acts.clone(), driven_m: pace.driven_m - bend.length_m, ..pace };
+        let (mut plan, begin) = line_to(told, &before, pace, &at);
+        let beyond = staging.cp.position + Vec2::from_heading(staging.cp.heading) * beyond_m(told.cp.speed_mps);
+        plan.course.pop();
+        plan.course.push(Leg::Curve { to: at(staging.cp), reverse: false });
+        if sweep::can_be_driven(told, begin, &plan.course) {
+            plan.course.push(Leg::Curve { to: at(Pose { position: beyond, ..staging.cp }), reverse: false });
+            return (plan, begin);
+        }
+    }
+    line_to(told, staging, pace, at)
+}
+
+/// Before its last bend somebody has come so far at least. [m]
+const LEAST_BEFORE_M: f64 = 1.0;
+
+/// The same to where it touches, or begins its last bend.
+fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Place) -> (ActorPlan, Pose) {
     let cp = &told.cp;
     let ground = &staging.ground;
     if let Some(begin_m) = staging.cp_follows_m.map(|at_m| at_m - pace.driven_m)

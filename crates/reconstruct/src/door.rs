@@ -184,6 +184,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
                         sv,
                         cp,
                         cp_came: came,
+                        bend: None,
                         cp_follows_m: None,
                         door,
                         cost: (off, trial),

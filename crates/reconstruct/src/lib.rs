@@ -26,6 +26,7 @@ mod roadside;
 mod seen;
 mod side;
 mod strips;
+mod sweep;
 mod things;
 mod told;
 mod touch;
@@ -43,8 +44,10 @@ use recrash_model::tuning::Parameter;
 use recrash_roads::Scenario;
 use recrash_sim::Ego;
 
-/// Stagings that are tried for one account, at most.
-const MOST_TRIES: usize = 24;
+/// Stagings of a variant that are tried first; and at most, where none of those of all variants shows every told fact, and in all.
+const FIRST_TRIES: usize = 24;
+pub(crate) const MOST_TRIES: usize = 400;
+const MOST_RUNS: usize = 1000;
 
 /// A crash, reconstructed.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,46 +100,72 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 }
 
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    let (mut best, mut fullest): (Option<Best>, Option<(usize, Best)>) = (None, None);
-    let mut refused = 0;
-    'tried: for told in told.variants() {
-        for staging in touch::stagings(&told).into_iter().take(MOST_TRIES) {
-            let draft = came::draft(account, &told, &staging);
-            let Ok(checked) = recrash_roads::check(draft) else {
-                refused += 1;
-                continue;
-            };
-            let scenario = checked.value;
-            let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
-            let verdict = Verdict { checks: facts::facts(&told, &scenario, &rollout) };
-            let others = facts::others_stray(&told, &scenario, &rollout);
-            let cost = (verdict.failures().count(), others, facts::strays(&told, &scenario, &rollout));
-            let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
-            let better = best.as_ref().is_none_or(|best| cost < best.cost);
-            let fuller = fullest.as_ref().is_none_or(|(fewest, _)| missing < *fewest) && (cost.0, cost.1) == (0, false);
-            if better || fuller {
-                let draft = scenario.draft().clone();
-                let assumed =
-                    told.assumed.iter().cloned().chain(told.extras.iter().filter_map(Extra::assumed)).collect();
-                let made = Reconstruction { draft, rollout, verdict, assumed };
-                let found = Best { cost, made, told: told.clone(), ground: staging.ground };
-                if fuller {
-                    fullest = Some((missing, found.clone()));
+    let mut search = Search::default();
+    let mut variants: Vec<_> = told.variants().into_iter().map(|told| (told, None)).collect();
+    'tried: for tries in [0..FIRST_TRIES, FIRST_TRIES..MOST_TRIES] {
+        for (told, stagings) in &mut variants {
+            let (told, stagings) = (&*told, stagings.get_or_insert_with(|| touch::stagings(told)));
+            for staging in stagings.iter().take(tries.end).skip(tries.start) {
+                if search.runs(account, told, staging) {
+                    break 'tried;
                 }
-                if better {
-                    best = Some(found);
-                }
-            }
-            if cost == (0, false, false) {
-                break 'tried;
             }
         }
+        if search.best.as_ref().is_some_and(|best| best.cost.0 == 0) {
+            break;
+        }
     }
+    let Search { best, fullest, refused, .. } = search;
     let made = best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
     // A partner that strays is worth less than others who are told of.
     let fuller = fullest.map(|(_, found)| found).filter(|found| found.cost.2 && made.is_true() && left_open(&made) > 0);
     let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
     Ok(fuller.unwrap_or(made))
+}
+
+/// What was found among the stagings that were run.
+#[derive(Default)]
+struct Search {
+    best: Option<Best>,
+    /// The one with the fewest facts of others left open, of those that miss nothing; and how many.
+    fullest: Option<(usize, Best)>,
+    refused: usize,
+    runs: usize,
+}
+
+impl Search {
+    /// Runs a staging; true where nothing better can be found, or no more are run.
+    fn runs(&mut self, account: &Account, told: &told::Told, staging: &touch::Staging) -> bool {
+        let Ok(checked) = recrash_roads::check(came::draft(account, told, staging)) else {
+            self.refused += 1;
+            return false;
+        };
+        if self.runs == MOST_RUNS {
+            return true;
+        }
+        self.runs += 1;
+        let scenario = checked.value;
+        let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
+        let verdict = Verdict { checks: facts::facts(told, &scenario, &rollout) };
+        let others = facts::others_stray(told, &scenario, &rollout);
+        let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout));
+        let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
+        let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
+        let fuller =
+            self.fullest.as_ref().is_none_or(|(fewest, _)| missing < *fewest) && (cost.0, cost.1) == (0, false);
+        if better || fuller {
+            let assumed = told.assumed.iter().cloned().chain(told.extras.iter().filter_map(Extra::assumed)).collect();
+            let made = Reconstruction { draft: scenario.draft().clone(), rollout, verdict, assumed };
+            let found = Best { cost, made, told: told.clone(), ground: staging.ground.clone() };
+            if fuller {
+                self.fullest = Some((missing, found.clone()));
+            }
+            if better {
+                self.best = Some(found);
+            }
+        }
+        cost == (0, false, false)
+    }
 }
 
 /// Whether a fact of others in the story is told, and not shown.

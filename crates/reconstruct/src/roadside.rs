@@ -191,6 +191,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Sta
                     sv,
                     cp,
                     cp_came: heading,
+                    bend: None,
                     cp_follows_m: None,
                     door: None,
                     cost,

@@ -2,6 +2,7 @@
 //!
 //! Everything is seen from the road that the ego came along: x ahead, y to its left.
 
+use crate::MOST_TRIES;
 use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, LANE_M, ground_for};
@@ -9,6 +10,7 @@ use crate::kerb;
 use crate::lateral::{is_on_foot, turn_m};
 use crate::roadside;
 use crate::side::{Side, Slant, Turning};
+use crate::sweep::{self, Bend};
 use crate::things;
 use crate::told::Told;
 use crate::trailer::{self, Rig};
@@ -36,6 +38,8 @@ pub(crate) struct Staging {
     pub(crate) cp_came: f64,
     /// Along the ego's way, where the partner is at the contact that comes by it. [m]
     pub(crate) cp_follows_m: Option<f64>,
+    /// The last part of the partner's way, of who turns as it touches.
+    pub(crate) bend: Option<Bend>,
     /// The door that takes part.
     pub(crate) door: Option<Opening>,
     /// How well it fits: zone steps off on both sides, then the order of trial.
@@ -80,8 +84,9 @@ pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
             other.cp.position.distance(staging.cp.position) < 0.25
                 && math::wrap_angle(other.cp.heading - staging.cp.heading).abs() < 0.04
                 && (other.sv_s_m - staging.sv_s_m).abs() < 0.5
+                && other.bend.is_some() == staging.bend.is_some()
         };
-        if kept.len() < 64 && !kept.iter().any(like) {
+        if kept.len() < MOST_TRIES && !kept.iter().any(like) {
             kept.push(staging);
         }
     }
@@ -102,7 +107,17 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
             // Zones are told to a step: its way through the turn is worth more than that.
             let off = if sv_off.max(cp_off) <= 1 { 0 } else { sv_off + cp_off };
             let (ground, cp_follows_m) = (ground.clone(), Some(sv_s_m - back_m));
-            found.push(Staging { ground, sv_s_m, sv, cp, cp_came: 0.0, cp_follows_m, door: None, cost: (off, trial) });
+            found.push(Staging {
+                ground,
+                sv_s_m,
+                sv,
+                cp,
+                cp_came: 0.0,
+                cp_follows_m,
+                bend: None,
+                door: None,
+                cost: (off, trial),
+            });
         }
         for (came, heading) in headings(told, sv.heading, behind) {
             for (sv_zone, cp_zone) in zone_pairs(told) {
@@ -137,16 +152,22 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         ];
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
                         let cost = (off + worse, trial);
-                        let (ground, door) = (ground.clone(), None);
+                        let (ground, bend, door) = (ground.clone(), None, None);
                         let cp_follows_m = None;
-                        found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, cp_follows_m, door, cost });
+                        found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, cp_follows_m, bend, door, cost });
                     }
                 }
             }
         }
     }
+    if found.iter().all(|staging| staging.cost.0 >= FAR_OFF) {
+        found.extend(sweep::stagings(told, ground, trial));
+    }
     found
 }
+
+/// Where no way of touching is nearer than this to the told zones, the partner turns as it touches.
+const FAR_OFF: u32 = 2;
 
 /// Whether two that touch do so with a front on a rear, and not along a flank: seen along the ego they overlap less than across it.
 fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
@@ -315,7 +336,7 @@ pub(crate) fn side_of(zones: &[ContactZone]) -> Option<f64> {
 }
 
 /// Zones to try: the told ones, or all where none is told; then the neighbours of told ones, since a zone is told to a step.
-fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
+pub(crate) fn zone_pairs(told: &Told) -> Vec<(ContactZone, ContactZone)> {
     if let Some(pair) = things::across(told) {
         return vec![pair];
     }

@@ -13,6 +13,7 @@ mod sabotage;
 mod steps;
 mod stories;
 mod strips;
+mod sweeps;
 mod task;
 mod things;
 mod ways;

@@ -1,0 +1,154 @@
+//! Who turns as it touches: the flank or a rear corner of a partner that drives on comes to the ego by its turn. The front of who passes
+//! one that stands is by already; its rear cuts in behind that, or swings out.
+
+use crate::came::sv_at_contact;
+use crate::ground::Ground;
+use crate::lateral::turn_m;
+use crate::told::Told;
+use crate::touch::{Staging, headings, points, size_of, velocity, zone_pairs, zones_off};
+use recrash_metrics::contact::contact_geometry;
+use recrash_model::account::ContactState;
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
+use recrash_model::math;
+use recrash_model::scenario::{Leg, Place};
+use recrash_model::vehicle::VehicleSpec;
+use recrash_model::zones::ContactZone;
+use recrash_roads::{Course, arm_m};
+
+/// Bends that are tried, to both sides, in parts of the tightest; and by how much they turn until the contact. [rad]
+const BENDS: [f64; 2] = [1.0, 0.5];
+const BY_RAD: [f64; 3] = [0.25, 0.5, 0.12];
+
+/// The last part of the partner's way, which is a bend.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Bend {
+    /// Where it begins.
+    pub(crate) from: Pose,
+    pub(crate) length_m: f64,
+}
+
+/// Ways in which the partner touches as it turns, the first of them with this number; none of who walks, stands, reverses or is thrown.
+pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize) -> Vec<Staging> {
+    let drives = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff);
+    let wheels = VehicleSpec::of(told.cp.kind).length_m > 2.5;
+    if !drives || !wheels || told.thing.is_some() || told.rig.is_some() || told.is_thrown() {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for sv_s_m in ground.places() {
+        let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
+        for (came, heading) in headings(told, sv.heading, sv.heading) {
+            for (curvature, by_rad) in bends(told) {
+                let length_m = by_rad / curvature.abs();
+                for (sv_zone, cp_zone) in zone_pairs(told) {
+                    for (sv_point, cp_point) in
+                        points(sv_zone).iter().flat_map(|a| points(cp_zone).iter().map(move |b| (*a, *b)))
+                    {
+                        trial += 1;
+                        let Some((cp, seen)) = touch(told, (sv, sv_point), (heading, cp_point), (curvature, length_m))
+                        else {
+                            continue;
+                        };
+                        let off = zones_off(&told.sv.zones, seen.0) + zones_off(&told.cp.zones, seen.1);
+                        let bend = Some(Bend { from: back(told, cp, curvature, length_m), length_m });
+                        found.push(Staging {
+                            ground: ground.clone(),
+                            sv_s_m,
+                            sv,
+                            cp,
+                            cp_came: came,
+                            cp_follows_m: None,
+                            bend,
+                            door: None,
+                            cost: (off, trial),
+                        });
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Curvatures to the left, and by how much they turn. [1/m, rad]
+fn bends(told: &Told) -> impl Iterator<Item = (f64, f64)> {
+    let most = 1.0 / turn_m(told);
+    BENDS
+        .into_iter()
+        .flat_map(move |part| [part * most, -part * most])
+        .flat_map(|bend| BY_RAD.map(|by_rad| (bend, by_rad)))
+}
+
+/// Where somebody was so far before, whose rear axle drives on a circle.
+fn back(told: &Told, centre: Pose, curvature: f64, back_m: f64) -> Pose {
+    let arm_m = arm_m(told.cp.kind, size_of(&told.cp).0);
+    let (turned, way) = (curvature * back_m, Vec2::from_heading);
+    let chord = way(centre.heading - 0.5 * turned) * (2.0 * math::sin(0.5 * turned) / curvature);
+    let heading = centre.heading - turned;
+    Pose { position: centre.position - way(centre.heading) * arm_m - chord + way(heading) * arm_m, heading }
+}
+
+/// Whether no bend of a line is tighter than the partner drives.
+pub(crate) fn can_be_driven(told: &Told, begin: Pose, legs: &[Leg]) -> bool {
+    let length_m = size_of(&told.cp).0;
+    let mut course = Course::begin(arm_m(told.cp.kind, length_m));
+    let curves = legs.iter().all(|leg| match leg {
+        Leg::Curve { to: Place::Plane { x_m, y_m, heading_deg }, .. } => {
+            let heading = heading_deg * math::PI / 180.0;
+            course.curve(begin, Pose { position: Vec2::new(*x_m, *y_m), heading }, false)
+        }
+        _ => false,
+    });
+    let steps = (course.length_m() / STEP_M).ceil() as usize;
+    let bent = |step: usize| course.spot(STEP_M * step as f64).curvature.abs();
+    let most = 1.0 / TIGHTEST_M.max(TIGHTEST_LENGTHS * length_m);
+    curves && (0..=steps).all(|step| bent(step) <= most)
+}
+
+/// Nobody who turns as it touches drives a tighter bend, or one tighter than so many of its lengths. [m]
+const TIGHTEST_M: f64 = 5.0;
+const TIGHTEST_LENGTHS: f64 = 0.5;
+
+/// Places the partner so that the two points meet, and takes it back along its bend to where the boxes just touch; the zones that then meet.
+fn touch(
+    told: &Told,
+    (sv, sv_point): (Pose, (f64, f64)),
+    (heading, cp_point): (f64, (f64, f64)),
+    (curvature, length_m): (f64, f64),
+) -> Option<(Pose, (ContactZone, ContactZone))> {
+    let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
+    let own = OrientedBox::new(sv, sv_length, sv_width);
+    let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
+    let axis = Vec2::from_heading(heading);
+    let position = met - axis * (cp_point.0 * 0.5 * cp_length) - axis.left() * (cp_point.1 * 0.5 * cp_width);
+    let (own_mps, speed_mps) = (velocity(&told.sv, sv.heading), told.cp.speed_mps.max(0.1));
+    // Seen from the ego, which moves meanwhile.
+    let pose = |back_m: f64| {
+        let there = back(told, Pose { position, heading }, curvature, back_m);
+        Pose { position: there.position + own_mps * (back_m / speed_mps), ..there }
+    };
+    let apart = |back_m: f64| !OrientedBox::new(pose(back_m), cp_length, cp_width).overlaps(&own);
+    let mut inside = -AHEAD_M;
+    if apart(inside) {
+        return None;
+    }
+    let steps = (length_m / STEP_M).ceil() as usize;
+    let clear = (1..=steps).map(|step| STEP_M * step as f64 - AHEAD_M).find(|back_m| apart(*back_m))?;
+    let mut outside = clear;
+    for _ in 0..30 {
+        let middle = 0.5 * (inside + outside);
+        if apart(middle) { outside = middle } else { inside = middle }
+    }
+    // They stay apart on the way there.
+    if (1..=steps).any(|step| !apart(clear + STEP_M * step as f64)) {
+        return None;
+    }
+    let cp = pose(inside);
+    let touching = OrientedBox::new(pose(inside - 0.02), cp_length, cp_width);
+    let geometry = contact_geometry(&own, own_mps, &touching, velocity(&told.cp, cp.heading));
+    Some((cp, (geometry.ego_zone, geometry.other_zone)))
+}
+
+/// The points meet so far ahead at most; and the way there is looked at in steps of this. [m]
+const AHEAD_M: f64 = 0.1;
+const STEP_M: f64 = 0.1;

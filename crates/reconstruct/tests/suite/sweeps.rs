@@ -1,0 +1,53 @@
+//! Who turns as it touches: a rear corner that cuts in behind one that stands, or swings out.
+
+use crate::ways::{before_contact, degrees_between, made, missed, partner, story};
+use recrash_model::geometry::{Pose, Vec2};
+use recrash_model::math;
+use recrash_model::metrics::CheckKind;
+use recrash_model::zones::ContactZone;
+use recrash_reconstruct::Reconstruction;
+
+const CUTS_IN: &str = "The AV was stopped in its lane on Elm Street for a passenger pickup. A van traveling behind the AV passed the AV on \
+                       the left, and the rear right corner of the van made contact with the rear left corner of the stationary AV.";
+
+const ONCOMING: &str = "The AV was stopped on Elm Street as an oncoming van approached it. As the van passed the stopped AV, the rear left \
+                        corner of the van made contact with the rear left corner of the AV.";
+
+/// How far ahead of the ego's rear the partner's front is at the contact, seen the way the partner drives. [m]
+fn front_beyond_m(made: &Reconstruction) -> f64 {
+    let (ego, met) = (made.rollout.ego_track(), partner(made).1);
+    let track = made.rollout.actors.iter().find(|track| track.id == "cp").expect("a partner");
+    let at = ego.states[before_contact(made)];
+    let rear = at.position() - Vec2::from_heading(at.heading) * (0.5 * ego.length_m);
+    let Pose { position, heading } = met.pose();
+    (position - rear).dot(Vec2::from_heading(heading)) + 0.5 * track.length_m
+}
+
+#[test]
+fn who_passes_one_that_stands_touches_it_with_its_rear_by_its_turn() {
+    for text in [CUTS_IN, ONCOMING] {
+        let account = story(text);
+        let shown = made(&account);
+        assert!(front_beyond_m(&shown) > 2.0, "its front is by: {}", front_beyond_m(&shown));
+        let states = partner(&shown).0;
+        let turned = degrees_between(states[states.len() - 1].heading, states[states.len() - 4].heading);
+        assert!(turned > 2.0, "{turned}");
+        // No tighter than a car drives, and along the road before.
+        let tightest = states.windows(2).filter(|pair| pair[1].speed() > 0.5).map(|pair| {
+            math::wrap_angle(pair[1].heading - pair[0].heading).abs() / pair[1].position().distance(pair[0].position())
+        });
+        assert!(tightest.fold(0.0, f64::max) < 1.0 / 4.0);
+        assert!(degrees_between(2.0 * states[0].heading, 0.0) < 2.0, "{:?}", states[0]);
+    }
+}
+
+#[test]
+fn a_front_that_touches_does_not_pass_for_a_rear_that_does() {
+    for text in [CUTS_IN, ONCOMING] {
+        let front = missed(&story(text), |less| {
+            let partner = less.partner.as_mut().expect("a partner");
+            partner.zones.iter_mut().for_each(|zone| zone.value = ContactZone::Front);
+        });
+        assert_eq!(front, [CheckKind::CpZones]);
+    }
+}
