@@ -44,10 +44,11 @@ impl Told {
         let middle_m = inner_m.sum::<f64>() + 0.5 * strip.usual_width_m();
         let [left_m, right_m] = ground.lane_edges_m;
         let own_y_m = ground.sv_pose(0.0).position.y;
-        ground.beside.contains(&strip).then(|| match self.origin {
+        let y_m = match self.origin {
             Origin::Opposite => own_y_m + left_m + middle_m,
             _ => own_y_m - right_m - middle_m,
-        })
+        };
+        ground.beside.contains(&strip).then_some(y_m)
     }
 }
 
