@@ -1,6 +1,8 @@
 //! The account, folded from the event frames and held against the columns.
 
+mod acts;
 mod contact;
+mod controls;
 mod driver;
 mod fallback;
 mod movement;
@@ -13,8 +15,10 @@ mod picture;
 mod place;
 mod role;
 mod scenario;
+mod standing;
 mod state;
 mod striker;
+mod touched;
 mod types;
 mod whereabouts;
 
@@ -301,7 +305,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         else {
             continue;
         };
-        let acts = party::acts(reading, actor);
+        let acts = acts::acts(reading, actor);
         let lively = kind.group() != KindGroup::Object || !acts.is_empty();
         let (first, end) = known.kind_tokens.unwrap_or((0, 1));
         if !lively || known.mentions == 0 || kind == Kind::Curb {
