@@ -4,7 +4,7 @@
 //! parts of vehicles, places; verbs make event frames (who, what, to whom, where, negated, how far it came). A world is
 //! carried along, so that "it", "the other vehicle" and a street's direction find their owner. The account is folded from
 //! the frames, and then held against the columns: words win over columns, and what only a column tells is marked so.
-//! The words live in `data/lexicon.toml`.
+//! The words live in `data/lexicon.toml`; ARCHITECTURE.md has a table of where a new rule of English goes.
 //!
 //! What this crate does **not** do: it opens no file, and it never guesses.
 

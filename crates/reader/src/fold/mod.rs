@@ -1,31 +1,38 @@
 //! The account, folded from the event frames and held against the columns.
 
-mod blame;
+mod acts;
 mod contact;
+mod controls;
+mod driver;
 mod fallback;
 mod movement;
 mod nobody;
 mod open;
+mod order;
 mod origin;
 mod party;
 mod picture;
 mod place;
+mod role;
 mod scenario;
+mod standing;
 mod state;
+mod striker;
+mod touched;
 mod types;
 mod whereabouts;
 
 use crate::chunk::Piece;
 use crate::frame::{Frame, Own, Story, story};
-use crate::lexicon::{Lexicon, Occupant, Sense};
-use crate::world::{Actor, SUBJECT, same_kind};
+use crate::lexicon::Sense;
+use crate::world::{Actor, SUBJECT};
 use contact::Contacts;
 use recrash_model::account::{
-    ACCOUNT_FORMAT, Account, Act, ActFact, Contradiction, Driver, Fact, Kind, KindGroup, Other, Source, Striker, told,
+    ACCOUNT_FORMAT, Account, Act, Contradiction, Fact, Kind, KindGroup, Other, Source, Striker, told,
 };
 use recrash_model::incident::Incident;
 use recrash_model::kinds::PartnerKind;
-use recrash_model::record::{Coded, CrashRecord, Engagement, Severity};
+use recrash_model::record::{Coded, CrashRecord, Severity};
 use recrash_model::scenario::Author;
 use recrash_model::zones::ContactZone;
 
@@ -188,7 +195,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         came_from: None,
         ahead: None,
         order: None,
-        driver: driver(&reading),
+        driver: driver::driver(&reading),
         others: others(&reading),
         door: door(&reading),
         injury: injury(&reading),
@@ -219,10 +226,10 @@ pub fn account(incident: &Incident) -> Option<Account> {
         movement::movements(&reading, &mut account);
     }
     account.ahead = origin::ahead(&reading, &account);
-    account.striker = blame::striker(&reading, &account);
+    account.striker = striker::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);
-    account.role = blame::role(&reading, &account);
-    account.order = blame::order(&account);
+    account.role = role::role(&reading, &account);
+    account.order = order::order(&account);
     account.first_contact = types::first_contact(&reading, &account);
     account.scenario = scenario::scenario(&account);
     account.matrix = scenario::matrix(&account);
@@ -288,145 +295,6 @@ fn words_of(story: &Story) -> u32 {
     told.map(|(sentence, _)| (sentence.end - sentence.first) as u32).sum()
 }
 
-/// Who drove at the contact.
-fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
-    let lexicon = Lexicon::get();
-    let story = &reading.story;
-    // The crash is told first as a headline, and then again after what led to it.
-    let early = story.standing.iter().position(|standing| !standing);
-    let headline = reading.contacts.first.is_some_and(|first| Some(story.frames[first].sentence) == early);
-    let told_again = |number: usize| {
-        headline
-            && story.frames[number + 1..].iter().any(|frame| {
-                frame.is_contact()
-                    && !frame.looks_back
-                    && !frame.aside
-                    && [frame.who, frame.object].contains(&Some(SUBJECT))
-            })
-    };
-    let took_over = story.frames.iter().enumerate().find(|(number, frame)| {
-        frame.sense == Sense::TakeOver
-            && frame.happened()
-            && frame.who.is_none_or(|who| who == SUBJECT)
-            && (!reading.is_after(*number) || told_again(*number) || had_done(reading, frame))
-    });
-    let mut system = None;
-    let mut human = None;
-    let mut handed_over = false;
-    for sentence in &story.sentences {
-        let words = &story.tokens[sentence.first..sentence.end];
-        let at_impact = words
-            .iter()
-            .take(7)
-            .any(|token| matches!(token.text.as_str(), "impact" | "collision" | "contact" | "incident" | "crash"))
-            && words.first().is_some_and(|token| token.text == "at");
-        let in_time_before =
-            words.iter().any(|token| matches!(token.text.as_str(), "30" | "seconds" | "prior" | "within"));
-        handed_over |= just_before(words);
-        if let Some(at) = by_hand_for(words) {
-            return Some(reading.told(Driver::HumanTookOver, sentence.first + at, sentence.first + at + 3));
-        }
-        let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
-        let said_human = said_human.filter(|(_, at, _)| !of_another(story, *at));
-        let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
-        if at_impact && let Some((value, at, length)) = said_human.or(said_system) {
-            let value = if value == Driver::Human && took_over.is_some() { Driver::HumanTookOver } else { value };
-            return Some(reading.told(value, at, at + length));
-        }
-        if !in_time_before && !sentence_after(reading, sentence.first) {
-            human = human.or(said_human.filter(|_| {
-                !words.iter().any(|token| {
-                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition")
-                })
-            }));
-            system = system.or(said_system);
-        }
-    }
-    if let Some((_, frame)) = took_over {
-        return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
-    }
-    // Driven by hand, and by the system within the half minute before.
-    if let Some((_, at, length)) = human.filter(|_| handed_over) {
-        return Some(reading.told(Driver::HumanTookOver, at, at + length));
-    }
-    if let (None, Some(frame)) = (&human, by_hand(reading)) {
-        return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
-    }
-    if let Some((value, at, length)) = human.or(system) {
-        return Some(reading.told(value, at, at + length));
-    }
-    match reading.record.engagement {
-        Coded::Known(Engagement::Ads | Engagement::Adas) => {
-            Some(Fact::of_column(Driver::System, "Automation System Engaged?"))
-        }
-        Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
-        _ => None,
-    }
-}
-
-/// Whether the words at this token tell of another vehicle: "a second one, operating in manual mode, struck it".
-fn of_another(story: &Story, at: usize) -> bool {
-    let last = story.frames.iter().rev().find(|frame| frame.first <= at && !frame.aside && frame.who.is_some());
-    last.is_some_and(|frame| {
-        let sentence = story.sentences[frame.sentence];
-        (sentence.first..sentence.end).contains(&at)
-            && frame.who.is_some_and(|who| who != SUBJECT)
-            && ["operat", "driv"].iter().any(|stem| story.tokens[frame.first].text.starts_with(stem))
-    })
-}
-
-/// "It struck the van, which at that time had disengaged": told behind the contact, and done before it.
-fn had_done(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence);
-    let before = frame.first.checked_sub(1).map(|at| reading.story.tokens[at].text.as_str());
-    let sentence = reading.story.sentences[frame.sentence];
-    let words: Vec<&str> =
-        reading.story.tokens[frame.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
-    // "It disengaged before the impact", told behind it.
-    let until = words.iter().position(|word| matches!(*word, "before" | "prior")).is_some_and(|at| {
-        words[at..]
-            .iter()
-            .take(5)
-            .any(|word| matches!(*word, "impact" | "contact" | "collision" | "crash" | "incident"))
-    });
-    until || contact == Some(frame.sentence) && before == Some("had")
-}
-
-/// The first thing that the human at the wheel did to the vehicle before the contact.
-fn by_hand<'a>(reading: &'a Reading<'_>) -> Option<&'a Frame> {
-    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence)?;
-    reading.before(SUBJECT).map(|(_, frame)| frame).find(|frame| {
-        frame.sentence + 1 >= contact
-            && frame.person == Some(Occupant::Driver)
-            && frame.happened()
-            && matches!(frame.act(), Some(Act::Slow | Act::Swerve | Act::Stop | Act::Turn | Act::LaneChange))
-    })
-}
-
-/// Whether a sentence says that the system drove, or handed over, in the half minute before: "autonomy was engaged within the
-/// 30 second period".
-fn just_before(words: &[crate::token::Token]) -> bool {
-    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
-    any(&["second", "seconds"])
-        && any(&["within", "prior", "before"])
-        && any(&["autonomy", "disengaged", "autonomous", "autonomously", "engaged"])
-        && !any(&["not", "minutes"])
-}
-
-/// Where a sentence says "in manual mode for approximately 10 seconds prior": the system drove until then.
-fn by_hand_for(words: &[crate::token::Token]) -> Option<usize> {
-    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
-    let at =
-        words.windows(3).position(|run| run[0].text == "manual" && run[1].text == "mode" && run[2].text == "for")?;
-    (any(&["seconds"]) && any(&["prior", "before"])).then_some(at)
-}
-
-/// Whether a sentence stands behind the one of the contact.
-fn sentence_after(reading: &Reading<'_>, token: usize) -> bool {
-    let contact = reading.contacts.first.map(|number| reading.story.sentences[reading.story.frames[number].sentence]);
-    contact.is_some_and(|sentence| token >= sentence.end)
-}
-
 /// Everybody else who is in the story up to the contact.
 fn others(reading: &Reading<'_>) -> Vec<Other> {
     let story = &reading.story;
@@ -437,7 +305,7 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         else {
             continue;
         };
-        let acts = party::acts(reading, actor);
+        let acts = acts::acts(reading, actor);
         let lively = kind.group() != KindGroup::Object || !acts.is_empty();
         let (first, end) = known.kind_tokens.unwrap_or((0, 1));
         if !lively || known.mentions == 0 || kind == Kind::Curb {
@@ -445,8 +313,8 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         }
         let touched_partner = reading.contacts.touched_partner(story, actor);
         let again = known.sentence.is_some_and(|last| first < story.sentences[last].first);
-        let nobody = is_nobody(reading, (first, end), &acts, again)
-            || acts.is_empty() && is_named_before(reading, actor, kind)
+        let nobody = nobody::is_nobody(reading, (first, end), &acts, again)
+            || acts.is_empty() && nobody::is_named_before(reading, actor, kind)
             || nobody::is_one_of_the_two(reading, (actor, kind), (first, end), &acts)
             || nobody::is_remark(reading, (first, end), &acts);
         if !touched_partner && nobody {
@@ -463,66 +331,6 @@ fn others(reading: &Reading<'_>) -> Vec<Other> {
         });
     }
     all
-}
-
-/// Whether somebody of whom no act is told is the partner, as the first sentence of the story named it: that tells the crash, and the
-/// story tells it again; or a trailer, which somebody else pulls.
-fn is_named_before(reading: &Reading<'_>, actor: Actor, kind: Kind) -> bool {
-    let story = &reading.story;
-    let partner = reading.contacts.partner.and_then(|partner| story.world.actors[partner].kind);
-    let same = partner.is_some_and(|partner| same_kind(partner, kind) || same_kind(kind, partner));
-    let meets = |frame: &Frame| {
-        let pair = [frame.who, frame.object];
-        frame.is_contact() && pair.contains(&Some(SUBJECT)) && pair.contains(&Some(actor))
-    };
-    same && story.frames.iter().any(meets) || kind == Kind::Trailer
-}
-
-/// Whether a noun of which no act is told before the contact names nobody who was there: "a lane of traffic", "a passenger pickup", a
-/// street that is called so; or somebody whom only the headline names, or what is told of afterwards. `again`: it is named again later.
-fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFact], again: bool) -> bool {
-    let story = &reading.story;
-    let is = |at: Option<usize>, words: &[&str]| {
-        at.and_then(|at| story.tokens.get(at)).is_some_and(|token| words.contains(&token.text.as_str()))
-    };
-    let inside = |words: &[&str]| (first..end).any(|at| is(Some(at), words));
-    let pickup = inside(&["pickup", "pick"]) && inside(&["passenger", "rider", "customer", "requested"])
-        || is(Some(end), &["pickup", "pick"]);
-    let way = ["lane", "lanes", "flow", "direction", "side", "light", "lights", "rules"];
-    let of_way = is(first.checked_sub(1), &["of"]) && is(first.checked_sub(2), &way) && inside(&["traffic"]);
-    // "The signal for traffic", "in heavy traffic", "to merge into traffic".
-    let before = |of: &[&str]| is(first.checked_sub(1), of);
-    let signal =
-        (first.saturating_sub(2)..first).any(|at| is(Some(at), &["signal", "signals", "light", "lights", "green"]));
-    let heavy = inside(&["heavy", "light", "moderate"]) && before(&["in", "with", "by", "to"]);
-    let any_traffic = inside(&["traffic"])
-        && acts.is_empty()
-        && (before(&["for"]) && signal || heavy || before(&["into", "directing"]) || is(Some(end), &["conditions"]));
-    let adjective =
-        is(Some(end), &["crosswalk", "crosswalks", "signal", "signals", "light", "lights", "control", "officer"])
-            || inside(&["pedestrian"]) && (inside(&["traffic"]) || is(Some(end), &["traffic"]));
-    let capital = |at: usize| story.tokens.get(at).is_some_and(|token| token.capital);
-    let street = end == first + 1 && capital(first) && capital(end) && first > 0;
-    let involved = inside(&["involved"]) || is(Some(end), &["involved"]) || is(first.checked_sub(1), &["both"]);
-    if pickup || of_way || any_traffic || adjective || street || involved {
-        return true;
-    }
-    if again || acts.iter().any(|fact| !fact.after_contact) {
-        return false;
-    }
-    let contact = reading.contacts.first.map(|number| story.frames[number].sentence);
-    let after = contact.is_some_and(|sentence| first >= story.sentences[sentence].end);
-    // The crash, told before the story that tells it again.
-    let again_told = |frame: &Frame| {
-        frame.is_contact()
-            && contact.is_some_and(|sentence| sentence > frame.sentence)
-            && !inside(&["traffic", "another"])
-    };
-    let headline = story.frames.iter().any(|frame| {
-        let sentence = story.sentences[frame.sentence];
-        (frame.sense == Sense::Headline || again_told(frame)) && (sentence.first..sentence.end).contains(&first)
-    });
-    after || headline
 }
 
 /// Whether a door took part.

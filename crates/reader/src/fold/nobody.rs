@@ -1,7 +1,9 @@
 //! Nouns that name nobody beside the two: one of the two again, a part of it, or somebody who was not there.
 
 use super::{Reading, whereabouts};
-use crate::world::{Actor, Known, SUBJECT};
+use crate::frame::Frame;
+use crate::lexicon::Sense;
+use crate::world::{Actor, Known, SUBJECT, same_kind};
 use recrash_model::account::{Act, ActFact, Kind, KindGroup};
 
 /// Whether a noun names one of the two again, or a part of it. Its tokens; what it is told to have done.
@@ -159,4 +161,64 @@ pub(super) fn is_remark(reading: &Reading<'_>, (first, end): (usize, usize), act
     let restricted = inside(&["traffic"])
         && (end..end + 3).any(|at| matches!(word(Some(at)), "restricted" | "prohibited" | "permitted"));
     either || called || required || taken_for || looked_for || mounted || valet || restricted
+}
+
+/// Whether somebody of whom no act is told is the partner, as the first sentence of the story named it: that tells the crash, and the
+/// story tells it again; or a trailer, which somebody else pulls.
+pub(super) fn is_named_before(reading: &Reading<'_>, actor: Actor, kind: Kind) -> bool {
+    let story = &reading.story;
+    let partner = reading.contacts.partner.and_then(|partner| story.world.actors[partner].kind);
+    let same = partner.is_some_and(|partner| same_kind(partner, kind) || same_kind(kind, partner));
+    let meets = |frame: &Frame| {
+        let pair = [frame.who, frame.object];
+        frame.is_contact() && pair.contains(&Some(SUBJECT)) && pair.contains(&Some(actor))
+    };
+    same && story.frames.iter().any(meets) || kind == Kind::Trailer
+}
+
+/// Whether a noun of which no act is told before the contact names nobody who was there: "a lane of traffic", "a passenger pickup", a
+/// street that is called so; or somebody whom only the headline names, or what is told of afterwards. `again`: it is named again later.
+pub(super) fn is_nobody(reading: &Reading<'_>, (first, end): (usize, usize), acts: &[ActFact], again: bool) -> bool {
+    let story = &reading.story;
+    let is = |at: Option<usize>, words: &[&str]| {
+        at.and_then(|at| story.tokens.get(at)).is_some_and(|token| words.contains(&token.text.as_str()))
+    };
+    let inside = |words: &[&str]| (first..end).any(|at| is(Some(at), words));
+    let pickup = inside(&["pickup", "pick"]) && inside(&["passenger", "rider", "customer", "requested"])
+        || is(Some(end), &["pickup", "pick"]);
+    let way = ["lane", "lanes", "flow", "direction", "side", "light", "lights", "rules"];
+    let of_way = is(first.checked_sub(1), &["of"]) && is(first.checked_sub(2), &way) && inside(&["traffic"]);
+    // "The signal for traffic", "in heavy traffic", "to merge into traffic".
+    let before = |of: &[&str]| is(first.checked_sub(1), of);
+    let signal =
+        (first.saturating_sub(2)..first).any(|at| is(Some(at), &["signal", "signals", "light", "lights", "green"]));
+    let heavy = inside(&["heavy", "light", "moderate"]) && before(&["in", "with", "by", "to"]);
+    let any_traffic = inside(&["traffic"])
+        && acts.is_empty()
+        && (before(&["for"]) && signal || heavy || before(&["into", "directing"]) || is(Some(end), &["conditions"]));
+    let adjective =
+        is(Some(end), &["crosswalk", "crosswalks", "signal", "signals", "light", "lights", "control", "officer"])
+            || inside(&["pedestrian"]) && (inside(&["traffic"]) || is(Some(end), &["traffic"]));
+    let capital = |at: usize| story.tokens.get(at).is_some_and(|token| token.capital);
+    let street = end == first + 1 && capital(first) && capital(end) && first > 0;
+    let involved = inside(&["involved"]) || is(Some(end), &["involved"]) || is(first.checked_sub(1), &["both"]);
+    if pickup || of_way || any_traffic || adjective || street || involved {
+        return true;
+    }
+    if again || acts.iter().any(|fact| !fact.after_contact) {
+        return false;
+    }
+    let contact = reading.contacts.first.map(|number| story.frames[number].sentence);
+    let after = contact.is_some_and(|sentence| first >= story.sentences[sentence].end);
+    // The crash, told before the story that tells it again.
+    let again_told = |frame: &Frame| {
+        frame.is_contact()
+            && contact.is_some_and(|sentence| sentence > frame.sentence)
+            && !inside(&["traffic", "another"])
+    };
+    let headline = story.frames.iter().any(|frame| {
+        let sentence = story.sentences[frame.sentence];
+        (frame.sense == Sense::Headline || again_told(frame)) && (sentence.first..sentence.end).contains(&first)
+    });
+    after || headline
 }

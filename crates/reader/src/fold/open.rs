@@ -1,10 +1,8 @@
-//! What the words for somebody leave open: who does something, what kind it is, to which side it turns.
+//! What the words for somebody leave open: its lane, and what kind of truck it is.
 
 use super::Reading;
 use crate::frame::Frame;
-use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Account, Act, Fact, Kind, LaneWord, LeftRight, Origin, Source, told};
-use recrash_model::template::Movement;
+use recrash_model::account::{Account, Act, Fact, Kind, LaneWord, Origin, Source, told};
 
 /// The lane of who comes from behind and goes round in that of those who come towards it, where no other is told of it.
 pub(super) fn oncoming_lane(reading: &Reading<'_>, account: &Account) -> Option<Fact<LaneWord>> {
@@ -27,27 +25,6 @@ pub(super) fn oncoming_lane(reading: &Reading<'_>, account: &Account) -> Option<
             (there && lane < end).then(|| reading.told(LaneWord::Opposing, at, lane + 1))
         })
     })
-}
-
-/// Who does what a frame tells: "the wheel of a van came off and rolled over" is told of the wheel.
-pub(super) fn doer(reading: &Reading<'_>, frame: &Frame) -> Option<Actor> {
-    let loose = |actor: &Actor| {
-        let kind = reading.story.world.actors[*actor].kind;
-        matches!(kind, Some(Kind::LooseWheel | Kind::Debris | Kind::Cargo | Kind::Object))
-    };
-    let comes_off = matches!(frame.act(), Some(Act::Roll | Act::Fall)) && frame.who == Some(SUBJECT);
-    reading.contacts.partner.filter(loose).filter(|_| comes_off).or(frame.who)
-}
-
-/// The side of a turn that only the column tells.
-pub(super) fn turned_by_column(reading: &Reading<'_>, actor: Actor, act: Act) -> Option<LeftRight> {
-    let own = reading.record.sv_movement.known().filter(|_| actor == SUBJECT);
-    let other = reading.record.cp_movement.known().filter(|_| Some(actor) == reading.contacts.partner);
-    match own.or(other).filter(|_| act == Act::Turn)? {
-        Movement::LeftTurn => Some(LeftRight::Left),
-        Movement::RightTurn => Some(LeftRight::Right),
-        _ => None,
-    }
 }
 
 /// Whether the words for somebody name a truck of any size.

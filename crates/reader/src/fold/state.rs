@@ -1,7 +1,7 @@
 //! State of the subject vehicle at the contact: the words held against the column speed and the movement column.
 
 use super::Reading;
-use super::party::reasons;
+use super::standing::reasons;
 use crate::world::SUBJECT;
 use recrash_model::account::{Account, Act, ContactState, Fact, StandReason, Standing, told};
 use recrash_model::template::Movement;

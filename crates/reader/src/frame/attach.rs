@@ -1,12 +1,11 @@
-//! What stands behind a verb and belongs to it: objects, places, directions, lanes.
+//! What stands behind a verb and belongs to it: where somebody is, directions, sides, lanes, places.
 
-use super::parser::{Carry, Mention, Parser};
-use super::row::transitive;
+use super::parser::{Carry, Parser};
 use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, Spot};
-use crate::lexicon::{Form, Part, Progress, Relation, Sense};
+use crate::lexicon::{Part, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Compass, Kind, KindGroup, LaneWord, LeftRight};
+use recrash_model::account::{Act, Compass, LaneWord, LeftRight};
 
 impl Parser<'_> {
     /// A part whose owner is not said: "made contact with the rear bumper".
@@ -21,203 +20,6 @@ impl Parser<'_> {
             self.frames[frame].end = placed.end;
         }
         (carry.preposition, carry.relation) = (None, None);
-    }
-
-    /// A noun behind a preposition.
-    pub(super) fn object_of(&mut self, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
-        // "a cyclist between the van and the curb": a pair, whatever verb comes.
-        carry.pair |= preposition == "between" && carry.frame.is_none() && !self.world.actors[mention.actor].several;
-        let Some(frame) = carry.frame else { return };
-        let actor = mention.actor;
-        let sense = self.frames[frame].sense;
-        match preposition {
-            "by" if sense == Sense::Tow => {
-                if let Some(towed) = self.frames[frame].who {
-                    self.world.tow(actor, towed);
-                    if self.world.actors[towed].announced {
-                        self.world.actors[actor].announced = true;
-                    }
-                    self.frames[frame].object = Some(towed);
-                    self.frames[frame].who = Some(actor);
-                }
-            }
-            "by" => {
-                let frame = self.done_by(frame);
-                let taken = &mut self.frames[frame];
-                let passive = taken.form == Form::Past
-                    && matches!(
-                        taken.sense,
-                        Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
-                    )
-                    || matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass | Act::LaneChange)) && taken.passive;
-                if passive {
-                    if !matches!(taken.sense, Sense::ContactMade) && taken.object.is_none() {
-                        taken.object = taken.who;
-                        taken.on = taken.with.take();
-                    }
-                    taken.who = Some(actor);
-                    taken.with.clone_from(&mention.piece);
-                    (taken.passive, taken.end) = (true, placed.end);
-                    if let (Sense::Act(Act::Follow), Some(followed)) = (taken.sense, taken.object) {
-                        self.follows(Some(actor), followed);
-                    }
-                    if carry.relative || carry.subject.is_some() {
-                        carry.governed = true;
-                    }
-                }
-            }
-            "into" | "onto" | "with" | "against" | "between" | "and" | "upon" | "on" | "at" | "to" | "off" => {
-                if preposition == "off" && !self.frames[frame].is_contact() {
-                    return;
-                }
-                if sense == Sense::Push && preposition != "with" {
-                    // Pushed into somebody: who was pushed touches them.
-                    return self.touch(frame, self.frames[frame].object, mention, placed, carry);
-                }
-                // "slid on into the rear of the van", "came to rest with its nose against it".
-                let into =
-                    matches!(preposition, "into" | "against") && self.tokens.get(placed.end).is_none_or(not_possessive);
-                if into && self.runs_into(frame, mention) {
-                    let who = self.frames[frame].who;
-                    return self.touch(frame, who, mention, placed, carry);
-                }
-                let taken = &mut self.frames[frame];
-                let contact = matches!(
-                    taken.sense,
-                    Sense::Contact | Sense::ContactMade | Sense::ReverseContact | Sense::OpenDoorInto | Sense::RearEnd
-                );
-                if matches!(taken.sense, Sense::ContactMade) && preposition == "between" {
-                    taken.who = Some(actor);
-                    taken.with.clone_from(&mention.piece);
-                    carry.pair = true;
-                    // "a collision between two vans": of each of them with the other.
-                    taken.object = self.world.actors[actor].several.then_some(actor);
-                } else if (contact || taken.sense == Sense::Headline)
-                    && taken.object.is_none()
-                    && taken.who != Some(actor)
-                {
-                    taken.object = Some(actor);
-                    taken.on.clone_from(&mention.piece);
-                    taken.end = placed.end;
-                    if taken.sense == Sense::Headline && actor != SUBJECT {
-                        self.world.actors[actor].announced = true;
-                    }
-                } else if taken.sense == Sense::Yield && taken.object.is_none() {
-                    taken.object = Some(actor);
-                } else if contact && taken.object == Some(actor) && taken.on.is_none() {
-                    taken.on.clone_from(&mention.piece);
-                    taken.end = placed.end;
-                } else if matches!(
-                    taken.act(),
-                    Some(
-                        Act::Swerve
-                            | Act::Drift
-                            | Act::Turn
-                            | Act::LaneChange
-                            | Act::Reverse
-                            | Act::Roll
-                            | Act::Fall
-                            | Act::Slow
-                    )
-                ) && taken.object.is_none()
-                {
-                    taken.object = Some(actor);
-                }
-            }
-            // "a bucket rolled under its front end".
-            "under"
-                if actor == SUBJECT
-                    && mention.piece.is_some()
-                    && self.frames[frame].who.is_some_and(|who| who != SUBJECT)
-                    && matches!(self.frames[frame].act(), Some(Act::Roll | Act::Fall | Act::Drift | Act::Follow)) =>
-            {
-                let who = self.frames[frame].who;
-                self.touch(frame, who, mention, placed, carry);
-            }
-            "for"
-                if matches!(sense, Sense::Act(Act::Stop | Act::Hold))
-                    && self.frames[frame].who == Some(SUBJECT)
-                    && self.world.actors[actor].kind.is_some_and(Kind::is_vehicle)
-                    && !self.world.actors[actor].several =>
-            {
-                self.note(actor, Relation::Ahead);
-                self.frames[frame].object.get_or_insert(actor);
-            }
-            // "a truck coming towards it".
-            "toward" | "towards"
-                if actor == SUBJECT
-                    && mention.piece.is_none()
-                    && matches!(sense, Sense::Act(Act::Follow) | Sense::Approach)
-                    && self.frames[frame].happened() =>
-            {
-                let comes = self.frames[frame].who.filter(|who| *who != SUBJECT);
-                let rides = |kind: Kind| {
-                    kind.is_vehicle() || matches!(kind.group(), KindGroup::Motorcycle | KindGroup::Cyclist)
-                };
-                if let Some(who) = comes.filter(|who| self.world.actors[*who].kind.is_some_and(rides)) {
-                    self.note(who, Relation::Opposite);
-                    self.frames[frame].relations.push((Relation::Opposite, Some(SUBJECT)));
-                }
-            }
-            "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
-                let taken = &mut self.frames[frame];
-                if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
-                    taken.object = Some(actor);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// "was struck while it stood there by a van": the passive verb that still waits for who did it.
-    fn done_by(&self, frame: usize) -> usize {
-        let passive = |number: &usize| {
-            let frame = &self.frames[*number];
-            frame.sentence == self.sentence && frame.passive && frame.is_contact()
-        };
-        if passive(&frame) {
-            return frame;
-        }
-        let waits = |number: &usize| self.frames[*number].who.is_none();
-        (0..frame).rev().take(3).find(passive).filter(waits).unwrap_or(frame)
-    }
-
-    /// Who is pushed, or drives on, into somebody touches them.
-    fn touch(&mut self, frame: usize, who: Option<Actor>, mention: &Mention, placed: &Placed, carry: &Carry) {
-        let before = &self.frames[frame];
-        let (negated, progress) = (before.negated, before.progress);
-        let words = Placed { chunk: Chunk::Word, first: before.first, end: placed.end };
-        let with = before.with.clone();
-        let mut contact = self.frame(who, Sense::Contact, Form::Past, &words, carry);
-        contact.object = Some(mention.actor);
-        contact.on.clone_from(&mention.piece);
-        (contact.negated, contact.with) = (negated, with);
-        contact.progress = if negated { progress } else { Progress::Real };
-        self.frames.push(contact);
-    }
-
-    /// Whether somebody moves into a part of another, or into another that is named as a whole.
-    fn runs_into(&self, frame: usize, mention: &Mention) -> bool {
-        let frame = &self.frames[frame];
-        let moves = matches!(
-            frame.act(),
-            Some(
-                Act::Follow
-                    | Act::SetOff
-                    | Act::Drift
-                    | Act::Swerve
-                    | Act::Roll
-                    | Act::Fall
-                    | Act::LoseControl
-                    | Act::Accelerate
-                    | Act::LaneChange
-                    | Act::Slow
-            )
-        );
-        let apart = frame.who.is_some_and(|who| who != mention.actor);
-        let rides = self.world.actors[mention.actor].kind.is_none_or(|kind| kind.group() != KindGroup::Object);
-        let named = mention.actor == SUBJECT || mention.piece.is_some();
-        moves && apart && rides && named && mention.person.is_none() && frame.happened() && frame.object.is_none()
     }
 
     /// Where somebody is: of the frame, or of the noun before.
@@ -567,9 +369,4 @@ impl Parser<'_> {
             taken.out_of.get_or_insert(spot);
         }
     }
-}
-
-/// Whether what stands before this word is named for itself, and not "the van's lane", "the AVs path".
-fn not_possessive(token: &crate::token::Token) -> bool {
-    !matches!(token.text.as_str(), "'s" | "lane" | "lanes" | "path" | "way" | "right")
 }

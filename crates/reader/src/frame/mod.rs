@@ -5,6 +5,7 @@ mod attach;
 mod build;
 mod joint;
 mod named;
+mod object;
 mod parser;
 mod pronoun;
 mod row;

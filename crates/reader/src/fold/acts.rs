@@ -1,0 +1,229 @@
+//! What somebody did, in order, each act with its side.
+
+use super::Reading;
+use crate::chunk::{Joint, Spot};
+use crate::frame::{Frame, sided};
+use crate::lexicon::{Lexicon, Progress, Relation, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, RoadFeature};
+use recrash_model::template::Movement;
+
+/// What somebody did, in order; the same act told twice in a row once.
+pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
+    let mut all: Vec<ActFact> = Vec::new();
+    for (number, frame) in reading.story.frames.iter().enumerate() {
+        let thrown = reading.contacts.earlier.contains(&number)
+            && frame.object == Some(actor)
+            && Some(actor) == reading.contacts.partner;
+        let pushed = thrown || (frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened());
+        if doer(reading, frame) != Some(actor) && !pushed {
+            continue;
+        }
+        let Some(act) = act_of(reading, number, frame, pushed) else { continue };
+        let side = side_of(reading, actor, frame, act);
+        let after_contact = reading.is_after(number);
+        let fact = ActFact {
+            act,
+            side,
+            step: number as u32,
+            after_contact,
+            begun: frame.progress == Progress::Tried,
+            done: is_done(reading, frame),
+            source: reading.of(frame),
+        };
+        let in_passing = frame.aside && all.iter().any(|known| known.act == act);
+        match all.last_mut() {
+            Some(last)
+                if last.act == act
+                    && last.after_contact == after_contact
+                    && (last.side == side || side.is_none() || last.side.is_none()) =>
+            {
+                last.side = last.side.or(side);
+                // The last word on it is that it was done.
+                if fact.done {
+                    (last.done, last.source) = (true, fact.source);
+                }
+            }
+            _ if in_passing => {}
+            _ => all.push(fact),
+        }
+    }
+    all
+}
+
+/// To which side an act goes: as told with it, else by the lane that it leads into or begins in, else by the column.
+fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
+    let told = || frame.side.or_else(|| to_lane(reading, actor, frame, act));
+    let turn_lane = || match reading.story.world.actors[actor].lane?.0 {
+        LaneWord::LeftTurn => Some(LeftRight::Left),
+        LaneWord::RightTurn => Some(LeftRight::Right),
+        _ => None,
+    };
+    let side = if sided(act) { told() } else { None };
+    side.or_else(|| into_turn_lane(reading, actor, frame, act))
+        .or_else(|| if act == Act::Turn { turn_lane() } else { None })
+        .or_else(|| turned_by_column(reading, actor, act))
+}
+
+/// "completed its left turn", "after it had turned".
+fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let first = reading.story.tokens.get(frame.first).map(|token| token.text.as_str()).unwrap_or_default();
+    frame.joint == Some(Joint::After) || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
+}
+
+/// The act of a frame, as it counts in the account.
+fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> Option<Act> {
+    if pushed {
+        return Some(Act::Pushed);
+    }
+    if frame.negated {
+        return not_done(reading, number, frame);
+    }
+    if frame.progress == Progress::Wished {
+        return None;
+    }
+    // "When the light turned green, a car that was facing south proceeded": it stood.
+    let moved = || last_act(reading, number, frame, |_| true);
+    if frame.sense == Sense::Face && turned_green(reading, frame) && moved().is_none() {
+        return Some(Act::Hold);
+    }
+    let act = frame.act()?;
+    if act == Act::Follow && in_headline(reading, frame) {
+        return None;
+    }
+    // "proceeded forward out of a stall".
+    let comes_out = matches!(frame.out_of, Some(Spot::Stall | Spot::Driveway | Spot::Curb));
+    let words = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
+    Some(match act {
+        Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
+        Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
+        Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
+        // Who came along and was "beginning to enter" did not stand.
+        Act::SetOff if words.chars().take(24).collect::<String>().contains("enter") && moved() == Some(Act::Follow) => {
+            Act::Enter
+        }
+        Act::Pass if passes_nobody(reading, frame) => Act::Follow,
+        act => act,
+    })
+}
+
+/// What somebody did last before a frame, of the frames that are wanted.
+fn last_act(reading: &Reading<'_>, number: usize, frame: &Frame, wanted: impl Fn(&Frame) -> bool) -> Option<Act> {
+    let before = reading.before(frame.who?).take_while(|(other, _)| *other < number);
+    before.filter(|(_, frame)| frame.happened() && wanted(frame)).filter_map(|(_, frame)| frame.act()).last()
+}
+
+/// Whether the sentence is a headline: "was traveling north and was in a collision".
+pub(super) fn in_headline(reading: &Reading<'_>, frame: &Frame) -> bool {
+    reading.story.frames.iter().any(|other| other.sentence == frame.sentence && other.sense == Sense::Headline)
+}
+
+/// Who goes on from a standstill sets off.
+fn goes_on_from_a_stand(reading: &Reading<'_>, number: usize, frame: &Frame, words: &str) -> bool {
+    // "stopped at a red light, heading west", "stopped, following a pick-up": there it stands.
+    let goes_on = ["continu", "remain", "heading", "following", "traveling", "travelling", "driving"];
+    let goes_on = goes_on.iter().any(|start| words.starts_with(start));
+    let stood = || last_act(reading, number, frame, |frame| !frame.aside);
+    !goes_on && frame.sense != Sense::Approach && matches!(stood(), Some(Act::Hold | Act::Stop))
+}
+
+/// "Once the light turned green, it began to proceed, and a car behind it proceeded forward": so did that.
+fn sets_off_with_subject(reading: &Reading<'_>, frame: &Frame, words: &str) -> bool {
+    let Some(who) = frame.who.filter(|who| *who != SUBJECT) else { return false };
+    let mut relations = reading.story.world.actors[who].relations.iter();
+    let sets_off = |other: &Frame| {
+        other.who == Some(SUBJECT) && other.sentence == frame.sentence && other.act() == Some(Act::SetOff)
+    };
+    ["proceed", "start", "beg", "mov"].iter().any(|start| words.starts_with(start))
+        && relations.any(|(relation, sentence)| *relation == Relation::Behind && *sentence == frame.sentence)
+        && turned_green(reading, frame)
+        && reading.story.frames.iter().any(sets_off)
+}
+
+/// "passed a parked trailer", "passed behind the van".
+fn passes_nobody(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let Some(object) = frame.object else {
+        let places = |relation: &Relation| matches!(relation, Relation::Ahead | Relation::Behind);
+        return frame.who == Some(SUBJECT) && frame.relations.iter().all(|(relation, _)| places(relation));
+    };
+    reading.story.world.actors[object].kind.is_some_and(|kind| kind.group() == KindGroup::Object)
+}
+
+/// Whether the sentence tells that a light turned green.
+fn turned_green(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let sentence = reading.story.sentences[frame.sentence];
+    let words = &reading.story.tokens[sentence.first..sentence.end];
+    let turns = |word: &str| ["turned", "turn", "turns", "changed", "became"].contains(&word);
+    words.windows(4).any(|words| turns(&words[0].text) && words[1..].iter().any(|word| word.text == "green"))
+}
+
+/// What somebody did who did not stop or yield where it should.
+pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> Option<Act> {
+    let stops = matches!(frame.act(), Some(Act::Stop | Act::Slow)) || frame.sense == Sense::Yield;
+    if !stops || frame.aside {
+        return None;
+    }
+    let (first, end) = reading.window(number);
+    let named = Lexicon::get().features(&reading.story.tokens[first..end]);
+    if named.iter().any(|(feature, ..)| *feature == RoadFeature::StopSign) {
+        Some(Act::RunStop)
+    } else if named.iter().any(|(feature, ..)| *feature == RoadFeature::Signal) {
+        Some(Act::RunRed)
+    } else if frame.sense == Sense::Yield {
+        Some(Act::FailToYield)
+    } else {
+        None
+    }
+}
+
+/// The side to which the subject vehicle changed lanes, by the column, when it "proceeded into the right turn lane".
+fn into_turn_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
+    let column = reading.record.sv_movement.known() == Some(Movement::ChangingLanes);
+    if act != Act::Enter || actor != SUBJECT || !column || !frame.happened() {
+        return None;
+    }
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
+    let has = |word: &str| words.contains(&word);
+    match (has("turn") && has("lane"), has("left"), has("right")) {
+        (true, true, false) => Some(LeftRight::Left),
+        (true, false, true) => Some(LeftRight::Right),
+        _ => None,
+    }
+}
+
+/// The side of a lane change that is told by lanes: from the left lane into the centre.
+fn to_lane(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
+    if !matches!(act, Act::LaneChange | Act::Drift) {
+        return None;
+    }
+    let own = reading.story.world.actors[actor].lane.map(|(lane, ..)| lane);
+    let into = frame.lane.map(|(lane, ..)| lane);
+    match (own, into) {
+        (Some(LaneWord::Left), Some(LaneWord::Center)) => Some(LeftRight::Right),
+        (Some(LaneWord::Right), Some(LaneWord::Center)) => Some(LeftRight::Left),
+        (_, Some(LaneWord::Opposing)) => Some(LeftRight::Left),
+        _ => None,
+    }
+}
+
+/// Who does what a frame tells: "the wheel of a van came off and rolled over" is told of the wheel.
+pub(super) fn doer(reading: &Reading<'_>, frame: &Frame) -> Option<Actor> {
+    let loose = |actor: &Actor| {
+        let kind = reading.story.world.actors[*actor].kind;
+        matches!(kind, Some(Kind::LooseWheel | Kind::Debris | Kind::Cargo | Kind::Object))
+    };
+    let comes_off = matches!(frame.act(), Some(Act::Roll | Act::Fall)) && frame.who == Some(SUBJECT);
+    reading.contacts.partner.filter(loose).filter(|_| comes_off).or(frame.who)
+}
+
+/// The side of a turn that only the column tells.
+fn turned_by_column(reading: &Reading<'_>, actor: Actor, act: Act) -> Option<LeftRight> {
+    let own = reading.record.sv_movement.known().filter(|_| actor == SUBJECT);
+    let other = reading.record.cp_movement.known().filter(|_| Some(actor) == reading.contacts.partner);
+    match own.or(other).filter(|_| act == Act::Turn)? {
+        Movement::LeftTurn => Some(LeftRight::Left),
+        Movement::RightTurn => Some(LeftRight::Right),
+        _ => None,
+    }
+}

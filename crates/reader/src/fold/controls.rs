@@ -1,0 +1,140 @@
+//! Signals and signs in front of somebody, and speeds, as the words tell them.
+
+use super::Reading;
+use super::acts::not_done;
+use crate::frame::Frame;
+use crate::lexicon::Sense;
+use crate::token::{Token, TokenKind};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, Control, ControlDevice, Fact, Obeyed, SignalState, Speed, SpeedMeaning};
+use recrash_model::record::MPS_PER_MPH;
+
+/// Signals and signs in front of somebody.
+pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>> {
+    let mut all: Vec<Fact<Control>> = Vec::new();
+    let tokens = &reading.story.tokens;
+    let mut turned_green = None;
+    for (number, frame) in reading.story.frames.iter().enumerate() {
+        let changes = match frame.sense {
+            Sense::LightGreen if was_green(reading, frame, &all) => Some(SignalState::Green),
+            Sense::LightGreen => Some(SignalState::TurnedGreen),
+            Sense::LightRed => Some(SignalState::TurnedRed),
+            Sense::LightYellow => Some(SignalState::Yellow),
+            _ => None,
+        };
+        if let Some(state) = changes.filter(|_| !reading.is_after(number)) {
+            turned_green = Some((state, frame.first, frame.end));
+            if let Some(control) = all.iter_mut().find(|control| control.value.device == ControlDevice::Signal) {
+                control.value.state = Some(state);
+            }
+        }
+        if frame.who != Some(actor) || reading.is_after(number) || frame.aside {
+            continue;
+        }
+        let (first, end) = reading.window(number);
+        let ran = frame.act().filter(|_| frame.happened());
+        let passed = not_done(reading, number, frame);
+        let ran = if frame.negated { passed } else { ran };
+        for at in first..end {
+            let words: Vec<&str> = tokens[at..end.min(at + 4)].iter().map(|token| token.text.as_str()).collect();
+            let Some((device, state, length)) = named(&words) else { continue };
+            let broken = match device {
+                ControlDevice::Signal => ran == Some(Act::RunRed),
+                _ => ran == Some(Act::RunStop),
+            };
+            let obeyed = if broken {
+                Some(Obeyed::No)
+            } else if ran.is_some_and(|act| matches!(act, Act::Stop | Act::Hold)) && state != Some(SignalState::Green) {
+                Some(Obeyed::Yes)
+            } else {
+                None
+            };
+            match all.iter_mut().find(|control| control.value.device == device) {
+                Some(known) => {
+                    known.value.state = known.value.state.or(state);
+                    known.value.obeyed = if broken { Some(Obeyed::No) } else { known.value.obeyed.or(obeyed) };
+                }
+                None => all.push(reading.told(Control { device, state, obeyed }, at, at + length)),
+            }
+        }
+    }
+    if let (Some((state, first, end)), true) =
+        (turned_green, actor == SUBJECT && all.iter().all(|control| control.value.device != ControlDevice::Signal))
+    {
+        all.push(reading.told(Control { device: ControlDevice::Signal, state: Some(state), obeyed: None }, first, end));
+    }
+    all
+}
+
+/// The signal or sign that these words begin with, the state of it, and how many of them name it.
+fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> {
+    Some(match words {
+        ["red", "light" | "signal" | "traffic", ..] | ["red", "left" | "right", "turn", ..] => {
+            (ControlDevice::Signal, Some(SignalState::Red), 2)
+        }
+        ["green", "light" | "signal" | "traffic" | "arrow", ..] => (ControlDevice::Signal, Some(SignalState::Green), 2),
+        ["yellow", "light" | "signal", ..] => (ControlDevice::Signal, Some(SignalState::Yellow), 2),
+        ["traffic", "light" | "signal", ..] => (ControlDevice::Signal, None, 2),
+        ["stop", "sign" | "signs", ..] => (ControlDevice::StopSign, None, 2),
+        ["four" | "4" | "three" | "3" | "all", "way", "stop", ..] => (ControlDevice::StopSign, None, 3),
+        ["yield", "sign", ..] => (ControlDevice::YieldSign, None, 2),
+        _ => return None,
+    })
+}
+
+/// Whether a light "was green", and nobody tells that it had been red.
+fn was_green(reading: &Reading<'_>, frame: &Frame, before: &[Fact<Control>]) -> bool {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    let red = before.iter().any(|control| control.value.state == Some(SignalState::Red));
+    !red && words.iter().any(|token| matches!(token.text.as_str(), "is" | "was" | "were"))
+}
+
+/// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed.
+fn slowed_to(before: &[Token], frame: &Frame) -> bool {
+    let to = before.iter().rev().find(|token| {
+        !matches!(token.text.as_str(), "about" | "approximately" | "around" | "roughly" | "only" | "just" | "~")
+    });
+    matches!(frame.act(), Some(Act::Slow | Act::Accelerate))
+        && frame.happened()
+        && to.is_some_and(|token| token.text == "to")
+}
+
+/// Speeds that the words tell of somebody.
+pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
+    let tokens = &reading.story.tokens;
+    let mut all = Vec::new();
+    for (at, token) in tokens.iter().enumerate() {
+        let joined = token.text.strip_suffix("mph").and_then(|number| number.parse::<f64>().ok());
+        let unit = tokens.get(at + 1).map_or("", |next| next.text.as_str());
+        let apart = token
+            .text
+            .parse::<f64>()
+            .ok()
+            .filter(|_| token.kind == TokenKind::Number && matches!(unit, "mph" | "miles"));
+        let Some(mph) = joined.or(apart).filter(|mph| *mph < 200.0) else { continue };
+        let last_frame = reading
+            .story
+            .frames
+            .iter()
+            .enumerate()
+            .rev()
+            .find(|(_, frame)| frame.first < at && !frame.aside && frame.who.is_some());
+        let Some((number, frame)) = last_frame else { continue };
+        let sentence = reading.story.sentences[frame.sentence];
+        if frame.who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || reading.is_after(number) {
+            continue;
+        }
+        let near: Vec<&str> =
+            tokens[at.saturating_sub(4)..tokens.len().min(at + 5)].iter().map(|token| token.text.as_str()).collect();
+        let limit = near.iter().any(|word| matches!(*word, "zone" | "limit" | "posted"));
+        let meaning = if limit {
+            SpeedMeaning::Posted
+        } else if frame.is_contact() || slowed_to(&tokens[at.saturating_sub(3)..at], frame) {
+            SpeedMeaning::Impact
+        } else {
+            SpeedMeaning::Approach
+        };
+        all.push(reading.told(Speed { mps: mph * MPS_PER_MPH, meaning }, at, tokens.len().min(at + 2)));
+    }
+    all
+}

@@ -1,0 +1,147 @@
+//! Who drove at the contact: the system, a human, or a human who took over.
+
+use super::Reading;
+use crate::frame::{Frame, Story};
+use crate::lexicon::{Lexicon, Occupant, Sense};
+use crate::world::SUBJECT;
+use recrash_model::account::{Act, Driver, Fact};
+use recrash_model::record::{Coded, Engagement};
+
+/// Who drove at the contact.
+pub(super) fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
+    let lexicon = Lexicon::get();
+    let story = &reading.story;
+    // The crash is told first as a headline, and then again after what led to it.
+    let early = story.standing.iter().position(|standing| !standing);
+    let headline = reading.contacts.first.is_some_and(|first| Some(story.frames[first].sentence) == early);
+    let told_again = |number: usize| {
+        headline
+            && story.frames[number + 1..].iter().any(|frame| {
+                frame.is_contact()
+                    && !frame.looks_back
+                    && !frame.aside
+                    && [frame.who, frame.object].contains(&Some(SUBJECT))
+            })
+    };
+    let took_over = story.frames.iter().enumerate().find(|(number, frame)| {
+        frame.sense == Sense::TakeOver
+            && frame.happened()
+            && frame.who.is_none_or(|who| who == SUBJECT)
+            && (!reading.is_after(*number) || told_again(*number) || had_done(reading, frame))
+    });
+    let mut system = None;
+    let mut human = None;
+    let mut handed_over = false;
+    for sentence in &story.sentences {
+        let words = &story.tokens[sentence.first..sentence.end];
+        let at_impact = words
+            .iter()
+            .take(7)
+            .any(|token| matches!(token.text.as_str(), "impact" | "collision" | "contact" | "incident" | "crash"))
+            && words.first().is_some_and(|token| token.text == "at");
+        let in_time_before =
+            words.iter().any(|token| matches!(token.text.as_str(), "30" | "seconds" | "prior" | "within"));
+        handed_over |= just_before(words);
+        if let Some(at) = by_hand_for(words) {
+            return Some(reading.told(Driver::HumanTookOver, sentence.first + at, sentence.first + at + 3));
+        }
+        let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
+        let said_human = said_human.filter(|(_, at, _)| !of_another(story, *at));
+        let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
+        if at_impact && let Some((value, at, length)) = said_human.or(said_system) {
+            let value = if value == Driver::Human && took_over.is_some() { Driver::HumanTookOver } else { value };
+            return Some(reading.told(value, at, at + length));
+        }
+        if !in_time_before && !sentence_after(reading, sentence.first) {
+            human = human.or(said_human.filter(|_| {
+                !words.iter().any(|token| {
+                    matches!(token.text.as_str(), "transitioned" | "disengaged" | "switched" | "transition")
+                })
+            }));
+            system = system.or(said_system);
+        }
+    }
+    if let Some((_, frame)) = took_over {
+        return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
+    }
+    // Driven by hand, and by the system within the half minute before.
+    if let Some((_, at, length)) = human.filter(|_| handed_over) {
+        return Some(reading.told(Driver::HumanTookOver, at, at + length));
+    }
+    if let (None, Some(frame)) = (&human, by_hand(reading)) {
+        return Some(Fact { value: Driver::HumanTookOver, source: reading.of(frame) });
+    }
+    if let Some((value, at, length)) = human.or(system) {
+        return Some(reading.told(value, at, at + length));
+    }
+    match reading.record.engagement {
+        Coded::Known(Engagement::Ads | Engagement::Adas) => {
+            Some(Fact::of_column(Driver::System, "Automation System Engaged?"))
+        }
+        Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
+        _ => None,
+    }
+}
+
+/// Whether the words at this token tell of another vehicle: "a second one, operating in manual mode, struck it".
+fn of_another(story: &Story, at: usize) -> bool {
+    let last = story.frames.iter().rev().find(|frame| frame.first <= at && !frame.aside && frame.who.is_some());
+    last.is_some_and(|frame| {
+        let sentence = story.sentences[frame.sentence];
+        (sentence.first..sentence.end).contains(&at)
+            && frame.who.is_some_and(|who| who != SUBJECT)
+            && ["operat", "driv"].iter().any(|stem| story.tokens[frame.first].text.starts_with(stem))
+    })
+}
+
+/// "It struck the van, which at that time had disengaged": told behind the contact, and done before it.
+fn had_done(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence);
+    let before = frame.first.checked_sub(1).map(|at| reading.story.tokens[at].text.as_str());
+    let sentence = reading.story.sentences[frame.sentence];
+    let words: Vec<&str> =
+        reading.story.tokens[frame.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
+    // "It disengaged before the impact", told behind it.
+    let until = words.iter().position(|word| matches!(*word, "before" | "prior")).is_some_and(|at| {
+        words[at..]
+            .iter()
+            .take(5)
+            .any(|word| matches!(*word, "impact" | "contact" | "collision" | "crash" | "incident"))
+    });
+    until || contact == Some(frame.sentence) && before == Some("had")
+}
+
+/// The first thing that the human at the wheel did to the vehicle before the contact.
+fn by_hand<'a>(reading: &'a Reading<'_>) -> Option<&'a Frame> {
+    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence)?;
+    reading.before(SUBJECT).map(|(_, frame)| frame).find(|frame| {
+        frame.sentence + 1 >= contact
+            && frame.person == Some(Occupant::Driver)
+            && frame.happened()
+            && matches!(frame.act(), Some(Act::Slow | Act::Swerve | Act::Stop | Act::Turn | Act::LaneChange))
+    })
+}
+
+/// Whether a sentence says that the system drove, or handed over, in the half minute before: "autonomy was engaged within the
+/// 30 second period".
+fn just_before(words: &[crate::token::Token]) -> bool {
+    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
+    any(&["second", "seconds"])
+        && any(&["within", "prior", "before"])
+        && any(&["autonomy", "disengaged", "autonomous", "autonomously", "engaged"])
+        && !any(&["not", "minutes"])
+}
+
+/// Where a sentence says "in manual mode for approximately 10 seconds prior": the system drove until then.
+fn by_hand_for(words: &[crate::token::Token]) -> Option<usize> {
+    let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
+    let at =
+        words.windows(3).position(|run| run[0].text == "manual" && run[1].text == "mode" && run[2].text == "for")?;
+    (any(&["seconds"]) && any(&["prior", "before"])).then_some(at)
+}
+
+/// Whether a sentence stands behind the one of the contact.
+fn sentence_after(reading: &Reading<'_>, token: usize) -> bool {
+    let contact = reading.contacts.first.map(|number| reading.story.sentences[reading.story.frames[number].sentence]);
+    contact.is_some_and(|sentence| token >= sentence.end)
+}

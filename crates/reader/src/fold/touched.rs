@@ -1,0 +1,91 @@
+//! Where somebody was touched, as the words tell it.
+
+use super::Reading;
+use crate::frame::zone_of;
+use crate::lexicon::{Relation, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::Fact;
+use recrash_model::zones::ContactZone;
+
+/// Zones of the contact that is the crash.
+pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone>> {
+    let Some(first) = reading.contacts.first else { return Vec::new() };
+    let partner = reading.contacts.partner;
+    let mut all: Vec<Fact<ContactZone>> = Vec::new();
+    // What the crash told again leaves out stands where it was told first.
+    let frames = || reading.story.frames.iter().enumerate();
+    for (number, frame) in frames().skip(first).chain(frames().take(first)) {
+        let pair = [frame.who, frame.object];
+        let ours = frame.is_contact()
+            && (pair.contains(&partner) && (pair.contains(&Some(SUBJECT)) || pair.contains(&None))
+                // "causing a scrape on its door".
+                || frame.sentence == reading.story.frames[first].sentence && pair == [None, Some(SUBJECT)]);
+        let same = number == first || (all.is_empty() && ours);
+        if !same {
+            continue;
+        }
+        let piece = if frame.who == Some(actor) {
+            frame.with.as_ref()
+        } else if frame.object == Some(actor) || (frame.object.is_none() && actor == SUBJECT) {
+            frame.on.as_ref()
+        } else {
+            None
+        };
+        let behind_run = frame.sense == Sense::RearEnd;
+        let zone = piece.and_then(zone_of).or_else(|| {
+            let struck = frame.object == Some(actor)
+                || (frame.object.is_none() && frame.who.is_some() && frame.who != Some(actor));
+            match (behind_run, struck) {
+                (true, true) => Some(ContactZone::Rear),
+                (true, false) => Some(ContactZone::Front),
+                _ => None,
+            }
+        });
+        let from_behind =
+            frame.is_contact() && frame.relations.iter().any(|(relation, _)| *relation == Relation::Behind);
+        let zone = zone.or_else(|| (from_behind && frame.object == Some(actor)).then_some(ContactZone::Rear));
+        if let Some(zone) = zone {
+            all.push(Fact { value: zone, source: reading.of(frame) });
+        }
+    }
+    if all.is_empty() {
+        let column = if actor == SUBJECT { &reading.record.sv_zones } else { &reading.record.cp_zones };
+        all.extend(told_besides(reading, actor, first, column.is_empty()));
+    }
+    all
+}
+
+/// Where somebody was touched by what the sentence of the crash says of the damage, or the headline of a rear-end crash.
+/// `alone`: no column tells more than the damage does.
+fn told_besides(reading: &Reading<'_>, actor: Actor, first: usize, alone: bool) -> Option<Fact<ContactZone>> {
+    let frames = &reading.story.frames;
+    let crash = &frames[first];
+    let damage = frames[first..].iter().find(|frame| {
+        let whose = match frame.object.or(frame.who.filter(|who| *who == SUBJECT)) {
+            // "collided with it, damaging its bumper": of the one that was struck.
+            Some(owner) if frame.who == Some(owner) && owner != SUBJECT => SUBJECT,
+            Some(owner) => owner,
+            None => SUBJECT,
+        };
+        // "It made contact with a curb. This caused damage to its front right tire."
+        let next = frame.sentence == crash.sentence + 1 && {
+            let begins = &reading.story.tokens[reading.story.sentences[frame.sentence].first..];
+            let word = |at: usize| begins.get(at).map_or("", |token| token.text.as_str());
+            word(0) == "this" || word(0) == "the" && matches!(word(1), "contact" | "collision" | "impact")
+        };
+        let here = frame.sentence == crash.sentence || next;
+        alone && frame.sense == Sense::Damage && here && whose == actor && !frame.negated
+    });
+    if let Some((frame, zone)) = damage.and_then(|frame| Some((frame, frame.on.as_ref().and_then(zone_of)?))) {
+        return Some(Fact { value: zone, source: reading.of(frame) });
+    }
+    let headline = frames[..first].iter().rev().find(|frame| {
+        frame.sense == Sense::RearEnd && frame.is_contact() && [frame.who, frame.object].contains(&Some(SUBJECT))
+    })?;
+    let zone = match (headline.object == Some(actor), headline.who == Some(actor)) {
+        (true, false) => ContactZone::Rear,
+        (false, true) => ContactZone::Front,
+        _ => return None,
+    };
+    Some(Fact { value: zone, source: reading.of(headline) })
+}

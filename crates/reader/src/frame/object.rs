@@ -1,0 +1,218 @@
+//! A noun behind a preposition: by whom it was done, into whom it went, for whom it waited. One function for each group of
+//! prepositions, which [`Parser::object_of`] names.
+
+use super::parser::{Carry, Mention, Parser};
+use super::row::transitive;
+use crate::chunk::{Chunk, Placed};
+use crate::lexicon::{Form, Progress, Relation, Sense};
+use crate::world::{Actor, SUBJECT};
+use recrash_model::account::{Act, Kind, KindGroup};
+
+impl Parser<'_> {
+    /// A noun behind a preposition.
+    pub(super) fn object_of(&mut self, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
+        // "a cyclist between the van and the curb": a pair, whatever verb comes.
+        carry.pair |= preposition == "between" && carry.frame.is_none() && !self.world.actors[mention.actor].several;
+        let Some(frame) = carry.frame else { return };
+        match preposition {
+            "by" if self.frames[frame].sense == Sense::Tow => self.towed_by(frame, mention.actor),
+            "by" => self.done_by(frame, mention, placed, carry),
+            "into" | "against" => self.into(frame, preposition, mention, placed, carry),
+            "off" if !self.frames[frame].is_contact() => {}
+            "onto" | "with" | "between" | "and" | "upon" | "on" | "at" | "to" | "off" => {
+                self.met(frame, preposition, mention, placed, carry);
+            }
+            "under" if self.rolls_under(frame, mention) => {
+                self.touch(frame, self.frames[frame].who, mention, placed, carry);
+            }
+            "for" if self.waits_for(frame, mention.actor) => {
+                self.note(mention.actor, Relation::Ahead);
+                self.frames[frame].object.get_or_insert(mention.actor);
+            }
+            "toward" | "towards" => self.comes_toward(frame, mention),
+            "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
+                let taken = &mut self.frames[frame];
+                if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
+                    taken.object = Some(mention.actor);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// "was towed by a truck".
+    fn towed_by(&mut self, frame: usize, actor: Actor) {
+        let Some(towed) = self.frames[frame].who else { return };
+        self.world.tow(actor, towed);
+        self.world.actors[actor].announced |= self.world.actors[towed].announced;
+        (self.frames[frame].object, self.frames[frame].who) = (Some(towed), Some(actor));
+    }
+
+    /// "was struck by a van", "was passed by a van".
+    fn done_by(&mut self, frame: usize, mention: &Mention, placed: &Placed, carry: &mut Carry) {
+        let frame = self.waiting_for_doer(frame);
+        let taken = &mut self.frames[frame];
+        let done_to = taken.form == Form::Past
+            && matches!(
+                taken.sense,
+                Sense::Contact | Sense::RearEnd | Sense::Push | Sense::ReverseContact | Sense::ContactMade
+            );
+        let passed = matches!(taken.sense, Sense::Act(Act::Follow | Act::Pass | Act::LaneChange)) && taken.passive;
+        if !done_to && !passed {
+            return;
+        }
+        if taken.sense != Sense::ContactMade && taken.object.is_none() {
+            taken.object = taken.who;
+            taken.on = taken.with.take();
+        }
+        taken.who = Some(mention.actor);
+        taken.with.clone_from(&mention.piece);
+        (taken.passive, taken.end) = (true, placed.end);
+        if let (Sense::Act(Act::Follow), Some(followed)) = (taken.sense, taken.object) {
+            self.follows(Some(mention.actor), followed);
+        }
+        carry.governed |= carry.relative || carry.subject.is_some();
+    }
+
+    /// "was struck while it stood there by a van": the passive verb that still waits for who did it.
+    fn waiting_for_doer(&self, frame: usize) -> usize {
+        let passive = |number: &usize| {
+            let frame = &self.frames[*number];
+            frame.sentence == self.sentence && frame.passive && frame.is_contact()
+        };
+        if passive(&frame) {
+            return frame;
+        }
+        let waits = |number: &usize| self.frames[*number].who.is_none();
+        (0..frame).rev().take(3).find(passive).filter(waits).unwrap_or(frame)
+    }
+
+    /// "slid on into the rear of the van", "came to rest with its nose against it".
+    fn into(&mut self, frame: usize, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
+        let whole = self.tokens.get(placed.end).is_none_or(not_possessive);
+        if self.frames[frame].sense != Sense::Push && whole && self.runs_into(frame, mention) {
+            return self.touch(frame, self.frames[frame].who, mention, placed, carry);
+        }
+        self.met(frame, preposition, mention, placed, carry);
+    }
+
+    /// "made contact with the van", "a collision between the van and the bus", "yielded to the van", "swerved onto it".
+    fn met(&mut self, frame: usize, preposition: &str, mention: &Mention, placed: &Placed, carry: &mut Carry) {
+        let actor = mention.actor;
+        if self.frames[frame].sense == Sense::Push && preposition != "with" {
+            // Pushed into somebody: who was pushed touches them.
+            return self.touch(frame, self.frames[frame].object, mention, placed, carry);
+        }
+        let taken = &mut self.frames[frame];
+        let headline = taken.sense == Sense::Headline;
+        let contact = matches!(
+            taken.sense,
+            Sense::Contact | Sense::ContactMade | Sense::ReverseContact | Sense::OpenDoorInto | Sense::RearEnd
+        );
+        let moves = matches!(
+            taken.act(),
+            Some(
+                Act::Swerve
+                    | Act::Drift
+                    | Act::Turn
+                    | Act::LaneChange
+                    | Act::Reverse
+                    | Act::Roll
+                    | Act::Fall
+                    | Act::Slow
+            )
+        );
+        if taken.sense == Sense::ContactMade && preposition == "between" {
+            taken.who = Some(actor);
+            taken.with.clone_from(&mention.piece);
+            carry.pair = true;
+            // "a collision between two vans": of each of them with the other.
+            taken.object = self.world.actors[actor].several.then_some(actor);
+        } else if (contact || headline) && taken.object.is_none() && taken.who != Some(actor) {
+            taken.object = Some(actor);
+            taken.on.clone_from(&mention.piece);
+            taken.end = placed.end;
+            self.world.actors[actor].announced |= headline && actor != SUBJECT;
+        } else if contact && taken.object == Some(actor) && taken.on.is_none() {
+            taken.on.clone_from(&mention.piece);
+            taken.end = placed.end;
+        } else if (taken.sense == Sense::Yield || moves) && taken.object.is_none() {
+            taken.object = Some(actor);
+        }
+    }
+
+    /// "a bucket rolled under its front end".
+    fn rolls_under(&self, frame: usize, mention: &Mention) -> bool {
+        let frame = &self.frames[frame];
+        mention.actor == SUBJECT
+            && mention.piece.is_some()
+            && frame.who.is_some_and(|who| who != SUBJECT)
+            && matches!(frame.act(), Some(Act::Roll | Act::Fall | Act::Drift | Act::Follow))
+    }
+
+    /// "stopped for a van": it was ahead.
+    fn waits_for(&self, frame: usize, actor: Actor) -> bool {
+        let (frame, known) = (&self.frames[frame], &self.world.actors[actor]);
+        matches!(frame.sense, Sense::Act(Act::Stop | Act::Hold))
+            && frame.who == Some(SUBJECT)
+            && known.kind.is_some_and(Kind::is_vehicle)
+            && !known.several
+    }
+
+    /// "a truck coming towards it".
+    fn comes_toward(&mut self, frame: usize, mention: &Mention) {
+        let taken = &self.frames[frame];
+        let comes = matches!(taken.sense, Sense::Act(Act::Follow) | Sense::Approach) && taken.happened();
+        let rides =
+            |kind: Kind| kind.is_vehicle() || matches!(kind.group(), KindGroup::Motorcycle | KindGroup::Cyclist);
+        let Some(who) = taken.who.filter(|who| *who != SUBJECT) else { return };
+        let toward = mention.actor == SUBJECT && mention.piece.is_none();
+        if toward && comes && self.world.actors[who].kind.is_some_and(rides) {
+            self.note(who, Relation::Opposite);
+            self.frames[frame].relations.push((Relation::Opposite, Some(SUBJECT)));
+        }
+    }
+
+    /// Who is pushed, or drives on, into somebody touches them.
+    fn touch(&mut self, frame: usize, who: Option<Actor>, mention: &Mention, placed: &Placed, carry: &Carry) {
+        let before = &self.frames[frame];
+        let (negated, progress) = (before.negated, before.progress);
+        let words = Placed { chunk: Chunk::Word, first: before.first, end: placed.end };
+        let with = before.with.clone();
+        let mut contact = self.frame(who, Sense::Contact, Form::Past, &words, carry);
+        contact.object = Some(mention.actor);
+        contact.on.clone_from(&mention.piece);
+        (contact.negated, contact.with) = (negated, with);
+        contact.progress = if negated { progress } else { Progress::Real };
+        self.frames.push(contact);
+    }
+
+    /// Whether somebody moves into a part of another, or into another that is named as a whole.
+    fn runs_into(&self, frame: usize, mention: &Mention) -> bool {
+        let frame = &self.frames[frame];
+        let moves = matches!(
+            frame.act(),
+            Some(
+                Act::Follow
+                    | Act::SetOff
+                    | Act::Drift
+                    | Act::Swerve
+                    | Act::Roll
+                    | Act::Fall
+                    | Act::LoseControl
+                    | Act::Accelerate
+                    | Act::LaneChange
+                    | Act::Slow
+            )
+        );
+        let apart = frame.who.is_some_and(|who| who != mention.actor);
+        let rides = self.world.actors[mention.actor].kind.is_none_or(|kind| kind.group() != KindGroup::Object);
+        let named = mention.actor == SUBJECT || mention.piece.is_some();
+        moves && apart && rides && named && mention.person.is_none() && frame.happened() && frame.object.is_none()
+    }
+}
+
+/// Whether what stands before this word is named for itself, and not "the van's lane", "the AVs path".
+fn not_possessive(token: &crate::token::Token) -> bool {
+    !matches!(token.text.as_str(), "'s" | "lane" | "lanes" | "path" | "way" | "right")
+}
