@@ -151,6 +151,11 @@ fn venv_python() -> PathBuf {
     root().join(".venv").join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
 }
 
+/// uv, where `prepare` has set it up.
+pub fn uv() -> Option<PathBuf> {
+    Some(venv_python().with_file_name(if cfg!(windows) { "uv.exe" } else { "uv" })).filter(|program| program.exists())
+}
+
 /// The interpreter that has MetaDrive: the one that is named, else the one that `prepare` has set up.
 pub fn metadrive_python() -> Option<OsString> {
     let noted = || std::fs::read_to_string(metadrive_note()).ok().map(|known| known.trim().into());

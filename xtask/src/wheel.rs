@@ -1,7 +1,7 @@
 //! The Python package: its wheel is built, installed where nothing else is, and held against its gates.
 
 use crate::licences;
-use crate::steps::{Result, built, command, find_python, metadrive_python, missing, root, run, target, told};
+use crate::steps::{Result, built, command, find_python, metadrive_python, missing, root, run, target, told, uv};
 use crate::tally::Tally;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,13 +30,23 @@ pub fn step(tally: &mut Tally) -> Result {
     };
     let (package, environment) = (root().join("python"), target().join("wheel-venv"));
     let own = |name: &str| environment.join(if cfg!(windows) { "Scripts" } else { "bin" }).join(name);
+    // uv takes four seconds of processor time where pip takes forty: that compiles every module of Ray and the like, imported or not.
+    let uv = uv();
     if !own("python").exists() {
-        run(Command::new(python).args(["-m", "venv"]).arg(&environment))?;
+        match &uv {
+            Some(uv) => {
+                run(Command::new(uv).args(["venv", "--quiet", "--seed", "--python", python]).arg(&environment))?
+            }
+            None => run(Command::new(python).args(["-m", "venv"]).arg(&environment))?,
+        }
     }
     let pip = |arguments: &[&str]| {
-        let quiet = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-        let mut command = Command::new(own("python"));
-        command.args(quiet).args(arguments);
+        let mut command = Command::new(uv.clone().unwrap_or_else(|| own("python")));
+        match uv {
+            Some(_) => command.args(["pip", "install", "--python"]).arg(own("python")),
+            None => command.args(["-m", "pip", "install", "--disable-pip-version-check"]),
+        };
+        command.arg("--quiet").args(arguments);
         command
     };
     run(pip(&["--requirement"]).arg(root().join("requirements/python.txt")))?;

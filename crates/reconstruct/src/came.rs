@@ -76,7 +76,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
             None => opens(told.contact_s, door, &mut recorded, &mut parts),
         }
     }
-    let mut map = ground.map.clone();
+    let mut map = (*ground.map).clone();
     let begins = actors.iter().find(|actor| actor.id == "cp").map(|actor| &actor.plan.start);
     map.roads[0].driveways.extend(begins.and_then(|begins| kerb::driveway(told, ground, begins)));
     let control = control::devices(told, ground, &recorded, &actors);
@@ -200,7 +200,7 @@ pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option
     let alone = ScenarioDraft {
         format: SCENARIO_FORMAT.to_owned(),
         id: "alone".to_owned(),
-        map: MapSpec::G(ground.map.clone()),
+        map: MapSpec::G((*ground.map).clone()),
         ego: EgoSpec {
             kind: told.sv.kind,
             size: told.sv.size,

@@ -11,6 +11,7 @@ use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_roads::{LanePath, RoadNetwork};
+use std::rc::Rc;
 
 /// Width of driving lanes. [m]
 pub(crate) const LANE_M: f64 = 3.4;
@@ -28,15 +29,15 @@ const BEFORE_TURN_M: [f64; 3] = [-5.0, -2.0, -9.0];
 /// From a junction's centre to where its arms begin. [m]
 const CORNER_M: f64 = 13.0;
 
-/// A road and the ego's way on it.
+/// A road and the ego's way on it. Hundreds of ways of touching are tried on one: they share what is large.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ground {
-    pub(crate) map: GraphMap,
+    pub(crate) map: Rc<GraphMap>,
     /// Roads of the ego's way.
     pub(crate) route: Vec<String>,
     pub(crate) lane: u8,
     /// The ego's way.
-    way: LanePath,
+    way: Rc<LanePath>,
     /// Places along it to try. [m]
     places: Vec<f64>,
     /// Whether crossing roads are there.
@@ -467,10 +468,10 @@ fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>,
     let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
     let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
     Ground {
-        map,
+        map: Rc::new(map),
         route,
         lane,
-        way,
+        way: Rc::new(way),
         places,
         junction,
         lanes: across.lanes,
