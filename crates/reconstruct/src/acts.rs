@@ -2,11 +2,12 @@
 
 use crate::extras::STANDS_MPS;
 use crate::movement::LEFT_LINE_M;
-use recrash_model::account::{Act, ActFact, ContactState, LeftRight, Party, StandReason};
+use recrash_model::account::{Act, ActFact, ContactState, LeftRight, Party, StandReason, told as told_of};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::template::Movement;
 
 /// An act that is told, and can be seen in a way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,15 +31,25 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
         let stood = list.iter().any(|doing| stands(doing.act) || doing.act == Act::Reverse);
         let skipped = match fact.act {
             // Who was told to begin or go on before it stood drove already.
-            Act::SetOff => !stood && state != ContactState::SettingOff,
+            Act::SetOff => !stood && state != ContactState::SettingOff || fact.begun && state.stands(),
             // Who turned on its way to a light or a sign did so on another road, or has yet to.
             Act::Turn => at_line && !stood && acts[number..].iter().any(|later| stands(later.act)),
             Act::Park => list.last().is_some_and(|last| stands(last.act)),
+            // So did who came out of a lot and drove along since.
+            Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
+            // What somebody who stands, or had yet to, tried to.
+            Act::Reverse => fact.begun && state.stands(),
             _ => false,
         };
         if !skipped {
             list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun });
         }
+    }
+    // "Stopped at the kerb" of who pulls out: it stood there.
+    if let [first, next, ..] = list.as_mut_slice()
+        && (first.act, next.act) == (Act::Stop, Act::PullOut)
+    {
+        first.act = Act::Hold;
     }
     // Who moves at the contact was slowing to its last stop.
     if let Some(last) = list.last_mut().filter(|last| last.act == Act::Stop && !state.stands()) {

@@ -22,12 +22,13 @@ struct Candidate<'a> {
 }
 
 /// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
-const NO_VERB: [fn(&Candidate<'_>) -> bool; 16] = [
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 17] = [
     |verb| verb.is_determined(),
     |verb| verb.is_described(),
     |verb| verb.is_turn_of_a_side(),
     |verb| verb.ends_a_prepositional_phrase(),
     |verb| verb.is_a_mark(),
+    |verb| verb.is_one_of_maneuvers(),
     |verb| verb.is_bare_turn(),
     |verb| verb.is_a_parking_place(),
     |verb| verb.is_of_parking(),
@@ -142,6 +143,13 @@ impl Candidate<'_> {
             && self.word(1) == "turn"
             && self.length == 2
             && self.form == Form::Base
+    }
+
+    /// "after a series of maneuvers", "a lane for left turn maneuvers".
+    fn is_one_of_maneuvers(&self) -> bool {
+        matches!(self.word(0), "maneuver" | "maneuvers")
+            && self.is_single()
+            && matches!(self.word_before, "of" | "turn" | "turning" | "change" | "parking" | "backing" | "reversing")
     }
 
     /// "in a parking lot", "a parking space".
