@@ -2,6 +2,7 @@
 //! first place that shows what is told of them, where they hinder nobody.
 
 use crate::control;
+use crate::extras::STANDS_MPS;
 use crate::ground::{Ground, LANE_M, corner_m};
 use crate::near::{Does, NEAR_M, Near};
 use crate::others::{Extra, Role};
@@ -43,7 +44,7 @@ const CHANGES_S: f64 = 3.5;
 const CHANGED_BEFORE_S: f64 = 0.5;
 
 /// Who comes over ahead of an ego that stands does so slowly. [m/s]
-const MERGES_MPS: f64 = 2.0;
+const MERGES_MPS: f64 = 3.0;
 
 /// How somebody comes to be near: where it is at first, what it drives, and where it goes.
 struct Way {
@@ -511,8 +512,10 @@ impl<'a> Scene<'a> {
         let [mean_mps, _] = self.speeds();
         let place = |on_m: f64| self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
         let way = |speed_mps: f64, on_m: f64| Way { shifts_m, ..Way::straight(place(on_m), speed_mps, self.contact_s) };
-        let slow = [12.0, 16.0, 20.0].map(|on_m| way(MERGES_MPS, on_m));
-        slow.into_iter().chain([6.0, 10.0, 14.0, 20.0].map(|on_m| way(mean_mps, on_m))).collect()
+        match self.ego.states[self.until].velocity().length() < STANDS_MPS {
+            true => [14.0, 18.0, 22.0].map(|on_m| way(MERGES_MPS, on_m)).into(),
+            false => [6.0, 10.0, 14.0, 20.0].map(|on_m| way(mean_mps, on_m)).into(),
+        }
     }
 
     /// Changes from one lane to the next, ahead of the ego or beside it.
