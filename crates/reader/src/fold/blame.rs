@@ -526,6 +526,12 @@ pub(crate) fn order(account: &Account) -> Option<Fact<FirstMover>> {
                 {
                     FirstMover::Cp
                 }
+                // Its front comes to one that goes backwards across its way.
+                (ContactState::Moving | ContactState::SettingOff, _)
+                    if fore(&account.sv) && told(&account.striker) == Some(Striker::Sv) =>
+                {
+                    FirstMover::Cp
+                }
                 (ContactState::Reversing, _) if striker_backed_away(account) => FirstMover::Sv,
                 (ContactState::Reversing, _) => FirstMover::Cp,
                 _ => FirstMover::Sv,

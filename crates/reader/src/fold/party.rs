@@ -2,7 +2,7 @@
 
 use super::Reading;
 use super::open::{doer, is_any_truck, turned_by_column};
-use super::state::sv_state;
+use super::state::{partner_state, sv_speed, sv_state};
 use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided, zone_of};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
@@ -678,6 +678,7 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
         account.sv.speeds.push(Fact::of_column(speed, "SV Precrash Speed (MPH)"));
     }
     sv_state(reading, account);
+    sv_speed(account);
     if account.sv.zones.is_empty() {
         account.sv.zones = ticked(reading, SUBJECT, &record.sv_zones, "SV Contact Area");
     }
@@ -715,6 +716,8 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
             None => None,
         };
         partner.state = state.map(|state| Fact::of_column(state, "CP Pre-Crash Movement"));
+    } else {
+        partner_state(reading, account);
     }
 }
 
