@@ -274,9 +274,9 @@ fn pulls_over(told: &Told, ground: &Ground) -> bool {
     told.sv.came_to_park && ground.stands_m != 0.0
 }
 
-/// Who leaves a line and comes back to it does the first within this time, on so much of its way, and is on the other one for so long.
+/// Who leaves a line and comes back to it does the first in so long, on so much of its way, and is on the other one for so long.
 /// [s, m, s]
-const GOES_OUT_S: f64 = 4.0;
+const GOES_OUT_S: (f64, f64) = (2.4, 4.0);
 const GOES_OUT_M: (f64, f64) = (8.0, 30.0);
 const IS_OUT_S: f64 = 0.5;
 
@@ -286,7 +286,8 @@ fn goes_out(aside: Aside, pace: &mut Pace) -> bool {
     let Some(shift_s) = shift.map(|act| first_time(std::slice::from_ref(act))).filter(|_| aside.back) else {
         return false;
     };
-    let over_m = (GOES_OUT_S * pace.speed_mps).clamp(GOES_OUT_M.0, GOES_OUT_M.1);
+    let takes_s = (shift_s - IS_OUT_S).clamp(GOES_OUT_S.0, GOES_OUT_S.1);
+    let over_m = (takes_s * pace.speed_mps).clamp(GOES_OUT_M.0, GOES_OUT_M.1);
     let from_s = ((shift_s - IS_OUT_S - over_m / pace.speed_mps.max(0.1)) * 10.0).floor() / 10.0;
     let drives = pace.acts.iter().all(|act| first_time(std::slice::from_ref(act)) >= shift_s);
     if from_s < 0.0 || !drives {

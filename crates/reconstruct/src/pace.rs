@@ -88,6 +88,7 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let usual = from_line(told, ground, sv_s_m)
         .or_else(|| before_who_waits(told))
         .or_else(|| before_who_backs(told))
+        .or_else(|| towards_who_stands(told))
         .or_else(|| roadside::slows_in_turn(told, past_line_m(told, ground, sv_s_m)))
         .unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
     let begins_s = match sv.state.stands() {
@@ -128,6 +129,16 @@ fn before_who_backs(told: &Told) -> Option<Pace> {
     }
     let moving_s = 0.5 * told.cp.speed_mps / SETS_OFF_MPS2 + REVERSES_M / told.cp.speed_mps + BACKS_EARLIER_S;
     start_over(told.contact_s, speed_mps, speed_mps * (moving_s - 0.5 * speed_mps / SETS_OFF_MPS2))
+}
+
+/// Who stood and goes straight on to one that stands, or a thing, sets off from farther than it holds the place where they touch.
+fn towards_who_stands(told: &Told) -> Option<Pace> {
+    let sv = &told.sv;
+    let ahead = told.cp.state.stands() && told.door.is_none() && told.origin != Origin::Behind;
+    let enters = sv.movement == Some(Movement::EnteringTraffic);
+    let straight = sv.state == ContactState::Moving && sv.turning == Turning::No && !enters;
+    let plain = sv.stood_first && straight && ahead && sv.slowed_from.is_none() && sv.phases.is_empty();
+    start_over(told.contact_s, sv.speed_mps, MOVES_UP_M).filter(|_| plain)
 }
 
 /// Who waited behind somebody sets off so long after it. [s]

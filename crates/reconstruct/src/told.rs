@@ -356,7 +356,10 @@ impl Told {
 
     /// What the two did before, as far as it can be drawn: of who comes from beside the road, or stood across it, the state says enough.
     fn phases(&mut self) {
-        let along = matches!(self.origin, Origin::Ahead | Origin::Behind | Origin::Beside { .. } | Origin::Opposite);
+        let along = matches!(
+            self.origin,
+            Origin::Ahead | Origin::Behind | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
+        );
         if !along || matches!(self.cp.slants, Some(Slant::Stood { .. })) {
             self.cp.phases.clear();
         }

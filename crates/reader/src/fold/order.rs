@@ -76,6 +76,12 @@ fn backing(account: &Account, partner: &Party, state: ContactState) -> FirstMove
         {
             FirstMover::Cp
         }
+        // Its front comes to one that goes backwards across its way.
+        (ContactState::Moving | ContactState::SettingOff, _)
+            if fore(&account.sv) && told(&account.striker) == Some(Striker::Sv) =>
+        {
+            FirstMover::Cp
+        }
         (ContactState::Reversing, _) if struck_who_backed_away(account) => FirstMover::Sv,
         (ContactState::Reversing, _) => FirstMover::Cp,
         _ => FirstMover::Sv,

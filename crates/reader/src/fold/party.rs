@@ -5,7 +5,7 @@ use super::acts::acts;
 use super::controls::{controls, speeds};
 use super::open::is_any_truck;
 use super::standing::{reasons, state};
-use super::state::sv_state;
+use super::state::{partner_state, sv_speed, sv_state};
 use super::touched::zones;
 use crate::frame::Frame;
 use crate::lexicon::Sense;
@@ -75,6 +75,7 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
         account.sv.speeds.push(Fact::of_column(speed, "SV Precrash Speed (MPH)"));
     }
     sv_state(reading, account);
+    sv_speed(account);
     if account.sv.zones.is_empty() {
         account.sv.zones = ticked(reading, SUBJECT, &record.sv_zones, "SV Contact Area");
     }
@@ -112,6 +113,8 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
             None => None,
         };
         partner.state = state.map(|state| Fact::of_column(state, "CP Pre-Crash Movement"));
+    } else {
+        partner_state(reading, account);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Reading;
 use super::standing::reasons;
 use crate::world::SUBJECT;
-use recrash_model::account::{Account, Act, ContactState, Fact, StandReason, Standing, told};
+use recrash_model::account::{Account, Act, ContactState, Fact, KindGroup, SpeedMeaning, StandReason, Standing, told};
 use recrash_model::template::Movement;
 
 /// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.
@@ -13,6 +13,7 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     let words = told(&account.sv.state);
     let stopping = told(&account.sv.standing) == Some(Standing::Stopping);
     let rolls = record.sv_speed_mps.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
+    let drives = record.sv_speed_mps.is_some_and(|speed| speed >= DRIVES_MPS);
     let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
     let value = match (words, column) {
         // In the lane, for passengers.
@@ -50,6 +51,12 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         // It moved into something.
         (Some(ContactState::Stopped), Some(movement))
             if rolls && moves_at_contact(reading) && movement != Movement::Stopped =>
+        {
+            Some(ContactState::Moving)
+        }
+        // It stopped, drove on, and both columns say so.
+        (Some(ContactState::Stopped), Some(movement))
+            if drives && !matches!(movement, Movement::Stopped | Movement::Parked) && !holds_at_contact(reading) =>
         {
             Some(ContactState::Moving)
         }
@@ -95,6 +102,44 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     if told(&account.sv.state) == Some(ContactState::Parked) && account.sv.reasons.is_empty() {
         account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
     }
+}
+
+/// Who is this fast at the contact does not stand. [m/s]
+const DRIVES_MPS: f64 = 2.0;
+
+/// A column speed of one that stands by its words, and by the movement column, is that of its way there.
+pub(super) fn sv_speed(account: &mut Account) {
+    let stands = account.sv.state.as_ref().is_some_and(|state| state.source.is_told() && state.value.stands());
+    for speed in account.sv.speeds.iter_mut().filter(|speed| stands && !speed.source.is_told()) {
+        if speed.value.mps >= DRIVES_MPS {
+            speed.value.meaning = SpeedMeaning::Approach;
+        }
+    }
+}
+
+/// State of a partner that had come to a stop, by its words, and touches one that stands: it went on, or had yet to stop.
+pub(super) fn partner_state(reading: &Reading<'_>, account: &mut Account) {
+    let stands = told(&account.sv.state).is_some_and(ContactState::stands) && account.door.is_none();
+    let (Some(partner), true) = (&mut account.partner, stands) else { return };
+    let drives = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::Car | KindGroup::Truck));
+    let strikes = reading.contacts.first.is_some_and(|number| {
+        reading.contacts.partner.is_some() && reading.story.frames[number].who == reading.contacts.partner
+    });
+    let stopped = told(&partner.state) == Some(ContactState::Stopped);
+    if !(drives && strikes && stopped) || partner.did(Act::Pushed) || partner.did(Act::Park) {
+        return;
+    }
+    let came = partner.did(Act::Follow) && partner.did(Act::Stop) || partner.did(Act::Hold);
+    let value = if came { ContactState::SettingOff } else { ContactState::Moving };
+    partner.state = Some(Fact::by_rule(value, "of two that touch one moves"));
+    (partner.standing, partner.reasons) = (None, Vec::new());
+}
+
+/// Whether the sentence of the contact says that the subject vehicle stands.
+fn holds_at_contact(reading: &Reading<'_>) -> bool {
+    let Some(contact) = reading.contacts.first else { return false };
+    let sentence = reading.story.frames[contact].sentence;
+    reading.before(SUBJECT).any(|(_, frame)| frame.sentence == sentence && frame.act() == Some(Act::Hold))
 }
 
 /// Whether the sentence of the contact says last of the subject vehicle that it was about to stop.

@@ -125,3 +125,50 @@ fn a_lane_of_others_or_one_that_is_only_aimed_at_is_nobodys_own() {
     let rider = partner(enters);
     assert_eq!((told(&rider.state), told(&rider.lane)), (Some(ContactState::Moving), Some(LaneWord::Curb)));
 }
+
+/// The facts of a narrative beside the columns of movement and speed of the subject vehicle.
+fn beside_speed(text: &str, own: Movement, mps: f64) -> BTreeMap<&'static str, String> {
+    let mut record = common::record("1-1", 1, text);
+    (record.sv_movement, record.sv_speed_mps) = (Coded::Known(own), Some(mps));
+    facts(&recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account"))
+}
+
+#[test]
+fn a_column_speed_of_one_that_stands_is_that_of_its_way_there() {
+    let text = "The AV was stopped on Elm Street when a sedan from behind made contact with the rear of the AV.";
+    let facts = beside_speed(text, Movement::Stopped, 11.0);
+    assert_eq!((facts["sv_state"].as_str(), facts["sv_speed"].contains("approach")), ("stopped", true), "{facts:?}");
+    // Slowly it may have moved up.
+    assert!(beside_speed(text, Movement::Stopped, 0.5)["sv_speed"].contains("impact"));
+}
+
+#[test]
+fn who_stopped_at_a_sign_and_drives_by_both_columns_moves() {
+    let text = "The AV was traveling north when it slowed to a stop at a stop sign. As the AV prepared to make a right turn, a pickup truck \
+                traveling east on Oak Street veered to its right and made contact with the driver side of the AV.";
+    assert_eq!(beside_speed(text, Movement::RightTurn, 3.0)["sv_state"], "moving");
+    assert_eq!(beside_speed(text, Movement::Stopped, 0.0)["sv_state"], "stopped");
+    let text =
+        "The AV stopped at a stop sign, and a sedan made contact with the rear of the AV while the AV was stationary.";
+    assert_eq!(beside_speed(text, Movement::Straight, 3.0)["sv_state"], "stopped");
+}
+
+#[test]
+fn of_two_that_touch_one_moves() {
+    let stood = "The AV was stopped for a red light. A sedan approached from behind and stopped behind the AV before eventually making \
+                 contact with the rear of the stopped AV.";
+    assert_eq!(facts(&common::account_of(stood).expect("an account"))["cp_state"], "setting_off");
+    let came = "The AV was parked along the curb when a sedan pulled up behind the AV. The front of the sedan made contact with the rear of the AV.";
+    assert_eq!(facts(&common::account_of(came).expect("an account"))["cp_state"], "moving");
+    let drives =
+        "The AV was traveling north when it drifted to the right and the AV made contact with a stopped sedan.";
+    assert_eq!(facts(&common::account_of(drives).expect("an account"))["cp_state"], "stopped");
+}
+
+#[test]
+fn who_goes_backwards_across_the_way_of_one_that_drives_into_it_is_there_first() {
+    let text = "The AV was proceeding through the intersection when a dump truck reversed into the intersection from westbound Oak Street, \
+                and the front right of the AV made contact with the rear of the dump truck.";
+    let account = facts(&common::account_of(text).expect("an account"));
+    assert_eq!((account["crash_type"].as_str(), account["order"].as_str()), ("backing", "cp"), "{account:?}");
+}

@@ -1,9 +1,10 @@
 //! Who turns as it touches: a rear corner that cuts in behind one that stands, or swings out.
 
 use crate::ways::{before_contact, degrees_between, made, missed, partner, story};
+use recrash_model::account::{Fact, Speed, SpeedMeaning};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::math;
-use recrash_model::metrics::CheckKind;
+use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::zones::ContactZone;
 use recrash_reconstruct::Reconstruction;
 
@@ -50,4 +51,19 @@ fn a_front_that_touches_does_not_pass_for_a_rear_that_does() {
         });
         assert_eq!(front, [CheckKind::CpZones]);
     }
+}
+
+#[test]
+fn who_sets_off_towards_one_that_is_parked_is_not_there_from_the_start() {
+    let mut account = story(
+        "The AV was parked at the curb behind a parked van. The AV proceeded to maneuver forward and to the left, and the front right of the \
+         AV made contact with the rear left corner of the parked van.",
+    );
+    account.sv.speeds.push(Fact::by_rule(Speed { mps: 0.9, meaning: SpeedMeaning::Impact }, "made for this test"));
+    let shown = made(&account);
+    let states = &shown.rollout.ego_track().states[..=before_contact(&shown)];
+    let driven_m = states[0].position().distance(states[states.len() - 1].position());
+    assert!(driven_m > 2.0, "{driven_m}");
+    let order = shown.verdict.checks.iter().find(|check| check.kind == CheckKind::Order).expect("an order");
+    assert_eq!(order.result, CheckResult::Shown);
 }
