@@ -206,7 +206,6 @@ pub struct Lexicon {
     features: Vec<(Vec<String>, RoadFeature)>,
     places: Vec<(Vec<String>, PlaceKind)>,
     drop: Vec<Vec<String>>,
-    driver: Vec<Vec<String>>,
     human: Vec<Vec<String>>,
     system: Vec<Vec<String>>,
 }
@@ -267,7 +266,6 @@ struct Begun {
 #[derive(Deserialize)]
 struct Standing {
     drop: Vec<String>,
-    driver: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -450,7 +448,6 @@ impl Lexicon {
             features: lists(&file.features),
             places: lists(&file.places),
             drop: file.standing_phrases.drop.iter().map(|p| split(p)).collect(),
-            driver: file.standing_phrases.driver.iter().map(|p| split(p)).collect(),
             human: file.driver.human.iter().map(|p| split(p)).collect(),
             system: file.driver.system.iter().map(|p| split(p)).collect(),
         };
@@ -557,11 +554,6 @@ impl Lexicon {
     /// Whether a sentence is a company's standing phrase, and tells no event.
     pub fn is_standing(&self, tokens: &[Token]) -> bool {
         self.drop.iter().any(|phrase| find(phrase, tokens).is_some())
-    }
-
-    /// Whether a sentence says who drove.
-    pub fn names_driver(&self, tokens: &[Token]) -> bool {
-        self.driver.iter().any(|phrase| find(phrase, tokens).is_some())
     }
 
     /// Where these tokens say that a human drove: first token and count.

@@ -1,156 +1,174 @@
 //! Movement of both sides just before the conflict, from their acts, states and columns.
 
 use super::Reading;
+use crate::chunk::Joint;
 use crate::lexicon::Sense;
 use crate::world::SUBJECT;
 use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Source, StandReason, told,
 };
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone as Z;
 
 /// Movement of both sides just before the conflict.
 pub(crate) fn movements(reading: &Reading<'_>, account: &mut Account) {
-    // Whom else it passed is not what led to the conflict.
+    account.sv.movement = of_subject(reading, account);
+    let partner = account.partner.as_ref().map(|partner| of_partner(reading, account, partner));
+    if let (Some(movement), Some(partner)) = (partner, &mut account.partner) {
+        partner.movement = movement;
+    }
+}
+
+fn drives_on() -> Option<Fact<Movement>> {
+    Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"))
+}
+
+/// Movement of the subject vehicle.
+fn of_subject(reading: &Reading<'_>, account: &Account) -> Option<Fact<Movement>> {
+    let sv = &account.sv;
+    let column = reading.record.sv_movement.known();
+    let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
+    let mut movement = movement(&of_its_own(reading, sv, kind), column, "SV Pre-Crash Movement");
+    let drives = matches!(told(&sv.state), Some(ContactState::Moving | ContactState::SettingOff));
+    if movement.is_none() && drives {
+        movement = drives_on();
+    }
+    // Who veers off the road leaves its lane.
+    let fixed = matches!(kind, Some(Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier));
+    let veers = sv.acts.iter().find(|fact| fact.act == Act::Swerve && !fact.after_contact && !fact.begun);
+    if let (true, Some(veers), Some(Movement::Straight) | None) = (fixed, veers, told(&movement)) {
+        movement = Some(Fact { value: Movement::LaneDeparture, source: veers.source.clone() });
+    }
+    // Who stops in the lane for passengers is parked by the column, and stopped by the words.
+    let riders = sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
+    let said = reading.before(SUBJECT).any(|(_, frame)| frame.sense == Sense::Parked);
+    let by_column = sv.state.as_ref().is_some_and(|state| !state.source.is_told()) && !said;
+    if let (Some(Movement::Parked), true, false, Some(reason)) = (told(&movement), by_column, sv.did(Act::Park), riders)
+    {
+        movement = Some(Fact { value: Movement::Stopped, source: reason.source.clone() });
+    }
+    movement
+}
+
+/// The subject vehicle without what it did that did not lead to the conflict.
+fn of_its_own(reading: &Reading<'_>, sv: &Party, partner: Option<Kind>) -> Party {
+    let column = reading.record.sv_movement.known();
+    let mut sv = sv.clone();
+    // Whom else it passed.
     let passes_partner = reading.contacts.partner.is_none_or(|partner| {
         let mut passed = reading.before(SUBJECT).filter(|(_, frame)| frame.act() == Some(Act::Pass)).peekable();
         passed.peek().is_none() || passed.any(|(_, frame)| frame.object.is_none_or(|object| object == partner))
     });
-    let column = reading.record.sv_movement.known();
     let elsewhere = !passes_partner && column.is_some_and(|column| column != Movement::Passing);
-    let mut sv = account.sv.clone();
     sv.acts.retain(|fact| fact.act != Act::Pass || !elsewhere);
     // Who touches a thing on its way out of a lot is in no traffic yet.
-    let thing =
-        account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group) == Some(KindGroup::Object);
+    let thing = partner.is_some_and(|kind| kind.group() == KindGroup::Object);
     sv.acts.retain(|fact| fact.act != Act::PullOut || !thing || column.is_none());
     // "After it made a right turn": by the column it drove on then.
     let turned = |fact: &ActFact| {
         let frame = reading.story.frames.get(fact.step as usize);
-        fact.act == Act::Turn && frame.is_some_and(|frame| frame.joint == Some(crate::chunk::Joint::After))
+        fact.act == Act::Turn && frame.is_some_and(|frame| frame.joint == Some(Joint::After))
     };
     sv.acts.retain(|fact| !(turned(fact) && column == Some(Movement::Straight)));
-    account.sv.movement = movement(&sv, column, "SV Pre-Crash Movement");
-    let drives =
-        told(&account.sv.state).is_some_and(|state| matches!(state, ContactState::Moving | ContactState::SettingOff));
-    if account.sv.movement.is_none() && drives {
-        account.sv.movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
+    sv
+}
+
+/// Movement of the partner; a thing has none.
+fn of_partner(reading: &Reading<'_>, account: &Account, partner: &Party) -> Option<Fact<Movement>> {
+    let group = told(&partner.kind).map(Kind::group);
+    if group == Some(KindGroup::Object) {
+        return None;
     }
-    // Who veers off the road leaves its lane.
-    let fixed = account
-        .partner
-        .as_ref()
-        .and_then(|partner| told(&partner.kind))
-        .is_some_and(|kind| matches!(kind, Kind::Wall | Kind::Pole | Kind::Curb | Kind::Barrier));
-    let veers = account.sv.acts.iter().find(|fact| fact.act == Act::Swerve && !fact.after_contact && !fact.begun);
-    if let (true, Some(veers), Some(Movement::Straight) | None) = (fixed, veers, told(&account.sv.movement)) {
-        account.sv.movement = Some(Fact { value: Movement::LaneDeparture, source: veers.source.clone() });
+    let column = reading.record.cp_movement.known();
+    let movement = movement(partner, column, "CP Pre-Crash Movement")
+        .or_else(|| of_nothing_told(reading, account, partner, group));
+    let passes = column == Some(Movement::Passing) || partner.did(Act::Pass);
+    let from_side = matches!(
+        told(&account.came_from),
+        Some(Origin::Cross { .. } | Origin::Sidewalk { .. } | Origin::Driveway { .. })
+    );
+    let way = if passes { None } else { walked(reading, partner) };
+    let crosses = match group {
+        Some(KindGroup::OnFoot) => !passes && (partner.did(Act::Cross) || way.is_some() && from_side),
+        Some(KindGroup::Cyclist) => way == Some(Walk::Crosswalk),
+        _ => false,
+    };
+    if crosses {
+        let movement = movement.map(|fact| Fact { value: Movement::NmCrossing, ..fact });
+        return movement.or_else(|| Some(Fact::by_rule(Movement::NmCrossing, "who crosses on foot")));
     }
-    // Who stops in the lane for passengers is parked by the column, and stopped by the words.
-    let riders = account.sv.reasons.iter().find(|reason| reason.value == StandReason::PickupDropoff);
-    let said = reading.before(SUBJECT).any(|(_, frame)| frame.sense == Sense::Parked);
-    let by_column = account.sv.state.as_ref().is_some_and(|state| !state.source.is_told()) && !said;
-    if let (Some(Movement::Parked), true, false, Some(reason)) =
-        (told(&account.sv.movement), by_column, account.sv.did(Act::Park), riders)
+    let movement = match told(&partner.kind) {
+        Some(Kind::Pedestrian | Kind::Wheelchair) => on_foot(partner, column, way, from_side),
+        _ => movement?,
+    };
+    Some(by_way(reading, account, partner, movement))
+}
+
+/// Who is told to be thrown alone stood; who is told to do nothing drove on.
+fn of_nothing_told(
+    reading: &Reading<'_>,
+    account: &Account,
+    partner: &Party,
+    group: Option<KindGroup>,
+) -> Option<Fact<Movement>> {
+    let drove = partner.acts.iter().any(|fact| matches!(fact.act, Act::Follow | Act::Turn | Act::Enter));
+    if partner.did(Act::Pushed) && !drove {
+        return Some(Fact::by_rule(Movement::Stopped, "who is told to be struck alone"));
+    }
+    let drives = matches!(group, Some(KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle | KindGroup::Cyclist));
+    let strikes = reading.contacts.partner.is_some()
+        && reading.contacts.first.is_some_and(|number| reading.story.frames[number].who == reading.contacts.partner);
+    if drives && (account.came_from.is_some() || strikes) { drives_on() } else { None }
+}
+
+/// A movement of the partner held against the way from which it came.
+fn by_way(reading: &Reading<'_>, account: &Account, partner: &Party, mut fact: Fact<Movement>) -> Fact<Movement> {
+    let column = reading.record.cp_movement.known();
+    let origin = told(&account.came_from);
+    let same_way = matches!(origin, Some(Origin::Behind | Origin::Beside { .. }));
+    let oncoming = origin == Some(Origin::Opposite);
+    let passed = passed_last(partner).filter(|_| same_way);
+    if let (Movement::LeftTurn | Movement::RightTurn, Some(passed)) = (fact.value, passed) {
+        fact = Fact { value: Movement::Passing, source: passed.source.clone() };
+    } else if fact.value == Movement::Passing
+        && oncoming
+        && !(column == Some(Movement::Passing) && passes_another(reading))
     {
-        account.sv.movement = Some(Fact { value: Movement::Stopped, source: reason.source.clone() });
+        fact.value = Movement::Straight;
     }
-    if let Some(partner) = &mut account.partner {
-        let group = partner.kind.as_ref().map(|kind| kind.value.group());
-        partner.movement = if group == Some(KindGroup::Object) {
-            None
-        } else {
-            let column = reading.record.cp_movement.known();
-            let mut movement = movement(partner, column, "CP Pre-Crash Movement");
-            let drives = group.is_some_and(|group| {
-                matches!(group, KindGroup::Car | KindGroup::Truck | KindGroup::Motorcycle | KindGroup::Cyclist)
-            });
-            let thrown = partner.did(Act::Pushed)
-                && !partner.acts.iter().any(|fact| matches!(fact.act, Act::Follow | Act::Turn | Act::Enter));
-            if movement.is_none() && thrown {
-                movement = Some(Fact::by_rule(Movement::Stopped, "who is told to be struck alone"));
-            }
-            let strikes = reading.contacts.first.is_some_and(|number| {
-                reading.contacts.partner.is_some() && reading.story.frames[number].who == reading.contacts.partner
-            });
-            if movement.is_none() && drives && (account.came_from.is_some() || strikes) {
-                movement = Some(Fact::by_rule(Movement::Straight, "who is told to do nothing else drives on"));
-            }
-            let passes = column == Some(Movement::Passing) || partner.did(Act::Pass);
-            let from_side = account.came_from.as_ref().is_some_and(|from| {
-                matches!(from.value, Origin::Cross { .. } | Origin::Sidewalk { .. } | Origin::Driveway { .. })
-            });
-            let way = (!passes).then(|| walked(reading, partner)).flatten();
-            let crosses = match group {
-                Some(KindGroup::OnFoot) => !passes && (partner.did(Act::Cross) || way.is_some() && from_side),
-                Some(KindGroup::Cyclist) => way == Some(Walk::Crosswalk),
-                _ => false,
-            };
-            if crosses && movement.is_none() {
-                movement = Some(Fact::by_rule(Movement::NmCrossing, "who crosses on foot"));
-            }
-            if told(&partner.kind).is_some_and(|kind| matches!(kind, Kind::Pedestrian | Kind::Wheelchair)) && !crosses {
-                movement = Some(on_foot(partner, column, way, from_side));
-            }
-            if let Some(fact) = &mut movement {
-                let same_way = account
-                    .came_from
-                    .as_ref()
-                    .is_some_and(|from| matches!(from.value, Origin::Behind | Origin::Beside { .. }));
-                let oncoming = account.came_from.as_ref().is_some_and(|from| from.value == Origin::Opposite);
-                if crosses {
-                    fact.value = Movement::NmCrossing;
-                } else if let (Movement::LeftTurn | Movement::RightTurn, true, Some(passed)) =
-                    (fact.value, same_way, passed_last(partner))
-                {
-                    *fact = Fact { value: Movement::Passing, source: passed.source.clone() };
-                } else if fact.value == Movement::Passing
-                    && oncoming
-                    && !(column == Some(Movement::Passing) && passes_another(reading))
-                {
-                    fact.value = Movement::Straight;
-                }
-                // Who drives by one that stands, one way, flank on flank, passes it.
-                let side_on = |party: &Party| {
-                    use recrash_model::zones::ContactZone as Z;
-                    let told: Vec<Z> = party.zones.iter().map(|zone| zone.value).collect();
-                    !told.is_empty()
-                        && told.iter().all(|zone| !matches!(zone, Z::Front | Z::Rear | Z::Top | Z::Bottom))
-                        && told.iter().any(|zone| matches!(zone, Z::Left | Z::Right))
-                };
-                let stands = told(&account.sv.state).is_some_and(ContactState::stands);
-                let by_itself = account.door.is_none()
-                    && partner
-                        .acts
-                        .iter()
-                        .filter(|fact| !fact.after_contact)
-                        .all(|fact| matches!(fact.act, Act::Follow | Act::Slow | Act::Accelerate | Act::SetOff));
-                let beside = account
-                    .came_from
-                    .as_ref()
-                    .is_some_and(|from| matches!(from.value, Origin::Behind | Origin::Beside { .. }));
-                if fact.value == Movement::Straight
-                    && stands
-                    && beside
-                    && by_itself
-                    && side_on(&account.sv)
-                    && side_on(partner)
-                {
-                    *fact = Fact::by_rule(Movement::Passing, "who drives by one that stands");
-                }
-                if let (Movement::Straight, true, Some(Movement::WrongWay | Movement::CrossingIntoOpposingLane)) =
-                    (fact.value, oncoming, column)
-                {
-                    fact.value = column.unwrap_or(fact.value);
-                }
-                let goes_on =
-                    matches!(fact.value, Movement::Straight | Movement::LaneDeparture | Movement::ChangingLanes);
-                if let (true, true, Some(source)) = (oncoming, goes_on, over_the_line(reading)) {
-                    *fact = Fact { value: Movement::CrossingIntoOpposingLane, source };
-                }
-            }
-            movement
-        };
+    if fact.value == Movement::Straight && same_way && drives_by(account, partner) {
+        fact = Fact::by_rule(Movement::Passing, "who drives by one that stands");
     }
+    if let (Movement::Straight, true, Some(column @ (Movement::WrongWay | Movement::CrossingIntoOpposingLane))) =
+        (fact.value, oncoming, column)
+    {
+        fact.value = column;
+    }
+    let goes_on = matches!(fact.value, Movement::Straight | Movement::LaneDeparture | Movement::ChangingLanes);
+    if let (true, true, Some(source)) = (oncoming, goes_on, over_the_line(reading)) {
+        fact = Fact { value: Movement::CrossingIntoOpposingLane, source };
+    }
+    fact
+}
+
+/// Who drives by one that stands, flank on flank, passes it.
+fn drives_by(account: &Account, partner: &Party) -> bool {
+    let side_on = |party: &Party| {
+        let told: Vec<Z> = party.zones.iter().map(|zone| zone.value).collect();
+        !told.is_empty()
+            && told.iter().all(|zone| !matches!(zone, Z::Front | Z::Rear | Z::Top | Z::Bottom))
+            && told.iter().any(|zone| matches!(zone, Z::Left | Z::Right))
+    };
+    let by_itself = partner
+        .acts
+        .iter()
+        .filter(|fact| !fact.after_contact)
+        .all(|fact| matches!(fact.act, Act::Follow | Act::Slow | Act::Accelerate | Act::SetOff));
+    told(&account.sv.state).is_some_and(ContactState::stands)
+        && account.door.is_none()
+        && by_itself
+        && side_on(&account.sv)
+        && side_on(partner)
 }
 
 /// The words that bring the partner over the line between both directions, up to the contact.

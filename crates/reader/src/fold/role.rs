@@ -36,7 +36,7 @@ const RULES: [Rule; 20] = [
     |case| case.lying_animal(),
     |case| case.other_broke_a_rule(),
     |case| case.went_backwards(),
-    |case| case.into_one_that_stood(),
+    |case| case.moved_into_one_that_stood(),
     |case| case.other_came_across_at_a_junction(),
     |case| case.struck(),
     |case| case.turned_across(),
@@ -228,7 +228,7 @@ impl Case<'_> {
         })
     }
 
-    fn into_one_that_stood(&self) -> Said {
+    fn moved_into_one_that_stood(&self) -> Said {
         let partner = self.partner;
         let stood = cp_state(self.account).is_some_and(ContactState::stands) && !partner.did(Act::OpenDoor);
         // "cut in front of it and braked to a stop".

@@ -112,7 +112,8 @@ fn by_door(reading: &Reading<'_>, account: &Account) -> Option<Fact<Striker>> {
 
 /// "the vehicles met".
 fn meet(reading: &Reading<'_>, frame: &Frame) -> bool {
-    let words = &reading.story.tokens[frame.first..frame.end.max(frame.first + 2)];
+    let tokens = &reading.story.tokens;
+    let words = &tokens[frame.first..tokens.len().min(frame.end.max(frame.first + 2))];
     frame.sense == Sense::ContactMade
         && frame.who.is_none()
         && words.iter().any(|token| matches!(token.text.as_str(), "met" | "meet" | "meeting" | "together" | "each"))

@@ -9,6 +9,7 @@ use recrash_model::account::{
     told,
 };
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone as Z;
 
 pub(super) fn group(account: &Account) -> Option<KindGroup> {
     account.partner.as_ref().and_then(|partner| told(&partner.kind)).map(Kind::group)
@@ -46,175 +47,237 @@ pub(crate) fn crash_type(reading: &Reading<'_>, account: &Account) -> Option<Fac
     Some(Fact::by_rule(value, name))
 }
 
-fn type_of(reading: &Reading<'_>, account: &Account) -> Option<(CrashType, &'static str)> {
+/// A crash and who took part in it.
+struct Case<'a> {
+    reading: &'a Reading<'a>,
+    account: &'a Account,
+    partner: &'a Party,
+    sv: Option<ContactState>,
+    cp: Option<ContactState>,
+    /// A turn of the subject vehicle, or of the partner, is under way.
+    sv_turns: bool,
+    cp_turns: bool,
+}
+
+type Said = Option<(CrashType, &'static str)>;
+type Rule = fn(&Case<'_>) -> Said;
+
+const RULES: [Rule; 9] = [
+    |case| case.thing(),
+    |case| case.thrown(),
+    |case| case.by_kind(),
+    |case| case.not_touched(),
+    |case| case.parked(),
+    |case| case.backwards(),
+    |case| case.door(),
+    |case| case.along_the_side(),
+    |case| case.by_origin(),
+];
+
+const FRONT_TO_REAR: Said = Some((CrashType::FrontToRear, "front on rear, one way"));
+const LATERAL: Said = Some((CrashType::Lateral, "one way, side by side"));
+const TURNED_ACROSS: Said = Some((CrashType::Intersection, "one turned across the other"));
+const HEAD_ON: Said = Some((CrashType::HeadOn, "from opposite directions"));
+const CROSSING: Said = Some((CrashType::Intersection, "crossing paths"));
+
+fn type_of(reading: &Reading<'_>, account: &Account) -> Said {
     let partner = account.partner.as_ref()?;
-    if group(account) == Some(KindGroup::Object) {
-        return Some(if told(&partner.kind) == Some(Kind::Cargo) || off_a_vehicle(reading) {
+    let (sv, cp) = (sv_state(account), cp_state(account));
+    let (sv_turns, cp_turns) = (turning(&account.sv), turning(partner));
+    let case = Case { reading, account, partner, sv, cp, sv_turns, cp_turns };
+    RULES.iter().find_map(|rule| rule(&case))
+}
+
+fn front(party: &Party) -> bool {
+    has_zone(party, Z::is_front)
+}
+
+fn rear(party: &Party) -> bool {
+    has_zone(party, Z::is_rear)
+}
+
+impl Case<'_> {
+    fn sv_stands(&self) -> bool {
+        self.sv.is_some_and(ContactState::stands)
+    }
+
+    /// The partner moved over.
+    fn sideways(&self) -> bool {
+        [Act::LaneChange, Act::Swerve, Act::Drift].into_iter().any(|act| self.partner.did(act))
+    }
+
+    fn rear_end(&self) -> bool {
+        let frames = &self.reading.story.frames;
+        self.reading.contacts.first.is_some_and(|number| frames[number].sense == Sense::RearEnd)
+    }
+
+    fn thing(&self) -> Said {
+        if group(self.account) != Some(KindGroup::Object) {
+            return None;
+        }
+        Some(if told(&self.partner.kind) == Some(Kind::Cargo) || off_a_vehicle(self.reading) {
             (CrashType::Other, "cargo")
         } else {
             (CrashType::SingleVehicle, "a thing")
+        })
+    }
+
+    fn thrown(&self) -> Said {
+        let contacts = &self.reading.contacts;
+        let touched = || self.account.others.iter().any(|other| other.touched_partner);
+        let thrown = self.partner.did(Act::Pushed) && !self.partner.did(Act::Reverse)
+            || !contacts.earlier.is_empty() && touched()
+            || separate(self.reading)
+            || of_a_crash(self.reading);
+        (!contacts.others_only && thrown && !drove_on(self.reading))
+            .then_some((CrashType::Secondary, "another contact threw the partner at it"))
+    }
+
+    fn by_kind(&self) -> Said {
+        let crash_type = match group(self.account)? {
+            KindGroup::OnFoot => CrashType::Pedestrian,
+            KindGroup::Cyclist => CrashType::Cyclist,
+            KindGroup::Motorcycle => CrashType::Motorcycle,
+            KindGroup::Animal | KindGroup::Other => CrashType::Other,
+            _ => return None,
+        };
+        Some((crash_type, "kind of the partner"))
+    }
+
+    fn not_touched(&self) -> Said {
+        self.reading.contacts.others_only.then_some((CrashType::Other, "the subject vehicle was not touched"))
+    }
+
+    fn parked(&self) -> Said {
+        let moves = self.sv.is_some_and(|state| !state.stands() && state != ContactState::Reversing);
+        (self.cp == Some(ContactState::Parked)
+            && moves
+            && !self.partner.did(Act::PullOut)
+            && !double_parked(self.reading)
+            && self.account.door.is_none())
+        .then_some((CrashType::SingleVehicle, "an unoccupied parked vehicle"))
+    }
+
+    fn backwards(&self) -> Said {
+        let backs = match told(&self.partner.movement) {
+            Some(Movement::Backing) => true,
+            Some(Movement::ParkingManeuver) => self.partner.did(Act::Reverse),
+            _ => false,
+        };
+        (backs || [self.sv, self.cp].contains(&Some(ContactState::Reversing)))
+            .then_some((CrashType::Backing, "one went backwards"))
+    }
+
+    fn door(&self) -> Said {
+        self.account.door.is_some().then_some((CrashType::Other, "a door"))
+    }
+
+    /// Words for a touch along the side: "sideswiped", "grazed".
+    fn along_the_side(&self) -> Said {
+        let story = &self.reading.story;
+        let along = self.reading.contacts.first.is_some_and(|number| {
+            let word = story.tokens[story.frames[number].first].text.as_str();
+            ["swip", "side", "scrap", "graz", "brush"].iter().any(|stem| word.starts_with(stem))
         });
+        (along
+            && matches!(told(&self.account.came_from), Some(Origin::Behind | Origin::Ahead))
+            && !(rear(&self.account.sv) && front(self.partner))
+            && !front_rear(self.account))
+        .then_some((CrashType::Lateral, "a touch along the side"))
     }
-    if !reading.contacts.others_only
-        && (partner.did(Act::Pushed) && !partner.did(Act::Reverse)
-            || !reading.contacts.earlier.is_empty() && account.others.iter().any(|other| other.touched_partner)
-            || separate(reading)
-            || of_a_crash(reading))
-        && !drove_on(reading)
-    {
-        return Some((CrashType::Secondary, "another contact threw the partner at it"));
-    }
-    match group(account) {
-        Some(KindGroup::OnFoot) => return Some((CrashType::Pedestrian, "kind of the partner")),
-        Some(KindGroup::Cyclist) => return Some((CrashType::Cyclist, "kind of the partner")),
-        Some(KindGroup::Motorcycle) => return Some((CrashType::Motorcycle, "kind of the partner")),
-        Some(KindGroup::Animal | KindGroup::Other) => return Some((CrashType::Other, "kind of the partner")),
-        _ => {}
-    }
-    if reading.contacts.others_only {
-        return Some((CrashType::Other, "the subject vehicle was not touched"));
-    }
-    let sv = sv_state(account);
-    let cp = cp_state(account);
-    let sv_moves = sv.is_some_and(|state| !state.stands());
-    if cp == Some(ContactState::Parked)
-        && sv_moves
-        && sv != Some(ContactState::Reversing)
-        && !partner.did(Act::PullOut)
-        && !double_parked(reading)
-        && account.door.is_none()
-    {
-        return Some((CrashType::SingleVehicle, "an unoccupied parked vehicle"));
-    }
-    if cp == Some(ContactState::Reversing)
-        || sv == Some(ContactState::Reversing)
-        || told(&partner.movement) == Some(Movement::Backing)
-        || told(&partner.movement) == Some(Movement::ParkingManeuver) && partner.did(Act::Reverse)
-    {
-        return Some((CrashType::Backing, "one went backwards"));
-    }
-    if account.door.is_some() {
-        return Some((CrashType::Other, "a door"));
-    }
-    let origin = told(&account.came_from);
-    let front = |party: &Party| has_zone(party, |zone| zone.is_front());
-    let rear = |party: &Party| has_zone(party, |zone| zone.is_rear());
-    let flank = |party: &Party| {
-        !party.zones.is_empty() && party.zones.iter().all(|zone| !zone.value.is_front() && !zone.value.is_rear())
-    };
-    let (sv_turns, cp_turns) = (turning(&account.sv), turning(partner));
-    let rear_end = reading.contacts.first.is_some_and(|number| reading.story.frames[number].sense == Sense::RearEnd);
-    // Words for a touch along the side.
-    let along = reading.contacts.first.is_some_and(|number| {
-        let frame = &reading.story.frames[number];
-        let word = reading.story.tokens[frame.first].text.as_str();
-        ["swip", "side", "scrap", "graz", "brush"].iter().any(|stem| word.starts_with(stem))
-    });
-    if along
-        && matches!(origin, Some(Origin::Behind | Origin::Ahead))
-        && !(rear(&account.sv) && front(partner))
-        && !front_rear(account)
-    {
-        return Some((CrashType::Lateral, "a touch along the side"));
-    }
-    let sideways = partner.did(Act::LaneChange) || partner.did(Act::Swerve) || partner.did(Act::Drift);
-    match origin {
-        Some(Origin::Behind) => {
-            if rear_end
-                || (rear(&account.sv) && front(partner))
-                || (rear(&account.sv) && partner.zones.is_empty() && !partner.did(Act::Pass))
+
+    /// By where the partner came from, and which of the two turned.
+    fn by_origin(&self) -> Said {
+        match told(&self.account.came_from) {
+            Some(Origin::Behind) => self.comes_from_behind(),
+            Some(Origin::Ahead) => self.comes_from_ahead(),
+            Some(Origin::Opposite) => self.comes_from_opposite(),
+            Some(Origin::Beside { .. }) => self.comes_from_beside(),
+            // It had turned into the road of the one that stands, and passed it left side on left side.
+            Some(Origin::Cross { .. })
+                if self.sv_stands()
+                    && self.partner.did(Act::Turn)
+                    && !self.cp_turns
+                    && on_left(&self.account.sv)
+                    && on_left(self.partner) =>
             {
-                let passing = partner.did(Act::Pass) && !square(account);
-                return Some(if passing {
-                    (CrashType::Lateral, "it passed")
-                } else {
-                    (CrashType::FrontToRear, "front on rear, one way")
-                });
+                HEAD_ON
             }
-            if sv_turns && !sv.is_some_and(ContactState::stands) && (flank(&account.sv) || front(&account.sv)) {
-                return Some((CrashType::Intersection, "one turned across the other"));
+            Some(Origin::Cross { .. } | Origin::Sidewalk { .. }) => CROSSING,
+            Some(Origin::Stall { .. } | Origin::Driveway { .. }) => {
+                Some((CrashType::Intersection, "out of a stall or a driveway"))
             }
-            if account.sv.zones.is_empty() && partner.zones.is_empty() && !partner.did(Act::Pass) && !sideways {
-                return Some((CrashType::FrontToRear, "from behind"));
-            }
-            if cp_turns && turned_across(account) {
-                return Some((CrashType::Intersection, "one turned across the other"));
-            }
-            Some((CrashType::Lateral, "one way, side by side"))
+            Some(Origin::Parked { .. }) => Some((CrashType::Lateral, "from the kerb beside it")),
+            Some(Origin::Above) | None => by_columns(self.reading, self.account),
         }
-        Some(Origin::Ahead) => {
-            if cp_turns && !front_rear(account) {
-                return Some((CrashType::Intersection, "one turned across the other"));
-            }
-            if rear_end
-                || front_rear(account)
-                || (front(&account.sv) && partner.zones.is_empty())
-                || (account.sv.zones.is_empty() && rear(partner) && !sideways)
-                || (account.sv.zones.is_empty() && partner.zones.is_empty() && !sideways && !account.sv.did(Act::Pass))
-                || (front(&account.sv) && !sideways && !account.sv.did(Act::Pass))
-            {
-                return Some((CrashType::FrontToRear, "front on rear, one way"));
-            }
-            Some((CrashType::Lateral, "one way, side by side"))
+    }
+
+    fn comes_from_behind(&self) -> Said {
+        let (sv, partner) = (&self.account.sv, self.partner);
+        let passes = partner.did(Act::Pass);
+        let at_rear = rear(sv) && (front(partner) || partner.zones.is_empty() && !passes);
+        if self.rear_end() || at_rear {
+            let passing = passes && !square(self.account);
+            return if passing { Some((CrashType::Lateral, "it passed")) } else { FRONT_TO_REAR };
         }
-        Some(Origin::Opposite) => {
-            let column = told(&account.sv.movement) == Some(Movement::LeftTurn) && turn_side(&account.sv).is_none();
-            let across = column
-                || (sv_turns && turn_side(&account.sv) == Some(LeftRight::Left))
-                || (cp_turns
-                    && turn_side(partner) == Some(LeftRight::Left)
-                    && !(sv_turns && turn_side(&account.sv) == Some(LeftRight::Left)))
-                || told(&partner.movement) == Some(Movement::UTurn)
-                || cp_turns
-                    && turn_side(partner).is_none()
-                    && !sv_turns
-                    && told(&partner.movement).is_none_or(|movement| movement == Movement::Straight)
-                || told(&partner.movement) == Some(Movement::LeftTurn) && !partner.did(Act::Turn) && !sv_turns;
-            // Left side on left side they passed each other, and only then it turned, or began to.
-            let left = |party: &Party, corner: bool| {
-                use recrash_model::zones::ContactZone as Z;
-                !party.zones.is_empty()
-                    && party
-                        .zones
-                        .iter()
-                        .all(|zone| matches!(zone.value, Z::Left | Z::RearLeft) || corner && zone.value == Z::FrontLeft)
-            };
-            let begun = partner.acts.iter().any(|fact| fact.act == Act::Turn && fact.begun);
-            let abreast = left(&account.sv, true) && left(partner, false) && (begun || partner.did(Act::Pass));
-            Some(if across && !abreast {
-                (CrashType::Intersection, "one turned across the other")
-            } else {
-                (CrashType::HeadOn, "from opposite directions")
-            })
+        let flank = !sv.zones.is_empty() && !front(sv) && !rear(sv);
+        if self.sv_turns && !self.sv_stands() && (flank || front(sv)) {
+            return TURNED_ACROSS;
         }
-        // It had turned into the road of the one that stands, and passed it left side on left side.
-        Some(Origin::Cross { .. })
-            if sv.is_some_and(ContactState::stands)
-                && partner.did(Act::Turn)
-                && !cp_turns
-                && on_left(&account.sv)
-                && on_left(partner) =>
-        {
-            Some((CrashType::HeadOn, "from opposite directions"))
+        if sv.zones.is_empty() && partner.zones.is_empty() && !passes && !self.sideways() {
+            return Some((CrashType::FrontToRear, "from behind"));
         }
-        Some(Origin::Cross { .. }) => Some((CrashType::Intersection, "crossing paths")),
-        Some(Origin::Stall { .. } | Origin::Driveway { .. }) => {
-            Some((CrashType::Intersection, "out of a stall or a driveway"))
+        if self.cp_turns && turned_across(self.account) { TURNED_ACROSS } else { LATERAL }
+    }
+
+    fn comes_from_ahead(&self) -> Said {
+        let (sv, partner) = (&self.account.sv, self.partner);
+        if self.cp_turns && !front_rear(self.account) {
+            return TURNED_ACROSS;
         }
-        Some(Origin::Parked { .. }) => Some((CrashType::Lateral, "from the kerb beside it")),
-        Some(Origin::Sidewalk { .. }) => Some((CrashType::Intersection, "crossing paths")),
-        Some(Origin::Beside { .. }) => {
-            let both_turned = account.sv.did(Act::Turn) && partner.did(Act::Turn) || turn_together(account);
-            let one_turns = sv_turns != cp_turns && !both_turned;
-            if one_turns && !(sv_turns && sv.is_some_and(ContactState::stands)) {
-                return Some((CrashType::Intersection, "one turned across the other"));
-            }
-            if rear(&account.sv) && front(partner) && square(account) && !sideways {
-                return Some((CrashType::FrontToRear, "front on rear, one way"));
-            }
-            Some((CrashType::Lateral, "one way, side by side"))
+        let (none, straight) = (sv.zones.is_empty(), !self.sideways());
+        let on_its_way = straight && !sv.did(Act::Pass);
+        let at_rear = self.rear_end()
+            || front_rear(self.account)
+            || front(sv) && (partner.zones.is_empty() || on_its_way)
+            || none && rear(partner) && straight
+            || none && partner.zones.is_empty() && on_its_way;
+        if at_rear { FRONT_TO_REAR } else { LATERAL }
+    }
+
+    fn comes_from_opposite(&self) -> Said {
+        let (sv, partner) = (&self.account.sv, self.partner);
+        let movement = told(&partner.movement);
+        let sv_left = self.sv_turns && turn_side(sv) == Some(LeftRight::Left);
+        let column = told(&sv.movement) == Some(Movement::LeftTurn) && turn_side(sv).is_none();
+        let cp_left = self.cp_turns && turn_side(partner) == Some(LeftRight::Left);
+        let straight = movement.is_none_or(|movement| movement == Movement::Straight);
+        let cp_somewhere = self.cp_turns && turn_side(partner).is_none() && straight;
+        let cp_column = movement == Some(Movement::LeftTurn) && !partner.did(Act::Turn);
+        let across = column
+            || sv_left
+            || cp_left
+            || movement == Some(Movement::UTurn)
+            || !self.sv_turns && (cp_somewhere || cp_column);
+        // Left side on left side they passed each other, and only then it turned, or began to.
+        let left = |party: &Party, corner: bool| {
+            let left = |zone: Z| matches!(zone, Z::Left | Z::RearLeft) || corner && zone == Z::FrontLeft;
+            !party.zones.is_empty() && party.zones.iter().all(|zone| left(zone.value))
+        };
+        let begun = partner.acts.iter().any(|fact| fact.act == Act::Turn && fact.begun);
+        let abreast = left(sv, true) && left(partner, false) && (begun || partner.did(Act::Pass));
+        if across && !abreast { TURNED_ACROSS } else { HEAD_ON }
+    }
+
+    fn comes_from_beside(&self) -> Said {
+        let (sv, partner) = (&self.account.sv, self.partner);
+        let both_turned = sv.did(Act::Turn) && partner.did(Act::Turn) || turn_together(self.account);
+        let one_turns = self.sv_turns != self.cp_turns && !both_turned;
+        if one_turns && !(self.sv_turns && self.sv_stands()) {
+            return TURNED_ACROSS;
         }
-        Some(Origin::Above) | None => by_columns(reading, account),
+        let at_rear = rear(sv) && front(partner) && square(self.account);
+        if at_rear && !self.sideways() { FRONT_TO_REAR } else { LATERAL }
     }
 }
 
@@ -285,13 +348,11 @@ pub(crate) fn turn_side(party: &Party) -> Option<LeftRight> {
 
 /// Touched on the left, corners too.
 fn on_left(party: &Party) -> bool {
-    use recrash_model::zones::ContactZone as Z;
     !party.zones.is_empty() && party.zones.iter().all(|zone| matches!(zone.value, Z::Left | Z::FrontLeft | Z::RearLeft))
 }
 
 /// The plain rear on the plain front.
 fn square(account: &Account) -> bool {
-    use recrash_model::zones::ContactZone as Z;
     let Some(partner) = &account.partner else { return false };
     has_zone(&account.sv, |zone| zone == Z::Rear) && has_zone(partner, |zone| zone == Z::Front)
         || has_zone(&account.sv, |zone| zone == Z::Rear)
