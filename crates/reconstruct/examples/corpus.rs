@@ -61,6 +61,7 @@ fn main() {
     let mut by_type: BTreeMap<String, [usize; 3]> = BTreeMap::new();
     let mut reasons: BTreeMap<&'static str, usize> = BTreeMap::new();
     let mut facts: BTreeMap<CheckKind, [usize; 2]> = BTreeMap::new();
+    let mut left_open: BTreeMap<CheckKind, usize> = BTreeMap::new();
     for (account, result) in &results {
         let kind = told(&account.crash_type).map_or("none".to_owned(), |kind| format!("{kind:?}"));
         let row = by_type.entry(kind.clone()).or_default();
@@ -74,6 +75,7 @@ fn main() {
                     if open && flags.iter().any(|flag| flag == "--open") && is_developed(account) {
                         println!("{} {}: {} | {}", account.report, fact.kind.label(), fact.expected, fact.observed);
                     }
+                    *left_open.entry(fact.kind).or_default() += usize::from(open);
                     let count = facts.entry(fact.kind).or_default();
                     count[0] += 1;
                     count[1] += usize::from(fact.result == CheckResult::Shown);
@@ -165,6 +167,7 @@ fn main() {
     let told_ones = crash.iter().filter(|is_true| **is_true).count();
     println!("staged ones in which two others touch: {}, {told_ones} of them told", crash.len());
     for (kind, [told, shown]) in &facts {
-        println!("  {:<20} told {told:>5}, shown {shown:>5}", kind.label());
+        let open = left_open.get(kind).copied().unwrap_or_default();
+        println!("  {:<20} told {told:>5}, shown {shown:>5}, left open in a told scene {open:>3}", kind.label());
     }
 }

@@ -59,6 +59,13 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
     list
 }
 
+impl Doing {
+    /// Whether it is a turn: of who may have begun it, or has yet to, none is asked for.
+    pub(crate) const fn is_turn(&self) -> bool {
+        matches!(self.act, Act::Turn)
+    }
+}
+
 /// By how much somebody does something who does it.
 enum Least {
     /// Loses or gains speed. [m/s]

@@ -309,6 +309,9 @@ impl Told {
         if follows && turns && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff) {
             (self.cp.turning, self.cp.turns_later) = (Turning::No, true);
         }
+        for side in [&mut self.sv, &mut self.cp].into_iter().filter(|side| side.turns_later) {
+            side.acts.retain(|doing| !doing.is_turn());
+        }
         if let Origin::Cross { side } = self.origin {
             self.cp.turns_wide = self.crash_type == CrashType::HeadOn;
             // To meet it head-on, who comes from the left turns to the right.
