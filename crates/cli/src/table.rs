@@ -95,7 +95,8 @@ impl Table {
     fn least(&self, shown: &[usize]) -> usize {
         let of = |at: usize| match self.widest(at).max(self.header[at].chars().count()) {
             natural if at == self.name || Some(at) == self.whole => natural,
-            _ if self.holds_numbers(at) => self.widest(at).max(self.word(at)),
+            // Headers of numbers are wrapped to make room for it.
+            _ if self.whole.is_some() && self.holds_numbers(at) => self.widest(at).max(self.word(at)),
             natural => natural.min(LEAST_COLUMN),
         };
         // A blank between columns, and one at each end: what is to be whole has no room to give.

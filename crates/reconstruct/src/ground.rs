@@ -304,7 +304,13 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
         }
     }
     if let Some(word) = told.sv.lane {
-        return number(word);
+        // Who goes out of the told lane and comes back to it has its line beside it.
+        let back = told.sv_aside().filter(|aside| aside.back);
+        return match back.map(|aside| aside.to_t_m > aside.from_t_m) {
+            Some(true) => number(word)?.checked_sub(1),
+            Some(false) => number(word).map(|lane| lane + 1).filter(|lane| *lane < lanes),
+            None => number(word),
+        };
     }
     // The partner's lane tells the ego's, where the two go one way; of who changes into it that beside it.
     let other = number(told.cp.lane?)?;

@@ -122,7 +122,7 @@ fn types(read: &Accounts, retold: &[Retold]) {
     type_table(&type_shares(&read.accounts, retold));
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
     println!(
-        "told, and not drawn yet: lanes for bicycles and buses, others in the story of whom nobody says where they were, acts beside turns, stops and lanes"
+        "told, and not drawn yet: lanes for buses, some others in the story, some acts; work zones are not looked at"
     );
 }
 

@@ -10,10 +10,10 @@ fn shares_reasons_and_facts_are_shown_on_a_screen() {
     assert_eq!(code, 0, "{remarks}");
     for words in [
         "Readable incidents of which no told fact is shown otherwise",
-        "told, and not drawn yet: lanes for bicycles",
+        "told, and not drawn yet: lanes for buses",
         "Front to rear",
         "Why the others are not",
-        "facts per 100 words",
+        "facts per 100",
         "told facts are not drawn: neither shown nor shown otherwise",
     ] {
         assert!(shown.contains(words), "{words}:\n{shown}");

@@ -2,39 +2,16 @@
 //! told as it reads it.
 
 use crate::common::recrash;
-use crate::common::server::Reply;
 use crate::live::{Folder, ledger, read, server, shares, shown};
-use serde_json::{Value, json};
+use serde_json::Value;
 
-/// Somebody who stood behind let go of the brake; the built-in reader finds no contact that fits what it takes from it.
-fn read_by_a_careful_model() -> Value {
-    let quoted = |value: Value, words: &str| json!({"value": value, "words": words, "column": null});
-    let by_column = |value: &str, name: &str| json!({"value": value, "words": null, "column": name});
-    json!({
-        "report": "90101-15/1", "crash_type": "front_to_rear",
-        "sv": {
-            "movement": by_column("stopped", "SV Pre-Crash Movement"),
-            "state": quoted(json!("stopped"), "The Northlight AV slowed and stopped"),
-            "zones": [by_column("rear", "SV Contact Area")],
-        },
-        "partner": {
-            "kind": quoted(json!("suv"), "A mid-size sport utility vehicle"),
-            "movement": by_column("straight", "CP Pre-Crash Movement"),
-            "state": quoted(json!("moving"), "rolled into it"),
-            "zones": [by_column("front", "CP Contact Area")],
-        },
-        "striker": quoted(json!("cp"), "rolled into it"),
-        "first_contact": quoted(json!("sv_and_partner"), "rolled into it"),
-    })
-}
+/// A pickup that backed out of its space; the built-in reader does not say who struck whom.
+const UNREAD: &str = "90101-251/1";
 
 #[test]
 fn a_model_reads_what_the_built_in_reader_did_not_read_whole() {
     let folder = Folder::new();
-    let server = server(|request| {
-        let asks = |report: &str| request.messages()[1]["content"].as_str().unwrap().contains(report);
-        asks("Report 90101-15/1.").then(|| Reply::Text(read_by_a_careful_model().to_string()))
-    });
+    let server = server(|_| None);
     let out = folder.suite();
     let run = |more: &[&str]| {
         let arguments =
@@ -63,9 +40,9 @@ fn a_model_reads_what_the_built_in_reader_did_not_read_whole() {
         .iter()
         .filter(|account| account["author"]["model"] == "scripted")
         .collect();
-    assert!(by_model.iter().any(|account| account["report"] == "90101-15/1"), "{by_model:?}");
+    assert!(by_model.iter().any(|account| account["report"] == UNREAD), "{by_model:?}");
     let cases = summary["cases"].as_array().unwrap();
-    let case = cases.iter().find(|case| case["told"] == "90101-15/1").expect("it is in the suite");
+    let case = cases.iter().find(|case| case["told"] == UNREAD).expect("it is in the suite");
     assert_eq!((&case["recorded"]["faithful"] == "no", &case["failure"]), (false, &Value::Null), "{case}");
     assert_eq!(case["narrated"]["outcome"], "first answer");
     // Nothing is asked again, and the ledger alone gives the same.

@@ -8,9 +8,9 @@ use recrash_reconstruct::held_against;
 const DROPPED_OFF: &str = "The AV was traveling north when it came to a stop for a passenger drop-off. While the AV was parked, an SUV \
                            approached from behind and the front of the SUV made contact with the rear of the parked AV.";
 
-const WENT_ROUND: &str = "The AV was traveling east in the right lane when it approached a sedan stopped in the right lane. The AV changed \
-                          lanes to the left lane to pass the sedan. As the AV changed lanes to the right lane, the sedan began \
-                          moving forward, and the right side of the AV made contact with the front left of the sedan.";
+const WENT_ROUND: &str = "The AV was traveling east when it approached a stopped sedan. The AV changed lanes to the left to pass the \
+                          sedan. As the AV changed lanes to the right, the sedan began moving forward, and the right side of the AV \
+                          made contact with the front left of the sedan.";
 
 const TURNED_OFF: &str = "The AV was traveling north when a sedan traveling in front of the AV turned left towards a driveway and stopped in \
                           the lane. As the AV passed behind the stopped sedan, the sedan reversed and the rear of the sedan made contact \
