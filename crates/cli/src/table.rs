@@ -169,27 +169,38 @@ impl Table {
         }
     }
 
-    /// Columns of numbers are wrapped no more than the names of the rows are, where all of them have room.
+    /// Columns of numbers are wrapped no more than the names of the rows are, where all of them have room; else where they have.
     fn keep_numbers_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
+        if !self.keep_whole(table, shown, width, |at| at == 0 || at == self.name || self.holds_numbers(at)) {
+            self.keep_whole(table, shown, width, |at| self.holds_numbers(at));
+        }
+    }
+
+    /// Keeps such columns whole, with the words of their headers where there is room; false where there is none.
+    fn keep_whole(
+        &self,
+        table: &mut comfy_table::Table,
+        shown: &[usize],
+        width: usize,
+        such: impl Fn(usize) -> bool,
+    ) -> bool {
         let widest = |at: usize| self.widest(at) + PADDING;
-        let of_numbers = |at: usize| at == 0 || at == self.name || self.holds_numbers(at);
-        let word = |at: usize| self.word(at) + PADDING;
-        let with_headers = |&at: &usize| widest(at).max(word(at));
-        let numbers: Vec<usize> = (0..shown.len()).filter(|&place| of_numbers(shown[place])).collect();
+        let with_headers = |&at: &usize| widest(at).max(self.word(at) + PADDING);
+        let kept: Vec<usize> = (0..shown.len()).filter(|&place| such(shown[place])).collect();
         let room = if self.name == 0 { PADDING + 1 } else { LEAST_COLUMN };
-        let others = (shown.len() - numbers.len()) * room;
-        let needed =
-            |of: &dyn Fn(&usize) -> usize| numbers.iter().map(|&place| of(&shown[place])).sum::<usize>() + others;
+        let others = (shown.len() - kept.len()) * room;
+        let needed = |of: &dyn Fn(&usize) -> usize| kept.iter().map(|&place| of(&shown[place])).sum::<usize>() + others;
         let bound: &dyn Fn(&usize) -> usize =
             if needed(&with_headers) <= width { &with_headers } else { &|&at| widest(at) };
         if needed(bound) > width {
-            return;
+            return false;
         }
-        for &place in &numbers {
+        for &place in &kept {
             if let (Some(column), Ok(bound)) = (table.column_mut(place), u16::try_from(bound(&shown[place]))) {
                 column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(bound)));
             }
         }
+        true
     }
 }
 
@@ -250,6 +261,14 @@ mod tests {
             let row = plain.lines().last().unwrap_or_default();
             assert!(row.contains("accel_then_brake") && row.matches("100.0 %").count() == 5, "{width}:\n{plain}");
         }
+    }
+
+    #[test]
+    fn numbers_stay_whole_beside_a_name_that_no_line_holds() {
+        let mut table = table(&["reason", "incidents"]);
+        table.add_row([Cell::new("a signal is not shown: ".repeat(9)), number("14")]);
+        let plain = crate::screen::plain(&table.render(120));
+        assert!(plain.lines().any(|line| line.trim_end().ends_with("incidents")), "{plain}");
     }
 
     #[test]
