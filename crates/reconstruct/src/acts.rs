@@ -20,18 +20,20 @@ pub(crate) struct Doing {
 
 /// What is told of somebody until the contact that can be seen, in order.
 pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
-    let before = party.acts.iter().filter(|fact| !fact.after_contact && least(fact.act).is_some());
-    let mut acts: Vec<&ActFact> = before.collect();
+    let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
     acts.sort_by_key(|fact| fact.step);
     let stands = |act: Act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park);
     let at_line = party.reasons.iter().any(|fact| matches!(fact.value, StandReason::RedLight | StandReason::StopSign))
         || !party.controls.is_empty();
     let mut list: Vec<Doing> = Vec::new();
+    let mut standing = false;
     for (number, fact) in acts.iter().enumerate() {
         let stood = list.iter().any(|doing| stands(doing.act) || doing.act == Act::Reverse);
         let skipped = match fact.act {
-            // Who was told to begin or go on before it stood drove already.
-            Act::SetOff => !stood && state != ContactState::SettingOff || fact.begun && state.stands(),
+            // Who was told to begin or go on while it drove drives already.
+            Act::SetOff => !standing && (stood || state != ContactState::SettingOff) || fact.begun && state.stands(),
+            // It stands there.
+            Act::Stop if standing => true,
             // Who turned on its way to a light or a sign did so on another road, or has yet to.
             Act::Turn => at_line && !stood && acts[number..].iter().any(|later| stands(later.act)),
             Act::Park => list.last().is_some_and(|last| stands(last.act)),
@@ -39,8 +41,14 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
             Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
             // What somebody who stands, or had yet to, tried to.
             Act::Reverse => fact.begun && state.stands(),
+            act => least(act).is_none(),
+        };
+        let waits = match fact.act {
+            Act::OpenDoor | Act::Slow | Act::Follow | Act::FailToYield => true,
+            Act::SetOff | Act::Reverse => fact.begun,
             _ => false,
         };
+        standing = stands(fact.act) || standing && waits;
         if !skipped {
             list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun });
         }

@@ -291,7 +291,7 @@ impl Told {
         }
         // Who meets a thing after a turn may be in it yet.
         if self.thing.is_some() && self.sv.movement == Some(Movement::Straight) {
-            (self.sv.turning, self.sv.turned) = (Turning::No, false);
+            self.sv.turned = false;
         }
         if things::lies_before_turn(self, sv) {
             (self.sv.turning, self.sv.turns_later) = (Turning::No, true);
