@@ -169,38 +169,34 @@ impl Table {
         }
     }
 
-    /// Columns of numbers are wrapped no more than the names of the rows are, where all of them have room; else where they have.
+    /// Columns of numbers are wrapped no more than the names of the rows are, where all of them have room; names that leave none are
+    /// wrapped, where half of the width is theirs.
     fn keep_numbers_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
-        if !self.keep_whole(table, shown, width, |at| at == 0 || at == self.name || self.holds_numbers(at)) {
-            self.keep_whole(table, shown, width, |at| self.holds_numbers(at));
-        }
-    }
-
-    /// Keeps such columns whole, with the words of their headers where there is room; false where there is none.
-    fn keep_whole(
-        &self,
-        table: &mut comfy_table::Table,
-        shown: &[usize],
-        width: usize,
-        such: impl Fn(usize) -> bool,
-    ) -> bool {
         let widest = |at: usize| self.widest(at) + PADDING;
-        let with_headers = |&at: &usize| widest(at).max(self.word(at) + PADDING);
-        let kept: Vec<usize> = (0..shown.len()).filter(|&place| such(shown[place])).collect();
+        let with_header = |at: usize| widest(at).max(self.word(at) + PADDING);
+        let numbers = |at: usize| self.holds_numbers(at);
+        let with_names = |at: usize| at == 0 || at == self.name || numbers(at);
         let room = if self.name == 0 { PADDING + 1 } else { LEAST_COLUMN };
-        let others = (shown.len() - kept.len()) * room;
-        let needed = |of: &dyn Fn(&usize) -> usize| kept.iter().map(|&place| of(&shown[place])).sum::<usize>() + others;
-        let bound: &dyn Fn(&usize) -> usize =
-            if needed(&with_headers) <= width { &with_headers } else { &|&at| widest(at) };
-        if needed(bound) > width {
-            return false;
-        }
-        for &place in &kept {
-            if let (Some(column), Ok(bound)) = (table.column_mut(place), u16::try_from(bound(&shown[place]))) {
-                column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(bound)));
+        // A blank between columns, and one at each end: what is narrow gives them away.
+        let between = shown.len() + 1;
+        let ways: [(&dyn Fn(usize) -> bool, &dyn Fn(usize) -> usize, usize, usize); 3] = [
+            (&with_names, &with_header, room, between),
+            (&numbers, &with_header, width / 2, between),
+            (&with_names, &widest, room, 0),
+        ];
+        for (such, bound, room, between) in ways {
+            let kept: Vec<usize> = (0..shown.len()).filter(|&place| such(shown[place])).collect();
+            let others = (shown.len() - kept.len()) * room + between;
+            if kept.iter().map(|&place| bound(shown[place])).sum::<usize>() + others > width {
+                continue;
             }
+            for &place in &kept {
+                if let (Some(column), Ok(bound)) = (table.column_mut(place), u16::try_from(bound(shown[place]))) {
+                    column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(bound)));
+                }
+            }
+            return;
         }
-        true
     }
 }
 
@@ -265,10 +261,12 @@ mod tests {
 
     #[test]
     fn numbers_stay_whole_beside_a_name_that_no_line_holds() {
-        let mut table = table(&["reason", "incidents"]);
-        table.add_row([Cell::new("a signal is not shown: ".repeat(9)), number("14")]);
-        let plain = crate::screen::plain(&table.render(120));
-        assert!(plain.lines().any(|line| line.trim_end().ends_with("incidents")), "{plain}");
+        for length in [9, 80, 100, 101, 102, 103, 104, 105, 106, 107, 108, 110, 120, 300] {
+            let mut table = table(&["reason", "incidents"]);
+            table.add_row([Cell::new("signal, ".repeat(50)[..length].to_owned()), number("14")]);
+            let plain = crate::screen::plain(&table.render(120));
+            assert!(plain.lines().any(|line| line.trim_end().ends_with("incidents")), "{length}:\n{plain}");
+        }
     }
 
     #[test]
