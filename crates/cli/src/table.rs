@@ -172,32 +172,35 @@ impl Table {
     /// Columns of numbers are wrapped no more than the names of the rows are, where all of them have room; names that leave none are
     /// wrapped, where half of the width is theirs.
     fn keep_numbers_whole(&self, table: &mut comfy_table::Table, shown: &[usize], width: usize) {
-        let widest = |at: usize| self.widest(at) + PADDING;
-        let with_header = |at: usize| widest(at).max(self.word(at) + PADDING);
         let numbers = |at: usize| self.holds_numbers(at);
         let with_names = |at: usize| at == 0 || at == self.name || numbers(at);
+        let cells = |at: usize| self.widest(at) + PADDING;
+        let with_header = |at: usize| cells(at).max(self.word(at) + PADDING);
         let room = if self.name == 0 { PADDING + 1 } else { LEAST_COLUMN };
         // A blank between columns, and one at each end: what is narrow gives them away.
-        let between = shown.len() + 1;
-        let ways: [(&dyn Fn(usize) -> bool, &dyn Fn(usize) -> usize, usize, usize); 3] = [
-            (&with_names, &with_header, room, between),
-            (&numbers, &with_header, width / 2, between),
-            (&with_names, &widest, room, 0),
-        ];
-        for (such, bound, room, between) in ways {
-            let kept: Vec<usize> = (0..shown.len()).filter(|&place| such(shown[place])).collect();
-            let others = (shown.len() - kept.len()) * room + between;
-            if kept.iter().map(|&place| bound(shown[place])).sum::<usize>() + others > width {
-                continue;
+        let spare = width.saturating_sub(shown.len() + 1);
+        let bounds = bounds(shown, with_names, with_header, (room, spare))
+            .or_else(|| bounds(shown, numbers, with_header, (width / 2, spare)))
+            .or_else(|| bounds(shown, with_names, cells, (room, width)));
+        for (place, bound) in bounds.into_iter().flatten() {
+            if let (Some(column), Ok(bound)) = (table.column_mut(place), u16::try_from(bound)) {
+                column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(bound)));
             }
-            for &place in &kept {
-                if let (Some(column), Ok(bound)) = (table.column_mut(place), u16::try_from(bound(shown[place]))) {
-                    column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(bound)));
-                }
-            }
-            return;
         }
     }
+}
+
+/// What such columns take at least, by place; nothing where that leaves the others less than this room each of this width.
+fn bounds(
+    shown: &[usize],
+    such: impl Fn(usize) -> bool,
+    least: impl Fn(usize) -> usize,
+    (room, width): (usize, usize),
+) -> Option<Vec<(usize, usize)>> {
+    let kept = shown.iter().enumerate().filter(|(_, at)| such(**at));
+    let bounds: Vec<(usize, usize)> = kept.map(|(place, at)| (place, least(*at))).collect();
+    let others = (shown.len() - bounds.len()) * room;
+    (bounds.iter().map(|(_, bound)| bound).sum::<usize>() + others <= width).then_some(bounds)
 }
 
 /// What stands above the line under the header, in bold.
