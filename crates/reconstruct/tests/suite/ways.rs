@@ -3,7 +3,7 @@
 use crate::common::account_of;
 use recrash_model::account::{Account, Act, Fact, LeftRight, Origin};
 use recrash_model::math;
-use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::metrics::{Check, CheckKind, CheckResult};
 use recrash_model::rollout::{ActorState, Event, EventKind};
 use recrash_model::template::Movement;
 use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
@@ -77,13 +77,18 @@ pub fn made(account: &Account) -> Reconstruction {
 
 /// What of an account is not shown by the staging of the same account without some of its facts.
 pub fn missed(account: &Account, without: impl Fn(&mut Account)) -> Vec<CheckKind> {
+    let checks = checks_without(account, without).into_iter();
+    checks.filter(|check| check.result == CheckResult::NotShown).map(|check| check.kind).collect()
+}
+
+/// The facts of an account, held against the staging of the same account without some of them.
+pub fn checks_without(account: &Account, without: impl Fn(&mut Account)) -> Vec<Check> {
     let mut less = account.clone();
     without(&mut less);
     assert!(less != *account, "nothing was taken away");
     let other = made(&less);
     let scenario = recrash_roads::check(other.draft).expect("it ran").value;
-    let verdict = held_against(account, &scenario, &other.rollout).expect("it can be staged");
-    verdict.checks.iter().filter(|check| check.result == CheckResult::NotShown).map(|check| check.kind).collect()
+    held_against(account, &scenario, &other.rollout).expect("it can be staged").checks
 }
 
 pub fn without_acts(account: &mut Account, acts: &[Act]) {
