@@ -253,6 +253,9 @@ impl Chunker<'_> {
                 _ => (None, 1),
             };
         }
+        if let Some(length) = self.opening(at) {
+            return (Some(Chunk::Comma), length);
+        }
         if let Some((lane, length)) = self.lane(at) {
             return (Some(Chunk::Lane(lane)), length);
         }
@@ -266,6 +269,24 @@ impl Chunker<'_> {
         self.longest(at, before)
             .or_else(|| self.compass(at).map(|(compass, length)| (Chunk::Compass(compass), length)))
             .map_or_else(|| self.small_word(at), |(chunk, length)| (Some(chunk), length))
+    }
+
+    /// Words before the subject that say nothing of anybody: "At some point the van", "For unknown reasons the van".
+    fn opening(&self, at: usize) -> Option<usize> {
+        if at != self.first {
+            return None;
+        }
+        let words: Vec<&str> = (at..at + 5).map(|at| self.text(at)).collect();
+        let length = match words.as_slice() {
+            ["at", "some" | "one" | "that" | "this" | "which", "point" | "moment" | "stage" | "time", ..] => 3,
+            ["for", "reasons", "not", "known", ..] => 4,
+            ["for", "reasons" | "reason", "unknown" | "unclear", ..] => 3,
+            ["for", "unknown" | "some", "reasons" | "reason", ..] => 3,
+            ["for", "no" | "an" | "some", "apparent" | "unknown" | "known", "reason" | "reasons", ..] => 4,
+            ["all", "of", "a", "sudden", ..] => 4,
+            _ => return None,
+        };
+        is_determiner(self.text(at + length)).then_some(length)
     }
 
     /// The longest of relation, place, verb, part and noun; of two as long, the first of these.

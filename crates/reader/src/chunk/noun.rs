@@ -137,6 +137,10 @@ impl Chunker<'_> {
             return self.known_lead(found, draft);
         }
         if let Some((compass, length)) = self.compass(at) {
+            // "came westbound our car": a direction of who came.
+            if !determined && super::is_determiner(self.text(at + length)) {
+                return Lead::Ends;
+            }
             draft.noun.compass = Some(compass);
             draft.at += length;
             return Lead::On;

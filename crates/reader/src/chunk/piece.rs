@@ -52,7 +52,10 @@ impl Chunker<'_> {
                 Some((piece, end)) => return Some((piece, end - first)),
                 None => self.of_whom(draft)?,
             },
-            "on" if draft.nouns > 0 => self.of_whom(draft)?,
+            "on" if draft.nouns > 0 => {
+                self.on_the_side(&mut draft);
+                if matches!(self.text(draft.at), "of" | "on") { self.of_whom(draft)? } else { draft }
+            }
             _ => draft,
         };
         (self.is_sure(first, &draft) && !self.is_side_of_road(&draft)).then_some((draft.piece, draft.at - first))
@@ -99,6 +102,20 @@ impl Chunker<'_> {
                 parts.iter().all(|part| matches!(part, Part::Front | Part::Rear)) && side
             }
             _ => false,
+        }
+    }
+
+    /// "the front corner on the driver side".
+    fn on_the_side(&self, draft: &mut Draft) {
+        let ends = draft.piece.parts.iter().any(|part| matches!(part, Part::Front | Part::Rear));
+        let sided = draft.piece.parts.iter().any(|part| matches!(part, Part::Left | Part::Right));
+        if !ends || sided || !matches!(self.text(draft.at + 1), "the" | "its" | "our") {
+            return;
+        }
+        if let Some((part @ (Part::Left | Part::Right), length)) = self.part(draft.at + 2) {
+            draft.add(part);
+            draft.at += 2 + length;
+            draft.at += usize::from(self.text(draft.at) == "side");
         }
     }
 

@@ -1,7 +1,7 @@
 //! Directions, lanes and places beside the road.
 
 use super::{Chunker, Spot};
-use crate::token::TokenKind;
+use crate::token::{Token, TokenKind};
 use recrash_model::account::{Compass, LaneWord};
 
 /// Most tokens of the name of a lane before "lane".
@@ -60,6 +60,18 @@ impl Chunker<'_> {
             word.strip_suffix("bound").or_else(|| word.strip_suffix("bounds")).or_else(|| word.strip_suffix("erly"));
         if let Some(compass) = stem.filter(|stem| !stem.is_empty()).and_then(bare) {
             return Some((compass, 1));
+        }
+        // "n/b": one mark between the two letters.
+        let slashed = |next: &Token| next.text == "b" && next.start == self.tokens[at].end + 1;
+        if self.tokens.get(at + 1).is_some_and(slashed) {
+            let compass = match word {
+                "n" => Compass::North,
+                "s" => Compass::South,
+                "e" => Compass::East,
+                "w" => Compass::West,
+                _ => return None,
+            };
+            return Some((compass, 2));
         }
         match word {
             "nb" => return Some((Compass::North, 1)),

@@ -5,6 +5,7 @@ mod contact;
 mod controls;
 mod driver;
 mod fallback;
+mod flashback;
 mod movement;
 mod nobody;
 mod open;
@@ -35,6 +36,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::record::{Coded, CrashRecord, Severity};
 use recrash_model::scenario::Author;
 use recrash_model::zones::ContactZone;
+use std::ops::Range;
 
 /// Everything the fold looks at.
 pub(crate) struct Reading<'a> {
@@ -42,6 +44,8 @@ pub(crate) struct Reading<'a> {
     pub record: &'a CrashRecord,
     pub story: Story,
     pub contacts: Contacts,
+    /// Sentences behind that of the contact that tell what had been before.
+    pub back: Range<usize>,
 }
 
 impl Reading<'_> {
@@ -62,6 +66,13 @@ impl Reading<'_> {
         Fact { value, source: self.words(first, end) }
     }
 
+    /// The token behind all that tells of the time up to the contact.
+    pub fn until(&self) -> usize {
+        let contact = self.contacts.first.map(|number| self.story.frames[number].sentence);
+        let last = contact.map(|sentence| sentence.max(self.back.end.saturating_sub(1)));
+        last.map_or(usize::MAX, |sentence| self.story.sentences[sentence].end)
+    }
+
     /// Whether a frame comes after the contact.
     pub fn is_after(&self, number: usize) -> bool {
         let frame = &self.story.frames[number];
@@ -76,6 +87,7 @@ impl Reading<'_> {
             return true;
         }
         if number <= contact
+            || self.back.contains(&frame.sentence)
             || self.is_told_back(frame)
             || frame.sentence > at.sentence && frame.who != Some(SUBJECT) && self.had_before(frame.sentence)
             || frame.looks_back
@@ -109,7 +121,7 @@ impl Reading<'_> {
                 frame.act(),
                 Some(Act::Leave | Act::Pushed | Act::Hold | Act::Stop | Act::PullOver | Act::Park)
             );
-            had && frame.act().is_some() && !goes_on
+            had && frame.act().is_some() && !goes_on && !frame.described
         })
     }
 
@@ -175,7 +187,8 @@ pub fn account(incident: &Incident) -> Option<Account> {
         Own { kind: own_kind(record), make: make.as_deref(), company: &company, vehicle: &record.vehicle, partner };
     let story = story(text, own);
     let contacts = Contacts::find(&story, record);
-    let reading = Reading { text, record, story, contacts };
+    let back = flashback::told_back(&story, &contacts);
+    let reading = Reading { text, record, story, contacts, back };
     let mut account = Account {
         format: ACCOUNT_FORMAT.to_owned(),
         incident: incident.id.clone(),

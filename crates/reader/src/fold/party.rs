@@ -22,10 +22,7 @@ use recrash_model::zones::ContactZone;
 pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
     let known = &reading.story.world.actors[actor];
     // Where it drove afterwards is no place of the crash.
-    let end = reading
-        .contacts
-        .first
-        .map_or(usize::MAX, |number| reading.story.sentences[reading.story.frames[number].sentence].end);
+    let end = reading.until();
     let before = |first: usize| first < end;
     let (state, standing) = state(reading, actor);
     let kind = match (known.kind, known.kind_tokens) {

@@ -58,10 +58,7 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
 
 /// Sentences behind the one of the contact tell of where they drove then.
 fn is_after(reading: &Reading<'_>, token: usize) -> bool {
-    reading.contacts.first.is_some_and(|number| {
-        let sentence = reading.story.sentences[reading.story.frames[number].sentence];
-        token >= sentence.end
-    })
+    token >= reading.until()
 }
 
 /// "the left of two lanes", "a two-lane road", "4-way".

@@ -3,7 +3,7 @@
 use super::Reading;
 use super::standing::reasons;
 use crate::world::SUBJECT;
-use recrash_model::account::{Account, Act, ContactState, Fact, KindGroup, SpeedMeaning, StandReason, Standing, told};
+use recrash_model::account::{Account, Act, ContactState, Fact, KindGroup, Party, SpeedMeaning, StandReason, Standing, told};
 use recrash_model::template::Movement;
 
 /// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.
@@ -119,6 +119,17 @@ pub(super) fn sv_speed(account: &mut Account) {
 
 /// State of a partner that had come to a stop, by its words, and touches one that stands: it went on, or had yet to stop.
 pub(super) fn partner_state(reading: &Reading<'_>, account: &mut Account) {
+    // It was parked, and backs by the column; or its rear moved into who stands.
+    let backs = reading.record.cp_movement.known() == Some(Movement::Backing);
+    let rear_alone = |party: &Party| !party.zones.is_empty() && party.zones.iter().all(|zone| zone.value.is_rear());
+    if let Some(partner) = account.partner.as_mut().filter(|partner| backs && rear_alone(partner))
+        && told(&partner.state).is_some_and(ContactState::stands)
+        && account.door.is_none()
+    {
+        partner.state = Some(Fact::of_column(ContactState::Reversing, "CP Pre-Crash Movement"));
+        (partner.standing, partner.reasons) = (None, Vec::new());
+        return;
+    }
     let stands = told(&account.sv.state).is_some_and(ContactState::stands) && account.door.is_none();
     let (Some(partner), true) = (&mut account.partner, stands) else { return };
     let drives = told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::Car | KindGroup::Truck));

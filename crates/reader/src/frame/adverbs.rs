@@ -53,6 +53,12 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
             frames[number].sense = Sense::Act(Act::Follow);
         } else if pulls_out_to_pass(frames, number, &words) {
             frames[number].sense = Sense::Act(Act::Drift);
+        } else if headed_as_it_stands(frames, number, &words) {
+            frames[number].sense = Sense::Face;
+        } else if leaves_a_control(frames, number, tokens, sentences) {
+            frames[number].sense = Sense::Act(Act::SetOff);
+        } else if against_traffic(frame, &words) {
+            frames[number].sense = Sense::Act(Act::WrongWay);
         }
         let frame = &frames[number];
         let goes =
@@ -165,6 +171,44 @@ fn pulls_out_to_pass(frames: &[Frame], number: usize, words: &[&str]) -> bool {
     !from && (passes || over)
 }
 
+/// "had stopped in a lot, headed north": where it faces.
+fn headed_as_it_stands(frames: &[Frame], number: usize, words: &[&str]) -> bool {
+    let frame = &frames[number];
+    let before = frames[..number].last().filter(|before| {
+        (before.sentence, before.clause, before.who) == (frame.sentence, frame.clause, frame.who)
+    });
+    frame.act() == Some(Act::Follow)
+        && words.first() == Some(&"headed")
+        && before.is_some_and(|before| matches!(before.act(), Some(Act::Hold | Act::Stop)) && before.happened())
+}
+
+/// "had been waiting at the stop sign and now pulled out": sets off, and from no kerb.
+fn leaves_a_control(frames: &[Frame], number: usize, tokens: &[Token], sentences: &[Sentence]) -> bool {
+    let frame = &frames[number];
+    if frame.act() != Some(Act::PullOut) || frame.out_of.is_some() {
+        return false;
+    }
+    let Some(before) = frames[..number].iter().rposition(|before| before.who == frame.who && before.act().is_some())
+    else {
+        return false;
+    };
+    let stood = matches!(frames[before].act(), Some(Act::Stop | Act::Hold)) && frames[before].sense != Sense::Parked;
+    let end = behind(frames, before, sentences);
+    stood
+        && frames[before].happened()
+        && tokens[frames[before].first..end].iter().any(|token| matches!(token.text.as_str(), "sign" | "light" | "signal"))
+}
+
+/// "came into the street on the wrong side, against the traffic".
+fn against_traffic(frame: &Frame, words: &[&str]) -> bool {
+    let moves = matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::SetOff));
+    let against = words.windows(3).any(|three| {
+        three[0] == "against" && (three[1] == "traffic" || three[1] == "the" && three[2] == "traffic")
+            || three == ["the", "wrong", "side"]
+    });
+    moves && against && frame.happened() && frame.who != Some(SUBJECT)
+}
+
 /// "entered the crosswalk at a run against the pedestrian signal".
 fn against_signal(words: &[&str]) -> bool {
     words.iter().enumerate().any(|(at, word)| {
@@ -191,8 +235,12 @@ pub(super) fn names_door(frame: &Frame, tokens: &[Token], sentences: &[Sentence]
         text.starts_with("door")
             || matches!(text, "hatch" | "trunk" | "liftgate" | "tailgate" | "hood" | "gate" | "gates" | "ramp")
     };
+    // "the lane that opens on the left".
+    let lane = tokens[sentence.first.max(frame.first.saturating_sub(3))..frame.first]
+        .iter()
+        .any(|token| matches!(token.text.as_str(), "lane" | "lanes" | "pocket" | "road" | "street" | "gap"));
     !opens
-        || frame.form == Form::Present
+        || frame.form == Form::Present && !lane
         || frame.progress == Progress::Wished
         || tokens[sentence.first..sentence.end].iter().any(|token| word(&token.text))
 }

@@ -3,6 +3,7 @@
 mod adverbs;
 mod attach;
 mod build;
+mod doors;
 mod joint;
 mod named;
 mod object;
@@ -153,6 +154,12 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             let next = tokens.get(at + 1).map_or("", |next| next.text.as_str());
             matches!(next, "2" | "3" | "4" | "5")
         };
+        // "V-1", "P-2".
+        let dashed = matches!(tokens[at].text.as_str(), "v" | "p")
+            && tokens.get(at + 1).is_some_and(|next| {
+                next.start == tokens[at].end + 1 && matches!(next.text.as_str(), "1" | "2" | "3" | "4" | "5")
+            });
+        let unit = unit || dashed;
         if let Some(number) = number.map(str::to_owned) {
             let middle = tokens[at].start + 1;
             let end = std::mem::replace(&mut tokens[at].end, middle);
@@ -203,6 +210,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     }
     frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
     adverbs::apply(&mut frames, &tokens, &sentences);
+    doors::settle(&mut frames, &tokens, &sentences, &world);
     // "a sedan and a van collided": with each other.
     for at in 1..frames.len() {
         let (before, after) = frames.split_at_mut(at);

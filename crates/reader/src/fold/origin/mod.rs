@@ -28,7 +28,10 @@ impl Clues<'_> {
             self.reading.contacts.first.map_or(usize::MAX, |number| self.reading.story.frames[number].sentence);
         let known = &self.reading.story.world.actors[self.actor];
         let early = known.relations.iter().any(|(_, sentence)| *sentence <= contact);
-        let told = move |sentence: usize| sentence <= contact || !early && self.reading.had_before(sentence);
+        let back = &self.reading.back;
+        let told = move |sentence: usize| {
+            sentence <= contact || back.contains(&sentence) || !early && self.reading.had_before(sentence)
+        };
         known.relations.iter().filter(move |(_, sentence)| told(*sentence)).map(|(relation, _)| *relation)
     }
 

@@ -192,7 +192,7 @@ impl<'a> Case<'a> {
     fn other_way(&self) -> bool {
         self.turn == Some(4)
             && !(self.did(Act::Turn) || self.did(Act::UTurn) || self.did(Act::WrongWay))
-            && told(&self.partner.state) == Some(ContactState::Moving)
+            && matches!(told(&self.partner.state), Some(ContactState::Moving | ContactState::SettingOff))
     }
 
     /// Thrown at its plain rear, from whatever lane it was in.

@@ -1,0 +1,75 @@
+//! Reports that tell the crash first, and then how it came to it.
+
+use super::contact::Contacts;
+use crate::frame::{Frame, Story};
+use crate::lexicon::{Form, Sense};
+use crate::world::SUBJECT;
+use recrash_model::account::Act;
+use std::ops::Range;
+
+/// The sentences behind the one of the crash that tell what had been before it; empty where the story goes straight on.
+pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
+    let Some(contact) = contacts.first.map(|number| &story.frames[number]) else { return 0..0 };
+    let lead = contact.sentence;
+    let acts = |frame: &&Frame| frame.act().is_some() && frame.happened() && !frame.aside;
+    if !contact.is_contact() || story.frames.iter().filter(acts).any(|frame| frame.sentence < lead) {
+        return 0..0;
+    }
+    let tells = |sentence: &usize| story.frames.iter().any(|frame| frame.sentence == *sentence && !frame.aside);
+    let next = (lead + 1..story.sentences.len()).find(tells);
+    let begins = (lead + 1..story.sentences.len())
+        .find(|&sentence| had_been(story, contacts, sentence) || Some(sentence) == next && was_under_way(story, sentence));
+    let Some(begin) = begins else { return 0..0 };
+    let end = (begin..story.sentences.len()).find(|&sentence| is_aftermath(story, sentence));
+    begin..end.unwrap_or(story.sentences.len())
+}
+
+/// "had been traveling", "had stopped", of one of the two.
+fn had_been(story: &Story, contacts: &Contacts, sentence: usize) -> bool {
+    let one = |frame: &&Frame| frame.who.is_some() && (frame.who == Some(SUBJECT) || frame.who == contacts.partner);
+    let told = story.frames.iter().filter(|frame| frame.sentence == sentence && !frame.aside && !frame.negated);
+    told.filter(one).any(|frame| {
+        let from = story.sentences[sentence].first.max(frame.first.saturating_sub(4));
+        let had = story.tokens[from..=frame.first].iter().any(|token| token.text == "had");
+        had && !matches!(frame.act(), None | Some(Act::Leave | Act::PullOver | Act::Pushed))
+    })
+}
+
+/// "was heading north", "was northbound": how things stood when it happened.
+fn was_under_way(story: &Story, sentence: usize) -> bool {
+    let Some(first) = story.frames.iter().find(|frame| frame.sentence == sentence && !frame.aside) else { return false };
+    let words = story.sentences[sentence];
+    let was = |at: usize| matches!(story.tokens[at].text.as_str(), "was" | "were");
+    let bound = (words.first + 1..words.end).any(|at| was(at - 1) && story.tokens[at].text.ends_with("bound"));
+    let going = first.form == Form::Ing
+        && first.act().is_some_and(|act| act != Act::Leave)
+        && (first.first.saturating_sub(2).max(words.first)..=first.first).any(was);
+    first.happened() && (bound || going)
+}
+
+/// What came of the crash: harm, police, exchanges of details, who left.
+fn is_aftermath(story: &Story, sentence: usize) -> bool {
+    const AFTERMATH: [&str; 22] = [
+        "injury", "injuries", "injured", "hurt", "police", "officer", "officers", "damage", "damaged", "exchanged",
+        "towed", "tow", "scene", "reported", "reportable", "afterwards", "thereafter", "subsequently", "hospital", "incident", "pictures",
+        "photographs",
+    ];
+    let words = story.sentences[sentence];
+    let left = |frame: &Frame| frame.sentence == sentence && frame.act() == Some(Act::Leave) && frame.happened();
+    let harmed = |frame: &Frame| frame.sentence == sentence && frame.sense == Sense::Damage;
+    let tokens = &story.tokens[words.first..words.end];
+    let after = tokens.iter().take(2).any(|token| matches!(token.text.as_str(), "after" | "following"))
+        && tokens.iter().take(6).any(|token| {
+            matches!(token.text.as_str(), "contact" | "collision" | "crash" | "impact" | "accident" | "this" | "that")
+        });
+    // "The operator took over and pulled to the side."
+    let sense = |wanted: fn(&Frame) -> bool| {
+        story.frames.iter().any(|frame| frame.sentence == sentence && frame.who == Some(SUBJECT) && wanted(frame))
+    };
+    let parks = sense(|frame| frame.sense == Sense::TakeOver)
+        && sense(|frame| matches!(frame.act(), Some(Act::Park | Act::PullOver)));
+    after
+        || parks
+        || tokens.iter().any(|token| AFTERMATH.contains(&token.text.as_str()))
+        || story.frames.iter().any(|frame| left(frame) || harmed(frame))
+}
