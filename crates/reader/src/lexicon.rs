@@ -640,6 +640,21 @@ mod tests {
         assert!(matches!(verb_at_start("hit the pole"), Some(Meaning::Verb(Sense::Contact, _))));
     }
 
+    /// A past form in the list would be taken for a base form, and "ran over" for no verb.
+    #[test]
+    fn verbs_are_listed_by_their_base_forms() {
+        let file: toml::Table = toml::from_str(TEXT).unwrap();
+        let irregular = file["irregular"].as_table().unwrap();
+        let forms = irregular.iter().flat_map(|(_, forms)| forms.as_array().unwrap().get(2));
+        let past: Vec<&str> =
+            forms.filter_map(|form| form.as_str()).filter(|form| !irregular.contains_key(*form)).collect();
+        let verbs = file["verb"].as_array().unwrap().iter().filter(|verb| verb["sense"].as_str() == Some("contact"));
+        for phrase in verbs.flat_map(|verb| verb["words"].as_array().unwrap()).filter_map(|phrase| phrase.as_str()) {
+            let first = phrase.split(' ').next().unwrap();
+            assert!(!past.contains(&first), "{phrase}");
+        }
+    }
+
     #[test]
     fn the_longest_phrase_counts() {
         assert_eq!(at_start("passenger car"), Some(Meaning::Kind(Kind::PassengerCar)));

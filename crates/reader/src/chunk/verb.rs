@@ -302,6 +302,12 @@ impl Chunker<'_> {
         if self.text(at) == "traffic" {
             return true;
         }
+        // "rolled into the middle of its lane".
+        let of =
+            self.text(at) == "the" && matches!(self.text(at + 1), "middle" | "center") && self.text(at + 2) == "of";
+        if of && (at + 3..at + 8).any(|at| matches!(self.text(at), "lane" | "lanes" | "roadway" | "road" | "street")) {
+            return true;
+        }
         let begins = match self.noun(at) {
             Some((_, length)) if self.text(at + length) == "'s" => at + length + 1,
             Some(_) => return false,

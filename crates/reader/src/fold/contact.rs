@@ -187,14 +187,14 @@ fn goes_on(story: &Story, number: usize) -> bool {
             && frame.act().is_some()
             && frame.happened()
     };
-    let words: Vec<&str> =
-        story.tokens[sentence.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
+    let words: Vec<&str> = story.tokens[sentence.first..sentence.end].iter().map(|token| token.text.as_str()).collect();
     // "When it set off for the second time, a van hit it" is one touch.
     let contact = story.frames[number].first - sentence.first;
     let of_before = |at: usize| words.get(at + 1) == Some(&"time") && at < contact;
-    let again = words.iter().enumerate().any(|(at, word)| {
-        matches!(*word, "again" | "second" | "another" | "third" | "times") && !of_before(at)
-    });
+    let again = words
+        .iter()
+        .enumerate()
+        .any(|(at, word)| matches!(*word, "again" | "second" | "another" | "third" | "times") && !of_before(at));
     if story.frames.iter().filter(|frame| leads(frame)).count() > 1 && !again {
         return false;
     }

@@ -3,6 +3,7 @@
 use super::Reading;
 use crate::frame::{Frame, Story};
 use crate::lexicon::{Lexicon, Occupant, Sense};
+use crate::token::Token;
 use crate::world::SUBJECT;
 use recrash_model::account::{Act, Driver, Fact};
 use recrash_model::record::{Coded, Engagement};
@@ -29,16 +30,17 @@ pub(super) fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
             && frame.who.is_none_or(|who| who == SUBJECT)
             && (!reading.is_after(*number) || told_again(*number) || had_done(reading, frame))
     });
+    // "Autonomy had been active within the 30 seconds before", told further on.
+    let later = |from: usize| {
+        let rest = story.sentences.iter().filter(|sentence| sentence.first >= from);
+        rest.take(2).any(|sentence| just_before(&story.tokens[sentence.first..sentence.end]))
+    };
     let mut system = None;
     let mut human = None;
     let mut handed_over = false;
     for sentence in &story.sentences {
         let words = &story.tokens[sentence.first..sentence.end];
-        let at_impact = words
-            .iter()
-            .take(7)
-            .any(|token| matches!(token.text.as_str(), "impact" | "collision" | "contact" | "incident" | "crash"))
-            && words.first().is_some_and(|token| token.text == "at");
+        let at_impact = at_impact(words);
         let in_time_before =
             words.iter().any(|token| matches!(token.text.as_str(), "30" | "seconds" | "prior" | "within"));
         handed_over |= just_before(words);
@@ -48,8 +50,14 @@ pub(super) fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         let said_human = lexicon.human(words).map(|(at, length)| (Driver::Human, sentence.first + at, length));
         let said_human = said_human.filter(|(_, at, _)| !of_another(story, *at));
         let said_system = lexicon.system(words).map(|(at, length)| (Driver::System, sentence.first + at, length));
-        if at_impact && let Some((value, at, length)) = said_human.or(said_system) {
-            let value = if value == Driver::Human && took_over.is_some() { Driver::HumanTookOver } else { value };
+        let said_then = said_human.filter(|_| at_the_time(words));
+        if let Some((value, at, length)) = said_human.or(said_system).filter(|_| at_impact).or(said_then) {
+            let until = handed_over
+                || words
+                    .iter()
+                    .any(|token| matches!(token.text.as_str(), "disengaged" | "longer" | "switched" | "off"));
+            let human = value == Driver::Human && (took_over.is_some() || until || later(sentence.end));
+            let value = if human { Driver::HumanTookOver } else { value };
             return Some(reading.told(value, at, at + length));
         }
         if !in_time_before && !sentence_after(reading, sentence.first) {
@@ -81,6 +89,29 @@ pub(super) fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
         Coded::Known(Engagement::NotEngaged) => Some(Fact::of_column(Driver::Human, "Engagement Status")),
         _ => None,
     }
+}
+
+/// Whether a sentence tells of the moment of the crash: "At impact", "by the time of the contact".
+fn at_impact(words: &[Token]) -> bool {
+    let crash =
+        |token: &Token| matches!(token.text.as_str(), "impact" | "collision" | "contact" | "incident" | "crash");
+    let begins = words.first().is_some_and(|token| matches!(token.text.as_str(), "at" | "by"));
+    let moment = |run: &[Token]| {
+        matches!(run[0].text.as_str(), "at" | "by")
+            && matches!(run[2].text.as_str(), "moment" | "time" | "instant")
+            && run[3].text == "of"
+            && run[4..].iter().any(crash)
+    };
+    begins && words.iter().take(7).any(crash) || words.windows(6).any(moment)
+}
+
+/// "was being driven manually at the time".
+fn at_the_time(words: &[Token]) -> bool {
+    let ends = |at: usize| words.get(at).is_none_or(|token| matches!(token.text.as_str(), "." | "," | ";" | "and"));
+    (3..words.len()).any(|at| {
+        let run: Vec<&str> = words[at - 2..=at].iter().map(|token| token.text.as_str()).collect();
+        run == ["at", "the", "time"] && ends(at + 1)
+    })
 }
 
 /// Whether the words at this token tell of another vehicle: "a second one, operating in manual mode, struck it".
@@ -124,16 +155,16 @@ fn by_hand<'a>(reading: &'a Reading<'_>) -> Option<&'a Frame> {
 
 /// Whether a sentence says that the system drove, or handed over, in the half minute before: "autonomy was engaged within the
 /// 30 second period".
-fn just_before(words: &[crate::token::Token]) -> bool {
+fn just_before(words: &[Token]) -> bool {
     let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
     any(&["second", "seconds"])
-        && any(&["within", "prior", "before"])
+        && any(&["within", "prior", "before", "earlier", "less", "during", "in"])
         && any(&["autonomy", "disengaged", "autonomous", "autonomously", "engaged"])
         && !any(&["not", "minutes"])
 }
 
 /// Where a sentence says "in manual mode for approximately 10 seconds prior": the system drove until then.
-fn by_hand_for(words: &[crate::token::Token]) -> Option<usize> {
+fn by_hand_for(words: &[Token]) -> Option<usize> {
     let any = |wanted: &[&str]| words.iter().any(|token| wanted.contains(&token.text.as_str()));
     let at =
         words.windows(3).position(|run| run[0].text == "manual" && run[1].text == "mode" && run[2].text == "for")?;

@@ -17,8 +17,9 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     }
     let tells = |sentence: &usize| story.frames.iter().any(|frame| frame.sentence == *sentence && !frame.aside);
     let next = (lead + 1..story.sentences.len()).find(tells);
-    let begins = (lead + 1..story.sentences.len())
-        .find(|&sentence| had_been(story, contacts, sentence) || Some(sentence) == next && was_under_way(story, sentence));
+    let begins = (lead + 1..story.sentences.len()).find(|&sentence| {
+        had_been(story, contacts, sentence) || Some(sentence) == next && was_under_way(story, sentence)
+    });
     let Some(begin) = begins else { return 0..0 };
     let end = (begin..story.sentences.len()).find(|&sentence| is_aftermath(story, sentence));
     begin..end.unwrap_or(story.sentences.len())
@@ -37,11 +38,14 @@ fn had_been(story: &Story, contacts: &Contacts, sentence: usize) -> bool {
 
 /// "was heading north", "was northbound": how things stood when it happened.
 fn was_under_way(story: &Story, sentence: usize) -> bool {
-    let Some(first) = story.frames.iter().find(|frame| frame.sentence == sentence && !frame.aside) else { return false };
+    let Some(first) = story.frames.iter().find(|frame| frame.sentence == sentence && !frame.aside) else {
+        return false;
+    };
     let words = story.sentences[sentence];
     let was = |at: usize| matches!(story.tokens[at].text.as_str(), "was" | "were");
     let bound = (words.first + 1..words.end).any(|at| was(at - 1) && story.tokens[at].text.ends_with("bound"));
-    let going = first.form == Form::Ing
+    let stood = first.act() == Some(Act::Hold) && was(first.first);
+    let going = (first.form == Form::Ing || stood)
         && first.act().is_some_and(|act| act != Act::Leave)
         && (first.first.saturating_sub(2).max(words.first)..=first.first).any(was);
     first.happened() && (bound || going)
@@ -50,8 +54,27 @@ fn was_under_way(story: &Story, sentence: usize) -> bool {
 /// What came of the crash: harm, police, exchanges of details, who left.
 fn is_aftermath(story: &Story, sentence: usize) -> bool {
     const AFTERMATH: [&str; 22] = [
-        "injury", "injuries", "injured", "hurt", "police", "officer", "officers", "damage", "damaged", "exchanged",
-        "towed", "tow", "scene", "reported", "reportable", "afterwards", "thereafter", "subsequently", "hospital", "incident", "pictures",
+        "injury",
+        "injuries",
+        "injured",
+        "hurt",
+        "police",
+        "officer",
+        "officers",
+        "damage",
+        "damaged",
+        "exchanged",
+        "towed",
+        "tow",
+        "scene",
+        "reported",
+        "reportable",
+        "afterwards",
+        "thereafter",
+        "subsequently",
+        "hospital",
+        "incident",
+        "pictures",
         "photographs",
     ];
     let words = story.sentences[sentence];

@@ -3,7 +3,9 @@
 use super::Reading;
 use super::standing::reasons;
 use crate::world::SUBJECT;
-use recrash_model::account::{Account, Act, ContactState, Fact, KindGroup, Party, SpeedMeaning, StandReason, Standing, told};
+use recrash_model::account::{
+    Account, Act, ContactState, Fact, KindGroup, Party, SpeedMeaning, StandReason, Standing, told,
+};
 use recrash_model::template::Movement;
 
 /// State of the subject vehicle: the words, the column speed and the movement column, which each know a part of it.

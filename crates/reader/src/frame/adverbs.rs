@@ -1,7 +1,8 @@
 //! What the words behind a verb make of it: "emerged in reverse", "entered against the signal", "passed in front of the bus".
 
 use super::Frame;
-use crate::lexicon::{Form, Progress, Relation, Sense};
+use crate::chunk::Piece;
+use crate::lexicon::{Form, Part, Progress, Relation, Sense};
 use crate::token::{Sentence, Token};
 use crate::world::SUBJECT;
 use recrash_model::account::Act;
@@ -60,6 +61,11 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
         } else if against_traffic(frame, &words) {
             frames[number].sense = Sense::Act(Act::WrongWay);
         }
+        if let (true, None, Some(part)) =
+            (frames[number].is_contact(), &frames[number].with, own_end(&frames[number], &words))
+        {
+            frames[number].with = Some(Piece::of(part));
+        }
         let frame = &frames[number];
         let goes =
             matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::Cross | Act::Turn | Act::SetOff | Act::Pass));
@@ -70,6 +76,17 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
         }
         number += 1;
     }
+}
+
+/// "drove its front end into", "swung its tail into": the end that touches stands within the verb.
+fn own_end(frame: &Frame, words: &[&str]) -> Option<Part> {
+    let verb = &words[..frame.end.saturating_sub(frame.first).min(words.len())];
+    let into = verb.iter().position(|word| matches!(*word, "into" | "against"))?;
+    verb[..into].windows(2).filter(|pair| matches!(pair[0], "its" | "their")).find_map(|pair| match pair[1] {
+        "front" | "nose" => Some(Part::Front),
+        "rear" | "tail" => Some(Part::Rear),
+        _ => None,
+    })
 }
 
 /// The token behind the words of a frame: where the next one begins, or the sentence ends.
@@ -174,9 +191,9 @@ fn pulls_out_to_pass(frames: &[Frame], number: usize, words: &[&str]) -> bool {
 /// "had stopped in a lot, headed north": where it faces.
 fn headed_as_it_stands(frames: &[Frame], number: usize, words: &[&str]) -> bool {
     let frame = &frames[number];
-    let before = frames[..number].last().filter(|before| {
-        (before.sentence, before.clause, before.who) == (frame.sentence, frame.clause, frame.who)
-    });
+    let before = frames[..number]
+        .last()
+        .filter(|before| (before.sentence, before.clause, before.who) == (frame.sentence, frame.clause, frame.who));
     frame.act() == Some(Act::Follow)
         && words.first() == Some(&"headed")
         && before.is_some_and(|before| matches!(before.act(), Some(Act::Hold | Act::Stop)) && before.happened())
@@ -196,7 +213,9 @@ fn leaves_a_control(frames: &[Frame], number: usize, tokens: &[Token], sentences
     let end = behind(frames, before, sentences);
     stood
         && frames[before].happened()
-        && tokens[frames[before].first..end].iter().any(|token| matches!(token.text.as_str(), "sign" | "light" | "signal"))
+        && tokens[frames[before].first..end]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "sign" | "light" | "signal"))
 }
 
 /// "came into the street on the wrong side, against the traffic".

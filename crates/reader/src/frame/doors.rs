@@ -28,7 +28,7 @@ pub(super) fn settle(frames: &mut [Frame], tokens: &[Token], sentences: &[Senten
             // "..., and it hit the vehicle": the door did.
             let door = other.is_contact() && somebody.is_some();
             if other.who == who && (door || other.act() == Some(Act::OpenDoor)) {
-                other.who = Some(owner);
+                (other.who, other.with) = (Some(owner), other.with.take().filter(|piece| piece.door));
             }
         }
     }
@@ -38,9 +38,7 @@ pub(super) fn settle(frames: &mut [Frame], tokens: &[Token], sentences: &[Senten
 fn one_of_ours(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool {
     let from = sentences[frame.sentence].first.max(frame.first.saturating_sub(6));
     let words: Vec<&str> = tokens[from..frame.first].iter().map(|token| token.text.as_str()).collect();
-    let people = |word: &str| {
-        matches!(word, "passengers" | "riders" | "occupants" | "customers" | "them")
-    };
+    let people = |word: &str| matches!(word, "passengers" | "riders" | "occupants" | "customers" | "them");
     let Some(at) = words.windows(2).rposition(|pair| pair == ["one", "of"]) else { return false };
     let rest = &words[at + 2..];
     rest.iter().any(|word| people(word)) && !rest.contains(&"of")
