@@ -34,7 +34,7 @@ impl Contacts {
         let mut contacts = Self::default();
         if let Some(&(first, partner)) = touching.first() {
             // A headline that tells the contact is told again, in full, by the story.
-            let early = story.standing.iter().position(|standing| !standing).unwrap_or(0);
+            let early = story.frames.first().map_or(0, |frame| frame.sentence);
             // "A van rear-ended it. ... A passenger car rear-ended it": the same one, called otherwise.
             let names = |frame: &Frame, other: Actor| {
                 [frame.who, frame.object].contains(&Some(other)) && !story.world.actors[other].another

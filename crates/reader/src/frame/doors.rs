@@ -34,6 +34,25 @@ pub(super) fn settle(frames: &mut [Frame], tokens: &[Token], sentences: &[Senten
     }
 }
 
+/// "hit that door", "caught the open door": it touches whose door was opened last.
+pub(super) fn touched(frames: &mut [Frame], tokens: &[Token]) {
+    let mut opened: Option<Actor> = None;
+    for frame in frames {
+        if frame.act() == Some(Act::OpenDoor) && frame.happened() {
+            opened = frame.who.or(opened);
+        }
+        let door = || {
+            let words = &tokens[frame.first..tokens.len().min(frame.end + 4)];
+            let at = words.iter().position(|token| token.text == "door")?;
+            at.checked_sub(1).map(|before| words[before].text.as_str())
+        };
+        let hits = frame.is_contact() && frame.object.is_none() && frame.who.is_some() && frame.who != opened;
+        if hits && matches!(door(), Some("the" | "that" | "this" | "open" | "opened" | "opening")) {
+            frame.object = opened;
+        }
+    }
+}
+
 /// "one of our passengers", "one of them" who got out of the subject vehicle.
 fn one_of_ours(frame: &Frame, tokens: &[Token], sentences: &[Sentence]) -> bool {
     let from = sentences[frame.sentence].first.max(frame.first.saturating_sub(6));

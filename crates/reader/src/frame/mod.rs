@@ -211,6 +211,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
     adverbs::apply(&mut frames, &tokens, &sentences);
     doors::settle(&mut frames, &tokens, &sentences, &world);
+    doors::touched(&mut frames, &tokens);
     // "a sedan and a van collided": with each other.
     for at in 1..frames.len() {
         let (before, after) = frames.split_at_mut(at);
