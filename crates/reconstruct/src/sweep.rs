@@ -27,20 +27,23 @@ pub(crate) struct Bend {
     pub(crate) length_m: f64,
 }
 
-/// Ways in which the partner touches as it turns, the first of them with this number; none of who walks, stands, reverses or is thrown.
-pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize) -> Vec<Staging> {
+/// Ways in which the partner touches as it turns, the first of them with this number, nearer to the told zones than so many steps; none of
+/// who walks, stands, reverses or is thrown.
+pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u32) -> Vec<Staging> {
     let drives = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff);
     let wheels = VehicleSpec::of(told.cp.kind).length_m > 2.5;
     if !drives || !wheels || told.thing.is_some() || told.rig.is_some() || told.is_thrown() {
         return Vec::new();
     }
+    let off = |sv: ContactZone, cp: ContactZone| zones_off(&told.sv.zones, sv) + zones_off(&told.cp.zones, cp);
+    let pairs: Vec<_> = zone_pairs(told).into_iter().filter(|(sv, cp)| off(*sv, *cp) < nearer).collect();
     let mut found = Vec::new();
     for sv_s_m in ground.places() {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         for (came, heading) in headings(told, sv.heading, sv.heading) {
             for (curvature, by_rad) in bends(told) {
                 let length_m = by_rad / curvature.abs();
-                for (sv_zone, cp_zone) in zone_pairs(told) {
+                for &(sv_zone, cp_zone) in &pairs {
                     for (sv_point, cp_point) in
                         points(sv_zone).iter().flat_map(|a| points(cp_zone).iter().map(move |b| (*a, *b)))
                     {
@@ -49,7 +52,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize) -> Vec<St
                         else {
                             continue;
                         };
-                        let off = zones_off(&told.sv.zones, seen.0) + zones_off(&told.cp.zones, seen.1);
+                        let off = off(seen.0, seen.1);
                         let bend = Some(Bend { from: back(told, cp, curvature, length_m), length_m });
                         found.push(Staging {
                             ground: ground.clone(),

@@ -160,17 +160,12 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
             }
         }
     }
-    let far_off = if told.rubs_by() { RUBS_OFF } else { FAR_OFF };
-    if found.iter().all(|staging| staging.cost.0 >= far_off) {
-        found.extend(sweep::stagings(told, ground, trial));
+    let nearest = found.iter().map(|staging| staging.cost.0).min().unwrap_or(u32::MAX);
+    if nearest > 0 {
+        found.extend(sweep::stagings(told, ground, trial, nearest));
     }
     found
 }
-
-/// Where no way of touching is nearer than this to the told zones, the partner turns as it touches; the second of who rubs its flank along an ego
-/// that stands.
-const FAR_OFF: u32 = 2;
-const RUBS_OFF: u32 = 1;
 
 /// Whether two that touch do so with a front on a rear, and not along a flank: seen along the ego they overlap less than across it.
 fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
@@ -262,12 +257,6 @@ impl Told {
             Some(Striker::Sv) if drives(&self.sv) && self.sv.zones.is_empty() => cp_seen.is_front() && flank(sv_seen),
             _ => false,
         }
-    }
-
-    /// Whether the partner rubs its flank along an ego that stands: who drives straight by would touch it with its front.
-    fn rubs_by(&self) -> bool {
-        let flank = |zone: &ContactZone| matches!(zone, ContactZone::Left | ContactZone::Right);
-        self.sv.state.stands() && !self.cp.zones.is_empty() && self.cp.zones.iter().all(flank)
     }
 
     /// Whether both are side by side in lanes for the same turn.
