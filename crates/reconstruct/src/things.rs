@@ -154,12 +154,20 @@ impl Told {
     }
 }
 
-/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched.
-pub(crate) fn goes_under(ego: &ActorTrack, thing: Option<&ActorTrack>, lying: &OrientedBox, since: usize) -> bool {
+/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched; of an animal where it was then: whoever is
+/// touched is pushed on, as nothing here has a height.
+pub(crate) fn goes_under(
+    told: &Told,
+    ego: &ActorTrack,
+    thing: Option<&ActorTrack>,
+    touched: &OrientedBox,
+    since: usize,
+) -> bool {
+    let moves = thing.filter(|_| told.cp.kind != PartnerKind::Animal);
     (since..ego.states.len()).any(|step| {
         let pose = ego.states[step].pose();
         let body = OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
-        body.overlaps(&thing.map_or(*lying, |track| track.outline(step.min(track.states.len() - 1))))
+        body.overlaps(&moves.map_or(*touched, |track| track.outline(step.min(track.states.len() - 1))))
     })
 }
 
