@@ -306,6 +306,12 @@ fn is_drawn(other: &Other) -> bool {
 }
 
 impl Extra {
+    /// Whether it has no part in what the ego does, and is on a road that crosses the ego's, or turns into one.
+    pub(crate) fn is_at_junction(&self) -> bool {
+        let turns = |near: Near| matches!(near.does, Does::Turns(_) | Does::TurnsLeft);
+        self.near.is_some_and(|near| near.across || matches!(near.place, Some(Origin::Cross { .. })) || turns(near))
+    }
+
     /// Somebody who has no part in what the ego does.
     pub(crate) fn near(near: Near, of: usize, kind: Kind) -> Self {
         Self { of: vec![of], kind, near: Some(near), ..Self::of_reason(Role::Near) }

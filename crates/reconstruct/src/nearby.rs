@@ -45,6 +45,9 @@ const BACKS_MPS2: f64 = 1.0;
 const CHANGES_S: f64 = 3.5;
 const CHANGED_BEFORE_S: f64 = 0.5;
 
+/// Who makes room for somebody between it and the ego is so far over in its lane. [m]
+const FAR_OVER_M: f64 = 0.9;
+
 /// Who comes over ahead of an ego that stands does so slowly. [m/s]
 const MERGES_MPS: f64 = 3.0;
 
@@ -269,7 +272,12 @@ impl<'a> Scene<'a> {
     }
 
     fn against(&self, s_m: f64) -> Pose {
-        let pose = self.road(s_m, -self.ground.opposing_m);
+        self.against_in(0, s_m)
+    }
+
+    /// In a lane towards the ego, 0 is the next one.
+    fn against_in(&self, lane: usize, s_m: f64) -> Pose {
+        let pose = self.road(s_m, -self.ground.opposing_m - lane as f64 * LANE_M);
         Pose { heading: pose.heading + std::f64::consts::PI, ..pose }
     }
 
@@ -376,12 +384,14 @@ impl<'a> Scene<'a> {
             Role::Abreast => sides.into_iter().flat_map(|side| self.beside(side)).collect(),
             Role::Crosser => sides.into_iter().flat_map(|side| self.crosses(side, Does::Drives, half_m)).collect(),
             Role::Oncoming if self.is_two_way() => [0.5, 1.0, 2.0, 3.0, 4.5, 5.2]
-                .map(|before_s| {
+                .into_iter()
+                .flat_map(|before_s| {
                     let at_s = (self.contact_s - before_s).max(0.5);
                     let (s_m, _) = self.at(((at_s * 10.0) as usize).min(self.until));
-                    Way::straight(self.against(s_m), DRIVES_MPS, at_s)
+                    let lanes = 0..self.ground.oncoming.max(1);
+                    lanes.map(move |lane| Way::straight(self.against_in(lane, s_m), DRIVES_MPS, at_s))
                 })
-                .into(),
+                .collect(),
             Role::Lead | Role::Thing if !extra.goes => self.stands_ahead(half_m, 0.0),
             Role::Lead => self.setting_off(half_m),
             Role::Slower => self.leads(half_m).into_iter().map(|way| Way { slows: true, ..way }).collect(),
@@ -507,6 +517,14 @@ impl<'a> Scene<'a> {
             };
             list.extend([0.0, -6.0, 6.0, -12.0].map(rests));
         }
+        // Far over in its lane, where somebody comes between.
+        let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        let over = |way: &Way| {
+            let away = Vec2::from_heading(way.from.heading).left() * (-sign * FAR_OVER_M);
+            Way { from: Pose { position: way.from.position + away, ..way.from }, by: Vec::new(), ..*way }
+        };
+        let far: Vec<Way> = list.iter().map(over).collect();
+        list.extend(far);
         list
     }
 
@@ -627,7 +645,7 @@ impl<'a> Scene<'a> {
         let mut list = Vec::new();
         if does != Does::Stands {
             let through = |before_s: f64| Way::straight(line, DRIVES_MPS, self.contact_s - before_s);
-            list.extend([2.5, 4.0, 5.5, 7.0].map(through));
+            list.extend([2.5, 4.0, 5.5, 7.0, 1.2, 3.2].map(through));
             // Yet to come.
             list.extend([-2.0, -3.5].map(through));
         }
