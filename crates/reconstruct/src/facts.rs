@@ -113,7 +113,10 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     }
     if !told.sv.zones.is_empty() {
         let near = is_near(&told.sv.zones, geometry.ego_zone, &ego_box, geometry.point);
-        fact(CheckKind::SvZones, near, zone_words(&told.sv.zones), geometry.ego_zone.label().to_owned());
+        let since = (touch.time_s / STEP_S) as usize;
+        let over = !near && things::rear_goes_over(told, ego_track, &touch.other_box, since);
+        let observed = geometry.ego_zone.label().to_owned() + if over { ", and the rear goes over it" } else { "" };
+        fact(CheckKind::SvZones, near || over, zone_words(&told.sv.zones), observed);
     }
     if !told.cp.zones.is_empty() && told.thing.is_none() {
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);

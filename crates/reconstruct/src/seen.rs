@@ -76,10 +76,7 @@ impl<'a> Seen<'a> {
     pub(crate) fn reason(&self, reason: StandReason) -> bool {
         let is = |role: Role| self.told.wanted.iter().any(|extra| extra.role == role && self.holds(extra));
         match reason {
-            // Where nobody else is named it may be the partner, wherever that came from.
-            StandReason::LeadVehicle if self.told.origin == Origin::Ahead || self.told.others == 0 => {
-                is(Role::Lead) || self.partner_leads()
-            }
+            StandReason::LeadVehicle if self.told.origin == Origin::Ahead => is(Role::Lead) || self.partner_leads(),
             // The queue ends behind the junction that the ego keeps clear.
             StandReason::Queue if self.told.reasons.contains(&StandReason::BlockedJunction) => {
                 is(Role::Lead) || is(Role::Beyond)

@@ -12,10 +12,10 @@ use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind, Source,
     Striker, told,
 };
-use recrash_model::geometry::OrientedBox;
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::ActorTrack;
+use recrash_model::rollout::{ActorTrack, STEP_S};
 use recrash_model::scenario::{ObstacleKind, Size};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -169,6 +169,33 @@ pub(crate) fn goes_under(
         let body = OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
         body.overlaps(&moves.map_or(*touched, |track| track.outline(step.min(track.states.len() - 1))))
     })
+}
+
+/// Whether an ego that drives on is told to have been touched at its rear alone by a hole, or by what lies flat in its way.
+fn passes_over(told: &Told) -> bool {
+    let low = told.lies == Some(Lies::Hole) || told.thing == Some(Kind::Debris) && told.edge.is_none();
+    low && told.sv.state == ContactState::Moving && told.sv.zones.iter().all(|zone| zone.is_rear())
+}
+
+/// Whether the told part of the ego's rear goes over what lies in its way, which its front has come over.
+pub(crate) fn rear_goes_over(told: &Told, ego: &ActorTrack, lying: &OrientedBox, since: usize) -> bool {
+    let half_m = Vec2::new(0.5 * ego.length_m, 0.5 * ego.width_m);
+    let over = |zone: &ContactZone, step: usize| {
+        let left = match zone {
+            ContactZone::RearLeft => 1.0,
+            ContactZone::RearRight => -1.0,
+            _ => 0.0,
+        };
+        let state = &ego.states[step];
+        let (pose, on) = (state.pose(), state.velocity() * STEP_S);
+        let along = Vec2::from_heading(pose.heading);
+        let middle = pose.position - along * (0.75 * half_m.x) + along.left() * (left * half_m.y * 2.0 / 3.0);
+        // As long as it comes until the next step.
+        let part = Pose { position: middle + on * 0.5, ..pose };
+        OrientedBox::new(part, 0.5 * half_m.x + on.length(), half_m.y * 2.0 / 3.0).overlaps(lying)
+    };
+    passes_over(told)
+        && (since..ego.states.len()).any(|step| told.sv.zones.iter().any(|zone| over(zone, step)))
 }
 
 /// Whether something lies in the lane for turns that the ego came along, and only a column tells that it turned.
