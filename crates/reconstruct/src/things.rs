@@ -1,6 +1,7 @@
 //! Things: how they lie; those that move by themselves, as what rolls, slides or is pushed into the way, and gates; and who walks or
 //! runs into it.
 
+use crate::extras::STANDS_MPS;
 use crate::ground::LANE_M;
 use crate::lateral::is_on_foot;
 use crate::others::Role;
@@ -146,6 +147,9 @@ pub(crate) const fn mass_kg(kind: Kind) -> Option<f64> {
 /// What is so far inside the ego's outline is under it. [m]
 const UNDER_M: f64 = 0.3;
 
+/// An animal that the ego drives over comes under it within this way. [m]
+const ONTO_M: f64 = 1.5;
+
 impl Told {
     /// Whether the partner is told to have touched the ego's underside alone, and is no thing that stands.
     pub(crate) fn is_driven_over(&self) -> bool {
@@ -154,8 +158,8 @@ impl Told {
     }
 }
 
-/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched; of an animal where it was then: whoever is
-/// touched is pushed on, as nothing here has a height.
+/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched; of an animal where it was then, as far as
+/// the ego's front comes over it at once: whoever is touched is pushed on, as nothing here has a height.
 pub(crate) fn goes_under(
     told: &Told,
     ego: &ActorTrack,
@@ -163,11 +167,16 @@ pub(crate) fn goes_under(
     touched: &OrientedBox,
     since: usize,
 ) -> bool {
-    let moves = thing.filter(|_| told.cp.kind != PartnerKind::Animal);
+    let body = |pose: Pose| OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
+    if told.cp.kind == PartnerKind::Animal {
+        let met = &ego.states[since.min(ego.states.len() - 1)];
+        let on = Vec2::from_heading(met.heading) * (met.speed().signum() * ONTO_M);
+        let moves = met.velocity().length() > STANDS_MPS;
+        return moves && body(Pose { position: met.position() + on, heading: met.heading }).overlaps(touched);
+    }
     (since..ego.states.len()).any(|step| {
-        let pose = ego.states[step].pose();
-        let body = OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
-        body.overlaps(&moves.map_or(*touched, |track| track.outline(step.min(track.states.len() - 1))))
+        let lying = thing.map_or(*touched, |track| track.outline(step.min(track.states.len() - 1)));
+        body(ego.states[step].pose()).overlaps(&lying)
     })
 }
 
