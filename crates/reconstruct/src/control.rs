@@ -97,7 +97,9 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         let program = |show: Aspect| Some(vec![Phase { show, for_s: ALWAYS_S }]);
         let arms = [("own-", along), ("ahead-", program(Aspect::Green))];
         let arms = arms.into_iter().chain(["left-", "right-"].map(|arm| (arm, program(Aspect::Red))));
-        list.extend(arms.filter_map(|(arm, program)| Some(at(arm, Device::Signal { program: program?, offset_s: 0.0 }))));
+        list.extend(
+            arms.filter_map(|(arm, program)| Some(at(arm, Device::Signal { program: program?, offset_s: 0.0 }))),
+        );
         return list;
     }
     // A light of its own that is told of who comes from ahead may show something else.

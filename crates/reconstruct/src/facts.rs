@@ -276,11 +276,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     for (kind, side) in [(CheckKind::SvZones, &told.sv), (CheckKind::CpZones, &told.cp)] {
         if side.only_above_or_below {
             let since = (touch.time_s / STEP_S) as usize;
-            let seen =
-                match told.is_driven_over() && things::goes_under(told, ego_track, touch.track, &touch.other_box, since) {
-                    true => (CheckResult::Shown, "the ego drives over it".to_owned()),
-                    false => (CheckResult::CannotBeShown, "the simulator has no height".to_owned()),
-                };
+            let seen = match told.is_driven_over()
+                && things::goes_under(told, ego_track, touch.track, &touch.other_box, since)
+            {
+                true => (CheckResult::Shown, "the ego drives over it".to_owned()),
+                false => (CheckResult::CannotBeShown, "the simulator has no height".to_owned()),
+            };
             held(kind, "top or bottom".to_owned(), seen);
         }
     }

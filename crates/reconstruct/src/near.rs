@@ -138,7 +138,9 @@ impl Near {
         deeds.dedup();
         let does = match deeds.last().copied() {
             None => all.last().copied().unwrap_or(Does::Untold),
-            Some(last @ (Does::Turns(_) | Does::PullsOut | Does::GoesAside(_) | Does::PullsOver(_) | Does::Crosses)) => {
+            Some(
+                last @ (Does::Turns(_) | Does::PullsOut | Does::GoesAside(_) | Does::PullsOver(_) | Does::Crosses),
+            ) => {
                 // One after another is not drawn.
                 (deeds.len() == 1).then_some(last)?
             }

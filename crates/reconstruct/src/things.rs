@@ -203,8 +203,7 @@ pub(crate) fn rear_goes_over(told: &Told, ego: &ActorTrack, lying: &OrientedBox,
         let part = Pose { position: middle + on * 0.5, ..pose };
         OrientedBox::new(part, 0.5 * half_m.x + on.length(), half_m.y * 2.0 / 3.0).overlaps(lying)
     };
-    passes_over(told)
-        && (since..ego.states.len()).any(|step| told.sv.zones.iter().any(|zone| over(zone, step)))
+    passes_over(told) && (since..ego.states.len()).any(|step| told.sv.zones.iter().any(|zone| over(zone, step)))
 }
 
 /// Whether something lies in the lane for turns that the ego came along, and only a column tells that it turned.

@@ -11,7 +11,8 @@ const TURNS: &str = "The AV was traveling north on Elm Street toward the interse
 const PULLS_OUT: &str = "The AV was traveling east on Elm Street. A pickup truck pulled out of a parking space on the right side of the street.";
 const SWERVES: &str = "The AV was traveling north in the right lane of two lanes on Elm Street. An SUV in the left lane swerved to the left.";
 const PULLS_OVER: &str = "The AV was traveling north on Elm Street. A box truck ahead pulled over to the right.";
-const RUNS: &str = "The AV was traveling east on Elm Street. A ball rolled into the roadway from the left side of the street.";
+const RUNS: &str =
+    "The AV was traveling east on Elm Street. A ball rolled into the roadway from the left side of the street.";
 const ON_FOOT: &str = "The AV was traveling east on Elm Street. A pedestrian crossed the street.";
 
 fn stands(actor: &mut Actor) {
