@@ -5,7 +5,7 @@ use crate::ground::Ground;
 use crate::others::Role;
 use crate::side::{Side, Turning};
 use crate::told::Told;
-use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState};
+use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState, StandReason};
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
@@ -89,7 +89,19 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
     }
     // Two arms that face each other show the same, and the other two the opposite.
     let along = own.clone().or_else(|| other.clone().map(|of| if crosses { opposite(&of) } else { of }));
-    let across = other.filter(|_| crosses).or_else(|| along.as_deref().map(opposite));
+    let across = other.clone().filter(|_| crosses).or_else(|| along.as_deref().map(opposite));
+    // Who comes by an ego that waits at red has green: all others have red then.
+    let comes_by = actors.iter().any(|actor| actor.id == Role::Oncoming.id());
+    let waits = comes_by && told.reasons.contains(&StandReason::RedLight) && other.is_none();
+    if waits {
+        let program = |show: Aspect| Some(vec![Phase { show, for_s: ALWAYS_S }]);
+        let arms = [("own-", along), ("ahead-", program(Aspect::Green))];
+        let arms = arms.into_iter().chain(["left-", "right-"].map(|arm| (arm, program(Aspect::Red))));
+        list.extend(
+            arms.filter_map(|(arm, program)| Some(at(arm, Device::Signal { program: program?, offset_s: 0.0 }))),
+        );
+        return list;
+    }
     // A light of its own that is told of who comes from ahead may show something else.
     let ahead = said[1].as_ref().filter(|(arm, ..)| *arm == "ahead-").and_then(|_| signal(&said[1]));
     for (arms, program) in [(["own-", "ahead-"], along), (["left-", "right-"], across)] {

@@ -113,7 +113,10 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     }
     if !told.sv.zones.is_empty() {
         let near = is_near(&told.sv.zones, geometry.ego_zone, &ego_box, geometry.point);
-        fact(CheckKind::SvZones, near, zone_words(&told.sv.zones), geometry.ego_zone.label().to_owned());
+        let since = (touch.time_s / STEP_S) as usize;
+        let over = !near && things::rear_goes_over(told, ego_track, &touch.other_box, since);
+        let observed = geometry.ego_zone.label().to_owned() + if over { ", and the rear goes over it" } else { "" };
+        fact(CheckKind::SvZones, near || over, zone_words(&told.sv.zones), observed);
     }
     if !told.cp.zones.is_empty() && told.thing.is_none() {
         let near = is_near(&told.cp.zones, geometry.other_zone, &touch.other_box, geometry.point);
@@ -273,11 +276,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     for (kind, side) in [(CheckKind::SvZones, &told.sv), (CheckKind::CpZones, &told.cp)] {
         if side.only_above_or_below {
             let since = (touch.time_s / STEP_S) as usize;
-            let seen =
-                match told.is_driven_over() && things::goes_under(ego_track, touch.track, &touch.other_box, since) {
-                    true => (CheckResult::Shown, "the ego drives over it".to_owned()),
-                    false => (CheckResult::CannotBeShown, "the simulator has no height".to_owned()),
-                };
+            let seen = match told.is_driven_over()
+                && things::goes_under(told, ego_track, touch.track, &touch.other_box, since)
+            {
+                true => (CheckResult::Shown, "the ego drives over it".to_owned()),
+                false => (CheckResult::CannotBeShown, "the simulator has no height".to_owned()),
+            };
             held(kind, "top or bottom".to_owned(), seen);
         }
     }

@@ -44,7 +44,7 @@ pub(crate) struct Ground {
     pub(crate) junction: bool,
     /// In one direction, and in the other.
     pub(crate) lanes: usize,
-    oncoming: usize,
+    pub(crate) oncoming: usize,
     /// From the ego's line to the middle of who is parked at the kerb on the left, and on the right. [m]
     pub(crate) kerbs_m: [f64; 2],
     /// From the ego's line to where it stands, to the right: it is parked at the kerb. [m]
@@ -165,7 +165,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let controlled = told.is_controlled() && told.place != PlaceKind::Highway;
     // Who gives way to crossing traffic, or keeps a junction clear, is at one.
     let at_one = [Role::Crosser, Role::Blocker, Role::Beyond].into_iter().any(|role| has(told, role));
-    let gives_way = told.place != PlaceKind::Highway && at_one;
+    let gives_way = told.place != PlaceKind::Highway && (at_one || told.crossed_near);
     if (crossing || controlled || gives_way) && !lot || told.place == PlaceKind::Intersection {
         let ground = junction(told, crossing);
         let behind_m: &[f64] = match (told.edge, told.lies) {

@@ -16,6 +16,13 @@ const ABREAST_M: f64 = 15.0;
 const DROVE_M: f64 = 2.0;
 pub(crate) const SLOWED_MPS: f64 = 0.8;
 
+/// Who turns at a junction has turned by so much; who pulls out has come so far out of the space, who goes aside so far aside, and
+/// who comes across so far across. [rad, m]
+const TURNED_RAD: f64 = 0.7;
+const OUT_M: f64 = 1.0;
+const ASIDE_M: f64 = 0.4;
+const ACROSS_M: f64 = 2.0;
+
 /// What somebody near is told to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Does {
@@ -31,6 +38,61 @@ pub(crate) enum Does {
     /// Changes lanes, to a side where told.
     Changes(Option<LeftRight>),
     Backs,
+    /// Turns at the junction, to a side where told.
+    Turns(Option<LeftRight>),
+    /// Comes out of where it is parked.
+    PullsOut,
+    /// Leaves its line within the lane, to a side where told.
+    GoesAside(Option<LeftRight>),
+    /// Draws up at the edge of its lane, to a side where told.
+    PullsOver(Option<LeftRight>),
+    /// Walks, runs or rolls across the road.
+    Crosses,
+}
+
+impl Does {
+    /// Whether it is more than to drive or to stand.
+    const fn is_deed(self) -> bool {
+        !matches!(self, Self::Untold | Self::Drives | Self::Slows | Self::Stands)
+    }
+
+    /// Whether one who does this is drawn at a place.
+    const fn fits(self, place: Option<Origin>) -> bool {
+        use Origin as O;
+        match self {
+            Self::Changes(_) => matches!(place, None | Some(O::Ahead | O::Behind | O::Beside { .. })),
+            Self::Passes => matches!(place, None | Some(O::Behind | O::Beside { .. })),
+            Self::Backs => !matches!(place, Some(O::Ahead | O::Behind | O::Beside { .. })),
+            _ => true,
+        }
+    }
+
+    /// What an act tells of somebody at a place; nothing where it is not drawn.
+    fn of(fact: &ActFact, place: Option<Origin>, on_wheels: bool) -> Option<Self> {
+        let at_kerb = matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. } | Origin::Parked { .. }));
+        let in_lanes = matches!(
+            place,
+            None | Some(Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. })
+        );
+        Some(match fact.act {
+            Act::Follow | Act::SetOff | Act::Accelerate => Self::Drives,
+            Act::Cross | Act::Enter | Act::PullOut if !on_wheels => Self::Crosses,
+            Act::Enter if in_lanes => Self::Drives,
+            Act::Cross if matches!(place, None | Some(Origin::Cross { .. } | Origin::Opposite)) => Self::Drives,
+            Act::Pass if place == Some(Origin::Opposite) => Self::Drives,
+            Act::Reverse => Self::Backs,
+            Act::Slow => Self::Slows,
+            Act::Hold | Act::Stop | Act::Park => Self::Stands,
+            Act::Pass => Self::Passes,
+            Act::LaneChange => Self::Changes(fact.side),
+            Act::Turn if fact.side == Some(LeftRight::Left) && place == Some(Origin::Opposite) => Self::TurnsLeft,
+            Act::Turn if in_lanes && on_wheels => Self::Turns(fact.side),
+            Act::PullOut if at_kerb => Self::PullsOut,
+            Act::Drift | Act::Swerve if on_wheels => Self::GoesAside(fact.side),
+            Act::PullOver if on_wheels => Self::PullsOver(fact.side),
+            _ => return None,
+        })
+    }
 }
 
 /// What is told of somebody who has no part in what the ego does.
@@ -52,7 +114,8 @@ impl Near {
         }
         if other.kind.value.group() == KindGroup::Object {
             let place = other.place.as_ref().map(|fact| fact.value);
-            return Some(Self { place, across: false, does: Does::Stands, number });
+            let rolls = other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
+            return Some(Self { place, across: false, does: if rolls { Does::Crosses } else { Does::Stands }, number });
         }
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
         let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
@@ -66,33 +129,22 @@ impl Near {
                 None
             }
         });
-        let across = place.is_none() && said(&["cross traffic", "crossing traffic"]);
-        let before: Vec<&ActFact> =
-            other.acts.iter().filter(|fact| !fact.after_contact && !fact.begun && fact.act != Act::Leave).collect();
-        let one = |fact: &&ActFact| match fact.act {
-            Act::Follow | Act::SetOff | Act::Accelerate => Some(Does::Drives),
-            Act::Enter if matches!(place, Some(Origin::Ahead | Origin::Beside { .. })) => Some(Does::Drives),
-            Act::Reverse => Some(Does::Backs),
-            Act::Slow => Some(Does::Slows),
-            Act::Hold | Act::Stop | Act::Park => Some(Does::Stands),
-            Act::Pass => Some(Does::Passes),
-            Act::LaneChange => Some(Does::Changes(fact.side)),
-            Act::Turn if fact.side == Some(LeftRight::Left) && place == Some(Origin::Opposite) => Some(Does::TurnsLeft),
-            _ => None,
-        };
-        let all: Vec<Does> = before.iter().map(one).collect::<Option<_>>()?;
-        let deed = |does: &&Does| matches!(does, Does::Passes | Does::TurnsLeft | Does::Changes(_) | Does::Backs);
-        let does = match all.iter().rev().find(deed) {
-            Some(Does::Changes(side)) if matches!(place, None | Some(Origin::Ahead | Origin::Beside { .. })) => {
-                Does::Changes(*side)
-            }
-            Some(Does::Passes) if matches!(place, None | Some(Origin::Behind | Origin::Beside { .. })) => Does::Passes,
-            Some(Does::TurnsLeft) => Does::TurnsLeft,
-            Some(Does::Backs) if !matches!(place, Some(Origin::Ahead | Origin::Behind | Origin::Beside { .. })) => {
-                Does::Backs
-            }
-            Some(_) => return None,
+        let before: Vec<&ActFact> = other.acts.iter().filter(|fact| is_seen(fact)).collect();
+        let on_wheels = !matches!(other.kind.value.group(), KindGroup::OnFoot | KindGroup::Animal);
+        let crosses = on_wheels && before.iter().any(|fact| fact.act == Act::Cross);
+        let across = place.is_none() && (crosses || said(&["cross traffic", "cross-traffic", "crossing traffic"]));
+        let all: Vec<Does> = before.iter().map(|fact| Does::of(fact, place, on_wheels)).collect::<Option<_>>()?;
+        let mut deeds: Vec<Does> = all.iter().copied().filter(|does| does.is_deed()).collect();
+        deeds.dedup();
+        let does = match deeds.last().copied() {
             None => all.last().copied().unwrap_or(Does::Untold),
+            Some(
+                last @ (Does::Turns(_) | Does::PullsOut | Does::GoesAside(_) | Does::PullsOver(_) | Does::Crosses),
+            ) => {
+                // One after another is not drawn.
+                (deeds.len() == 1).then_some(last)?
+            }
+            Some(last) => last.fits(place).then_some(last)?,
         };
         Some(Self { place, across, does, number })
     }
@@ -119,6 +171,11 @@ impl Near {
             (Does::Passes, _) => "one passes",
             (Does::Backs, _) => "one backs",
             (Does::Changes(_), _) => "one changes lanes",
+            (Does::Turns(_), _) => "one turns",
+            (Does::PullsOut, _) => "one pulls out",
+            (Does::GoesAside(_), _) => "one goes aside",
+            (Does::PullsOver(_), _) => "one pulls over",
+            (Does::Crosses, _) => "one comes across",
             (_, Some(Origin::Ahead)) => "one is farther ahead",
             (_, Some(Origin::Behind)) => "one is behind",
             (_, Some(Origin::Opposite)) => "one is in the opposite lane",
@@ -156,6 +213,8 @@ impl Near {
                 _ if self.does == Does::TurnsLeft => ahead_m > 0.0,
                 Some(Origin::Ahead) => ahead_m > 0.0 && left_m.abs() < 2.2 * LANE_M,
                 Some(Origin::Behind) => ahead_m < -half_m && left_m.abs() < 2.2 * LANE_M || self.does == Does::Passes,
+                Some(Origin::Beside { .. }) if matches!(self.does, Does::Crosses | Does::PullsOut) => true,
+                Some(Origin::Cross { .. }) if self.does == Does::Crosses => true,
                 Some(Origin::Opposite) => facing(step) > 2.0 && left_m > 0.5 * LANE_M,
                 Some(Origin::Beside { side }) => {
                     beside(step) && on_side(side, left_m) && ahead_m.abs() < ABREAST_M + 0.5 * track.length_m
@@ -167,6 +226,8 @@ impl Near {
         };
         let stays_ahead = self.place != Some(Origin::Ahead) || seen(until).0 > 0.0;
         let drove = state(0).position().distance(state(until).position()) > DROVE_M;
+        // To the left of where it was at first, along the road.
+        let aside_m = |step: usize| ahead.cross(state(step).position() - state(0).position());
         let done = match self.does {
             Does::Untold => true,
             Does::Drives => drove,
@@ -182,6 +243,25 @@ impl Near {
                     seen(until).1 - seen(0).1 + ahead.cross(ego.states[until].position() - ego.states[0].position());
                 moved_m.abs() > 0.7 * LANE_M && side.is_none_or(|side| on_side(side, moved_m))
             }
+            Does::Turns(side) => {
+                let turned = math::wrap_angle(state(until).heading - state(0).heading);
+                turned.abs() > TURNED_RAD && side.is_none_or(|side| on_side(side, turned))
+            }
+            Does::PullsOut => {
+                let stood = mps(0) < STANDS_MPS && seen(0).1.abs() > 0.5 * LANE_M;
+                let own_side = place_side(self.place).is_none_or(|side| on_side(side, seen(0).1));
+                stood && own_side && mps(until) > STANDS_MPS && aside_m(until).abs() > OUT_M
+            }
+            Does::GoesAside(side) | Does::PullsOver(side) => {
+                let slowed = (0..until).any(|step| mps(step) > mps(until) + SLOWED_MPS);
+                let drawn_up = slowed || matches!(self.does, Does::GoesAside(_));
+                let own = Vec2::from_heading(state(0).heading).cross(state(until).position() - state(0).position());
+                drawn_up && own.abs() > ASIDE_M && side.is_none_or(|side| on_side(side, own))
+            }
+            Does::Crosses => {
+                let own_side = place_side(self.place).is_none_or(|side| on_side(side, seen(0).1));
+                own_side && aside_m(until).abs() > ACROSS_M
+            }
             Does::TurnsLeft => {
                 let turned = math::wrap_angle(state(until).heading - state(0).heading);
                 let crossed = (1..=until).any(|step| seen(step).1 <= 0.0 && seen(step - 1).1 > 0.0);
@@ -192,19 +272,48 @@ impl Near {
     }
 }
 
-/// Whether somebody can be put somewhere near: no thing that moves, or that the ego goes over.
+/// Whether an act of somebody who is near may be seen before the contact: that it did not yield is no way of its own.
+fn is_seen(fact: &ActFact) -> bool {
+    !fact.after_contact && !fact.begun && !matches!(fact.act, Act::Leave | Act::FailToYield)
+}
+
+/// Whether a thing that does this is told to come along.
+const fn moves(act: Act) -> bool {
+    matches!(act, Act::Follow | Act::Enter | Act::PullOut | Act::Cross | Act::Roll)
+}
+
+/// The side that a place beside the road is told to be on.
+const fn place_side(place: Option<Origin>) -> Option<LeftRight> {
+    match place {
+        Some(Origin::Beside { side } | Origin::Cross { side }) => Some(side),
+        Some(Origin::Parked { side } | Origin::Sidewalk { side }) => side,
+        _ => None,
+    }
+}
+
+/// Whether somebody can be put somewhere near: nothing that the ego goes over.
 fn is_drawn(other: &Other) -> bool {
     let stands = |fact: &ActFact| fact.after_contact || matches!(fact.act, Act::Hold | Act::Park | Act::Drift);
+    let lies = |fact: &ActFact| stands(fact) || fact.act == Act::Fall || moves(fact.act);
     match (other.kind.value, other.kind.value.group()) {
         // What is fixed does nothing, whatever is told with it.
         (Kind::Wall | Kind::Pole | Kind::Sign, _) => true,
-        (Kind::Barrier | Kind::Cone | Kind::Cart | Kind::Scooter, _) => other.acts.iter().all(stands),
+        (Kind::Barrier | Kind::Cone | Kind::Scooter, _) => other.acts.iter().all(stands),
+        (Kind::Debris | Kind::LooseWheel | Kind::TreeBranch | Kind::Cargo | Kind::Cart | Kind::Object, _) => {
+            other.acts.iter().all(lies)
+        }
         (_, KindGroup::Object | KindGroup::Other) => false,
         _ => true,
     }
 }
 
 impl Extra {
+    /// Whether it has no part in what the ego does, and is on a road that crosses the ego's, or turns into one.
+    pub(crate) fn is_at_junction(&self) -> bool {
+        let turns = |near: Near| matches!(near.does, Does::Turns(_) | Does::TurnsLeft);
+        self.near.is_some_and(|near| near.across || matches!(near.place, Some(Origin::Cross { .. })) || turns(near))
+    }
+
     /// Somebody who has no part in what the ego does.
     pub(crate) fn near(near: Near, of: usize, kind: Kind) -> Self {
         Self { of: vec![of], kind, near: Some(near), ..Self::of_reason(Role::Near) }

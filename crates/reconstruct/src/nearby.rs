@@ -1,6 +1,8 @@
 //! Where others stand and drive who have no part in what the ego does, and those with one who do not fit where they are put first: in the
 //! first place that shows what is told of them, where they hinder nobody.
 
+mod deeds;
+
 use crate::control;
 use crate::extras::STANDS_MPS;
 use crate::ground::{Ground, LANE_M, corner_m};
@@ -10,7 +12,7 @@ use crate::pace::{next, when};
 use crate::seen::Seen;
 use crate::side::size_of as size_of_kind;
 use crate::told::{TURNS_MPS, Told, WALKS_MPS};
-use recrash_model::account::{Kind, KindGroup, LeftRight, Origin, PlaceKind};
+use recrash_model::account::{Kind, KindGroup, LeftRight, Origin, PlaceKind, StandReason};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
@@ -43,6 +45,9 @@ const BACKS_MPS2: f64 = 1.0;
 const CHANGES_S: f64 = 3.5;
 const CHANGED_BEFORE_S: f64 = 0.5;
 
+/// Who makes room for somebody between it and the ego is so far over in its lane. [m]
+const FAR_OVER_M: f64 = 0.9;
+
 /// Who comes over ahead of an ego that stands does so slowly. [m/s]
 const MERGES_MPS: f64 = 3.0;
 
@@ -57,13 +62,24 @@ struct Way {
     shifts_m: f64,
     /// It goes backwards.
     backs: bool,
+    /// It stands at first, and sets off at a time to a speed. [s, m/s]
+    sets_off: Option<(f64, f64)>,
     /// Places on its way, after which it goes straight on.
     by: Vec<Pose>,
 }
 
 impl Way {
     fn stands(from: Pose) -> Self {
-        Self { from, speed_mps: 0.0, stops_m: None, slows: false, shifts_m: 0.0, backs: false, by: Vec::new() }
+        Self {
+            from,
+            speed_mps: 0.0,
+            stops_m: None,
+            slows: false,
+            shifts_m: 0.0,
+            backs: false,
+            sets_off: None,
+            by: Vec::new(),
+        }
     }
 
     /// Straight on, where it is at a place at a time.
@@ -73,7 +89,6 @@ impl Way {
     }
 
     fn plan(&self, contact_s: f64) -> ActorPlan {
-        let place = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
         if self.backs {
             let end = Pose { position: self.from.position - Vec2::from_heading(self.from.heading) * 20.0, ..self.from };
             let begins_s = tenth((contact_s - BACKS_BEFORE_S).max(0.1));
@@ -83,6 +98,9 @@ impl Way {
                 acts: vec![goes, next(Deed::Stop { rate_mps2: BACKS_MPS2, at_m: Some(BACKS_M) })],
                 ..ActorPlan::standing(place(self.from))
             };
+        }
+        if let Some(off) = self.sets_off {
+            return self.out(off);
         }
         if self.speed_mps == 0.0 {
             return ActorPlan::standing(place(self.from));
@@ -104,6 +122,10 @@ impl Way {
     }
 }
 
+fn place(pose: Pose) -> Place {
+    Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees())
+}
+
 fn tenth(time_s: f64) -> f64 {
     (time_s * 10.0).round() / 10.0
 }
@@ -123,7 +145,10 @@ pub(crate) fn with_near(
             continue;
         }
         let Some(scene) = Scene::of(told, ground, &rollout) else { break };
-        let tried = scene.actors(extra).into_iter().find_map(|actor| {
+        // Whom the ego gave way to, it stood for, if it may.
+        let gives_way = extra.awaited && extra.near.is_some() && told.reasons.contains(&StandReason::Yield);
+        let actors = scene.actors(extra);
+        let place = |actor: Actor, waits: bool| {
             let mut with = draft.clone();
             with.actors.push(actor);
             let recorded = with.ego.recorded.clone()?;
@@ -131,9 +156,13 @@ pub(crate) fn with_near(
             let scenario = recrash_roads::check(with).ok()?.value;
             let driven = recrash_sim::simulate(&scenario, Ego::Recorded);
             let fits = hinders_nobody(&id, &scenario, (&rollout, &driven))
-                && Seen::new(told, &driven, scene.contact_s).holds(extra);
+                && Seen::new(told, &driven, scene.contact_s).holds(extra)
+                && (!waits || Seen::new(told, &driven, scene.contact_s).reason(StandReason::Yield));
             fits.then(|| (scenario.draft().clone(), driven))
-        });
+        };
+        let waited_for = || actors.iter().find_map(|actor| place(actor.clone(), true));
+        let tried = gives_way.then(waited_for).flatten();
+        let tried = tried.or_else(|| actors.iter().find_map(|actor| place(actor.clone(), false)));
         if let Some((with, driven)) = tried {
             (draft, rollout) = (with, driven);
             if let Some(near) = extra.near {
@@ -243,7 +272,12 @@ impl<'a> Scene<'a> {
     }
 
     fn against(&self, s_m: f64) -> Pose {
-        let pose = self.road(s_m, -self.ground.opposing_m);
+        self.against_in(0, s_m)
+    }
+
+    /// In a lane towards the ego, 0 is the next one.
+    fn against_in(&self, lane: usize, s_m: f64) -> Pose {
+        let pose = self.road(s_m, -self.ground.opposing_m - lane as f64 * LANE_M);
         Pose { heading: pose.heading + std::f64::consts::PI, ..pose }
     }
 
@@ -277,7 +311,13 @@ impl<'a> Scene<'a> {
         match near.place {
             _ if near.does == Does::TurnsLeft => list.extend(self.turners()),
             _ if near.does == Does::Backs => list.extend(self.backers(near.place, half_m)),
-            _ if let Does::Changes(side) = near.does => list.extend(self.changers(side, half_m)),
+            _ if let Does::Changes(side) = near.does => list.extend(self.changers(near.place, side, half_m)),
+            _ if let Does::Turns(side) = near.does => list.extend(self.turning(near.place, side)),
+            _ if let Does::GoesAside(side) = near.does => list.extend(self.aside(near, side, half_m)),
+            _ if let Does::PullsOver(side) = near.does => {
+                list.extend(self.aside(near, side.or(Some(LeftRight::Right)), half_m));
+            }
+            _ if near.does == Does::PullsOut => list.extend(self.pulling_out(near.place, half_m)),
             _ if near.does == Does::Passes => list.extend(self.passers(near.place, half_m)),
             Some(Origin::Opposite) => {
                 if !stands {
@@ -326,7 +366,8 @@ impl<'a> Scene<'a> {
             }
         }
         for way in &mut list {
-            way.slows = near.does == Does::Slows && way.speed_mps > SLOWS_BY_MPS;
+            let slows = matches!(near.does, Does::Slows | Does::PullsOver(_));
+            way.slows = slows && way.speed_mps > SLOWS_BY_MPS;
         }
         list
     }
@@ -343,13 +384,18 @@ impl<'a> Scene<'a> {
             Role::Abreast => sides.into_iter().flat_map(|side| self.beside(side)).collect(),
             Role::Crosser => sides.into_iter().flat_map(|side| self.crosses(side, Does::Drives, half_m)).collect(),
             Role::Oncoming if self.is_two_way() => [0.5, 1.0, 2.0, 3.0, 4.5, 5.2]
-                .map(|before_s| {
+                .into_iter()
+                .flat_map(|before_s| {
                     let at_s = (self.contact_s - before_s).max(0.5);
                     let (s_m, _) = self.at(((at_s * 10.0) as usize).min(self.until));
-                    Way::straight(self.against(s_m), DRIVES_MPS, at_s)
+                    let lanes = 0..self.ground.oncoming.max(1);
+                    lanes.map(move |lane| Way::straight(self.against_in(lane, s_m), DRIVES_MPS, at_s))
                 })
-                .into(),
+                .collect(),
             Role::Lead | Role::Thing if !extra.goes => self.stands_ahead(half_m, 0.0),
+            Role::Lead => self.setting_off(half_m),
+            Role::Slower => self.leads(half_m).into_iter().map(|way| Way { slows: true, ..way }).collect(),
+            Role::Walker | Role::Animal => sides.into_iter().flat_map(|side| self.crossing(extra.kind, side)).collect(),
             Role::Merger => sides.into_iter().flat_map(|side| self.mergers(side, half_m)).collect(),
             _ => Vec::new(),
         }
@@ -471,6 +517,14 @@ impl<'a> Scene<'a> {
             };
             list.extend([0.0, -6.0, 6.0, -12.0].map(rests));
         }
+        // Far over in its lane, where somebody comes between.
+        let sign = if side == LeftRight::Left { -1.0 } else { 1.0 };
+        let over = |way: &Way| {
+            let away = Vec2::from_heading(way.from.heading).left() * (-sign * FAR_OVER_M);
+            Way { from: Pose { position: way.from.position + away, ..way.from }, by: Vec::new(), ..*way }
+        };
+        let far: Vec<Way> = list.iter().map(over).collect();
+        list.extend(far);
         list
     }
 
@@ -519,15 +573,17 @@ impl<'a> Scene<'a> {
     }
 
     /// Changes from one lane to the next, ahead of the ego or beside it.
-    fn changers(&self, side: Option<LeftRight>, half_m: f64) -> Vec<Way> {
+    fn changers(&self, place: Option<Origin>, side: Option<LeftRight>, half_m: f64) -> Vec<Way> {
         let (s_m, _) = self.at(self.until);
+        let behind = place == Some(Origin::Behind);
+        let far: &[f64] = if behind { &[-18.0, -24.0, -32.0] } else { &[8.0, 14.0, 3.0, 22.0, 30.0] };
         let sides = side.map_or(vec![LeftRight::Left, LeftRight::Right], |side| vec![side]);
         let mut list = Vec::new();
         for side in sides {
             let shifts_m = if side == LeftRight::Left { -LANE_M } else { LANE_M };
             for to_m in [-LANE_M, LANE_M, 0.0] {
                 for speed_mps in self.speeds() {
-                    for on_m in [8.0, 14.0, 3.0, 22.0, 30.0] {
+                    for on_m in far {
                         let at = self.road(s_m + self.front_m() + half_m + on_m, to_m - shifts_m);
                         list.push(Way { shifts_m, ..Way::straight(at, speed_mps, self.contact_s) });
                     }
@@ -589,7 +645,7 @@ impl<'a> Scene<'a> {
         let mut list = Vec::new();
         if does != Does::Stands {
             let through = |before_s: f64| Way::straight(line, DRIVES_MPS, self.contact_s - before_s);
-            list.extend([2.5, 4.0, 5.5, 7.0].map(through));
+            list.extend([2.5, 4.0, 5.5, 7.0, 1.2, 3.2].map(through));
             // Yet to come.
             list.extend([-2.0, -3.5].map(through));
         }
@@ -622,6 +678,9 @@ impl<'a> Scene<'a> {
             Some(Origin::Opposite) => vec![LeftRight::Left],
             _ => vec![LeftRight::Right, LeftRight::Left],
         };
+        if near.does == Does::Crosses {
+            return sides.into_iter().flat_map(|side| self.coming_across(kind, side)).collect();
+        }
         let half_m = 0.5 * StripKind::Parking.usual_width_m();
         let mut list = Vec::new();
         for side in sides {

@@ -249,7 +249,11 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
             let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
             near.map(|near| Extra { awaited: story.is_near(other), ..Extra::near(near, number, kind) })
         };
-        let Some(role) = story.role(told, other).filter(|role| is_drawn(told, *role)) else {
+        // Traffic that an ego passes which is not told to have slowed or stood is there.
+        let passes =
+            |role: Role| role == Role::Crosser && !told.sv.state.stands() && story.reactions().next().is_none();
+        let role = story.role(told, other).filter(|role| is_drawn(told, *role) && !passes(*role));
+        let Some(role) = role else {
             list.extend(near(&list));
             continue;
         };

@@ -1,6 +1,7 @@
 //! Things: how they lie; those that move by themselves, as what rolls, slides or is pushed into the way, and gates; and who walks or
 //! runs into it.
 
+use crate::extras::STANDS_MPS;
 use crate::ground::LANE_M;
 use crate::lateral::is_on_foot;
 use crate::others::Role;
@@ -12,10 +13,10 @@ use recrash_model::account::{
     Account, Act, ActFact, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Party, PlaceKind, Source,
     Striker, told,
 };
-use recrash_model::geometry::OrientedBox;
+use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::ActorTrack;
+use recrash_model::rollout::{ActorTrack, STEP_S};
 use recrash_model::scenario::{ObstacleKind, Size};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
@@ -146,6 +147,9 @@ pub(crate) const fn mass_kg(kind: Kind) -> Option<f64> {
 /// What is so far inside the ego's outline is under it. [m]
 const UNDER_M: f64 = 0.3;
 
+/// An animal that the ego drives over comes under it within this way. [m]
+const ONTO_M: f64 = 1.5;
+
 impl Told {
     /// Whether the partner is told to have touched the ego's underside alone, and is no thing that stands.
     pub(crate) fn is_driven_over(&self) -> bool {
@@ -154,13 +158,52 @@ impl Told {
     }
 }
 
-/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched.
-pub(crate) fn goes_under(ego: &ActorTrack, thing: Option<&ActorTrack>, lying: &OrientedBox, since: usize) -> bool {
+/// Whether what lies on the road comes under the ego, clear of its edges, once it is touched; of an animal where it was then, as far as
+/// the ego's front comes over it at once: whoever is touched is pushed on, as nothing here has a height.
+pub(crate) fn goes_under(
+    told: &Told,
+    ego: &ActorTrack,
+    thing: Option<&ActorTrack>,
+    touched: &OrientedBox,
+    since: usize,
+) -> bool {
+    let body = |pose: Pose| OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
+    if told.cp.kind == PartnerKind::Animal {
+        let met = &ego.states[since.min(ego.states.len() - 1)];
+        let on = Vec2::from_heading(met.heading) * (met.speed().signum() * ONTO_M);
+        let moves = met.velocity().length() > STANDS_MPS;
+        return moves && body(Pose { position: met.position() + on, heading: met.heading }).overlaps(touched);
+    }
     (since..ego.states.len()).any(|step| {
-        let pose = ego.states[step].pose();
-        let body = OrientedBox::new(pose, ego.length_m - 2.0 * UNDER_M, ego.width_m - 2.0 * UNDER_M);
-        body.overlaps(&thing.map_or(*lying, |track| track.outline(step.min(track.states.len() - 1))))
+        let lying = thing.map_or(*touched, |track| track.outline(step.min(track.states.len() - 1)));
+        body(ego.states[step].pose()).overlaps(&lying)
     })
+}
+
+/// Whether an ego that drives on is told to have been touched at its rear alone by a hole, or by what lies flat in its way.
+fn passes_over(told: &Told) -> bool {
+    let low = told.lies == Some(Lies::Hole) || told.thing == Some(Kind::Debris) && told.edge.is_none();
+    low && told.sv.state == ContactState::Moving && told.sv.zones.iter().all(|zone| zone.is_rear())
+}
+
+/// Whether the told part of the ego's rear goes over what lies in its way, which its front has come over.
+pub(crate) fn rear_goes_over(told: &Told, ego: &ActorTrack, lying: &OrientedBox, since: usize) -> bool {
+    let half_m = Vec2::new(0.5 * ego.length_m, 0.5 * ego.width_m);
+    let over = |zone: &ContactZone, step: usize| {
+        let left = match zone {
+            ContactZone::RearLeft => 1.0,
+            ContactZone::RearRight => -1.0,
+            _ => 0.0,
+        };
+        let state = &ego.states[step];
+        let (pose, on) = (state.pose(), state.velocity() * STEP_S);
+        let along = Vec2::from_heading(pose.heading);
+        let middle = pose.position - along * (0.75 * half_m.x) + along.left() * (left * half_m.y * 2.0 / 3.0);
+        // As long as it comes until the next step.
+        let part = Pose { position: middle + on * 0.5, ..pose };
+        OrientedBox::new(part, 0.5 * half_m.x + on.length(), half_m.y * 2.0 / 3.0).overlaps(lying)
+    };
+    passes_over(told) && (since..ego.states.len()).any(|step| told.sv.zones.iter().any(|zone| over(zone, step)))
 }
 
 /// Whether something lies in the lane for turns that the ego came along, and only a column tells that it turned.

@@ -114,6 +114,8 @@ pub(crate) struct Told {
     pub(crate) lanes: Option<u8>,
     /// The road has one lane more in each direction than is usual.
     pub(crate) more_lanes: bool,
+    /// The road is crossed by one on which somebody is who has no part in what the ego does.
+    pub(crate) crossed_near: bool,
     /// Why the ego stood.
     pub(crate) reasons: Vec<StandReason>,
     /// Others than the two.
@@ -242,6 +244,7 @@ impl Told {
             striker,
             lanes: told(&account.place.lanes),
             more_lanes: false,
+            crossed_near: false,
             reasons: others::reasons(account, origin),
             others: account.others.len(),
             door: told(&account.door),
@@ -445,7 +448,14 @@ impl Told {
             let more = may.then(|| Self { more_lanes: true, ..told.clone() });
             [told].into_iter().chain(more)
         };
-        self.by_origin().into_iter().flat_map(with_rig).flat_map(with_extras).flat_map(with_lanes).collect()
+        // Who crosses nearby, or turns, does so at a junction.
+        let with_junction = |told: Self| {
+            let crossed = told.place == PlaceKind::Street && told.wanted.iter().any(Extra::is_at_junction);
+            let at_one = crossed.then(|| Self { crossed_near: true, ..told.clone() });
+            at_one.into_iter().chain([told])
+        };
+        let told = self.by_origin().into_iter().flat_map(with_junction).flat_map(with_rig);
+        told.flat_map(with_extras).flat_map(with_lanes).collect()
     }
 
     /// The same with every origin to try: the told one; where none is told the one that the type leaves, then the others.

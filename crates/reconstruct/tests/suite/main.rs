@@ -7,6 +7,7 @@ mod common;
 mod lanes;
 mod moves;
 mod near;
+mod near_deeds;
 mod others;
 mod roadside;
 mod sabotage;

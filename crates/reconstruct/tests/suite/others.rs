@@ -69,6 +69,13 @@ const ABREAST: &str = "The AV was traveling north in the center lane when a tire
 const IN_ITS_TURN: &str = "The AV was traveling north on Elm Street and was making a right turn onto Oak Street. The AV advanced and came to a stop to yield \
                            to cross traffic.";
 
+const AT_RED: &str = "The AV was traveling west on Elm Street, preparing to make a left turn onto Oak Street from the left turn lane. The AV entered the \
+                      intersection to make the left turn, but came to a stop when the traffic light turned red, yielding to oncoming traffic. While the AV \
+                      remained stopped, a sedan that was turning behind the AV passed the AV on the left and the front right of the sedan made contact with \
+                      the rear left of the AV.";
+const SLOW_AHEAD: &str = "The AV was traveling south in the right lane on Elm Street. The AV began to slow and drifted to the right in response to slow \
+                          traffic ahead. A sedan approached from behind and the front of the sedan made contact with the rear of the AV.";
+
 const DEBRIS: &str = "The AV was traveling north on Elm Street and slowed to a stop due to debris in its lane.";
 const FOR_ANIMAL: &str =
     "The AV was traveling north on Elm Street and came to a stop to yield to a dog that ran into the road.";
@@ -537,4 +544,22 @@ fn who_crosses_into_the_lane_ahead_of_an_ego_that_stands_does_not_touch_it() {
 #[test]
 fn who_is_told_is_there_though_the_partner_swings_farther_than_it_would_alone() {
     shown_but(PASSED_IN_TRAFFIC, "lead", |actor| moved(&mut actor.plan, 60.0, 0.0));
+}
+
+#[test]
+fn who_comes_by_an_ego_that_waits_at_red_has_green() {
+    let shown = shown_but(AT_RED, "oncoming", |oncoming| {
+        oncoming.plan = ActorPlan::standing(oncoming.plan.start.clone());
+    });
+    let (oncoming, last) = (track(&shown, "oncoming"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[last];
+    assert!(oncoming.states[0].x > ego.x && oncoming.states[last].x < ego.x, "{:?}", oncoming.states[last]);
+}
+
+#[test]
+fn slow_traffic_ahead_of_an_ego_that_drifts_slows_ahead() {
+    let shown = shown_but(SLOW_AHEAD, "slower", |slower| slower.plan.acts.clear());
+    let (slower, last) = (track(&shown, "slower"), before_contact(&shown));
+    assert!(slower.states[last].x > shown.rollout.ego_track().states[last].x + 4.0);
+    assert!(slower.states[last].speed() < slower.states[0].speed() - 0.8);
 }

@@ -3,11 +3,12 @@
 use crate::ways::{before_contact, degrees_between, made, missed, partner, partner_without_acts, speeds, story};
 use recrash_model::account::{Account, Act, Fact, Kind, LeftRight, Origin, Source, StandReason};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::metrics::CheckKind;
+use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::profile::{Dedupe, SystemProfile};
 use recrash_model::rollout::EventKind;
 use recrash_model::scenario::{MapSpec, ObjectSpec, ObstacleKind, Place, StripKind};
-use recrash_reconstruct::{Reconstruction, reconstruct};
+use recrash_model::zones::ContactZone;
+use recrash_reconstruct::{Reconstruction, held_against, reconstruct};
 use recrash_records::{SAMPLE_CSV, SAMPLE_NAME, SourceText, ingest};
 
 const BEHIND_TWO: &str = "The AV was traveling north when it came to a stop behind a sedan and yielded to a pedestrian crossing the street. A \
@@ -23,6 +24,12 @@ const EDGE: &str = "The AV was traveling north on Elm Street. As the AV turned l
 
 const HOLE: &str = "The AV was traveling south in the right lane. The AV changed lanes to the left lane and continued traveling south when \
                     the front left of the AV made contact with a pothole.";
+
+const REAR_WHEEL: &str =
+    "The AV was traveling north on Elm Street when the rear right tire of the AV made contact with a pothole.";
+
+const ANIMAL: &str =
+    "The AV was traveling north on Elm Street when the AV made contact with a small dog that was lying in the roadway.";
 
 const ROLLED_IN: &str = "The AV was traveling east when the left side of the AV made contact with an object that was rolling into the AV's lane \
                          from the left side of the road. The AV moved to the right but was not able to avoid contact.";
@@ -247,4 +254,38 @@ fn a_trailer_that_touched_touches_and_who_draws_it_gets_by() {
         *kind = Some(Fact::by_rule(Kind::SemiTrailerTruck, "made for this test"));
     });
     assert_eq!(missed, [CheckKind::CpZones]);
+}
+
+#[test]
+fn what_a_rear_wheel_is_told_to_have_met_goes_under_that() {
+    let shown = made(&story(REAR_WHEEL));
+    let zones = |made: &Reconstruction, account: &Account| {
+        let scenario = recrash_roads::check(made.draft.clone()).expect("it ran").value;
+        let verdict = held_against(account, &scenario, &made.rollout).expect("it can be staged");
+        verdict.checks.into_iter().find(|check| check.kind == CheckKind::SvZones).expect("zones").result
+    };
+    let mut account = story(REAR_WHEEL);
+    assert_eq!(zones(&shown, &account), CheckResult::Shown, "{:?}", shown.verdict);
+    account.sv.zones = vec![Fact::by_rule(ContactZone::RearLeft, "made for this test")];
+    assert_eq!(zones(&shown, &account), CheckResult::NotShown);
+}
+
+#[test]
+fn an_animal_that_touched_the_underside_is_clear_of_the_sides() {
+    let mut account = story(ANIMAL);
+    account.sv.zones = vec![Fact::by_rule(ContactZone::Bottom, "ticked")];
+    let shown = made(&account);
+    let zones = |left_m: f64| {
+        let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
+        let mut rollout = shown.rollout.clone();
+        let events = rollout.events.iter_mut().filter_map(|event| match &mut event.kind {
+            EventKind::Contact { a: 0, b_state, .. } => Some(b_state),
+            _ => None,
+        });
+        events.for_each(|state| state.y += left_m);
+        let verdict = held_against(&account, &scenario, &rollout).expect("it can be staged");
+        verdict.checks.into_iter().find(|check| check.kind == CheckKind::SvZones).expect("zones").result
+    };
+    assert_eq!(zones(0.0), CheckResult::Shown, "{:?}", shown.verdict);
+    assert_eq!([zones(2.0), zones(-2.0)], [CheckResult::CannotBeShown; 2]);
 }

@@ -1,0 +1,71 @@
+//! Others who have no part in what the ego does turn, pull out, go aside, pull over or come across, as they are told to; and a rollout in
+//! which they do not does not pass for it.
+
+use crate::others::{shown_but, track};
+use crate::ways::{before_contact, degrees_between};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::scenario::{Actor, ActorPlan, Deed};
+
+const TURNS: &str = "The AV was traveling north on Elm Street toward the intersection with Oak Street. A van traveling west on Oak Street turned right onto \
+                     Elm Street. The AV continued straight.";
+const PULLS_OUT: &str = "The AV was traveling east on Elm Street. A pickup truck pulled out of a parking space on the right side of the street.";
+const SWERVES: &str = "The AV was traveling north in the right lane of two lanes on Elm Street. An SUV in the left lane swerved to the left.";
+const PULLS_OVER: &str = "The AV was traveling north on Elm Street. A box truck ahead pulled over to the right.";
+const RUNS: &str =
+    "The AV was traveling east on Elm Street. A ball rolled into the roadway from the left side of the street.";
+const ON_FOOT: &str = "The AV was traveling east on Elm Street. A pedestrian crossed the street.";
+
+fn stands(actor: &mut Actor) {
+    actor.plan = ActorPlan::standing(actor.plan.start.clone());
+}
+
+fn keeps_line(actor: &mut Actor) {
+    actor.plan.acts.retain(|act| !matches!(act.deed, Deed::Shift { .. }));
+}
+
+#[test]
+fn who_turns_from_the_crossing_road_does() {
+    let shown = shown_but(TURNS, "near", stands);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    let ego = shown.rollout.ego_track().states[0];
+    assert!(degrees_between(near.states[0].heading, ego.heading + 0.5 * std::f64::consts::PI) < 10.0);
+    assert!(degrees_between(near.states[last].heading, ego.heading) < 45.0, "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_pulls_out_stood_at_the_kerb() {
+    let shown = shown_but(PULLS_OUT, "near", keeps_line);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert_eq!(near.states[0].speed(), 0.0);
+    assert!(near.states[last].y > near.states[0].y + 1.0, "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_swerves_does_so_in_its_lane_to_the_told_side() {
+    let shown = shown_but(SWERVES, "near", keeps_line);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    let moved_m = near.states[last].y - near.states[0].y;
+    assert!((0.4..1.2).contains(&moved_m), "{moved_m}");
+}
+
+#[test]
+fn who_pulls_over_slows_and_goes_aside() {
+    let shown = shown_but(PULLS_OVER, "near", keeps_line);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert!(near.states[last].y < near.states[0].y - 0.4 && near.states[last].speed() < near.states[0].speed() - 1.0);
+}
+
+#[test]
+fn what_rolls_into_the_road_comes_from_the_told_side() {
+    let shown = shown_but(RUNS, "near", stands);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert_eq!(near.kind, PartnerKind::FixedObject);
+    assert!(near.states[0].y > near.states[last].y + 2.0, "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_crosses_and_is_nobodys_reason_to_stop_crosses_nearby() {
+    let shown = shown_but(ON_FOOT, "near", stands);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert!((near.states[0].y - near.states[last].y).abs() > 2.0, "{:?}", near.states[last]);
+}
