@@ -516,14 +516,16 @@ impl Lexicon {
     /// The longest phrase at this token whose meaning is wanted.
     pub fn longest(&self, tokens: &[Token], at: usize, wanted: impl Fn(Meaning) -> bool) -> Option<Found> {
         let phrases = self.phrases.get(tokens.get(at)?.text.as_str())?;
-        let mut best: Option<Found> = None;
+        let mut best: Option<(Found, bool)> = None;
         for phrase in phrases.iter().filter(|phrase| wanted(phrase.meaning)) {
             let Some(length) = fits(&phrase.rest, tokens, at + 1) else { continue };
-            if best.is_none_or(|best| best.length < length + 1) {
-                best = Some(Found { meaning: phrase.meaning, length: length + 1 });
+            // Of two that are as long, the one that names all its words.
+            let exact = !phrase.rest.iter().any(|word| word == "*");
+            if best.is_none_or(|(best, was)| best.length < length + 1 || best.length == length + 1 && exact && !was) {
+                best = Some((Found { meaning: phrase.meaning, length: length + 1 }, exact));
             }
         }
-        best
+        best.map(|(found, _)| found)
     }
 
     /// Whether a word is the name of a model of cars.

@@ -289,7 +289,8 @@ fn goes_out(aside: Aside, pace: &mut Pace) -> bool {
     let takes_s = (shift_s - IS_OUT_S).clamp(GOES_OUT_S.0, GOES_OUT_S.1);
     let over_m = (takes_s * pace.speed_mps).clamp(GOES_OUT_M.0, GOES_OUT_M.1);
     let from_s = ((shift_s - IS_OUT_S - over_m / pace.speed_mps.max(0.1)) * 10.0).floor() / 10.0;
-    let drives = pace.acts.iter().all(|act| first_time(std::slice::from_ref(act)) >= shift_s);
+    let timed = pace.acts.iter().filter(|act| act.when.is_some());
+    let drives = timed.map(|act| first_time(std::slice::from_ref(act))).all(|at_s| at_s >= shift_s);
     if from_s < 0.0 || !drives {
         return false;
     }
@@ -330,7 +331,7 @@ fn ego_plan(told: &Told, ground: &Ground, sv_s_m: f64, sv: Pose) -> ActorPlan {
     let mut pace = match lead {
         Some(lead) if reverses || lead.reverses() => {
             let (plan, begin) = along_line(told, pace, sv);
-            return phases::before(lead, plan, begin);
+            return phases::before(lead, plan, begin, None);
         }
         Some(lead) => lead.then(pace),
         None => pace,
@@ -397,6 +398,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         return (thrown(told, staging), Vec::new());
     }
     let (lead, pace) = partner_paces(told, staging);
+    let arm_m = recrash_roads::arm_m(cp.kind, length_m);
     let actor = |plan: ActorPlan| Actor {
         id: "cp".to_owned(),
         kind: cp.kind,
@@ -410,8 +412,8 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
         _ => course_to(told, staging, pace, at),
     };
     let plan = match lead {
-        Some(lead) => phases::before(lead, plan, begin),
-        None => lateral::turns_off(told, begin, &plan, recrash_roads::arm_m(cp.kind, length_m)).unwrap_or(plan),
+        Some(lead) => phases::before(lead, plan, begin, lateral::came_over(told, &staging.ground, arm_m)),
+        None => lateral::turns_off(told, begin, &plan, arm_m).unwrap_or(plan),
     };
     let stands = plan.course.is_empty();
     let mut actors = vec![actor(plan)];
@@ -626,6 +628,17 @@ fn start(told: &Told, staging: &Staging, back_m: f64, aside: bool, motion: impl 
     Pose { position, heading: came }
 }
 
+/// The pace of a partner that drives behind an ego which stood on its way: it does what that does.
+fn as_the_ego(told: &Told, staging: &Staging) -> Option<Pace> {
+    let (lead, pace) = ego_paces(told, &staging.ground, staging.sv_s_m);
+    let stood = lead.is_some() || pace.speed_mps == 0.0;
+    match lead {
+        Some(lead) if lead.reverses() => None,
+        Some(lead) => Some(lead.then(pace)),
+        None => stood.then_some(pace),
+    }
+}
+
 /// The partner stands behind the ego, or comes along behind it, and another runs into it: a car at [`PUSH_MPS`] over its speed.
 fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     let cp = &told.cp;
@@ -645,9 +658,12 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     let braking_s = (ROLLING_MPS - rolls_mps) / STOPPING_MPS2;
     let from_s = ((told.contact_s - STOOD_S - braking_s) * 10.0).floor() / 10.0;
     let driven_m = ROLLING_MPS * from_s + 0.5 * (ROLLING_MPS + rolls_mps) * braking_s;
+    let moves_up = phases::lead(&cp.phases, told.contact_s - STOOD_S, ROLLING_MPS, phases::MOVES_UP_M, 0.0);
     let ego_drives_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
     let (partner, pusher_mps) = if told.sv.state == ContactState::Parked {
         (ActorPlan::standing(place(at(THROW_M))), PUSH_MPS)
+    } else if let Some(pace) = as_the_ego(told, staging).filter(|_| ego_drives_mps > 0.0) {
+        (on(pace.speed_mps, at(THROW_M + pace.driven_m), pace.acts), ego_drives_mps + PUSH_MPS)
     } else if ego_drives_mps > 0.0 {
         (on(ego_drives_mps, at(THROW_M + ego_drives_mps * told.contact_s), Vec::new()), ego_drives_mps + PUSH_MPS)
     } else if rolls_mps > 0.0 {
@@ -655,6 +671,10 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
         let slow = vec![when(from_s, Deed::Speed { to_mps: rolls_mps, rate_mps2: STOPPING_MPS2 })];
         let rolled_m = rolls_mps * (told.contact_s - from_s - braking_s);
         (on(ROLLING_MPS, at(THROW_M + driven_m + rolled_m), slow), rolls_mps + PUSH_MPS)
+    } else if let Some(lead) = moves_up.filter(|lead| !lead.reverses()) {
+        // It stood behind the ego, moved up, and stands again.
+        let from = at(THROW_M + lead.driven_m());
+        (on(lead.speed_mps, from, lead.acts.into_iter().chain([next(Deed::Hold { for_s: None })]).collect()), PUSH_MPS)
     } else {
         let stop =
             vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }), next(Deed::Hold { for_s: None })];

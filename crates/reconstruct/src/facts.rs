@@ -149,7 +149,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let pushed = kind == CheckKind::CpState && told.pushed && told.thing.is_none();
         let stood = stood(track, touch.time_s);
         let (slowed, gained) = changed(track, touch.time_s);
-        let (as_told, phases) = phases::check(&side.phases, track, touch.time_s);
+        let (as_told, phases) = phases::check(phases::checked(&side.phases), track, touch.time_s);
         let backs_first = told.backs_first.filter(|_| kind == CheckKind::CpState && !told.sv.phases.is_empty());
         let in_order = backs_first.is_none_or(|first| phases::back_in_order(first, ego_track, track, touch.time_s));
         let shown = pushed
@@ -175,7 +175,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             expected += before(side.stood_first, side.slowed_from.is_some(), side.gains);
             observed += before(stood, slowed, gained);
         } else {
-            expected += &format!(": {}", phases::words(&side.phases));
+            expected += &format!(": {}", phases::words(phases::checked(&side.phases)));
             observed += &format!(": {phases}");
         }
         fact(kind, shown, expected, observed);

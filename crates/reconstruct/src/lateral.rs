@@ -2,7 +2,7 @@
 
 use crate::ground::{Ground, LANE_M};
 use crate::pace::{Pace, first_time, start_over, when};
-use crate::phases::STOPS_SHORT_M;
+use crate::phases::{Beside, STOPS_SHORT_M};
 use crate::side::{Slant, Turning};
 use crate::strips::strip_of;
 use crate::told::Told;
@@ -275,6 +275,19 @@ pub(crate) fn changed_behind(told: &Told, staging: &Staging, pace: &Pace, arm_m:
     };
     let line_y_m = staging.sv.position.y + if from == LeftRight::Left { LANE_M } else { -LANE_M };
     between_lines(staging, pace, arm_m, [(CHANGED_M + CHANGES_OVER_M, line_y_m), (CHANGED_M, staging.cp.position.y)])
+}
+
+/// The lane from which somebody came over before it stopped ahead of the ego, or beside it: the told one, else the one on its left where
+/// there is one.
+pub(crate) fn came_over(told: &Told, ground: &Ground, arm_m: f64) -> Option<Beside> {
+    let from = match told.cp.came_over? {
+        Some(to) => to.other(),
+        None if ground.lane > 0 => LeftRight::Left,
+        None if ground.lanes > 1 => LeftRight::Right,
+        None => return None,
+    };
+    let along = matches!(told.origin, Origin::Ahead | Origin::Behind);
+    along.then_some(Beside { left_m: if from == LeftRight::Left { LANE_M } else { -LANE_M }, arm_m })
 }
 
 /// Along one line until so far before the contact, over to another by so far, and on to the contact: where it begins, and the poses that it

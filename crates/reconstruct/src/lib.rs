@@ -99,7 +99,18 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
     staged(told.choosing(Choices::of(open, values)), account)
 }
 
+/// What cannot be shown in all its steps is shown in the last of them.
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
+    let fewer = told.in_fewer_steps();
+    let made = searched(told, account);
+    let is_true = |made: &Result<Reconstruction, Untold>| made.as_ref().is_ok_and(Reconstruction::is_true);
+    match fewer.filter(|_| !is_true(&made)).map(|told| searched(told, account)) {
+        Some(shorter) if is_true(&shorter) => shorter,
+        _ => made,
+    }
+}
+
+fn searched(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
     let mut search = Search::default();
     let mut variants: Vec<_> = told.variants().into_iter().map(|told| (told, None)).collect();
     'tried: for tries in [0..FIRST_TRIES, FIRST_TRIES..MOST_TRIES] {
@@ -148,7 +159,8 @@ impl Search {
         let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
         let verdict = Verdict { checks: facts::facts(told, &scenario, &rollout) };
         let others = facts::others_stray(told, &scenario, &rollout);
-        let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout));
+        let (missed, strays) = (verdict.failures().count(), facts::strays(told, &scenario, &rollout));
+        let cost = (missed, others, strays, acts_open(&verdict));
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
         let fuller =
@@ -164,7 +176,7 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        cost == (0, false, false)
+        cost == (0, false, false, 0)
     }
 }
 
@@ -177,10 +189,19 @@ fn left_open(made: &Reconstruction) -> usize {
     made.verdict.checks.iter().filter(|check| is_of_others(check)).count()
 }
 
-/// The best of what was tried: told facts that are not shown, then whether others are not as told, and whether the partner strays.
+/// Of how many of the two something is told to have been done that is not seen.
+fn acts_open(verdict: &Verdict) -> usize {
+    let open = |check: &&Check| {
+        matches!(check.kind, CheckKind::SvActs | CheckKind::CpActs) && check.result == CheckResult::CannotBeShown
+    };
+    verdict.checks.iter().filter(open).count()
+}
+
+/// The best of what was tried: told facts that are not shown, then whether others are not as told, whether the partner strays, and what
+/// it is not seen that somebody did.
 #[derive(Clone)]
 struct Best {
-    cost: (usize, bool, bool),
+    cost: (usize, bool, bool, usize),
     made: Reconstruction,
     told: told::Told,
     ground: ground::Ground,

@@ -98,7 +98,10 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     };
     let moved_up_m = past_line_m(told, ground, sv_s_m).filter(|_| sv.state.stands()).unwrap_or(MOVES_UP_M);
     let least_m = if told.sv_aside().is_some() { SHIFTS_M } else { MOVES_UP_M };
-    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, moved_up_m.max(least_m), 0.0) {
+    // Who moved up more than once did so by a part of that each time.
+    let stood = sv.phases.iter().skip_while(|phase| **phase != Phase::Stands);
+    let times = stood.filter(|phase| **phase == Phase::Drives).count().max(1) as f64;
+    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, (moved_up_m / times).max(least_m), 0.0) {
         Some(lead) if sv.state.stands() => (Some(lead), STANDING),
         lead => (lead, usual),
     }

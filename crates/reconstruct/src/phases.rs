@@ -1,11 +1,15 @@
 //! What somebody did before the last thing that it does: it came and stood, moved up and stood again, or reversed first.
 
 use crate::extras::STANDS_MPS;
+use crate::kerb;
 use crate::pace::{Pace, first_time, when};
-use recrash_model::account::{Act, ActFact, ContactState, Party, Standing, Striker};
+use crate::side::{Side, Slant, Turning};
+use crate::told::Told;
+use recrash_model::account::{Act, ActFact, ContactState, Origin, Party, Standing, Striker};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::rollout::{ActorState, ActorTrack};
 use recrash_model::scenario::{self, ActorPlan, Deed, Leg, Place};
+use recrash_roads::Course;
 
 /// A part of the way to the contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,17 +38,31 @@ impl Phase {
     }
 }
 
-/// So many phases are drawn and checked, the last one counted.
-const MOST_PHASES: usize = 4;
+/// So many phases are drawn, and so many are checked and drawn in any case, the last one counted.
+const MOST_PHASES: usize = 8;
+const CHECKED_PHASES: usize = 4;
+
+/// The last of them, which are checked.
+pub(crate) fn checked(phases: &[Phase]) -> &[Phase] {
+    phases.split_at(phases.len().saturating_sub(CHECKED_PHASES)).1
+}
 
 /// What is told of them: the last things that somebody did before the contact, ended by what it does there. Empty where they say no
 /// more than the state there, and that it came there or stood before.
 pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
-    let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun).collect();
+    let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
     acts.sort_by_key(|fact| fact.step);
-    let (mut list, mut went_on): (Vec<Phase>, bool) = (Vec::new(), false);
-    for fact in acts {
+    let stands = |fact: &&ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.begun;
+    let last_stand = acts.iter().rposition(stands);
+    let (mut list, mut went_on, mut slowed): (Vec<Phase>, bool, bool) = (Vec::new(), false, false);
+    for (number, fact) in acts.iter().enumerate() {
+        // Of what was begun, a way from one stop to the next was driven.
+        let stops_next = acts[number..].iter().find(|fact| stands(fact)).is_some_and(|fact| fact.act == Act::Stop);
+        if fact.begun && !(leaves_line(fact.act) && list.last() == Some(&Phase::Stands) && stops_next) {
+            continue;
+        }
         went_on |= fact.act == Act::Slow && !list.is_empty();
+        slowed = fact.act == Act::Slow || slowed && fact.act != Act::Stop;
         let phase = match fact.act {
             Act::Stop | Act::Hold => Phase::Stands,
             Act::SetOff
@@ -63,6 +81,10 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
             Act::Reverse => Phase::Reverses,
             _ => continue,
         };
+        // Who sets off as they touch stood before that, also where it is only told to have slowed.
+        if fact.act == Act::SetOff && slowed && state == ContactState::SettingOff && list.last() == Some(&phase) {
+            list.push(Phase::Stands);
+        }
         // Who came to a stop came along before; so did who stood, went on and slowed for it.
         let goes_on = list.last() == Some(&Phase::Stands) && went_on && fact.act == Act::Stop;
         if list.is_empty() && fact.act == Act::Stop || goes_on {
@@ -77,10 +99,15 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     // told last of who moves was not reached.
     let last = Phase::of(state);
     let stopping = party.standing.as_ref().is_some_and(|fact| fact.value == Standing::Stopping);
+    let behind = last_stand.map_or(&[][..], |at| &acts[at + 1..]);
+    let reached = last_stand.is_some_and(|at| acts[at].act == Act::Hold) || behind.iter().any(|fact| goes_on(fact));
     if last == Phase::Stands && !stopping {
-        let stands = list.iter().rposition(|phase| *phase == last).map_or(list.len(), |at| at + 1);
-        list.truncate(stands);
-    } else if list.ends_with(&[last, Phase::Stands]) {
+        // Who is told to have set off from there stands again.
+        if !behind.iter().any(|fact| fact.act == Act::SetOff && !fact.begun) {
+            let stands = list.iter().rposition(|phase| *phase == last).map_or(list.len(), |at| at + 1);
+            list.truncate(stands);
+        }
+    } else if list.ends_with(&[last, Phase::Stands]) && !reached {
         list.pop();
     }
     if list.last() != Some(&last) {
@@ -89,6 +116,16 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Phase> {
     let last = list.split_off(list.len().saturating_sub(MOST_PHASES));
     let before = &last[..last.len() - 1];
     if last.len() > 2 || before.contains(&Phase::Reverses) { last } else { Vec::new() }
+}
+
+/// Whether somebody who does this drives, out of its line.
+const fn leaves_line(act: Act) -> bool {
+    matches!(act, Act::LaneChange | Act::Drift | Act::Swerve | Act::Turn | Act::UTurn | Act::PullOut)
+}
+
+/// Whether somebody who does this behind a stop has come to that: it went on from there, or was about to.
+fn goes_on(fact: &ActFact) -> bool {
+    leaves_line(fact.act) || matches!(fact.act, Act::SetOff | Act::Accelerate | Act::Pass | Act::Enter | Act::Cross)
 }
 
 /// A phase that is shorter than this on the way from one gear to the other is none. [steps]
@@ -299,26 +336,113 @@ fn moves_up(way_m: f64) -> (f64, f64) {
 /// Who changes gear stops so far before the end of a leg: a hair behind it, it would stand on the next one. [m]
 pub(crate) const STOPS_SHORT_M: f64 = 0.002;
 
-/// The same plan with what came before it: along the line on which it begins, back and forth.
-pub(crate) fn before(lead: Lead, plan: ActorPlan, begin: Pose) -> ActorPlan {
+/// Who came over from another line before its first stop was on its own so far before that, and took so long at least and at most. [m]
+const CAME_OVER_M: f64 = 4.0;
+const COMES_OVER_M: (f64, f64) = (12.0, 30.0);
+
+/// Another line, so far to the left of the one on which somebody stops; and the arm of who comes over from it. [m]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Beside {
+    pub(crate) left_m: f64,
+    pub(crate) arm_m: f64,
+}
+
+impl Beside {
+    /// The way from there to the own line, of a first stretch of this length: so much longer it is than straight on, and from where along
+    /// that to where it goes over. [m]
+    fn over(self, length_m: f64) -> Option<(f64, [f64; 2])> {
+        let joins_m = length_m - CAME_OVER_M;
+        let leaves_m = (joins_m - COMES_OVER_M.1).max(1.0);
+        let at = |x_m: f64, y_m: f64| Pose { position: Vec2::new(x_m, y_m), heading: 0.0 };
+        let mut course = Course::begin(self.arm_m);
+        let over = course.curve(at(leaves_m, self.left_m), at(joins_m, 0.0), false);
+        let longer_m = course.length_m() - (joins_m - leaves_m);
+        (over && joins_m - leaves_m >= COMES_OVER_M.0 && longer_m < leaves_m).then_some((longer_m, [leaves_m, joins_m]))
+    }
+}
+
+/// The same plan with what came before it: along the line on which it begins, back and forth; `from`: it came over from another line.
+pub(crate) fn before(lead: Lead, plan: ActorPlan, begin: Pose, from: Option<Beside>) -> ActorPlan {
     let ahead = Vec2::from_heading(begin.heading);
     let degrees = begin.heading.to_degrees();
-    let place = |x_m: f64| {
-        let point = begin.position + ahead * x_m;
+    let beside = |x_m: f64, left_m: f64| {
+        let point = begin.position + ahead * x_m + ahead.left() * left_m;
         Place::at(point.x, point.y, degrees)
     };
+    let place = |x_m: f64| beside(x_m, 0.0);
     let gear = |reverse: bool| if reverse { -1.0 } else { 1.0 };
     let start_m = -lead.driven_m();
+    let first = lead.stretches.first().filter(|(_, reverse)| lead.speed_mps > 0.0 && !reverse);
+    let over = from.zip(first).and_then(|(from, (length_m, _))| Some((from.left_m, from.over(*length_m)?)));
+    let start = over.map_or(place(start_m), |(left_m, (longer_m, _))| beside(start_m + longer_m, left_m));
     let (mut x_m, mut course) = (start_m, Vec::new());
+    if let Some((left_m, (_, [leaves_m, joins_m]))) = over {
+        let to = [beside(start_m + leaves_m, left_m), place(start_m + joins_m)];
+        course.extend(to.map(|to| Leg::Curve { to, reverse: false }));
+    }
+    let own = course.len();
     for (length_m, reverse) in &lead.stretches {
         x_m += gear(*reverse) * length_m;
         // What goes on in the same gear is one leg.
-        if matches!(course.last(), Some(Leg::Curve { reverse: before, .. }) if before == reverse) {
+        if matches!(course[own..].last(), Some(Leg::Curve { reverse: before, .. }) if before == reverse) {
             course.pop();
         }
         course.push(Leg::Curve { to: place(x_m + gear(*reverse) * STOPS_SHORT_M), reverse: *reverse });
     }
     course.extend(plan.course);
     let acts = lead.acts.into_iter().chain(plan.acts).collect();
-    ActorPlan { speed_mps: lead.speed_mps, course, acts, start: place(start_m), ..plan }
+    ActorPlan { speed_mps: lead.speed_mps, course, acts, start, ..plan }
+}
+
+/// When they touch, and when where more is told of what they did before. [s]
+pub(crate) const CONTACT_S: f64 = 9.0;
+const LATE_CONTACT_S: f64 = 12.0;
+
+/// Each step more than are checked takes so much longer. [s]
+const PHASE_S: f64 = 2.0;
+
+/// Who drives through a junction comes along for so far, and so long at most. [m, s]
+const OVER_LINE_M: f64 = 19.5;
+const LATEST_CONTACT_S: f64 = 22.0;
+
+impl Told {
+    /// What the two did before, and when they touch then, as far as it can be drawn: of who comes from beside the road, or stood across it, the state says enough.
+    pub(crate) fn phases(&mut self) {
+        let along = matches!(
+            self.origin,
+            Origin::Ahead | Origin::Behind | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
+        );
+        if !along || matches!(self.cp.slants, Some(Slant::Stood { .. })) {
+            self.cp.phases.clear();
+        }
+        if self.cp.backs_in && self.cp.phases.is_empty() {
+            self.cp.phases = kerb::BACKED_IN.to_vec();
+        }
+        // Who came back into the lane in which it stopped had left it before.
+        let came_back = self.sv.returns && self.sv.stopped_aside == Some(Act::LaneChange);
+        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty() || self.backs_out() || came_back;
+        let steps = self.sv.phases.len().max(self.cp.phases.len()).saturating_sub(CHECKED_PHASES) as f64;
+        self.contact_s = if more { LATE_CONTACT_S + steps * PHASE_S } else { CONTACT_S };
+        // Who is slow has come over the line of its signal or sign.
+        let drives = self.sv.state == ContactState::Moving && self.sv.slowed_from.is_none() && !self.sv.stood_first;
+        let over_line = self.sv.control.is_some() && drives && self.origin != Origin::Behind;
+        // So has who stood before its turn.
+        let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
+        let from_line = turns && self.sv.stood_first && self.sv.slowed_from.is_none();
+        if let Some(mps) = self.sv.impact_mps.filter(|_| over_line && self.sv.turning == Turning::No || from_line) {
+            self.contact_s =
+                (OVER_LINE_M / mps.max(0.4)).ceil().clamp(self.contact_s, LATEST_CONTACT_S.max(self.contact_s));
+        }
+    }
+
+    /// The same with the last steps alone that are checked, where there are more.
+    pub(crate) fn in_fewer_steps(&self) -> Option<Self> {
+        let long = |side: &Side| side.phases.len() > CHECKED_PHASES;
+        let mut told = (long(&self.sv) || long(&self.cp)).then(|| self.clone())?;
+        for side in [&mut told.sv, &mut told.cp] {
+            side.phases = checked(&side.phases).to_vec();
+        }
+        told.phases();
+        Some(told)
+    }
 }

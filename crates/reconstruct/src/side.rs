@@ -76,6 +76,8 @@ pub(crate) struct Side {
     pub(crate) stopped_aside: Option<Act>,
     /// It changed lanes on its way, and goes straight on since.
     pub(crate) changed_lanes: bool,
+    /// It changed lanes on its way to its first stop: to this side, where told.
+    pub(crate) came_over: Option<Option<LeftRight>>,
     /// It changed lanes to pass.
     pub(crate) passes: bool,
     /// It changed lanes, and goes back to the lane that it left.
@@ -197,6 +199,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
     Side {
         aside,
         changed_lanes,
+        came_over: came_over(party),
         passes,
         returns: returns(party),
         gains,
@@ -205,7 +208,8 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         turns_later: false,
         turned: turning != Turning::No
             && (party.acts.iter().any(|fact| fact.act == Act::Turn && fact.done)
-                || movement == Some(Movement::Straight)),
+                || movement == Some(Movement::Straight)
+                || movement == Some(Movement::Stopped) && went_on_straight(party)),
         completes: is_completing(party, movement),
         turns_wide: false,
         dodges: false,
@@ -248,6 +252,16 @@ fn came_there(party: &Party) -> bool {
     first.is_some_and(|fact| matches!(fact.act, Act::Stop | Act::PullOver))
 }
 
+/// To which side somebody changed lanes before it first stood; who passed on one side came back to the other.
+fn came_over(party: &Party) -> Option<Option<LeftRight>> {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let stands = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).min()?;
+    let last =
+        before().filter(|fact| fact.act == Act::LaneChange && fact.step < stands).max_by_key(|fact| fact.step)?;
+    let passed = before().filter(|fact| fact.act == Act::Pass && fact.step < last.step).find_map(|fact| fact.side);
+    Some(last.side.or(passed.map(LeftRight::other)))
+}
+
 /// Whether the last two lane changes before the contact that are told of somebody go to opposite sides.
 fn returns(party: &Party) -> bool {
     let changes = party.acts.iter().filter(|fact| fact.act == Act::LaneChange && !fact.after_contact);
@@ -264,12 +278,12 @@ fn is_completing(party: &Party, movement: Option<Movement>) -> bool {
 
 /// Whether somebody who stood and set off is told to have slowed after it.
 fn slowed_after_its_stand(party: &Party) -> bool {
-    let last = |of: fn(Act) -> bool| {
-        let before = party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun && of(fact.act));
-        before.map(|fact| fact.step).max()
-    };
-    let stands = last(|act| matches!(act, Act::Hold | Act::SetOff | Act::Stop));
-    last(|act| act == Act::Slow) > stands
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact && !fact.begun);
+    let last = before().map(|fact| fact.step).max();
+    // Who moves at the contact had not come to a stop that is told last.
+    let reached = |fact: &ActFact| matches!(fact.act, Act::Hold | Act::SetOff | Act::Stop) && Some(fact.step) < last;
+    let stood = before().filter(|fact| reached(fact)).map(|fact| fact.step).max();
+    before().filter(|fact| matches!(fact.act, Act::Slow | Act::Stop)).map(|fact| fact.step).max() > stood
 }
 
 /// Whether the last that is told of somebody is that it reversed, and parked.
@@ -315,7 +329,24 @@ fn last_way(party: &Party) -> Option<&ActFact> {
     };
     let goes_on = |fact: &ActFact| goes_on(fact) && !(stopping && fact.act == Act::Park);
     let came = stopping || told(&party.standing) == Some(Standing::CameToStop);
-    before().filter(|fact| came && fact.step < stood && goes_on(fact)).max_by_key(|fact| fact.step)
+    // A way from a stop that it had made to the next was driven, also where it was only begun.
+    let first_stop = before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold)).map(|fact| fact.step).min();
+    let begun = |fact: &&ActFact| {
+        let between = first_stop.is_some_and(|first| first < fact.step) && fact.step < stood;
+        fact.begun && !fact.after_contact && leaves_line(fact.act) && between && stops_after(party, fact.step)
+    };
+    // Whom it had passed when it came back it passed before that.
+    let earlier = |fact: &ActFact| fact.act == Act::Pass && fact.done && fact.side.is_none();
+    let way = |fact: &&ActFact| came && fact.step < stood && goes_on(fact) && !earlier(fact);
+    before().filter(way).chain(party.acts.iter().filter(begun)).max_by_key(|fact| fact.step)
+}
+
+/// Whether the next that is told of somebody's stands behind a step is that it came to a stop.
+fn stops_after(party: &Party, step: u32) -> bool {
+    let stands = |fact: &&ActFact| {
+        matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact && !fact.begun && fact.step > step
+    };
+    party.acts.iter().filter(stands).min_by_key(|fact| fact.step).is_some_and(|fact| fact.act == Act::Stop)
 }
 
 /// The turn that somebody had begun or done before it came to a stop. Who stops at a light or a sign has yet to turn.
@@ -323,11 +354,19 @@ fn turned_before_its_stop(party: &Party) -> Turning {
     let entered = party.acts.iter().any(|fact| fact.act == Act::Enter && !fact.after_contact && !fact.begun);
     let at_line = |fact: &Fact<StandReason>| matches!(fact.value, StandReason::RedLight | StandReason::StopSign);
     let waits = party.reasons.iter().any(at_line) && !entered;
-    match last_way(party).filter(|fact| fact.act == Act::Turn && !waits).and_then(|fact| fact.side) {
+    let last = last_way(party).filter(|_| !waits);
+    match last.filter(|fact| fact.act == Act::Turn).and_then(|fact| fact.side) {
         Some(LeftRight::Left) => Turning::Left,
         Some(LeftRight::Right) => Turning::Right,
+        // It went straight on since.
+        None if last.is_some_and(|fact| matches!(fact.act, Act::Follow | Act::Enter)) => turned_before(party),
         None => Turning::No,
     }
+}
+
+/// Whether somebody who came to a stop had turned, and gone straight on since.
+fn went_on_straight(party: &Party) -> bool {
+    last_way(party).is_some_and(|fact| matches!(fact.act, Act::Follow | Act::Enter))
 }
 
 /// The turn that somebody who goes straight on since had done before.

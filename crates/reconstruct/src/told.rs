@@ -6,6 +6,7 @@ use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
 use crate::pace::{GAINS_MPS, STARTS_AND_SLOWS_MPS};
+use crate::phases::{self, CONTACT_S};
 use crate::roadside;
 use crate::side::{Side, Slant, Slowed, Turning, side};
 use crate::things::{self, Lies, SLIDES_MPS};
@@ -30,14 +31,6 @@ const THROWN_MPS: f64 = 4.0;
 const DEPARTS_M: f64 = 1.6;
 const KERB_M: f64 = 2.6;
 const CHANGES_M: f64 = 2.2;
-
-/// When they touch, and when where more is told of what they did before. [s]
-const CONTACT_S: f64 = 9.0;
-const LATE_CONTACT_S: f64 = 12.0;
-
-/// Who drives through a junction comes along for so far, and so long at most. [m, s]
-const OVER_LINE_M: f64 = 19.5;
-const LATEST_CONTACT_S: f64 = 22.0;
 
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
@@ -351,35 +344,13 @@ impl Told {
         self.sv.reacts = turning && !self.cp.stood_first && turns.is_some() && turns < reacts;
         // Who swerves from somebody that comes at it does so away from it.
         let swerves = !steps(sv, |act| act == Act::Swerve).is_empty();
-        let straight = matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture));
+        let straight =
+            matches!(self.sv.movement, Some(Movement::Straight | Movement::LaneDeparture | Movement::Passing));
         if swerves && straight && self.sv.aside.is_none() && self.striker == Some(Striker::Cp) {
             self.sv.aside = match self.origin {
                 Origin::Beside { side } | Origin::Cross { side } => Some(side.other()),
                 _ => side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Right } else { LeftRight::Left }),
             };
-        }
-    }
-
-    /// What the two did before, as far as it can be drawn: of who comes from beside the road, or stood across it, the state says enough.
-    fn phases(&mut self) {
-        let along = matches!(
-            self.origin,
-            Origin::Ahead | Origin::Behind | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
-        );
-        if !along || matches!(self.cp.slants, Some(Slant::Stood { .. })) {
-            self.cp.phases.clear();
-        }
-        if self.cp.backs_in && self.cp.phases.is_empty() {
-            self.cp.phases = kerb::BACKED_IN.to_vec();
-        }
-        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty() || self.backs_out();
-        self.contact_s = if more { LATE_CONTACT_S } else { CONTACT_S };
-        // Who is slow has come over the line of its signal or sign.
-        let drives = self.sv.state == ContactState::Moving && self.sv.slowed_from.is_none() && !self.sv.stood_first;
-        let over_line = self.sv.control.is_some() && drives && self.origin != Origin::Behind;
-        if let Some(mps) = self.sv.impact_mps.filter(|_| over_line && self.sv.turning == Turning::No) {
-            self.contact_s =
-                (OVER_LINE_M / mps.max(0.4)).ceil().clamp(self.contact_s, LATEST_CONTACT_S.max(self.contact_s));
         }
     }
 
@@ -638,7 +609,7 @@ impl Told {
     /// How the ego leaves its line.
     pub(crate) fn sv_aside(&self) -> Option<Aside> {
         let (left, right) = (LeftRight::Left, LeftRight::Right);
-        let back = self.sv.phases.contains(&crate::phases::Phase::Reverses);
+        let back = self.sv.phases.contains(&phases::Phase::Reverses);
         let stopped = self.sv.stopped_aside.filter(|_| !back && !self.sv.came_to_park);
         let stands = self.sv.state.stands() && stopped.is_none();
         if self.sv.turning != Turning::No || stands || self.sv.state == ContactState::Reversing {

@@ -22,7 +22,7 @@ struct Candidate<'a> {
 }
 
 /// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
-const NO_VERB: [fn(&Candidate<'_>) -> bool; 17] = [
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 19] = [
     |verb| verb.is_determined(),
     |verb| verb.is_described(),
     |verb| verb.is_turn_of_a_side(),
@@ -30,6 +30,8 @@ const NO_VERB: [fn(&Candidate<'_>) -> bool; 17] = [
     |verb| verb.is_a_mark(),
     |verb| verb.is_one_of_maneuvers(),
     |verb| verb.is_bare_turn(),
+    |verb| verb.is_signaled(),
+    |verb| verb.is_of_a_head(),
     |verb| verb.is_a_parking_place(),
     |verb| verb.is_of_parking(),
     |verb| verb.is_of_a_lane(),
@@ -143,6 +145,26 @@ impl Candidate<'_> {
             && self.word(1) == "turn"
             && self.length == 2
             && self.form == Form::Base
+    }
+
+    /// "without using turn signals", "its left blinker to turn": no turn yet.
+    fn is_signaled(&self) -> bool {
+        let lamp = |word: &str| {
+            matches!(
+                word,
+                "signal" | "signals" | "indicator" | "indicators" | "blinker" | "blinkers" | "lamp" | "lamps"
+            )
+        };
+        let to = self.word_before == "to" && self.at >= 2 && lamp(self.chunker.text(self.at - 2));
+        self.word(0) == "turn" && to || self.last_word() == "turn" && lamp(self.behind(0))
+    }
+
+    /// "whose head was turned left", "turned his head": who drives looks there.
+    fn is_of_a_head(&self) -> bool {
+        let passive =
+            self.at >= 2 && self.chunker.text(self.at - 2) == "head" && matches!(self.word_before, "was" | "is");
+        let own = matches!(self.behind(0), "his" | "her" | "their") && self.behind(1) == "head";
+        self.word(0).starts_with("turn") && (passive || own || self.word_before == "head")
     }
 
     /// "after a series of maneuvers", "a lane for left turn maneuvers".

@@ -45,6 +45,11 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
                 }
             }
             _ if in_passing => {}
+            // "stopped after making a left turn": it turned first.
+            Some(last) if stands(last) && is_behind_after(reading, frame, last.step as usize) => {
+                let step = std::mem::replace(&mut last.step, fact.step);
+                all.insert(all.len() - 1, ActFact { step, ..fact });
+            }
             _ => all.push(fact),
         }
     }
@@ -69,6 +74,18 @@ fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
 fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
     let first = reading.story.tokens.get(frame.first).map(|token| token.text.as_str()).unwrap_or_default();
     frame.joint == Some(Joint::After) || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
+}
+
+fn stands(fact: &ActFact) -> bool {
+    matches!(fact.act, Act::Stop | Act::Hold)
+}
+
+/// Whether an act is told behind "after", of the clause with the act of this number before it: "stopped after turning left".
+fn is_behind_after(reading: &Reading<'_>, frame: &Frame, before: usize) -> bool {
+    let word = |at: usize| reading.story.tokens.get(at).map_or("", |token| token.text.as_str());
+    let main = &reading.story.frames[before];
+    let behind = frame.first.checked_sub(1).is_some_and(|at| word(at) == "after") && word(frame.first).ends_with("ing");
+    behind && main.sentence == frame.sentence && main.joint != Some(Joint::After)
 }
 
 /// The act of a frame, as it counts in the account.

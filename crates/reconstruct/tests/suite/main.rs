@@ -12,6 +12,7 @@ mod others;
 mod roadside;
 mod sabotage;
 mod steps;
+mod steps_between;
 mod stories;
 mod strips;
 mod sweeps;
