@@ -58,7 +58,7 @@ fn main() {
         begun.elapsed() - read
     );
     let list = flags.iter().any(|flag| flag == "--list");
-    let mut by_type: BTreeMap<String, [usize; 3]> = BTreeMap::new();
+    let mut by_type: BTreeMap<String, [usize; 4]> = BTreeMap::new();
     let mut reasons: BTreeMap<&'static str, usize> = BTreeMap::new();
     let mut facts: BTreeMap<CheckKind, [usize; 2]> = BTreeMap::new();
     let mut left_open: BTreeMap<CheckKind, usize> = BTreeMap::new();
@@ -70,6 +70,7 @@ fn main() {
             Ok(made) => {
                 row[1] += 1;
                 row[2] += usize::from(made.is_true());
+                row[3] += usize::from(made.verdict.faithful() == Answer::Yes);
                 for fact in &made.verdict.checks {
                     let open = made.is_true() && fact.result == CheckResult::CannotBeShown;
                     if open && flags.iter().any(|flag| flag == "--open") && is_developed(account) {
@@ -122,32 +123,23 @@ fn main() {
             }
         }
     }
-    println!("type: accounts, staged, all told facts shown");
-    let mut sum = [0; 3];
-    for (kind, row) in &by_type {
+    println!("type: accounts, staged, told, with every told fact shown");
+    let mut sum = [0; 4];
+    for row in by_type.values() {
+        sum.iter_mut().zip(row).for_each(|(sum, count)| *sum += count);
+    }
+    for (kind, row) in by_type.iter().map(|(kind, row)| (kind.as_str(), row)).chain([("all", &sum)]) {
+        let share = |count: usize| 100.0 * count as f64 / row[0] as f64;
         println!(
-            "  {kind:<14} {:>5} {:>5} {:>5}  {:.0} %",
+            "  {kind:<14} {:>5} {:>5} {:>5}  {:.1} % {:>5}  {:.1} %",
             row[0],
             row[1],
             row[2],
-            100.0 * row[2] as f64 / row[0] as f64
+            share(row[2]),
+            row[3],
+            share(row[3])
         );
-        for (total, part) in sum.iter_mut().zip(row) {
-            *total += part;
-        }
     }
-    println!(
-        "  {:<14} {:>5} {:>5} {:>5}  {:.0} %",
-        "all",
-        sum[0],
-        sum[1],
-        sum[2],
-        100.0 * sum[2] as f64 / sum[0] as f64
-    );
-    let all_checked = |(_, made): &&(&Account, Result<Reconstruction, _>)| {
-        made.as_ref().is_ok_and(|made| made.verdict.faithful() == Answer::Yes)
-    };
-    println!("all checked: {}", results.iter().filter(all_checked).count());
     println!("not staged: {reasons:?}");
     let beside = results
         .par_iter()
