@@ -90,7 +90,8 @@ impl Parser<'_> {
     fn whose(&mut self, piece: &Piece, all: &[Placed], at: usize, carry: &mut Carry) -> Option<Actor> {
         let placed = &all[at];
         if let Some(owner) = &piece.owner {
-            let actor = self.world.resolve(owner, (placed.first, placed.end), None);
+            let hint = relation_behind(all, at);
+            let actor = self.world.resolve(owner, (placed.first, placed.end), hint);
             let actor = self.as_a_result(actor, placed.first);
             self.attribute(owner, actor, placed, carry);
             return Some(actor);

@@ -308,12 +308,13 @@ pub(super) fn names_doer(all: &[Placed], at: usize) -> bool {
 pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
     // "the vehicle traveling behind was unable to stop".
     let mut further = at + 1;
-    while further < at + 4
-        && matches!(
-            all.get(further).map(|p| &p.chunk),
-            Some(Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing) | Chunk::Relative | Chunk::Be)
-        )
-    {
+    let goes_on = |at: usize| match all.get(at).map(|p| &p.chunk) {
+        Some(Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing) | Chunk::Relative | Chunk::Be) => true,
+        // "the car that had been behind it".
+        Some(Chunk::Word) => matches!(all[at - 1].chunk, Chunk::Relative),
+        _ => false,
+    };
+    while further < at + 4 && goes_on(further) {
         further += 1;
     }
     if let (Some(Chunk::Relation(relation @ (Relation::Behind | Relation::Ahead))), false) = (
