@@ -3,7 +3,8 @@
 use crate::extras::STANDS_MPS;
 use crate::ground::LANE_M;
 use crate::others::{Extra, Role};
-use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other};
+use crate::told::Told;
+use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::rollout::ActorTrack;
@@ -327,9 +328,18 @@ fn is_drawn(other: &Other) -> bool {
     }
 }
 
+impl Told {
+    /// The same at a junction too, where somebody on a street crosses nearby, or turns.
+    pub(crate) fn with_junction(self) -> Vec<Self> {
+        let crossed = self.place == PlaceKind::Street && self.wanted.iter().any(Extra::is_at_junction);
+        let at_one = crossed.then(|| Self { crossed_near: true, ..self.clone() });
+        at_one.into_iter().chain([self]).collect()
+    }
+}
+
 impl Extra {
     /// Whether it has no part in what the ego does, and is on a road that crosses the ego's, or turns into one.
-    pub(crate) fn is_at_junction(&self) -> bool {
+    fn is_at_junction(&self) -> bool {
         let turns = |near: Near| matches!(near.does, Does::Turns(_) | Does::TurnsLeft);
         self.near.is_some_and(|near| near.across || matches!(near.place, Some(Origin::Cross { .. })) || turns(near))
     }
