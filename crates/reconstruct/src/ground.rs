@@ -359,8 +359,8 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::No | Turning::Round => "own",
     };
     let one_way = is_one_way(told);
-    let usual: &[StripKind] =
-        if has(told, Role::Kerb) { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
+    let parks = has(told, Role::Kerb) || told.crossed_near && told.cp.state == ContactState::Parked;
+    let usual: &[StripKind] = if parks { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
     // Of the partner's road, on both sides of the junction.
     let beside = told.beside_lanes(usual);
     let crosses = matches!(told.origin, Origin::Cross { .. });

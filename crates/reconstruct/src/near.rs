@@ -3,7 +3,8 @@
 use crate::extras::STANDS_MPS;
 use crate::ground::LANE_M;
 use crate::others::{Extra, Role};
-use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other};
+use crate::told::Told;
+use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::rollout::ActorTrack;
@@ -56,6 +57,21 @@ impl Does {
         !matches!(self, Self::Untold | Self::Drives | Self::Slows | Self::Stands)
     }
 
+    /// Whether it may be a part of a way with another deed.
+    const fn is_of_one_way(self) -> bool {
+        matches!(self, Self::Turns(_) | Self::PullsOut | Self::GoesAside(_) | Self::PullsOver(_) | Self::Crosses)
+    }
+
+    /// How far it takes somebody, of two deeds on one way.
+    const fn reach(self) -> u8 {
+        match self {
+            Self::Turns(_) | Self::TurnsLeft => 3,
+            Self::PullsOut | Self::Passes | Self::Crosses => 2,
+            Self::Changes(_) | Self::Backs => 1,
+            _ => 0,
+        }
+    }
+
     /// Whether one who does this is drawn at a place.
     const fn fits(self, place: Option<Origin>) -> bool {
         use Origin as O;
@@ -102,6 +118,8 @@ pub(crate) struct Near {
     pub(crate) place: Option<Origin>,
     pub(crate) across: bool,
     pub(crate) does: Does,
+    /// Another deed on the same way.
+    pub(crate) also: Option<Does>,
     /// How many such are there before it.
     pub(crate) number: usize,
 }
@@ -115,7 +133,8 @@ impl Near {
         if other.kind.value.group() == KindGroup::Object {
             let place = other.place.as_ref().map(|fact| fact.value);
             let rolls = other.acts.iter().any(|fact| !fact.after_contact && moves(fact.act));
-            return Some(Self { place, across: false, does: if rolls { Does::Crosses } else { Does::Stands }, number });
+            let does = if rolls { Does::Crosses } else { Does::Stands };
+            return Some(Self { place, across: false, does, also: None, number });
         }
         let said = |of: &[&str]| of.iter().any(|word| words.contains(word));
         let place = other.place.as_ref().map(|fact| fact.value).or_else(|| {
@@ -136,17 +155,19 @@ impl Near {
         let all: Vec<Does> = before.iter().map(|fact| Does::of(fact, place, on_wheels)).collect::<Option<_>>()?;
         let mut deeds: Vec<Does> = all.iter().copied().filter(|does| does.is_deed()).collect();
         deeds.dedup();
-        let does = match deeds.last().copied() {
-            None => all.last().copied().unwrap_or(Does::Untold),
-            Some(
-                last @ (Does::Turns(_) | Does::PullsOut | Does::GoesAside(_) | Does::PullsOver(_) | Does::Crosses),
-            ) => {
-                // One after another is not drawn.
-                (deeds.len() == 1).then_some(last)?
-            }
-            Some(last) => last.fits(place).then_some(last)?,
+        let (does, also) = match deeds.as_slice() {
+            [] => (all.last().copied().unwrap_or(Does::Untold), None),
+            [one] => (*one, None),
+            [.., last] if !deeds.iter().any(|does| does.is_of_one_way()) => (*last, None),
+            // Of two the one that takes it farther is drawn, and both are looked for.
+            &[first, last] if first.reach() >= last.reach() => (first, Some(last)),
+            &[first, last] => (last, Some(first)),
+            _ => return None,
         };
-        Some(Self { place, across, does, number })
+        if !does.fits(place) || !also.is_none_or(|also| also.fits(place)) {
+            return None;
+        }
+        Some(Self { place, across, does, also, number })
     }
 
     /// Whether somebody near moves while the ego stands, and is ahead of it then.
@@ -228,7 +249,7 @@ impl Near {
         let drove = state(0).position().distance(state(until).position()) > DROVE_M;
         // To the left of where it was at first, along the road.
         let aside_m = |step: usize| ahead.cross(state(step).position() - state(0).position());
-        let done = match self.does {
+        let done = |does: Does| match does {
             Does::Untold => true,
             Does::Drives => drove,
             Does::Backs => (0..=until).any(|step| state(step).speed() < -STANDS_MPS),
@@ -254,7 +275,7 @@ impl Near {
             }
             Does::GoesAside(side) | Does::PullsOver(side) => {
                 let slowed = (0..until).any(|step| mps(step) > mps(until) + SLOWED_MPS);
-                let drawn_up = slowed || matches!(self.does, Does::GoesAside(_));
+                let drawn_up = slowed || matches!(does, Does::GoesAside(_));
                 let own = Vec2::from_heading(state(0).heading).cross(state(until).position() - state(0).position());
                 drawn_up && own.abs() > ASIDE_M && side.is_none_or(|side| on_side(side, own))
             }
@@ -268,7 +289,7 @@ impl Near {
                 facing(0) > 2.0 && turned > 0.7 && crossed
             }
         };
-        stays_ahead && done && (0..=until).any(there)
+        stays_ahead && done(self.does) && self.also.is_none_or(done) && (0..=until).any(there)
     }
 }
 
@@ -307,9 +328,18 @@ fn is_drawn(other: &Other) -> bool {
     }
 }
 
+impl Told {
+    /// The same at a junction too, where somebody on a street crosses nearby, or turns.
+    pub(crate) fn with_junction(self) -> Vec<Self> {
+        let crossed = self.place == PlaceKind::Street && self.wanted.iter().any(Extra::is_at_junction);
+        let at_one = crossed.then(|| Self { crossed_near: true, ..self.clone() });
+        at_one.into_iter().chain([self]).collect()
+    }
+}
+
 impl Extra {
     /// Whether it has no part in what the ego does, and is on a road that crosses the ego's, or turns into one.
-    pub(crate) fn is_at_junction(&self) -> bool {
+    fn is_at_junction(&self) -> bool {
         let turns = |near: Near| matches!(near.does, Does::Turns(_) | Does::TurnsLeft);
         self.near.is_some_and(|near| near.across || matches!(near.place, Some(Origin::Cross { .. })) || turns(near))
     }

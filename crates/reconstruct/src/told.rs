@@ -91,7 +91,7 @@ pub(crate) struct Told {
     /// The kind of the partner whose trailer is told to have touched.
     pub(crate) trailer_of: Option<Kind>,
     /// Who comes by with a trailer that touches is drawn as two, where that shows what is told; and what is drawn.
-    wanted_rig: Option<Rig>,
+    pub(crate) wanted_rig: Option<Rig>,
     pub(crate) rig: Option<Rig>,
     /// Somebody threw the partner at the subject vehicle; and who, where told.
     pub(crate) pushed: bool,
@@ -419,13 +419,7 @@ impl Told {
             let more = may.then(|| Self { more_lanes: true, ..told.clone() });
             [told].into_iter().chain(more)
         };
-        // Who crosses nearby, or turns, does so at a junction.
-        let with_junction = |told: Self| {
-            let crossed = told.place == PlaceKind::Street && told.wanted.iter().any(Extra::is_at_junction);
-            let at_one = crossed.then(|| Self { crossed_near: true, ..told.clone() });
-            at_one.into_iter().chain([told])
-        };
-        let told = self.by_origin().into_iter().flat_map(with_junction).flat_map(with_rig);
+        let told = self.by_origin().into_iter().flat_map(Self::with_junction).flat_map(with_rig);
         told.flat_map(with_extras).flat_map(with_lanes).collect()
     }
 

@@ -4,7 +4,7 @@
 use crate::others::{shown_but, track};
 use crate::ways::{before_contact, degrees_between};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::scenario::{Actor, ActorPlan, Deed};
+use recrash_model::scenario::{Actor, ActorPlan, Deed, MapSpec, StripKind};
 
 const TURNS: &str = "The AV was traveling north on Elm Street toward the intersection with Oak Street. A van traveling west on Oak Street turned right onto \
                      Elm Street. The AV continued straight.";
@@ -14,6 +14,10 @@ const PULLS_OVER: &str = "The AV was traveling north on Elm Street. A box truck 
 const RUNS: &str =
     "The AV was traveling east on Elm Street. A ball rolled into the roadway from the left side of the street.";
 const ON_FOOT: &str = "The AV was traveling east on Elm Street. A pedestrian crossed the street.";
+
+const OVER_THE_LINE: &str = "The AV was traveling south on Elm Street when a pickup truck facing east on Oak Street began a left turn onto Elm Street and crossed over the centerline, \
+                             drifting toward the AV. The AV drifted to the right and the front right of the AV made contact with the front left of a sedan that was parked \
+                             at the curb.";
 
 fn stands(actor: &mut Actor) {
     actor.plan = ActorPlan::standing(actor.plan.start.clone());
@@ -68,4 +72,14 @@ fn who_crosses_and_is_nobodys_reason_to_stop_crosses_nearby() {
     let shown = shown_but(ON_FOOT, "near", stands);
     let (near, last) = (track(&shown, "near"), before_contact(&shown));
     assert!((near.states[0].y - near.states[last].y).abs() > 2.0, "{:?}", near.states[last]);
+}
+
+#[test]
+fn who_turns_and_drifts_does_both_at_a_junction_of_the_street() {
+    let shown = shown_but(OVER_THE_LINE, "near", stands);
+    let (near, last) = (track(&shown, "near"), before_contact(&shown));
+    assert!(degrees_between(near.states[last].heading, near.states[0].heading) > 40.0, "{:?}", near.states[last]);
+    let MapSpec::G(map) = &shown.draft.map else { panic!("a graph") };
+    assert_eq!(map.junctions.len(), 1);
+    assert!(map.roads[0].left.iter().any(|strip| strip.kind == StripKind::Parking));
 }
