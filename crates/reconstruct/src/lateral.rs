@@ -395,7 +395,9 @@ const TURNED_STANDS_S: f64 = 1.0;
 /// The same plan of who reverses, with how it came there before: along the road, by a bend to where it stands. Nothing where it is not
 /// told to have come, or has no time to.
 pub(crate) fn turns_off(told: &Told, begin: Pose, plan: &ActorPlan, arm_m: f64) -> Option<ActorPlan> {
-    let Some(Slant::Stood { oncoming, .. }) = told.cp.slants.filter(|_| told.cp.came_there) else { return None };
+    let crosses = matches!(told.origin, Origin::Cross { .. });
+    let came_there = told.cp.came_there || crosses;
+    let Some(Slant::Stood { oncoming, .. }) = told.cp.slants.filter(|_| came_there) else { return None };
     let came = if oncoming { math::PI } else { 0.0 };
     let stands_s = ((first_time(&plan.acts) - TURNED_STANDS_S) * 10.0).floor() / 10.0;
     let braking_s = TURNS_OFF_MPS / TURNS_OFF_MPS2;

@@ -159,8 +159,7 @@ impl Search {
         let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
         let verdict = Verdict { checks: facts::facts(told, &scenario, &rollout) };
         let others = facts::others_stray(told, &scenario, &rollout);
-        let (missed, strays) = (verdict.failures().count(), facts::strays(told, &scenario, &rollout));
-        let cost = (missed, others, strays, acts_open(&verdict));
+        let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout));
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
         let fuller =
@@ -176,7 +175,7 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        cost == (0, false, false, 0)
+        cost == (0, false, false)
     }
 }
 
@@ -189,19 +188,10 @@ fn left_open(made: &Reconstruction) -> usize {
     made.verdict.checks.iter().filter(|check| is_of_others(check)).count()
 }
 
-/// Of how many of the two something is told to have been done that is not seen.
-fn acts_open(verdict: &Verdict) -> usize {
-    let open = |check: &&Check| {
-        matches!(check.kind, CheckKind::SvActs | CheckKind::CpActs) && check.result == CheckResult::CannotBeShown
-    };
-    verdict.checks.iter().filter(open).count()
-}
-
-/// The best of what was tried: told facts that are not shown, then whether others are not as told, whether the partner strays, and what
-/// it is not seen that somebody did.
+/// The best of what was tried: told facts that are not shown, then whether others are not as told, and whether the partner strays.
 #[derive(Clone)]
 struct Best {
-    cost: (usize, bool, bool, usize),
+    cost: (usize, bool, bool),
     made: Reconstruction,
     told: told::Told,
     ground: ground::Ground,

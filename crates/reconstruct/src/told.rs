@@ -285,6 +285,12 @@ impl Told {
                 }
             });
         }
+        // Who reverses out of the crossing road came along the ego's, turned into that, and stood there.
+        if let (ContactState::Reversing, Origin::Cross { side }) = (self.cp.state, self.origin)
+            && let Some(turned) = turned_off(partner)
+        {
+            self.cp.slants = Some(Slant::Stood { side: Some(turned), oncoming: turned != side });
+        }
         // Who meets a thing after a turn may be in it yet.
         if self.thing.is_some() && self.sv.movement == Some(Movement::Straight) {
             self.sv.turned = false;
@@ -672,6 +678,14 @@ impl Told {
         });
         Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
     }
+}
+
+/// To which side somebody turned before it stood and reversed.
+fn turned_off(party: &Party) -> Option<LeftRight> {
+    let first = |of: fn(Act) -> bool| steps(party, of).into_iter().min();
+    let stood = first(|act| matches!(act, Act::Stop | Act::Hold))?.min(first(|act| act == Act::Reverse)?);
+    let turn = |fact: &&ActFact| fact.act == Act::Turn && !fact.after_contact && !fact.begun && fact.step < stood;
+    party.acts.iter().rfind(turn).and_then(|fact| fact.side)
 }
 
 /// Steps of the story in which somebody did such things before the contact.

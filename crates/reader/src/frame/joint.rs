@@ -2,7 +2,7 @@
 
 use super::parser::{Carry, Parser};
 use crate::chunk::{Chunk, Joint, Placed};
-use crate::lexicon::Form;
+use crate::lexicon::{Form, Relation};
 
 impl Parser<'_> {
     pub(super) fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
@@ -13,7 +13,13 @@ impl Parser<'_> {
             .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
         // "rolled across the street and into the van": one way.
         let into = matches!(behind.first().map(|placed| &placed.chunk), Some(Chunk::Preposition("into" | "against")));
-        if joint == Joint::And && into && carry.frame.is_some() {
+        // "maneuvered forward and to the left": so too.
+        let aside = behind.first().is_some_and(|placed| {
+            let to = placed.first >= 2 && self.tokens[placed.first].text == "to";
+            to && self.tokens[placed.first - 2].text == "forward"
+                && matches!(placed.chunk, Chunk::Relation(Relation::Left | Relation::Right))
+        });
+        if joint == Joint::And && (into || aside) && carry.frame.is_some() {
             (carry.preposition, carry.relation) = (None, None);
             return;
         }
