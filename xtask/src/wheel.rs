@@ -1,8 +1,11 @@
 //! The Python package: its wheel is built, installed where nothing else is, and held against its gates.
 
 use crate::licences;
-use crate::steps::{Result, built, command, find_python, metadrive_python, missing, root, run, target, told, uv};
+use crate::steps::{
+    Result, built, cargo_command, command, find_python, metadrive_python, missing, root, run, target, told, uv,
+};
 use crate::tally::Tally;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -22,8 +25,8 @@ const SDIST_NEEDS: [&str; 6] = [
 
 /// Lint, types, the wheel and the tests in it, the notebook, the API pages, and what a source distribution holds.
 ///
-/// The wheel is of the dev profile, which lint and tests have compiled already: about a minute for what is left, where a release
-/// build takes ten.
+/// The wheel is of the dev profile, and of the libraries that the tests compiled: about half a minute for what is left, where a
+/// release build takes ten.
 pub fn step(tally: &mut Tally) -> Result {
     let Some(python) = find_python() else {
         return missing(tally, "wheel", "Python 3.11 is not on the PATH");
@@ -56,7 +59,8 @@ pub fn step(tally: &mut Tally) -> Result {
     let wheels = target().join("wheels-dev");
     // An older wheel would be found instead of the one that is built.
     let _ = fs::remove_dir_all(&wheels);
-    let build = ["build", "--profile", "dev", "--interpreter"];
+    shared_with_tests()?;
+    let build = ["build", "--profile", "dev", "--features", "as-tests", "--interpreter"];
     run(command(own("maturin")).args(build).arg(own("python")).arg("--out").arg(&wheels).current_dir(&package))?;
     let wheel = only_file(&wheels)?;
     run(pip(&["--force-reinstall", "--no-deps"]).arg(&wheel))?;
@@ -119,6 +123,30 @@ fn source_distribution(maturin: &Path, package: &Path) -> Result {
     let held: Vec<&str> = listed.lines().filter_map(|name| name.split_once('/')).map(|(_, name)| name).collect();
     let missing: Vec<&str> = SDIST_NEEDS.into_iter().filter(|name| !held.contains(name)).collect();
     if missing.is_empty() { Ok(()) } else { Err(format!("{} lacks {}", sdist.display(), missing.join(", "))) }
+}
+
+/// With its feature `as-tests` the wheel asks of every library what the tests ask of it: else cargo would compile the library once
+/// more, and all that use it.
+fn shared_with_tests() -> Result {
+    let tests = libraries(&["--workspace", "--edges", "normal,build,dev"])?;
+    let wheel = libraries(&["--package", "recrash-python", "--features", "as-tests", "--edges", "normal,build"])?;
+    let apart: Vec<&String> =
+        wheel.difference(&tests).filter(|library| !library.starts_with("recrash-python ")).collect();
+    if apart.is_empty() {
+        return Ok(());
+    }
+    Err(format!("`as-tests` of crates/python/Cargo.toml asks for other features than the tests do: {apart:?}"))
+}
+
+/// Name, version and features of all libraries.
+fn libraries(of: &[&str]) -> Result<BTreeSet<String>> {
+    let mut tree = cargo_command();
+    tree.args(["tree", "--quiet", "--no-dedupe", "--prefix", "none", "--format", "{p} [{f}]"]).args(of);
+    let output = tree.current_dir(root()).output().map_err(|error| format!("cargo tree: {error}"))?;
+    if !output.status.success() {
+        return Err(format!("cargo tree: {}", String::from_utf8_lossy(&output.stderr)));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect())
 }
 
 fn only_file(folder: &Path) -> Result<PathBuf> {

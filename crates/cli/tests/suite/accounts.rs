@@ -105,24 +105,15 @@ fn an_edited_scenario_that_is_not_as_told_ends_with_exit_code_5() {
 #[test]
 fn new_records_say_what_they_bring_and_leave_the_rest() {
     let place = Place::new();
-    let mut table = csv::Reader::from_reader(include_str!("../../../records/data/sample.csv").as_bytes());
-    let header = table.headers().unwrap().clone();
-    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
-    let write = |count: usize| {
-        let mut file = csv::Writer::from_path(place.path("crashes.csv")).unwrap();
-        file.write_record(&header).unwrap();
-        rows.iter().take(count).for_each(|row| file.write_record(row).unwrap());
-        file.flush().unwrap();
-    };
     let run = || {
         let words = ["run", "--profile", "open", "--records", "crashes.csv", "--budget", "all", "--tune-budget", "1"];
         place.run(&words)
     };
-    write(rows.len() - 60);
+    place.few_records(100);
     let (code, _, remarks) = run();
     assert_eq!(code, 0, "{remarks}");
     assert!(!remarks.contains("incidents are new"), "{remarks}");
-    write(rows.len());
+    place.few_records(160);
     let (code, _, remarks) = run();
     assert_eq!(code, 0, "{remarks}");
     assert!(remarks.contains("readable incidents are new: "), "{remarks}");

@@ -81,6 +81,15 @@ impl Place {
         self.folder.path().join(name)
     }
 
+    /// Writes the first rows of the sample as `crashes.csv`.
+    pub fn few_records(&self, rows: usize) {
+        let mut table = csv::Reader::from_reader(include_str!("../../../../records/data/sample.csv").as_bytes());
+        let mut file = csv::Writer::from_path(self.path("crashes.csv")).unwrap();
+        file.write_record(table.headers().unwrap()).unwrap();
+        table.records().take(rows).for_each(|row| file.write_record(&row.unwrap()).unwrap());
+        file.flush().unwrap();
+    }
+
     /// Runs a command in the folder; gives exit code, standard output and standard error.
     pub fn run(&self, arguments: &[&str]) -> (i32, String, String) {
         self.run_within(arguments, 3600)
