@@ -1,6 +1,7 @@
 //! What stands behind a verb and belongs to it: where somebody is, directions, sides, lanes, places.
 
 use super::parser::{Carry, Parser};
+use super::row::acts;
 use super::sided;
 use crate::chunk::{Chunk, Piece, Placed, Spot};
 use crate::lexicon::{Part, Relation, Sense};
@@ -52,6 +53,18 @@ impl Parser<'_> {
             carry.lead = Some(relation);
         }
         let Some(who) = who else { return };
+        // "approached the car from behind": behind the car.
+        let of_another = carry.frame.is_some_and(|frame| {
+            let frame = &self.frames[frame];
+            let other = frame.object.filter(|object| *object != SUBJECT && Some(*object) != frame.who);
+            frame.sense == Sense::Approach
+                && relation == Relation::Behind
+                && to.is_none()
+                && other.is_some_and(|other| acts(self.world.actors[other].kind))
+        });
+        if of_another {
+            return;
+        }
         // "turned in front of it", "passed in front of it": where the act ends, and not where it was.
         let across = carry.frame.and_then(|frame| self.frames[frame].act());
         let ends_there = matches!(
