@@ -18,8 +18,8 @@ pub(crate) struct Doing {
     begun: bool,
 }
 
-/// What is told of somebody until the contact that can be seen, in order.
-pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
+/// What is told of somebody until the contact that can be seen, in order; that it passed the other one where that is asked for.
+pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doing> {
     let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
     acts.sort_by_key(|fact| fact.step);
     let stands = |act: Act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park);
@@ -41,6 +41,7 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
             Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
             // What somebody who stands, or had yet to, tried to.
             Act::Reverse => fact.begun && state.stands(),
+            Act::Pass => !passes,
             act => least(act).is_none(),
         };
         let waits = match fact.act {
@@ -91,6 +92,8 @@ enum Least {
     Turn(f64),
     /// Goes aside, turns, or drives backwards.
     Any,
+    /// Comes by the other one, which it was before in its way. [m]
+    By(f64),
 }
 
 /// Who slows or gains speed does so by this. [m/s]
@@ -102,6 +105,9 @@ const CAME_MPS: f64 = 0.5;
 /// Who changes lanes has gone aside by so much, and who drifts or swerves. [m]
 const CHANGES_LANES_M: f64 = 0.8;
 const DRIFTS_M: f64 = 0.2;
+
+/// Who passes was not yet beside the other's middle, and has come so much farther along it since. [m]
+const PASSES_M: f64 = 2.0;
 
 /// Who turns has turned by so much, who turns round, and who comes from the kerb or draws up at it where it does not go aside. [deg]
 const TURNS_DEG: f64 = 15.0;
@@ -133,13 +139,20 @@ fn least(act: Act) -> Option<Least> {
         Act::Turn => Least::Turn(TURNS_DEG),
         Act::UTurn => Least::Turn(ROUND_DEG),
         Act::PullOut | Act::PullOver | Act::Park => Least::Any,
+        Act::Pass => Least::By(PASSES_M),
         _ => return None,
     })
 }
 
-/// Whether everything that is told of somebody is seen, in order; and what is.
-pub(crate) fn check(told: &[Doing], track: &ActorTrack, time_s: f64) -> (CheckResult, String) {
-    let way = Way(&track.states[..=((time_s * 10.0).floor() as usize).min(track.states.len() - 1)]);
+/// Whether everything that is told of somebody is seen, in order; and what is. `other`: of whom it passes.
+pub(crate) fn check(
+    told: &[Doing],
+    track: &ActorTrack,
+    other: Option<&ActorTrack>,
+    time_s: f64,
+) -> (CheckResult, String) {
+    let until = |track: &ActorTrack| ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+    let way = Way(&track.states[..=until(track)], other.map(|other| &other.states[..=until(other)]));
     let (mut from, mut missed) = (0, Vec::new());
     for doing in told {
         match way.begins(*doing, from) {
@@ -153,8 +166,8 @@ pub(crate) fn check(told: &[Doing], track: &ActorTrack, time_s: f64) -> (CheckRe
     }
 }
 
-/// The states of somebody until the contact.
-struct Way<'a>(&'a [ActorState]);
+/// The states of somebody until the contact, and of the other one.
+struct Way<'a>(&'a [ActorState], Option<&'a [ActorState]>);
 
 impl Way<'_> {
     fn speed(&self, at: usize) -> f64 {
@@ -175,6 +188,24 @@ impl Way<'_> {
         (from..self.last()).find(|at| {
             value(*at, until(*at, SOON)) > SOON_SHARE * least
                 && (at + 1..=until(*at, LONGEST)).any(|then| value(*at, then) > least)
+        })
+    }
+
+    /// How far it is ahead of the other one's middle at a step, the way that it goes itself. [m]
+    fn ahead_m(&self, other: &[ActorState], at: usize) -> f64 {
+        let (own, other) = (&self.0[at], &other[at.min(other.len() - 1)]);
+        let same_way = math::wrap_angle(own.heading - other.heading).abs() < std::f64::consts::FRAC_PI_2;
+        let along = Vec2::from_heading(other.heading).dot(own.position() - other.position());
+        if same_way { along } else { -along }
+    }
+
+    /// When it begins to come by the other one, from this step on.
+    fn passes(&self, from: usize, by_m: f64) -> Option<usize> {
+        let other = self.1?;
+        let ahead_m = |at: usize| self.ahead_m(other, at);
+        (from..self.last()).find(|at| {
+            let begun_m = ahead_m(*at);
+            begun_m < 0.0 && (at + 1..=self.last()).any(|then| ahead_m(then) - begun_m > by_m)
         })
     }
 
@@ -216,6 +247,7 @@ impl Way<'_> {
             Least::Back => backs(),
             Least::Aside(by) => self.comes_to(from, share * by, aside),
             Least::Turn(by) => self.comes_to(from, share * by, turned),
+            Least::By(by) => self.passes(from, share * by),
             Least::Any => self
                 .comes_to(from, share * LEFT_LINE_M, aside)
                 .or_else(|| self.comes_to(from, share * BENDS_DEG, turned))
@@ -241,6 +273,7 @@ pub(crate) fn words(told: &[Doing]) -> String {
             Act::UTurn => "turned round",
             Act::PullOut => "pulled out",
             Act::PullOver => "pulled over",
+            Act::Pass => "passed",
             _ => "parked",
         };
         let side = match doing.side {
@@ -248,12 +281,14 @@ pub(crate) fn words(told: &[Doing]) -> String {
             Some(LeftRight::Right) => " to the right",
             None => "",
         };
-        let side =
-            if matches!(doing.act, Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse) {
-                ""
-            } else {
-                side
-            };
+        let side = if matches!(
+            doing.act,
+            Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse | Act::Pass
+        ) {
+            ""
+        } else {
+            side
+        };
         format!("{}{verb}{side}", if doing.begun { "began: " } else { "" })
     };
     told.iter().map(word).collect::<Vec<_>>().join(", ")

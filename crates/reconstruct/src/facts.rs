@@ -217,7 +217,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     let parties = [(CheckKind::SvActs, &told.sv, Some(ego_track)), (CheckKind::CpActs, &told.cp, touch.track)];
     for (kind, side, track) in parties {
         if let Some(track) = track.filter(|_| !side.acts.is_empty()) {
-            let (result, observed) = acts::check(&side.acts, track, touch.time_s);
+            let other = (kind == CheckKind::CpActs).then_some(ego_track);
+            let (result, observed) = acts::check(&side.acts, track, other, touch.time_s);
             list.push(Check { kind, expected: acts::words(&side.acts), observed, result });
         }
     }

@@ -186,7 +186,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         true => phases::told(party, state),
         false => Vec::new(),
     };
-    let acts = if drives || who == "ego" { acts::told(party, state) } else { Vec::new() };
+    let acts = if drives || who == "ego" { acts::told(party, state, who != "ego") } else { Vec::new() };
     let stopped = last_way(party).filter(|_| state == ContactState::Stopped && turning == Turning::No && who == "ego");
     let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
     let aside = stopped_aside.and_then(|fact| fact.side).or(aside);

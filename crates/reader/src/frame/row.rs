@@ -310,6 +310,10 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
     let mut further = at + 1;
     let goes_on = |at: usize| match all.get(at).map(|p| &p.chunk) {
         Some(Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing) | Chunk::Relative | Chunk::Be) => true,
+        // "the car that was stopped behind it".
+        Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold), _)) => {
+            matches!(all[at - 1].chunk, Chunk::Be | Chunk::Relative)
+        }
         // "the car that had been behind it".
         Some(Chunk::Word) => matches!(all[at - 1].chunk, Chunk::Relative),
         _ => false,
