@@ -25,6 +25,8 @@ pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doin
     let stands = |act: Act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park);
     let at_line = party.reasons.iter().any(|fact| matches!(fact.value, StandReason::RedLight | StandReason::StopSign))
         || !party.controls.is_empty();
+    // Who touches with its front was only about to pass.
+    let touches_beside = !party.zones.is_empty() && party.zones.iter().all(|zone| !zone.value.is_front());
     let mut list: Vec<Doing> = Vec::new();
     let mut standing = false;
     for (number, fact) in acts.iter().enumerate() {
@@ -41,7 +43,7 @@ pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doin
             Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
             // What somebody who stands, or had yet to, tried to.
             Act::Reverse => fact.begun && state.stands(),
-            Act::Pass => !passes,
+            Act::Pass => !passes || fact.begun || !touches_beside,
             act => least(act).is_none(),
         };
         let waits = match fact.act {
@@ -92,8 +94,8 @@ enum Least {
     Turn(f64),
     /// Goes aside, turns, or drives backwards.
     Any,
-    /// Comes by the other one, which it was before in its way. [m]
-    By(f64),
+    /// Comes beside the other one, which was ahead of it on its own way.
+    By,
 }
 
 /// Who slows or gains speed does so by this. [m/s]
@@ -106,8 +108,8 @@ const CAME_MPS: f64 = 0.5;
 const CHANGES_LANES_M: f64 = 0.8;
 const DRIFTS_M: f64 = 0.2;
 
-/// Who passes was not yet beside the other's middle, and has come so much farther along it since. [m]
-const PASSES_M: f64 = 2.0;
+/// Who passes comes beside the other one by so much of its length at least: a front on a rear has none. [m]
+const BESIDE_M: f64 = 0.3;
 
 /// Who turns has turned by so much, who turns round, and who comes from the kerb or draws up at it where it does not go aside. [deg]
 const TURNS_DEG: f64 = 15.0;
@@ -139,7 +141,7 @@ fn least(act: Act) -> Option<Least> {
         Act::Turn => Least::Turn(TURNS_DEG),
         Act::UTurn => Least::Turn(ROUND_DEG),
         Act::PullOut | Act::PullOver | Act::Park => Least::Any,
-        Act::Pass => Least::By(PASSES_M),
+        Act::Pass => Least::By,
         _ => return None,
     })
 }
@@ -152,7 +154,8 @@ pub(crate) fn check(
     time_s: f64,
 ) -> (CheckResult, String) {
     let until = |track: &ActorTrack| ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
-    let way = Way(&track.states[..=until(track)], other.map(|other| &other.states[..=until(other)]));
+    let other = other.map(|other| (&other.states[..=until(other)], 0.5 * (track.length_m + other.length_m)));
+    let way = Way(&track.states[..=until(track)], other);
     let (mut from, mut missed) = (0, Vec::new());
     for doing in told {
         match way.begins(*doing, from) {
@@ -166,8 +169,8 @@ pub(crate) fn check(
     }
 }
 
-/// The states of somebody until the contact, and of the other one.
-struct Way<'a>(&'a [ActorState], Option<&'a [ActorState]>);
+/// The states of somebody until the contact, and of the other one, with half of the length of both. [m]
+struct Way<'a>(&'a [ActorState], Option<(&'a [ActorState], f64)>);
 
 impl Way<'_> {
     fn speed(&self, at: usize) -> f64 {
@@ -199,14 +202,12 @@ impl Way<'_> {
         if same_way { along } else { -along }
     }
 
-    /// When it begins to come by the other one, from this step on.
-    fn passes(&self, from: usize, by_m: f64) -> Option<usize> {
-        let other = self.1?;
-        let ahead_m = |at: usize| self.ahead_m(other, at);
-        (from..self.last()).find(|at| {
-            let begun_m = ahead_m(*at);
-            begun_m < 0.0 && (at + 1..=self.last()).any(|then| ahead_m(then) - begun_m > by_m)
-        })
+    /// When it comes beside the other one, behind which it was on its own way, from this step on.
+    fn passes(&self, from: usize) -> Option<usize> {
+        let (other, half_m) = self.1?;
+        let beside_m = |at: usize| self.ahead_m(other, at) + half_m;
+        let behind = (from..self.last()).find(|at| beside_m(*at) < 0.0)?;
+        (behind..=self.last()).find(|at| beside_m(*at) > BESIDE_M)
     }
 
     /// When somebody stands, from this step on.
@@ -247,7 +248,7 @@ impl Way<'_> {
             Least::Back => backs(),
             Least::Aside(by) => self.comes_to(from, share * by, aside),
             Least::Turn(by) => self.comes_to(from, share * by, turned),
-            Least::By(by) => self.passes(from, share * by),
+            Least::By => self.passes(from),
             Least::Any => self
                 .comes_to(from, share * LEFT_LINE_M, aside)
                 .or_else(|| self.comes_to(from, share * BENDS_DEG, turned))

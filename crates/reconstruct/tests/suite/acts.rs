@@ -3,8 +3,10 @@
 use crate::ways::{
     before_contact, checks_without, degrees_between, made, partner, partner_without_acts, speeds, story, without_acts,
 };
-use recrash_model::account::{Account, Act, ContactState, Fact, LeftRight};
+use recrash_model::account::{Account, Act, ContactState, CrashType, Fact, LeftRight, Origin};
 use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 
 const DROPPED_OFF: &str = "The AV was traveling north when it came to a stop for a passenger drop-off. While the AV was parked, an SUV \
                            approached from behind and the front of the SUV made contact with the rear of the parked AV.";
@@ -28,6 +30,9 @@ const ACROSS: &str = "The AV was traveling south and approached a pickup truck t
 
 const SLOWED: &str = "As the AV was slowing to a stop for a red light, a sedan approached from behind and the front of the sedan made \
                       contact with the rear of the AV.";
+
+const PASSED: &str = "The AV was stopped at a red light on Elm Street. A van that was stopped behind the AV passed the AV on the left, and the right side \
+                      of the van made contact with the left side of the AV.";
 
 /// What of an account's acts a scene without some of its facts is said to show.
 fn acts_without(account: &Account, kind: CheckKind, without: impl Fn(&mut Account)) -> (CheckResult, String) {
@@ -103,4 +108,23 @@ fn who_was_slowing_to_a_stop_need_not_have_come_to_it() {
     let check = made.verdict.checks.iter().find(|check| check.kind == CheckKind::SvActs).expect("told");
     assert_eq!(check.expected, "began: stopped");
     assert!(speeds(&made)[before_contact(&made)] > 0.1, "it moves yet");
+}
+
+#[test]
+fn who_is_told_to_pass_and_touches_with_its_flank_has_come_beside() {
+    let account = story(PASSED);
+    assert!(account.partner.as_ref().is_some_and(|partner| partner.acts.iter().any(|fact| fact.act == Act::Pass)));
+    shows(&account, CheckKind::CpActs);
+    // One that is told to run into the rear has not.
+    let without = |less: &mut Account| {
+        let partner = less.partner.as_mut().expect("told");
+        partner.zones = vec![Fact::by_rule(ContactZone::Front, "a test")];
+        less.sv.zones = vec![Fact::by_rule(ContactZone::Rear, "a test")];
+        partner.acts.retain(|fact| fact.act != Act::Pass);
+        partner.movement = Some(Fact::by_rule(Movement::Straight, "a test"));
+        less.came_from = Some(Fact::by_rule(Origin::Behind, "a test"));
+        less.crash_type = Some(Fact::by_rule(CrashType::FrontToRear, "a test"));
+    };
+    let behind = acts_without(&account, CheckKind::CpActs, without);
+    assert_eq!(behind, (CheckResult::CannotBeShown, "not that it passed".to_owned()));
 }
