@@ -45,8 +45,8 @@ const PUSHED: &str = "The AV was stopped at a red light. A sedan slowed to a sto
                       from behind and the front of the truck made contact with the rear of the sedan. The front of the sedan then made \
                       contact with the rear of the stationary AV.";
 
-const CUT_IN: &str = "The AV was traveling north on Oak Street when a sedan passed the AV on the left, changed lanes in front of the AV into \
-                      the lane of the AV, and came to a stop directly in front of the AV. The AV came to a stop. The sedan then \
+const CUT_IN: &str = "The AV was traveling north on Oak Street when a sedan to the left changed lanes to the right in front of the AV into \
+                      the lane of the AV and came to a stop directly in front of the AV. The AV came to a stop. The sedan then \
                       reversed and the rear of the sedan made contact with the front of the stationary AV.";
 
 const SLOW_TURN: &str = "The AV was traveling north on Elm Street when it came to a stop at the intersection of Oak Street. As the AV \
@@ -88,7 +88,7 @@ fn what_is_told_between_two_steps_is_seen_in_the_way() {
         (TRIED, sv, "stood, began: changed lanes to the left, stopped", &[Act::LaneChange]),
         (PUSHED, sv, "stood, set off, stopped", &[Act::SetOff]),
         (PUSHED, cp, "stopped, set off, stopped", &[Act::SetOff]),
-        (CUT_IN, cp, "changed lanes, stopped, reversed", &[Act::LaneChange]),
+        (CUT_IN, cp, "changed lanes to the right, stopped, reversed", &[Act::LaneChange]),
     ];
     for (text, kind, expected, dropped) in told {
         holds(&story(text), kind, expected, dropped);
