@@ -71,6 +71,11 @@ pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doin
 }
 
 impl Doing {
+    /// Whether it passes, and touches beside.
+    pub(crate) const fn is_pass(&self) -> bool {
+        matches!(self.act, Act::Pass)
+    }
+
     /// Whether it is a turn: of who may have begun it, or has yet to, none is asked for.
     pub(crate) const fn is_turn(&self) -> bool {
         matches!(self.act, Act::Turn)

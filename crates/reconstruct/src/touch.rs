@@ -3,6 +3,7 @@
 //! Everything is seen from the road that the ego came along: x ahead, y to its left.
 
 use crate::MOST_TRIES;
+use crate::acts::Doing;
 use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, LANE_M, ground_for};
@@ -161,11 +162,16 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
         }
     }
     let nearest = found.iter().map(|staging| staging.cost.0).min().unwrap_or(u32::MAX);
-    if nearest > 0 {
+    if nearest >= if told.rubs_by() { RUBS_OFF } else { FAR_OFF } {
         found.extend(sweep::stagings(told, ground, trial, nearest));
     }
     found
 }
+
+/// Where no way of touching is nearer than this to the told zones, the partner turns as it touches; the second of who passes and touches with
+/// its flank or its rear.
+const FAR_OFF: u32 = 2;
+const RUBS_OFF: u32 = 1;
 
 /// Whether two that touch do so with a front on a rear, and not along a flank: seen along the ego they overlap less than across it.
 fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
@@ -257,6 +263,11 @@ impl Told {
             Some(Striker::Sv) if drives(&self.sv) && self.sv.zones.is_empty() => cp_seen.is_front() && flank(sv_seen),
             _ => false,
         }
+    }
+
+    /// Whether the partner is told to pass, and to touch with its flank or its rear.
+    fn rubs_by(&self) -> bool {
+        self.cp.acts.iter().any(Doing::is_pass)
     }
 
     /// Whether both are side by side in lanes for the same turn.
