@@ -17,7 +17,7 @@ use recrash_model::selection::{Cluster, Selection};
 use recrash_model::template::Template;
 use recrash_roads::Scenario;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Records and picks.
 pub(crate) struct Cases {
@@ -29,6 +29,21 @@ pub(crate) struct Cases {
     pub accounts: Option<AccountSet>,
     /// Who was asked to read which incident again.
     pub readers: BTreeMap<String, AgentLog>,
+    /// Where records stand, by report and by incident, and told accounts by report.
+    reports: BTreeMap<String, Vec<usize>>,
+    incidents: BTreeMap<String, Vec<usize>>,
+    told: BTreeMap<String, Vec<usize>>,
+}
+
+/// Where everything stands, by a key that some have.
+fn places<'a, T: 'a>(all: &'a [T], key: impl Fn(&'a T) -> Option<&'a String>) -> BTreeMap<String, Vec<usize>> {
+    let mut places: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (at, one) in all.iter().enumerate() {
+        if let Some(key) = key(one) {
+            places.entry(key.clone()).or_default().push(at);
+        }
+    }
+    places
 }
 
 impl Cases {
@@ -42,18 +57,23 @@ impl Cases {
         if selection.clusters.iter().any(|c| !named(c) || c.members.iter().any(|&m| m >= bound)) {
             return Err(suite.stale(Stage::Select));
         }
-        let (accounts, readers) = match suite.profile().records.tells {
+        let (accounts, readers): (Option<AccountSet>, _) = match suite.profile().records.tells {
             Tells::Templates => (None, BTreeMap::new()),
             Tells::Accounts => {
                 (Some(suite.store().read_json(names::ACCOUNTS)?), suite.store().read_json(names::ACCOUNT_READERS)?)
             }
         };
-        Ok(Self { records, selection, accounts, readers })
+        let reports = places(&records.records, |record| Some(&record.id.report_id));
+        let incidents = places(&records.records, |record| record.incident_id.as_ref());
+        let told = accounts.as_ref().map(|set| places(&set.told, |account| Some(&account.report.report_id)));
+        Ok(Self { reports, incidents, told: told.unwrap_or_default(), records, selection, accounts, readers })
     }
 
     /// The account of a cluster's pick, in a suite that goes by accounts.
     pub fn account(&self, cluster: &Cluster) -> Option<&Account> {
-        self.accounts.as_ref()?.of(&cluster.pick).filter(|_| !cluster.invented)
+        let told = &self.accounts.as_ref()?.told;
+        let mut accounts = self.told.get(&cluster.pick.report_id)?.iter().map(|&at| &told[at]);
+        accounts.find(|account| account.report == cluster.pick).filter(|_| !cluster.invented)
     }
 
     /// Where the records of a case stand: the pick first, then the other reports of its incident; none of a template without records.
@@ -63,11 +83,10 @@ impl Cases {
         }
         let records = &self.records.records;
         let pick = &records[cluster.pick_index];
-        let same = |record: &CrashRecord| {
-            record.id.report_id == pick.id.report_id
-                || record.incident_id.is_some() && record.incident_id == pick.incident_id
-        };
-        let others = (0..records.len()).filter(|&at| at != cluster.pick_index && same(&records[at]));
+        let of_report = self.reports.get(&pick.id.report_id);
+        let of_incident = pick.incident_id.as_ref().and_then(|incident| self.incidents.get(incident));
+        let same: BTreeSet<usize> = of_report.into_iter().chain(of_incident).flatten().copied().collect();
+        let others = same.into_iter().filter(|&at| at != cluster.pick_index);
         std::iter::once(cluster.pick_index).chain(others).collect()
     }
 
