@@ -57,9 +57,9 @@ pub use simulators::external::{
 pub use simulators::{Simulator, SimulatorKind, metadrive_egos, start_simulator};
 pub use stages::{
     AccountSummary, CaseSummary, DesignAttempt, DesignLog, Failure, FallbackReason, ModelSummary, RunSummary,
-    SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, run_stage, unfaithful,
+    SelectionStudy, StageReport, StrategyStudy, Summary, TestedRuns, check_choices, run_stage, unfaithful,
 };
-pub use suite::{Permissions, Resources, Stage, Suite, check_choices};
+pub use suite::{Permissions, Resources, Stage, Suite};
 pub use tools::accounts::{account_table, write_accounts};
 pub use tools::assessing::{SevereFailure, SuiteSeverity, suite_coverage, suite_severity};
 pub use tools::bench_sim::{SimBench, SimBenchRequest, bench_sim};

@@ -192,9 +192,12 @@ impl Store {
         let path = self.inside(name)?;
         refuse_special(&path)?;
         let text = read_bytes(&path, MAX_SUITE_FILE)?;
-        let mut deserializer = serde_json::Deserializer::from_slice(&text);
-        serde_path_to_error::deserialize(&mut deserializer)
-            .map_err(|e| PipelineError::Damaged { problem: format!("{}: {}", e.path(), e.inner()), path })
+        // Following the path costs as much as the reading itself: only where there is an error to be placed.
+        serde_json::from_slice(&text).or_else(|_| {
+            let mut deserializer = serde_json::Deserializer::from_slice(&text);
+            serde_path_to_error::deserialize(&mut deserializer)
+                .map_err(|e| PipelineError::Damaged { problem: format!("{}: {}", e.path(), e.inner()), path })
+        })
     }
 
     /// A file's bytes; none where it cannot be read.

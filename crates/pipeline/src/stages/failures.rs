@@ -1,7 +1,7 @@
 //! Scenarios that could not be made or run: each is told with its reason, kept in the suite, and the others go on.
 
-use super::case_stages;
 use super::summary::RunSummary;
+use super::{case_stages, unit_name};
 use crate::error::PipelineError;
 use crate::files::store::to_json;
 use crate::suite::names;
@@ -54,7 +54,8 @@ pub(crate) fn before(suite: &Suite, id: &str, end: Stage) -> Option<Failure> {
 /// How a scenario failed in one stage.
 pub(crate) fn at(suite: &Suite, id: &str, stage: Stage) -> Option<Failure> {
     let file = names::failure(stage, id);
-    suite.store().stamp(&file).is_some().then(|| {
+    let there = suite.wrote(&unit_name(stage, id), &file) && suite.store().stamp(&file).is_some();
+    there.then(|| {
         suite.store().read_json(&file).unwrap_or_else(|e| Failure { stage: stage.name().into(), why: e.to_string() })
     })
 }

@@ -5,9 +5,10 @@
 //! progress) is the same for all and stands here.
 
 mod cases;
+mod choices;
 mod design;
 mod failures;
-pub(crate) mod invent;
+mod invent;
 mod narrate;
 mod own;
 mod records;
@@ -22,6 +23,7 @@ mod tune;
 mod view;
 
 pub(crate) use cases::Cases;
+pub use choices::check_choices;
 pub use design::{DesignAttempt, DesignLog};
 pub use failures::{Failure, unfaithful};
 pub use select::{SelectionStudy, StrategyStudy};

@@ -20,8 +20,9 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     let suite = work.suite;
     let input = RecordInput::read(suite.options())?;
-    let before: Option<AccountSet> = serde_json::from_slice(&suite.store().read_or_empty(names::ACCOUNTS)).ok();
+    let mut before: Option<AccountSet> = None;
     let mut report = work.whole(&inputs(suite, &input), || {
+        before = serde_json::from_slice(&suite.store().read_or_empty(names::ACCOUNTS)).ok();
         let profile = suite.profile();
         if profile.records.tells == Tells::Templates {
             let Outcome { mut value, mut diagnostics } = input.ingest(profile)?;

@@ -11,6 +11,7 @@ use crate::models::cast::AgentLog;
 use crate::reading::records::RecordInput;
 use crate::suite::names;
 use crate::suite::{Files, Stage, Suite, Work};
+use rayon::prelude::*;
 use recrash_agents::tell;
 use recrash_model::Diagnostic;
 use recrash_model::narrative::Narrative;
@@ -95,12 +96,6 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         |(_, cluster)| inputs(suite, &cases, cluster),
         |(position, cluster)| case_files(suite, &cases, *position, cluster),
     )?;
-    let read = |cluster: &Cluster| suite.store().read_json(&row_file(&cluster.scenario_id));
-    let mut rows: Vec<CaseReport> = cases.selection.clusters.iter().map(read).collect::<Result<_, _>>()?;
-    for (position, row) in rows.iter_mut().enumerate() {
-        // Where records and clusters stand may change without the case.
-        view::place(&cases, position, &mut row.row);
-    }
     let mut inputs = vec![suite.output_hash(Stage::Records, Stage::Records.name(), names::RECORDS)?];
     inputs.push(suite.output_hash(Stage::Select, Stage::Select.name(), names::SELECTION)?);
     inputs.extend([cases::text_of(suite.profile()), suite.options().command()]);
@@ -109,8 +104,7 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
         inputs.push(suite.output_hash(Stage::Report, &unit_name(Stage::Report, id), &row_file(id))?);
     }
     let whole = work.whole(&inputs, || {
-        let (rows, summaries): (Vec<CaseRow>, Vec<CaseSummary>) =
-            rows.into_iter().map(|CaseReport { row, summary }| (row, summary)).unzip();
+        let (rows, summaries) = rows(suite, &cases)?;
         let summary = summarise(suite, &cases, summaries, view::simulator_name(&rows));
         let remarks: Vec<Diagnostic> = suite.store().read_json(names::RECORD_REMARKS)?;
         let view = view::suite(suite, cases, rows, &summary, remarks);
@@ -125,6 +119,18 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
     Ok(StageReport { done, skipped, diagnostics: parts.diagnostics })
 }
 
+/// What the overview needs of all cases.
+fn rows(suite: &Suite, cases: &Cases) -> Result<(Vec<CaseRow>, Vec<CaseSummary>), PipelineError> {
+    let read = |(position, cluster): (usize, &Cluster)| {
+        let CaseReport { mut row, summary } = suite.store().read_json(&row_file(&cluster.scenario_id))?;
+        // Where records and clusters stand may change without the case.
+        view::place(cases, position, &mut row);
+        Ok((row, summary))
+    };
+    let all: Vec<Result<_, PipelineError>> = cases.selection.clusters.par_iter().enumerate().map(read).collect();
+    Ok(all.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
+}
+
 /// A report tells of one system and one set of records: what every stage made must be of the options and the files as
 /// they are now. Crash files that have gone since are taken as they were.
 fn refuse_stale(suite: &Suite, cases: &Cases) -> Result<(), PipelineError> {
@@ -134,12 +140,15 @@ fn refuse_stale(suite: &Suite, cases: &Cases) -> Result<(), PipelineError> {
         suite.must_be_current(Stage::Records, &work)?;
     }
     for declared in &case_stages(suite) {
-        for cluster in cases.up_to(suite, declared.stage) {
+        let current = |cluster: &&Cluster| {
             let id = &cluster.scenario_id;
             let inputs = case_inputs(suite, declared, cases, cluster)?;
             let (name, editable) = (unit_name(declared.stage, id), (declared.editable)(id));
-            suite.must_be_current(declared.stage, &Work { name: &name, inputs: &inputs, editable: &editable })?;
-        }
+            suite.must_be_current(declared.stage, &Work { name: &name, inputs: &inputs, editable: &editable })
+        };
+        // Of several the first, on any number of threads.
+        let all: Vec<Result<(), PipelineError>> = cases.up_to(suite, declared.stage).par_iter().map(current).collect();
+        all.into_iter().collect::<Result<(), _>>()?;
     }
     Ok(())
 }

@@ -14,13 +14,12 @@ use crate::files::store::{Store, WriteFile, sha256, to_json, write_suite_file};
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::options::{Options, RecordSource};
 use crate::reading::records;
-use crate::simulators::{Simulator, check_simulator, start_simulator};
+use crate::simulators::{Simulator, start_simulator};
 use journal::{Journal, Made, Unit};
 use names::is_failure_file;
 use recrash_agents::llm::Spent;
-use recrash_model::profile::{SystemProfile, Tells};
+use recrash_model::profile::SystemProfile;
 use recrash_model::{Diagnostic, Location, Seed, Severity};
-use recrash_search::Searcher;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
@@ -392,13 +391,14 @@ impl Suite {
         let before = self.lock().get(work.name).cloned();
         if let Some(unit) = &before {
             let is_current = unit.inputs == inputs;
-            let edited = !self.edits(unit, work.editable).is_empty();
+            let changed = self.changed(unit);
+            let edited = changed.iter().any(|file| self.is_edit(file, work.editable));
             if edited && !self.permissions.discard_edits {
                 self.save()?;
                 return Ok(if is_current { Course::Edited } else { Course::EditedAndOld });
             }
             let failed = unit.outputs.keys().any(|file| is_failure_file(file));
-            if is_current && !failed && unit.outputs.iter().all(|(file, made)| self.is_as_made(file, made)) {
+            if is_current && !failed && changed.is_empty() {
                 self.save()?;
                 return Ok(Course::Skipped);
             }
@@ -429,18 +429,30 @@ impl Suite {
         }
     }
 
-    /// Files of a unit that a person edited.
-    fn edits(&self, unit: &Unit, editable: &[String]) -> Vec<String> {
-        let there = |file: &str| self.store.stamp(file).is_some();
-        let edited =
-            |(file, made): &(&String, &Made)| editable.contains(*file) && there(file) && !self.is_as_made(file, made);
-        unit.outputs.iter().filter(edited).map(|(file, _)| file.clone()).collect()
+    /// Files of a unit that are not as it wrote them, or gone.
+    fn changed<'a>(&self, unit: &'a Unit) -> Vec<&'a String> {
+        unit.outputs.iter().filter(|(file, made)| !self.is_as_made(file, made)).map(|(file, _)| file).collect()
+    }
+
+    /// Whether a changed file is a person's edit: of what may be edited, and not gone.
+    fn is_edit(&self, changed: &String, editable: &[String]) -> bool {
+        editable.contains(changed) && self.store.stamp(changed).is_some()
+    }
+
+    /// Whether a finished unit wrote this file.
+    pub(crate) fn wrote(&self, unit: &str, file: &str) -> bool {
+        self.lock().get(unit).is_some_and(|unit| unit.outputs.contains_key(file))
     }
 
     /// Files of a finished unit that a person edited; none of an unfinished one.
     pub(crate) fn edited(&self, unit: &str, editable: &[String]) -> Vec<String> {
         let unit = self.lock().get(unit).cloned();
-        unit.map_or_else(Vec::new, |unit| self.edits(&unit, editable))
+        let edits = |unit: Unit| {
+            let may_be = unit.outputs.iter().filter(|(file, _)| editable.contains(file));
+            let changed = may_be.filter(|(file, made)| !self.is_as_made(file, made) && self.is_edit(file, editable));
+            changed.map(|(file, _)| file.clone()).collect()
+        };
+        unit.map_or_else(Vec::new, edits)
     }
 
     /// Forgets the units of a stage that are not among `names`, and removes their files but those a person edited, which
@@ -493,12 +505,14 @@ impl Suite {
         let Some(unit) = self.lock().get(work.name).cloned() else {
             return Err(PipelineError::MissingStage { dir: self.store.dir().to_owned(), missing: stage.name() });
         };
-        let edited = self.edits(&unit, work.editable);
+        let changed = self.changed(&unit);
+        let (edited, spoiled): (Vec<&String>, _) =
+            changed.into_iter().partition(|file| self.is_edit(file, work.editable));
         if unit.inputs != hash_all(work.inputs) && edited.is_empty() {
             return Err(self.stale(stage));
         }
-        match unit.outputs.iter().find(|(file, made)| !edited.contains(file) && !self.is_as_made(file, made)) {
-            Some((file, _)) => Err(PipelineError::ChangedByHand { path: self.store.path(file), stage: stage.name() }),
+        match spoiled.first() {
+            Some(file) => Err(PipelineError::ChangedByHand { path: self.store.path(file), stage: stage.name() }),
             None => Ok(()),
         }
     }
@@ -602,23 +616,4 @@ fn hash_all(inputs: &[String]) -> String {
         all.extend_from_slice(input.as_bytes());
     }
     sha256(&all)
-}
-
-/// Checks what a run needs only after its models were asked, which may cost: the ego, its program, and the optimiser.
-///
-/// # Errors
-/// One of them is not there.
-pub fn check_choices(suite: &Suite) -> Result<(), PipelineError> {
-    suite.options().searcher.parse::<Searcher>().map_err(PipelineError::bad_input)?;
-    crate::stages::invent::check(suite)?;
-    let cast = &suite.options().cast;
-    let staged_by = [&cast.design, &cast.tune].into_iter().find(|name| *name != RULES);
-    if let (Tells::Accounts, Some(model)) = (suite.profile().records.tells, staged_by) {
-        return Err(PipelineError::bad_input(format!(
-            "the profile {} goes by accounts: a model may read reports there (paraphrase), and reconstructions and their variations are \
-             computed; {model} designs and tunes in suites that go by templates: choose the profile paper",
-            suite.profile().name
-        )));
-    }
-    check_simulator(suite.options().simulator, suite.ego())
 }
