@@ -17,6 +17,11 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).parent
+# In the files since June 2025 these contact areas are ticked under each other's names (crates/records/src/areas.rs).
+MEANT = {
+    "Front": "Front Left", "Front Left": "Front Right", "Front Right": "Front",
+    "Rear": "Rear Left", "Rear Left": "Rear Right", "Rear Right": "Rear",
+}
 COLUMNS = {
     "SV movement": "SV Pre-Crash Movement",
     "CP movement": "CP Pre-Crash Movement",
@@ -43,6 +48,14 @@ def rows(files: list[str]) -> dict[str, dict[str, str]]:
 
 def degrees(angle: float) -> int:
     return round(math.degrees(math.remainder(angle, math.tau)))
+
+
+def areas(row: dict[str, str], side: str) -> list[str]:
+    """The contact areas that are ticked of a side, as they are meant."""
+    since_june_2025 = "Engagement Status" in row
+    names = [column for column in row if column and column.startswith(f"{side} Contact Area")]
+    ticked = [name.split("- ")[-1] for name in names if row[name] == "Y"]
+    return [MEANT.get(area, area) if since_june_2025 else area for area in ticked]
 
 
 def way(state: dict) -> str:
@@ -146,14 +159,9 @@ def main() -> None:
                 for _, report, scene in chosen:
                     row = by_report[report]
                     told = "; ".join(f"{name}: {row.get(column, '')}" for name, column in COLUMNS.items())
-                    zones = {
-                        side: [c.split(":")[-1].strip() for c, v in row.items()
-                               if c and c.startswith(f"{side} Contact Area") and v == "Y"]
-                        for side in ("SV", "CP")
-                    }
                     stream.write(
-                        f"## {report} ({scene.stem})\n\n{row['Narrative']}\n\n{told}; SV zones: {', '.join(zones['SV'])}; "
-                        f"CP zones: {', '.join(zones['CP'])}\n\n```\n{shown(args.recrash, scene, Path(folder))}\n```\n\n"
+                        f"## {report} ({scene.stem})\n\n{row['Narrative']}\n\n{told}; SV zones: {', '.join(areas(row, 'SV'))}; "
+                        f"CP zones: {', '.join(areas(row, 'CP'))}\n\n```\n{shown(args.recrash, scene, Path(folder))}\n```\n\n"
                     )
             with open(args.out / f"{part + 1}.csv", "w", newline="") as stream:
                 stream.write("reading,report,incident,who,side,movements,order,standstill,striker,zones,right,note\n")

@@ -1,6 +1,7 @@
 //! One file: bytes in, records and rejected rows out, in file order.
 
 use crate::MAX_FILE_BYTES;
+use crate::areas;
 use crate::columns::{Columns, NotAHeader, Recognised, edition_name, recognise};
 use crate::error::{IngestError, is_binary, other_format};
 use crate::notes::Notes;
@@ -303,6 +304,7 @@ impl<'a> FileReader<'a> {
             self.tell(Severity::Warning, "records.malformed-row", self.in_file(), message);
         }
         self.content.diagnostics.extend(self.notes.diagnostics(self.name));
+        self.content.diagnostics.extend(areas::put_right(&mut self.content.drafts, self.name));
         Ok(self.content)
     }
 

@@ -4,9 +4,11 @@
 //! (since), reports on automated driving and on driver assistance alike. Every row in is usable or rejected with a
 //! reason, and the counts add up. Miles per hour exist in this crate only.
 //!
-//! What this crate does **not** do: it opens no file (bytes come in), it does not read narratives (the agents do), and it
-//! never guesses: a code it does not know stays as text and is listed.
+//! What this crate does **not** do: it opens no file (bytes come in), it does not read narratives (the
+//! reader does) but for the names of contact areas, which tell what the ticks of a file mean (`areas.rs`), and it never guesses: a code it does
+//! not know stays as text and is listed.
 
+mod areas;
 mod cells;
 mod codes;
 mod columns;

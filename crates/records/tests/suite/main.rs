@@ -1,5 +1,6 @@
 //! Tests of the crate as its users see it, in one binary: a file a subject.
 
+mod areas;
 mod bad_input;
 mod common;
 mod filter;
