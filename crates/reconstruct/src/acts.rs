@@ -2,12 +2,14 @@
 
 use crate::extras::STANDS_MPS;
 use crate::movement::LEFT_LINE_M;
+use crate::touch::side_of;
 use recrash_model::account::{Act, ActFact, ContactState, LeftRight, Party, StandReason, told as told_of};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorState, ActorTrack};
 use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone;
 
 /// An act that is told, and can be seen in a way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +18,11 @@ pub(crate) struct Doing {
     side: Option<LeftRight>,
     /// It was begun or attempted.
     begun: bool,
+    /// A turn is told behind it: it was over then.
+    over: bool,
+    /// Its place in the order of all acts, and that of the other one's act behind which the words put it.
+    step: u32,
+    after_other: Option<u32>,
 }
 
 /// What is told of somebody until the contact that can be seen, in order; that it passed the other one where that is asked for.
@@ -53,7 +60,9 @@ pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doin
         };
         standing = stands(fact.act) || standing && waits;
         if !skipped {
-            list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun });
+            let over = acts[number + 1..].iter().any(|later| later.act == Act::Turn);
+            let (step, after_other) = (fact.step, fact.after_other);
+            list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun, over, step, after_other });
         }
     }
     // "Stopped at the kerb" of who pulls out: it stood there.
@@ -66,14 +75,37 @@ pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doin
     if let Some(last) = list.last_mut().filter(|last| last.act == Act::Stop && !state.stands()) {
         last.begun = true;
     }
-    list.dedup();
+    list.dedup_by_key(|doing| (doing.act, doing.side, doing.begun));
     list
 }
 
+/// Who passes last passes on the side on which the ego is touched: what is told of the other side was said of something else.
+pub(crate) fn passes_where_touched(acts: &mut [Doing], ego_zones: &[ContactZone]) {
+    let touched = side_of(ego_zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+    if let Some(last) = acts.last_mut().filter(|doing| doing.is_pass() && touched == doing.side.map(LeftRight::other)) {
+        last.side = None;
+    }
+}
+
 impl Doing {
+    fn goes_aside(&self) -> bool {
+        matches!(least(self.act), Some(Least::Aside(_) | Least::Any))
+    }
+
+    /// How long before it is seen its beginning is found. [steps]
+    fn found_early(&self) -> usize {
+        let slow = matches!(least(self.act), Some(Least::Speed(_) | Least::Aside(_) | Least::Turn(_) | Least::Any));
+        if slow || self.begun { FOUND_EARLY } else { 0 }
+    }
+
     /// Whether it passes, and touches beside.
     pub(crate) const fn is_pass(&self) -> bool {
         matches!(self.act, Act::Pass)
+    }
+
+    /// Whether the words put it behind something that the other one did.
+    pub(crate) const fn is_behind_other(&self) -> bool {
+        self.after_other.is_some()
     }
 
     /// Whether it is a turn: of who may have begun it, or has yet to, none is asked for.
@@ -109,9 +141,18 @@ const CHANGES_MPS: f64 = 0.8;
 /// Who comes to a stop was faster before. [m/s]
 const CAME_MPS: f64 = 0.5;
 
-/// Who changes lanes has gone aside by so much, and who drifts or swerves. [m]
+/// Who changes lanes has gone aside by so much, and who had done so before it turned, at no more than this angle to its line; and who
+/// drifts or swerves. [m, m, rad, m]
 const CHANGES_LANES_M: f64 = 0.8;
+const CHANGED_LANES_M: f64 = 2.2;
+const CHANGES_LANES_RAD: f64 = 0.6;
 const DRIFTS_M: f64 = 0.2;
+
+/// What is told to have come behind an act of the other one begins no earlier than so long before that. [steps]
+const BEFORE_OTHER: usize = 5;
+
+/// What begins little by little is found by so much before it is seen. [steps]
+const FOUND_EARLY: usize = 7;
 
 /// Who passes comes beside the other one by so much of its length at least: a front on a rear has none. [m]
 const BESIDE_M: f64 = 0.3;
@@ -151,26 +192,34 @@ fn least(act: Act) -> Option<Least> {
     })
 }
 
-/// Whether everything that is told of somebody is seen, in order; and what is. `other`: of whom it passes.
-pub(crate) fn check(
-    told: &[Doing],
-    track: &ActorTrack,
-    other: Option<&ActorTrack>,
-    time_s: f64,
-) -> (CheckResult, String) {
+/// One of the two: what is told of it, and its way.
+pub(crate) type Did<'a> = (&'a [Doing], &'a ActorTrack);
+
+/// Whether everything that is told of somebody is seen, in order, and behind what the other one had done by the words; and what is.
+pub(crate) fn check(one: Did<'_>, other: Option<Did<'_>>, time_s: f64) -> (CheckResult, String) {
     let until = |track: &ActorTrack| ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
-    let other = other.map(|other| (&other.states[..=until(other)], 0.5 * (track.length_m + other.length_m)));
-    let way = Way(&track.states[..=until(track)], other);
-    let (mut from, mut missed) = (0, Vec::new());
-    for doing in told {
-        match way.begins(*doing, from) {
-            Some(at) => from = at.saturating_sub(OVERLAP),
-            None => missed.push(*doing),
-        }
+    fn states(track: &ActorTrack, until: usize) -> &[ActorState] {
+        &track.states[..=until]
     }
-    match missed.is_empty() {
-        true => (CheckResult::Shown, "all of it".to_owned()),
-        false => (CheckResult::CannotBeShown, format!("not that it {}", words(&missed))),
+    let met = |of: &ActorTrack, by: &ActorTrack| 0.5 * (of.length_m + by.length_m);
+    let (told, track) = one;
+    let beside = other.map(|(_, other)| (states(other, until(other)), met(track, other)));
+    let way = Way(states(track, until(track)), beside);
+    let others: Vec<(u32, usize)> = other.map_or(Vec::new(), |(acts, other)| {
+        let way = Way(states(other, until(other)), Some((states(track, until(track)), met(track, other))));
+        let seen = way.times(acts, &[]);
+        acts.iter().zip(seen).filter_map(|(doing, at)| Some((doing.step, at? + doing.found_early()))).collect()
+    });
+    let (alone, in_order) = (way.times(told, &[]), way.times(told, &others));
+    let of = |wanted: fn(Option<usize>, Option<usize>) -> bool| -> Vec<Doing> {
+        let all = told.iter().zip(alone.iter().zip(&in_order));
+        all.filter(|(_, (alone, ordered))| wanted(**alone, **ordered)).map(|(doing, _)| *doing).collect()
+    };
+    let (missed, early) = (of(|alone, _| alone.is_none()), of(|alone, ordered| alone.is_some() && ordered.is_none()));
+    match (missed.is_empty(), early.is_empty()) {
+        (true, true) => (CheckResult::Shown, "all of it".to_owned()),
+        (false, _) => (CheckResult::CannotBeShown, format!("not that it {}", words(&missed))),
+        (true, false) => (CheckResult::CannotBeShown, format!("too early against the other: {}", words(&early))),
     }
 }
 
@@ -180,6 +229,26 @@ struct Way<'a>(&'a [ActorState], Option<(&'a [ActorState], f64)>);
 impl Way<'_> {
     fn speed(&self, at: usize) -> f64 {
         self.0[at].speed()
+    }
+
+    /// When each of the told acts begins, one after the other; none of them before the other one's behind which it is told, whose times
+    /// these are.
+    fn times(&self, told: &[Doing], others: &[(u32, usize)]) -> Vec<Option<usize>> {
+        let mut from = 0;
+        let begins = |doing: &Doing| {
+            // Who stands may have stood before.
+            let bound = doing.after_other.filter(|_| doing.act != Act::Hold);
+            let behind = others.iter().find(|(step, _)| Some(*step) == bound);
+            let least = behind.map_or(0, |(_, at)| at.saturating_sub(BEFORE_OTHER + 2 * doing.found_early()));
+            let at = self.begins(*doing, from.max(least))?;
+            // What was under way then had begun before; who goes aside may go on to.
+            if at == least && from < least && !doing.goes_aside() && self.begins(*doing, from) != Some(at) {
+                return None;
+            }
+            from = at.saturating_sub(OVERLAP);
+            Some(at)
+        };
+        told.iter().map(begins).collect()
     }
 
     fn is_still(&self, at: usize) -> bool {
@@ -207,12 +276,17 @@ impl Way<'_> {
         if same_way { along } else { -along }
     }
 
-    /// When it comes beside the other one, behind which it was on its own way, from this step on.
-    fn passes(&self, from: usize) -> Option<usize> {
+    /// When it comes beside the other one, on the told side of that, behind which it was on its own way, from this step on.
+    fn passes(&self, side: Option<LeftRight>, from: usize) -> Option<usize> {
         let (other, half_m) = self.1?;
         let beside_m = |at: usize| self.ahead_m(other, at) + half_m;
+        let left = |at: usize| {
+            let other = &other[at.min(other.len() - 1)];
+            Vec2::from_heading(other.heading).cross(self.0[at].position() - other.position()) > 0.0
+        };
         let behind = (from..self.last()).find(|at| beside_m(*at) < 0.0)?;
-        (behind..=self.last()).find(|at| beside_m(*at) > BESIDE_M)
+        let beside = (behind..=self.last()).find(|at| beside_m(*at) > BESIDE_M)?;
+        side.is_none_or(|side| left(beside) == (side == LeftRight::Left)).then_some(beside)
     }
 
     /// When somebody stands, from this step on.
@@ -235,7 +309,14 @@ impl Way<'_> {
             |at: usize, then: usize| towards(math::wrap_angle(self.0[then].heading - self.0[at].heading).to_degrees());
         let slower = |at: usize, then: usize| self.speed(at) - self.speed(then);
         let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
+        let changes = |at: usize, then: usize| {
+            let along = math::wrap_angle(self.0[then].heading - self.0[at].heading).abs() < CHANGES_LANES_RAD;
+            if along { aside(at, then) } else { 0.0 }
+        };
         match least(doing.act)? {
+            Least::Aside(_) if doing.act == Act::LaneChange && doing.over && !doing.begun => {
+                self.comes_to(from, CHANGED_LANES_M, changes)
+            }
             Least::Speed(by) if by < 0.0 => self.comes_to(from, -by, slower),
             Least::Speed(by) => self.comes_to(from, by, |at, then| -slower(at, then)),
             Least::Stand => self.stands(from),
@@ -253,7 +334,7 @@ impl Way<'_> {
             Least::Back => backs(),
             Least::Aside(by) => self.comes_to(from, share * by, aside),
             Least::Turn(by) => self.comes_to(from, share * by, turned),
-            Least::By => self.passes(from),
+            Least::By => self.passes(doing.side, from),
             Least::Any => self
                 .comes_to(from, share * LEFT_LINE_M, aside)
                 .or_else(|| self.comes_to(from, share * BENDS_DEG, turned))
@@ -282,18 +363,14 @@ pub(crate) fn words(told: &[Doing]) -> String {
             Act::Pass => "passed",
             _ => "parked",
         };
-        let side = match doing.side {
+        let sideless =
+            matches!(doing.act, Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse);
+        let side = match doing.side.filter(|_| !sideless) {
+            Some(LeftRight::Left) if doing.act == Act::Pass => " on the left",
+            Some(LeftRight::Right) if doing.act == Act::Pass => " on the right",
             Some(LeftRight::Left) => " to the left",
             Some(LeftRight::Right) => " to the right",
             None => "",
-        };
-        let side = if matches!(
-            doing.act,
-            Act::Stop | Act::Hold | Act::SetOff | Act::Slow | Act::Accelerate | Act::Reverse | Act::Pass
-        ) {
-            ""
-        } else {
-            side
         };
         format!("{}{verb}{side}", if doing.begun { "began: " } else { "" })
     };

@@ -14,11 +14,13 @@ pub(crate) struct Choices {
     pub(crate) rolling_mps: f64,
     /// How long an ego that came to a stop has stood at the contact. [s]
     pub(crate) stood_s: f64,
+    /// The last stand of the ego, and of the partner, began so much earlier than is usual. [s]
+    pub(crate) longer_s: [f64; 2],
 }
 
 impl Default for Choices {
     fn default() -> Self {
-        Self { partner_speed: 1.0, rolling_mps: ROLLING_MPS, stood_s: STOOD_S }
+        Self { partner_speed: 1.0, rolling_mps: ROLLING_MPS, stood_s: STOOD_S, longer_s: [0.0; 2] }
     }
 }
 

@@ -214,11 +214,11 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             list.push(Check { kind, expected, observed, result });
         }
     }
-    let parties = [(CheckKind::SvActs, &told.sv, Some(ego_track)), (CheckKind::CpActs, &told.cp, touch.track)];
-    for (kind, side, track) in parties {
+    let (sv, cp) = ((&told.sv, Some(ego_track)), (&told.cp, touch.track));
+    for (kind, (side, track), (met, by)) in [(CheckKind::SvActs, sv, cp), (CheckKind::CpActs, cp, sv)] {
         if let Some(track) = track.filter(|_| !side.acts.is_empty()) {
-            let other = (kind == CheckKind::CpActs).then_some(ego_track);
-            let (result, observed) = acts::check(&side.acts, track, other, touch.time_s);
+            let other = by.map(|track| (met.acts.as_slice(), track));
+            let (result, observed) = acts::check((&side.acts, track), other, touch.time_s);
             list.push(Check { kind, expected: acts::words(&side.acts), observed, result });
         }
     }

@@ -99,18 +99,58 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
     staged(told.choosing(Choices::of(open, values)), account)
 }
 
-/// What cannot be shown in all its steps is shown in the last of them.
+/// What cannot be shown in all its steps is shown in the last of them; what the two did is brought into the told order where it is not.
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
     let fewer = told.in_fewer_steps();
-    let made = searched(told, account);
-    let is_true = |made: &Result<Reconstruction, Untold>| made.as_ref().is_ok_and(Reconstruction::is_true);
-    match fewer.filter(|_| !is_true(&made)).map(|told| searched(told, account)) {
+    let made = in_order(told, account);
+    let is_true = |made: &Result<Found, Untold>| made.as_ref().is_ok_and(|found| found.made.is_true());
+    let made = match fewer.filter(|_| !is_true(&made)).map(|told| in_order(told, account)) {
         Some(shorter) if is_true(&shorter) => shorter,
         _ => made,
+    };
+    made.map(|found| found.made)
+}
+
+/// The same, of which one is taken at another time that shows more of what the two did, and no less else.
+fn in_order(told: told::Told, account: &Account) -> Result<Found, Untold> {
+    let (told, mut best) = near_or_far(told, account)?;
+    if !best.made.is_true() {
+        return Ok(best);
+    }
+    for told in told.in_other_times() {
+        if acts_left_open(&best.made) == 0 {
+            break;
+        }
+        let other = searched(told, account).ok().filter(|other| other.made.is_true() && other.strays <= best.strays);
+        let open = |found: &Found| (acts_left_open(&found.made), left_open(&found.made));
+        if let Some(other) = other.filter(|other| open(other).0 < open(&best).0 && open(other).1 <= open(&best).1) {
+            best = other;
+        }
+    }
+    Ok(best)
+}
+
+/// Who was behind the ego in a queue stands close to it; farther off where nothing true is found with that.
+fn near_or_far(told: told::Told, account: &Account) -> Result<(told::Told, Found), Untold> {
+    let near = searched(told.clone(), account);
+    let good = |found: &Result<Found, Untold>| found.as_ref().is_ok_and(|found| found.made.is_true() && !found.strays);
+    if good(&near) {
+        return near.map(|found| (told, found));
+    }
+    let afar = told.afar().map(|told| (searched(told.clone(), account), told));
+    match afar.filter(|(far, _)| good(far) || !near.as_ref().is_ok_and(|near| near.made.is_true())) {
+        Some((far, told)) => far.map(|found| (told, found)),
+        None => near.map(|found| (told, found)),
     }
 }
 
-fn searched(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
+/// A reconstruction, and whether somebody strays in it.
+struct Found {
+    made: Reconstruction,
+    strays: bool,
+}
+
+fn searched(told: told::Told, account: &Account) -> Result<Found, Untold> {
     let mut search = Search::default();
     let mut variants: Vec<_> = told.variants().into_iter().map(|told| (told, None)).collect();
     'tried: for tries in [0..FIRST_TRIES, FIRST_TRIES..MOST_TRIES] {
@@ -127,11 +167,19 @@ fn searched(told: told::Told, account: &Account) -> Result<Reconstruction, Untol
         }
     }
     let Search { best, fullest, refused, .. } = search;
-    let made = best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
+    let best = best.ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
+    let (cost, made) = (best.cost, best.with_near());
     // A partner that strays is worth less than others who are told of.
     let fuller = fullest.map(|(_, found)| found).filter(|found| found.cost.2 && made.is_true() && left_open(&made) > 0);
     let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
-    Ok(fuller.unwrap_or(made))
+    let strays = fuller.is_some() || cost.1 || cost.2;
+    Ok(Found { made: fuller.unwrap_or(made), strays })
+}
+
+/// How many told facts of what the two did are not shown.
+fn acts_left_open(made: &Reconstruction) -> usize {
+    let of_acts = |check: &&Check| matches!(check.kind, CheckKind::SvActs | CheckKind::CpActs);
+    made.verdict.checks.iter().filter(of_acts).filter(|check| check.result == CheckResult::CannotBeShown).count()
 }
 
 /// What was found among the stagings that were run.

@@ -9,7 +9,9 @@ use crate::side::{Side, Turning};
 use crate::things;
 use crate::told::{Told, WALKS_MPS};
 use crate::touch::{Staging, size_of};
-use recrash_model::account::{ContactState, ControlDevice, LeftRight, Obeyed, Origin, Striker};
+use recrash_model::account::{
+    Account, Act as Done, ContactState, ControlDevice, LeftRight, Manner, Obeyed, Origin, Party, Source, Striker,
+};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
 use recrash_model::rollout::STEP_S;
@@ -70,18 +72,54 @@ pub(crate) fn next(deed: Deed) -> Act {
     Act { id: None, when: None, delay_s: 0.0, deed }
 }
 
+/// Who is told to be slow is no faster than this: in a lot, a garage or a driveway, and elsewhere. [m/s]
+const SLOWLY_MPS: (f64, f64) = (2.0, 2.8);
+
+/// Who is told to be fast drives so many times as fast as is posted, or as is usual where nothing is, and faster by so much at most.
+/// [m/s]
+const FAST_SHARE: f64 = 1.4;
+const FASTER_BY_MPS: f64 = 9.0;
+const FAST_MPS: (f64, f64) = (5.0, 11.2);
+
+/// A usual speed at the contact, as far as words tell how fast somebody drove.
+pub(crate) fn as_told(manner: Option<Manner>, usual_mps: f64, in_lot: bool, posted_mps: Option<f64>) -> f64 {
+    let of = |(lot, road): (f64, f64)| if in_lot { lot } else { road };
+    match manner {
+        None => usual_mps,
+        Some(Manner::Slow) => usual_mps.min(of(SLOWLY_MPS)),
+        Some(Manner::Fast) => {
+            let allowed_mps = posted_mps.unwrap_or(of(FAST_MPS));
+            usual_mps.max((FAST_SHARE * allowed_mps).min(allowed_mps + FASTER_BY_MPS))
+        }
+    }
+}
+
+/// For sentences.
+pub(crate) const fn manner_words(manner: Option<Manner>) -> &'static str {
+    match manner {
+        None => "",
+        Some(Manner::Slow) => ", as it is told to be slow",
+        Some(Manner::Fast) => ", as it is told to be fast",
+    }
+}
+
 /// What the ego did before its last phase where that is told, and its last pace.
 pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Lead>, Pace) {
     let (sv, contact_s) = (&told.sv, told.contact_s);
-    let stood_s = match told.waits_behind() {
-        true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
-        false if told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing => {
-            told.choices.stood_s + STOOD_A_LITTLE_S
-        }
-        false if told.origin == Origin::Ahead => told.choices.stood_s,
-        false if told.stood_before || told.passes_from_behind() => told.choices.stood_s + STOOD_LONGER_S,
-        false => told.choices.stood_s,
-    };
+    let choices = &told.choices;
+    let longer_s = choices.longer_s[0];
+    let stood_s = longer_s
+        + match told.waits_behind() {
+            true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
+            false if told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing => {
+                told.choices.stood_s + STOOD_A_LITTLE_S
+            }
+            false if told.origin == Origin::Ahead => told.choices.stood_s,
+            false if told.stood_before || told.passes_from_behind() || told.comes_up_slowly() => {
+                told.choices.stood_s + STOOD_LONGER_S
+            }
+            false => told.choices.stood_s,
+        };
     let stood_s = stood_s.min(contact_s - told.choices.rolling_mps / STOPPING_MPS2 - LEAST_ROLL_S);
     let stood_s = comes_over_line(told, ground, sv_s_m).map_or(stood_s, |most_s| stood_s.min(most_s));
     let stood_s = if told.backs_early { LEAST_STOOD_S } else { stood_s };
@@ -90,9 +128,9 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
         .or_else(|| before_who_backs(told))
         .or_else(|| towards_who_stands(told))
         .or_else(|| roadside::slows_in_turn(told, past_line_m(told, ground, sv_s_m)))
-        .unwrap_or_else(|| pace(contact_s, sv, told.choices.rolling_mps, stood_s));
+        .unwrap_or_else(|| braked_earlier(pace(contact_s, sv, told.choices.rolling_mps, stood_s), longer_s));
     let begins_s = match sv.state.stands() {
-        true => contact_s - told.choices.stood_s,
+        true => contact_s - choices.stood_s - longer_s,
         false if usual.speed_mps > 0.0 => return (None, usual),
         false => first_time(&usual.acts),
     };
@@ -101,10 +139,25 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     // Who moved up more than once did so by a part of that each time.
     let stood = sv.phases.iter().skip_while(|phase| **phase != Phase::Stands);
     let times = stood.filter(|phase| **phase == Phase::Drives).count().max(1) as f64;
-    match phases::lead(&sv.phases, begins_s, told.choices.rolling_mps, (moved_up_m / times).max(least_m), 0.0) {
+    let waited_s = if sv.state.stands() { 0.0 } else { longer_s.max(0.0) };
+    match phases::lead(&sv.phases, begins_s, choices.rolling_mps, (moved_up_m / times).max(least_m), waited_s) {
         Some(lead) if sv.state.stands() => (Some(lead), STANDING),
         lead => (lead, usual),
     }
+}
+
+/// The same of who slows before the contact, so much earlier.
+fn braked_earlier(pace: Pace, by_s: f64) -> Pace {
+    let brakes = match pace.acts.as_slice() {
+        [Act { when: Some(Trigger::TimeS(from_s)), deed: Deed::Speed { to_mps, .. }, .. }] => Some((*from_s, *to_mps)),
+        _ => None,
+    };
+    let Some((from_s, to_mps)) = brakes.filter(|(from_s, to_mps)| *to_mps < pace.speed_mps && by_s < *from_s) else {
+        return pace;
+    };
+    let by_s = by_s.max(0.0);
+    let act = Act { when: Some(Trigger::TimeS(from_s - by_s)), ..pace.acts[0].clone() };
+    Pace { acts: vec![act], driven_m: pace.driven_m - (pace.speed_mps - to_mps) * by_s, ..pace }
 }
 
 /// How far somebody goes until it touches the one that it waited behind, which set off [`FOLLOWS_S`] earlier, and creeps. [m]
@@ -167,7 +220,63 @@ const LEAST_STOOD_S: f64 = 1.2;
 impl Told {
     /// Whether the partner stood behind the ego and set off then.
     fn waits_behind(&self) -> bool {
-        self.origin == Origin::Behind && (self.cp.state == ContactState::SettingOff || self.cp.stood_first)
+        let stood = self.cp.state == ContactState::SettingOff || self.cp.stood_first || self.queues();
+        self.origin == Origin::Behind && stood
+    }
+
+    /// Whether the partner is drawn as one that stood in a queue behind the ego, though only its place is told.
+    pub(crate) const fn queues(&self) -> bool {
+        self.queued && self.close
+    }
+
+    /// Whether the partner is told to have been behind an ego that stood and set off, and nothing tells that it came up to it.
+    pub(crate) fn was_in_queue(&self, account: &Account, partner: &Party) -> bool {
+        let went = self.sv.state == ContactState::SettingOff
+            || self.sv.state == ContactState::Moving && self.sv.stood_first && self.sv.turning == Turning::No;
+        let plain = self.cp.state == ContactState::Moving && !self.cp.stood_first && self.cp.turning == Turning::No;
+        let straight = matches!(self.cp.movement, None | Some(Movement::Straight)) && self.cp.manner.is_none();
+        let words = |source: &Source| match source {
+            Source::Words { text, .. } => text.to_lowercase(),
+            _ => String::new(),
+        };
+        let place = account.came_from.as_ref().map_or(String::new(), |fact| words(&fact.source));
+        let comes = |text: &str| ["approach", "came", "coming", "from behind"].iter().any(|word| text.contains(word));
+        let acts = &mut partner.acts.iter().filter(|fact| !fact.after_contact);
+        let only_there = acts.all(|fact| fact.act == Done::Follow && !comes(&words(&fact.source)));
+        self.origin == Origin::Behind
+            && went
+            && plain
+            && straight
+            && !self.pushed
+            && only_there
+            && place.contains("behind")
+            && !comes(&place)
+    }
+
+    /// Whether the partner leaves its lane to come by.
+    fn comes_round_ego(&self) -> bool {
+        let stands = self.sv.state.stands();
+        match self.cp.movement {
+            Some(Movement::Passing) => true,
+            Some(Movement::ChangingLanes | Movement::CrossingIntoOpposingLane) => stands,
+            _ => false,
+        }
+    }
+
+    /// The same with the partner farther behind the ego, where that matters.
+    pub(crate) fn afar(&self) -> Option<Self> {
+        let comes_round = self.waits_behind() && self.comes_round_ego();
+        let told = (self.close && (self.queued || comes_round)).then(|| Self { close: false, ..self.clone() });
+        told.map(|told| {
+            let choices = told.choices;
+            told.choosing(choices)
+        })
+    }
+
+    /// Whether the partner is told to have come up slowly behind an ego that stands: that has stood for long.
+    fn comes_up_slowly(&self) -> bool {
+        let slow = self.cp.manner == Some(Manner::Slow) && self.cp.state == ContactState::Moving;
+        self.origin == Origin::Behind && slow && self.sv.state.stands()
     }
 
     /// Whether the partner came up behind an ego that stands and braked, but not enough: it is told to be this slow when they touch, and
@@ -202,7 +311,9 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
     if last.speed_mps > 0.0 && !stands {
         return (None, last);
     }
-    let begins_s = if stands { contact_s - STOOD_S } else { first_time(&last.acts) };
+    let waited_s = told.choices.longer_s[1];
+    let begins_s = if stands { contact_s - STOOD_S - waited_s } else { first_time(&last.acts) };
+    let waited_s = if stands { 0.0 } else { waited_s };
     // Who waited behind an ego that came along came along behind it.
     let ego_came = ego.speed_mps > 0.0 || ego_lead.as_ref().is_some_and(|lead| lead.speed_mps > 0.0);
     let came_behind = [Phase::Drives, Phase::Stands, Phase::Drives];
@@ -210,7 +321,8 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
         true => &came_behind,
         false => &cp.phases,
     };
-    let lead = |longer_s: f64| phases::lead(phases, begins_s, told.choices.rolling_mps, MOVES_UP_M, longer_s);
+    let lead =
+        |longer_s: f64| phases::lead(phases, begins_s, told.choices.rolling_mps, MOVES_UP_M, longer_s + waited_s);
     let Some(usual) = lead(0.0) else { return (None, last) };
     let last = if stands { STANDING } else { last };
     // Who is ahead came ahead of the ego, and stopped before it did.
@@ -226,10 +338,11 @@ pub(crate) fn partner_paces(told: &Told, staging: &Staging) -> (Option<Lead>, Pa
 fn last_pace(told: &Told) -> Pace {
     let (cp, contact_s) = (&told.cp, told.contact_s);
     let rolling_mps = if cp.kind == PartnerKind::Pedestrian { WALKS_MPS } else { 5.0 };
-    let usual = pace(contact_s, cp, rolling_mps, STOOD_S);
+    let usual = pace(contact_s, cp, rolling_mps, STOOD_S + told.choices.longer_s[1]);
     // Who stood behind an ego that moved up stood behind where that was; who comes round it has room for that.
     let moved_up = told.sv.state.stands() && told.sv.phases.iter().skip(1).any(|phase| *phase == Phase::Drives);
     let from_m = match told.waits_behind() {
+        true if told.comes_round_ego() && told.close => COMES_ROUND_CLOSE_M,
         true if cp.movement == Some(Movement::Passing) => COMES_ROUND_M,
         true if moved_up => MOVES_UP_M + BEHIND_M,
         true if told.sv.state == ContactState::SettingOff => catches_up_m(told),
@@ -310,8 +423,12 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
     }
 }
 
-/// Who stood behind the ego and comes round it has driven so far at the contact. [m]
+/// Who stood behind the ego and comes round it has driven so far at the contact; farther where it has no room for that. [m]
+const COMES_ROUND_CLOSE_M: f64 = 8.0;
 const COMES_ROUND_M: f64 = 12.0;
+
+/// Who was in a queue behind the ego runs into it at this speed. [m/s]
+pub(crate) const QUEUED_MPS: f64 = 4.0;
 
 /// How far somebody who stood before it turned has driven at the contact. [m]
 const TURNS_M: f64 = 8.0;

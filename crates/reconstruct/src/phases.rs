@@ -1,5 +1,7 @@
 //! What somebody did before the last thing that it does: it came and stood, moved up and stood again, or reversed first.
 
+use crate::acts::Doing;
+use crate::choices::Choices;
 use crate::extras::STANDS_MPS;
 use crate::kerb;
 use crate::pace::{Pace, first_time, when};
@@ -405,6 +407,18 @@ const PHASE_S: f64 = 2.0;
 const OVER_LINE_M: f64 = 19.5;
 const LATEST_CONTACT_S: f64 = 22.0;
 
+/// How much longer the ego and the partner stand, and how fast the partner is, where that brings what they do into the told order. [s]
+const OTHER_TIMES: [([f64; 2], f64); 8] = [
+    ([-0.8, 0.0], 1.0),
+    ([2.0, 0.0], 1.0),
+    ([0.0, 2.0], 1.0),
+    ([-0.8, 0.0], 0.6),
+    ([4.0, 0.0], 1.0),
+    ([0.0, 4.0], 1.0),
+    ([7.0, 0.0], 1.0),
+    ([0.0, 7.0], 1.0),
+];
+
 impl Told {
     /// What the two did before, and when they touch then, as far as it can be drawn: of who comes from beside the road, or stood across it, the state says enough.
     pub(crate) fn phases(&mut self) {
@@ -433,6 +447,18 @@ impl Told {
             self.contact_s =
                 (OVER_LINE_M / mps.max(0.4)).ceil().clamp(self.contact_s, LATEST_CONTACT_S.max(self.contact_s));
         }
+    }
+
+    /// The same at other times, to try where what one of the two did before or behind the other is not shown as it is told.
+    pub(crate) fn in_other_times(&self) -> impl Iterator<Item = Self> {
+        let differs = self.sv.acts.iter().chain(&self.cp.acts).any(Doing::is_behind_other);
+        let tried = OTHER_TIMES.into_iter().filter(move |_| differs);
+        tried.map(|(longer_s, slower)| {
+            let mut told = self.clone();
+            told.contact_s += longer_s[0].max(longer_s[1]).max(0.0);
+            let choices = Choices { longer_s, partner_speed: slower * self.choices.partner_speed, ..self.choices };
+            told.choosing(choices)
+        })
     }
 
     /// The same with the last steps alone that are checked, where there are more.

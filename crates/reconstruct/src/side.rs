@@ -4,8 +4,8 @@ use crate::acts::{self, Doing};
 use crate::phases::{self, Phase};
 use crate::things;
 use recrash_model::account::{
-    Act, ActFact, ContactState, Control, ControlDevice, Fact, Kind, KindGroup, LaneWord, LeftRight, Obeyed, Party,
-    SignalState, Source, SpeedMeaning, StandReason, Standing, told,
+    Act, ActFact, ContactState, Control, ControlDevice, Fact, Kind, KindGroup, LaneWord, LeftRight, Manner, Obeyed,
+    Party, SignalState, Source, SpeedMeaning, StandReason, Standing, told,
 };
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::Size;
@@ -93,6 +93,8 @@ pub(crate) struct Side {
     pub(crate) only_above_or_below: bool,
     /// Touched at its underside, and nowhere else.
     pub(crate) only_below: bool,
+    /// How fast it is told to have driven last.
+    pub(crate) manner: Option<Manner>,
     /// Speed at the contact, where told. [m/s]
     pub(crate) impact_mps: Option<f64>,
     /// Speed at the contact that is staged. [m/s]
@@ -236,11 +238,24 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
             .into_iter()
             .filter(|z| !matches!(z, ContactZone::Top | ContactZone::Bottom))
             .collect(),
+        manner: manner(party),
         impact_mps,
         speed_mps: 0.0,
         lane: told(&party.lane),
         control: control(party),
     }
+}
+
+/// How fast somebody is told to have driven last, since it stood; who moved slowly where no word of it stands with the last that it did
+/// went on so.
+fn manner(party: &Party) -> Option<Manner> {
+    let before = || party.acts.iter().filter(|fact| !fact.after_contact);
+    let stood =
+        before().filter(|fact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.begun).map(|fact| fact.step).max();
+    let since = before().filter(|fact| Some(fact.step) > stood);
+    let last =
+        since.filter(|fact| fact.manner.is_some() || fact.act == Act::Accelerate).max_by_key(|fact| fact.step)?;
+    last.manner
 }
 
 /// Whether the first that is told of somebody who is parked is how it came there.

@@ -122,8 +122,17 @@ pub(crate) fn partner(account: &Account) -> Option<Party> {
     let thing = told(&partner.kind).is_some_and(is_thing);
     if thing && came && partner.state.is_none() && !slides(&partner) {
         let source = account.came_from.as_ref()?.source.clone();
-        let rolls =
-            ActFact { act: Act::Roll, side: None, step: 0, after_contact: false, begun: false, done: false, source };
+        let rolls = ActFact {
+            act: Act::Roll,
+            side: None,
+            step: 0,
+            after_contact: false,
+            begun: false,
+            done: false,
+            after_other: None,
+            manner: None,
+            source,
+        };
         partner.acts.push(rolls);
     }
     Some(partner)

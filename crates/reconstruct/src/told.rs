@@ -1,11 +1,12 @@
 //! What an account tells, in the terms of a staging; and what has to be assumed.
 
+use crate::acts;
 use crate::choices::Choices;
 use crate::ground::LANE_M;
 use crate::kerb;
 use crate::lateral;
 use crate::others::{self, Extra};
-use crate::pace::{GAINS_MPS, STARTS_AND_SLOWS_MPS};
+use crate::pace::{self, GAINS_MPS, STARTS_AND_SLOWS_MPS};
 use crate::phases::{self, CONTACT_S};
 use crate::roadside;
 use crate::side::{Side, Slant, Slowed, Turning, side};
@@ -133,6 +134,10 @@ pub(crate) struct Told {
     pub(crate) backs_early: bool,
     /// Who of the two backed first, where both did.
     pub(crate) backs_first: Option<Striker>,
+    /// The partner is told to have been behind an ego that stood and set off, and not to have come up to it.
+    pub(crate) queued: bool,
+    /// Who was behind the ego in a queue stands close to it.
+    pub(crate) close: bool,
     /// When they touch. [s]
     pub(crate) contact_s: f64,
     pub(crate) choices: Choices,
@@ -165,6 +170,7 @@ impl Told {
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
         let sv = side(&account.sv, None, &mut assumed, "ego");
         let mut cp = side(partner, kind, &mut assumed, "partner");
+        acts::passes_where_touched(&mut cp.acts, &sv.zones);
         let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
         cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
@@ -250,10 +256,13 @@ impl Told {
             backs_late,
             backs_early,
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
+            queued: false,
+            close: true,
             contact_s: CONTACT_S,
             choices: Choices::default(),
             assumed,
         };
+        this.queued = this.was_in_queue(account, partner);
         this.courses(&account.sv, partner);
         this.phases();
         this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);
@@ -532,14 +541,16 @@ impl Told {
             _ if self.is_thrown() => THROWN_MPS,
             (_, true) => 0.0,
             (Some(told), false) => told.max(0.4),
-            (None, false) => fit(usual(&self.cp)),
+            (None, false) if self.queues() => fit(pace::QUEUED_MPS),
+            (None, false) => pace::as_told(self.cp.manner, fit(usual(&self.cp)), slow, self.posted_mps),
         };
         // Who sets off behind an ego that moves is faster.
-        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::SettingOff && self.origin == Origin::Behind {
+        let sets_off = self.cp.state == ContactState::SettingOff || self.queues();
+        if self.cp.impact_mps.is_none() && sets_off && self.origin == Origin::Behind {
             self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + SETS_OFF_FASTER_MPS);
         }
         // So is who set off behind an ego that slowed again: as fast as that was between.
-        let waits = self.cp.stood_first || self.cp.state == ContactState::SettingOff;
+        let waits = self.cp.stood_first || sets_off;
         let slowed = self.sv.stood_first && self.sv.slowed_from.is_some();
         if self.cp.impact_mps.is_none() && self.origin == Origin::Behind && waits && slowed {
             self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + STARTS_AND_SLOWS_MPS);
@@ -567,7 +578,7 @@ impl Told {
                     self.cp.speed_mps = self.cp.speed_mps.max((sv + 2.5).min(FASTEST_TURN_MPS));
                 }
                 Origin::Behind | Origin::Beside { .. }
-                    if self.sv.state != ContactState::Reversing && !self.cp.stood_first =>
+                    if self.sv.state != ContactState::Reversing && !self.cp.stood_first && !self.queues() =>
                 {
                     self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
                 }
@@ -589,7 +600,8 @@ impl Told {
             self.assumed.push(format!("the ego's speed at the contact: {:.1} m/s", self.sv.speed_mps));
         }
         if self.cp.impact_mps.is_none() && !self.cp.state.stands() {
-            self.assumed.push(format!("the partner's speed at the contact: {:.1} m/s", self.cp.speed_mps));
+            let words = pace::manner_words(self.cp.manner);
+            self.assumed.push(format!("the partner's speed at the contact: {:.1} m/s{words}", self.cp.speed_mps));
         }
     }
 }
@@ -704,7 +716,10 @@ fn backs_behind(sv: &Party, partner: &Party, origin: Origin) -> (bool, bool) {
     let early = in_lane && stops_for_who_backs(sv, partner)
         || sets_off.is_some_and(|at| at > backs)
         || stops.is_some_and(|at| at > backs);
-    (sets_off.is_some_and(|at| at < backs), early)
+    // Who backs behind what the ego did did so when that stood.
+    let last = partner.acts.iter().rfind(|fact| fact.act == Act::Reverse && !fact.after_contact);
+    let answers = in_lane && last.is_some_and(|fact| fact.after_other >= stops && fact.after_other.is_some());
+    (sets_off.is_some_and(|at| at < backs), early && !answers)
 }
 
 /// Whether the ego stopped for one that was reversing then: "came to a stop for a van that was backing up".

@@ -102,8 +102,24 @@ pub struct ActFact {
     /// It is told to have been done, or all but done, before what is told next.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub done: bool,
+    /// Of the two that touch: the act of the other one behind which the words put it, by its place in the order.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after_other: Option<u32>,
+    /// How fast it was done, where the words say so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manner: Option<Manner>,
     /// Where it stands.
     pub source: Source,
+}
+
+/// How fast somebody is told to have driven, where no number is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Manner {
+    /// "Slowly", "at a low speed".
+    Slow,
+    /// "At a high rate of speed".
+    Fast,
 }
 
 /// State at the contact.

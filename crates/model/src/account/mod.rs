@@ -10,7 +10,7 @@ mod set;
 mod types;
 mod untold;
 
-pub use acts::{Act, ActFact, ContactState, LeftRight, Speed, SpeedMeaning, StandReason, Standing};
+pub use acts::{Act, ActFact, ContactState, LeftRight, Manner, Speed, SpeedMeaning, StandReason, Standing};
 pub use place::{Compass, Control, ControlDevice, LaneWord, Obeyed, Place, PlaceKind, RoadFeature, SignalState};
 pub use set::{ACCOUNTS_FORMAT, AccountSet, FactShare, TypeShare, UntoldIncident};
 pub use types::{

@@ -5,7 +5,7 @@ use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, RoadFeature};
+use recrash_model::account::{Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, Manner, RoadFeature};
 use recrash_model::template::Movement;
 
 /// What somebody did, in order; the same act told twice in a row once.
@@ -29,6 +29,8 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             after_contact,
             begun: frame.progress == Progress::Tried,
             done: is_done(reading, frame),
+            after_other: None,
+            manner: manner(reading, number),
             source: reading.of(frame),
         };
         let in_passing = frame.aside && all.iter().any(|known| known.act == act);
@@ -39,6 +41,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
                     && (last.side == side || side.is_none() || last.side.is_none()) =>
             {
                 last.side = last.side.or(side);
+                last.manner = fact.manner.or(last.manner);
                 // The last word on it is that it was done.
                 if fact.done {
                     (last.done, last.source) = (true, fact.source);
@@ -75,6 +78,32 @@ fn is_done(reading: &Reading<'_>, frame: &Frame) -> bool {
     let first = reading.story.tokens.get(frame.first).map(|token| token.text.as_str()).unwrap_or_default();
     frame.joint == Some(Joint::After) || ["complet", "finish", "exit"].iter().any(|start| first.starts_with(start))
 }
+
+/// "slowly proceeded", "approached at a high rate of speed".
+fn manner(reading: &Reading<'_>, number: usize) -> Option<Manner> {
+    const SLOW: [&str; 3] = ["slow", "low", "walking"];
+    const FAST: [&str; 5] = ["high", "extreme", "excessive", "fast", "rapid"];
+    let (frames, tokens) = (&reading.story.frames, &reading.story.tokens);
+    let frame = &frames[number];
+    let sentence = reading.story.sentences[frame.sentence];
+    let end = frames[number + 1..].iter().find(|next| next.first > frame.first).map_or(sentence.end, |next| next.first);
+    let word = |at: usize| tokens[at].text.as_str();
+    // "an extreme rate of speed", "at a high speed".
+    let speed = |at: usize, of: &[&str]| {
+        of.contains(&word(at)) && (at + 1..end.min(at + 4)).any(|next| matches!(word(next), "speed" | "speeds"))
+    };
+    let mut words = frame.first.saturating_sub(MANNER_BEFORE).max(sentence.first)..end.min(sentence.end);
+    words.find_map(|at| match word(at) {
+        "slowly" => Some(Manner::Slow),
+        "speeding" if at >= frame.first => Some(Manner::Fast),
+        _ if at > frame.first && speed(at, &SLOW) => Some(Manner::Slow),
+        _ if at > frame.first && speed(at, &FAST) => Some(Manner::Fast),
+        _ => None,
+    })
+}
+
+/// How it was done stands right before a verb, or behind it. [tokens]
+const MANNER_BEFORE: usize = 1;
 
 fn stands(fact: &ActFact) -> bool {
     matches!(fact.act, Act::Stop | Act::Hold)

@@ -1,5 +1,6 @@
 //! The account, folded from the event frames and held against the columns.
 
+mod across;
 mod acts;
 mod contact;
 mod controls;
@@ -217,6 +218,9 @@ pub fn account(incident: &Incident) -> Option<Account> {
         contradictions: Vec::new(),
         author: Author::Rules,
     };
+    if let Some(partner) = &mut account.partner {
+        across::settle(&reading, &mut account.sv, partner);
+    }
     party::columns(&reading, &mut account);
     // A gate that swings open is no door.
     let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));

@@ -126,5 +126,5 @@ fn who_is_told_to_pass_and_touches_with_its_flank_has_come_beside() {
         less.crash_type = Some(Fact::by_rule(CrashType::FrontToRear, "a test"));
     };
     let behind = acts_without(&account, CheckKind::CpActs, without);
-    assert_eq!(behind, (CheckResult::CannotBeShown, "not that it passed".to_owned()));
+    assert_eq!(behind, (CheckResult::CannotBeShown, "not that it passed on the left".to_owned()));
 }

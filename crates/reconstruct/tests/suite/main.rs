@@ -1,5 +1,6 @@
 //! Reconstructions of mini narratives, and what sabotage does to them.
 
+mod across;
 mod acts;
 #[path = "../../../reader/tests/suite/common.rs"]
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
