@@ -73,6 +73,9 @@ pub(crate) fn next(deed: Deed) -> Act {
 /// What the ego did before its last phase where that is told, and its last pace.
 pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Lead>, Pace) {
     let (sv, contact_s) = (&told.sv, told.contact_s);
+    if told.stays_at_kerb() {
+        return (None, STANDING);
+    }
     let stood_s = match told.waits_behind() {
         true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
         false if told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing => {
