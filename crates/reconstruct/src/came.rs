@@ -82,6 +82,7 @@ pub(crate) fn draft(account: &Account, told: &Told, staging: &Staging) -> Scenar
     let control = control::devices(told, ground, &recorded, &actors);
     let handover_s = match told.sv.state {
         ContactState::Parked => None,
+        _ if told.stays_at_kerb() => None,
         _ if let Some(lead) = &lead => Some(lead.handover_s(told.contact_s - HANDOVER_BEFORE_S)),
         // While it still rolls.
         ContactState::Stopped => {
@@ -271,7 +272,7 @@ const AT_KERB_M: f64 = 1.0;
 
 /// Whether the ego comes to the kerb where it is parked.
 fn pulls_over(told: &Told, ground: &Ground) -> bool {
-    told.sv.came_to_park && ground.stands_m != 0.0
+    told.sv.state == ContactState::Stopped && told.is_at_kerb() && ground.stands_m != 0.0
 }
 
 /// Who leaves a line and comes back to it does the first in so long, on so much of its way, and is on the other one for so long.

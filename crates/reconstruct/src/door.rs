@@ -2,15 +2,15 @@
 
 use crate::came::sv_at_contact;
 use crate::ground::Ground;
-use crate::side::Side;
+use crate::side::{Side, Turning};
 use crate::told::Told;
 use crate::touch::{Staging, headings, points, side_of, size_of, velocity, zones_off};
 use recrash_metrics::contact::contact_geometry;
-use recrash_model::account::{LeftRight, Origin, Striker};
+use recrash_model::account::{ContactState, LeftRight, Origin, Striker};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::scenario::{Part, PartKind};
+use recrash_model::scenario::{Part, PartKind, StripKind};
 use recrash_model::zones::ContactZone;
 use recrash_plan::acts::{Attached, PartState};
 
@@ -106,10 +106,15 @@ fn openings(told: &Told, owner: &Side, of_sv: bool) -> Vec<Opening> {
     let first = side_of(&owner.zones).unwrap_or(usual);
     let (front_m, rear_m) = (0.5 * length_m - FRONT_HINGE_M, -REAR_HINGE_M);
     let is_rear = owner.zones.iter().any(|zone| zone.is_rear());
-    let hinges = if is_rear || of_sv { [rear_m, front_m] } else { [front_m, rear_m] };
+    let hinges = match told.layout.rear_door {
+        Some(true) => vec![rear_m],
+        Some(false) => vec![front_m],
+        None if is_rear || of_sv => vec![rear_m, front_m],
+        None => vec![front_m, rear_m],
+    };
     let mut list = Vec::new();
     for side in [first, -first] {
-        for x_m in hinges {
+        for &x_m in &hinges {
             for before_s in [0.5, 0.7, 0.4, 0.9, OPENED_BEFORE_S] {
                 let part = Part {
                     id: "door".to_owned(),
@@ -165,7 +170,8 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
     };
     let mut found = Vec::new();
     let mut trial = 0;
-    for sv_s_m in ground.places() {
+    let beside = beside_line(told, ground);
+    for (sv_s_m, ground) in ground.places().into_iter().flat_map(|s_m| beside.iter().map(move |ground| (s_m, ground))) {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         // The post of a gate is not at an angle to the way through it.
         let through = [sv.heading, sv.heading + math::PI].map(math::wrap_angle).map(|heading| (heading, heading));
@@ -176,7 +182,12 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
                     trial += 1;
                     let Some((cp, owner_zone, other_zone)) = touch(told, opening, sv, heading, point) else { continue };
                     let owner_off = if told.gate_swings { 0 } else { zones_off(&owner.zones, owner_zone) };
-                    let off = owner_off + zones_off(&other.zones, other_zone);
+                    let in_lane = if told.has_kerb(ground) && ground.is_in_lanes(cp, size_of(&told.cp).1, IN_LANE_M) {
+                        IN_LANE
+                    } else {
+                        0
+                    };
+                    let off = owner_off + zones_off(&other.zones, other_zone) + in_lane;
                     let (ground, door) = (ground.clone(), Some(opening.clone()));
                     found.push(Staging {
                         ground,
@@ -194,6 +205,30 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
         }
     }
     found
+}
+
+/// An ego that drives past who is parked keeps beside the middle of its lane by so much. [m]
+const BESIDE_LINE_M: [f64; 5] = [0.0, 0.25, -0.25, 0.5, -0.5];
+
+/// Of who is parked at the kerb, that it stands in the lane, by more than this. [m]
+const IN_LANE: u32 = 2;
+const IN_LANE_M: f64 = 0.1;
+
+/// The road, with an ego that drives in the middle of its lane, or beside it, where that passes who is parked.
+fn beside_line(told: &Told, ground: &Ground) -> Vec<Ground> {
+    let drives = matches!(told.sv.state, ContactState::Moving) && told.sv.turning == Turning::No;
+    let keeps = drives && told.sv_aside().is_none() && ground.drift.is_none() && ground.stands_m == 0.0;
+    match keeps && told.has_kerb(ground) {
+        true => BESIDE_LINE_M.map(|stands_m| ground.standing(stands_m)).to_vec(),
+        false => vec![ground.clone()],
+    }
+}
+
+impl Told {
+    /// Whether the partner is told to stand beside the lanes, and there is room for it.
+    fn has_kerb(&self, ground: &Ground) -> bool {
+        self.stands_beside(false) && ground.beside.contains(&StripKind::Parking)
+    }
 }
 
 /// Points of the other's outline that the door may meet: shares of half of its length and width.

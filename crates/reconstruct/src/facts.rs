@@ -4,7 +4,9 @@ use crate::acts;
 use crate::control;
 use crate::door;
 use crate::extras::STANDS_MPS;
+use crate::kerb;
 use crate::lateral::is_on_foot;
+use crate::layout::Counted;
 use crate::movement::{self, Way};
 use crate::others;
 use crate::phases;
@@ -150,10 +152,12 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         let stood = stood(track, touch.time_s);
         let (slowed, gained) = changed(track, touch.time_s);
         let (as_told, phases) = phases::check(phases::checked(&side.phases), track, touch.time_s);
+        let stands_so = told.stands_so(kind == CheckKind::SvState, scenario, seen);
         let backs_first = told.backs_first.filter(|_| kind == CheckKind::CpState && !told.sv.phases.is_empty());
         let in_order = backs_first.is_none_or(|first| phases::back_in_order(first, ego_track, track, touch.time_s));
         let shown = pushed
             || state(side.state, track, seen, touch.time_s)
+                && stands_so
                 && (stood || !side.stood_first)
                 && (slowed || side.slowed_from.is_none())
                 && (gained || !side.gains)
@@ -167,6 +171,10 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             (false, false, false) => "",
         };
         let (mut expected, mut observed) = (side.state.label().to_owned(), format!("{:.2} m/s", seen.speed()));
+        if !stands_so {
+            expected += ", beside the lanes";
+            observed += ", in a driving lane";
+        }
         if let Some(first) = backs_first {
             expected += if first == Striker::Cp { ", backed first" } else { ", backed after the ego" };
             observed += if in_order { ", so it did" } else { ", so it did not" };
@@ -255,7 +263,9 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         [(CheckKind::SvLane, &told.sv, Some(ego_track)), (CheckKind::CpLane, &told.cp, touch.track)]
     {
         if let (Some(word), Some(track)) = (side.lane, track) {
-            held(kind, lane_words(word).to_owned(), lane((told, word), scenario, [ego_track, track], touch.time_s));
+            let counted = told.counted(kind == CheckKind::SvLane);
+            let expected = counted.map_or(lane_words(word).to_owned(), Counted::words);
+            held(kind, expected, lane((told, word), scenario, [ego_track, track], touch.time_s));
         }
     }
     for (kind, side, track) in
@@ -353,6 +363,9 @@ fn lane(
         LaneWord::Right => number == last,
         LaneWord::LeftTurn => number < turn_lanes,
         LaneWord::RightTurn => number + turn_lanes > last,
+        LaneWord::Center if let Some(counted) = told.counted(ego.id == track.id) => {
+            counted.place(lanes.len()) == Some(number)
+        }
         LaneWord::Center => number > 0 && number < last,
         LaneWord::Opposing => {
             // Of who came over from its own side: the ego's.
@@ -563,6 +576,9 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     }
     let Some(track) = touch.track else { return false };
     let until = ((touch.time_s * 10.0) as usize).min(track.states.len() - 1);
+    if told.comes_along_kerb() && kerb::comes_from_strip(scenario, track, until) {
+        return true;
+    }
     // Every second.
     let beside = track.states[..=until].iter().step_by(10).any(|state| !scenario.network().on_road(state.position()));
     let oncoming = |state: &ActorState| movement::is_against(scenario, state) == Some(true);

@@ -1,5 +1,6 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
+use crate::layout::Counted;
 use crate::others::Role;
 use crate::side::Turning;
 use crate::strips::strip_of;
@@ -10,6 +11,7 @@ use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKin
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
+use recrash_model::template::Movement;
 use recrash_roads::{LanePath, RoadNetwork};
 use std::rc::Rc;
 
@@ -109,6 +111,11 @@ impl Ground {
         Self { drift: Some(drift), ..self.clone() }
     }
 
+    /// The same, with an ego whose line is so far to the right of its lane's. [m]
+    pub(crate) fn standing(&self, stands_m: f64) -> Self {
+        Self { stands_m, ..self.clone() }
+    }
+
     /// Where the middle of a junction is. [m]
     pub(crate) fn centre_y_m(&self) -> f64 {
         (self.lanes as f64 - 0.5) * LANE_M
@@ -179,7 +186,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
         return if turns && !behind_m.is_empty() { ground.at_entry(size_of(&told.sv).0, behind_m) } else { ground };
     }
     let one_way = is_one_way(told);
-    let one_sided = one_way || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
+    let one_sided = one_way || told.keeps_one_way() || told.edge == Some(LeftRight::Left) && !told.edge_is_median();
     let oncoming = if one_sided || told.place == PlaceKind::Highway { 0 } else { 1 };
     let (right, left) = match told.place {
         _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
@@ -198,7 +205,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
     let usual = match lanes {
         _ if one_way => 0,
-        _ if told.edge == Some(LeftRight::Left) => 0,
+        _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come => 0,
         2.. if told.edge.is_none() && (to_right || passes_right(told)) => lanes - 2,
         _ => lanes - 1,
     };
@@ -217,6 +224,19 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
 }
 
 impl Told {
+    /// Which lane of its road one of the two is told to be in, counted from a side.
+    pub(crate) fn counted(&self, of_ego: bool) -> Option<Counted> {
+        if of_ego { self.layout.sv.counted } else { self.layout.cp.counted }
+    }
+
+    /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
+    fn keeps_one_way(&self) -> bool {
+        let lanes = [self.sv.lane, self.cp.lane];
+        let opposing = self.origin == Origin::Opposite || lanes.contains(&Some(LaneWord::Opposing));
+        let over = [self.sv.movement, self.cp.movement].contains(&Some(Movement::CrossingIntoOpposingLane));
+        self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
+    }
+
     /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
     fn crosses_street(&self) -> bool {
         matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street
@@ -269,15 +289,19 @@ fn lanes_for(told: &Told, usual: usize) -> usize {
         told.origin,
         Origin::Stall { side: Some(LeftRight::Left) } | Origin::Driveway { side: Some(LeftRight::Left) }
     );
-    let usual = if from_left && told.backs_out() { 1 } else { usual };
+    let usual = if from_left && told.backs_out() || told.layout.narrow { 1 } else { usual };
     // The lane by whose edge something stands is the only one of the road that the ego turns into.
     let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
     if told.edge.is_some() && turns && told.sv.lane.is_none() {
         return 1;
     }
-    let needed = [told.sv.lane, told.cp.lane].into_iter().flatten().map(|word| match word {
-        LaneWord::Center => 3,
-        LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn => 2,
+    let needed = [(told.sv.lane, true), (told.cp.lane, false)].into_iter().map(|(word, of_ego)| match word {
+        // A lane that is counted from one side is not the last on the other, but where as many are told.
+        Some(LaneWord::Center) => match told.counted(of_ego) {
+            Some(counted) => counted.number + usize::from(told.lanes.map(usize::from) != Some(counted.number)),
+            None => 3,
+        },
+        Some(LaneWord::Left | LaneWord::Right | LaneWord::LeftTurn | LaneWord::RightTurn) => 2,
         _ => 1,
     });
     let lanes = told.lanes.map_or(usual, usize::from).max(needed.max().unwrap_or(1)) + usize::from(told.more_lanes);
@@ -289,12 +313,14 @@ const MOST_LANES: usize = 5;
 
 /// The ego's lane, where it is told, 0 is the leftmost.
 fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
-    let number = |word: LaneWord| match word {
+    let number_of = |word: LaneWord, of_ego: bool| match word {
+        LaneWord::Center if let Some(counted) = told.counted(of_ego) => counted.place(lanes),
         LaneWord::Left | LaneWord::LeftTurn => Some(0),
         LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
         LaneWord::Center => Some(lanes / 2),
         _ => None,
     };
+    let number = |word: LaneWord| number_of(word, true);
     // Of two lanes that turn the ego's is the other one.
     if told.turns_abreast() {
         match (told.sv.lane, told.origin) {
@@ -313,7 +339,7 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
         };
     }
     // The partner's lane tells the ego's, where the two go one way; of who changes into it that beside it.
-    let other = number(told.cp.lane?)?;
+    let other = number_of(told.cp.lane?, false)?;
     let left_m = told.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
     match told.origin {
         Origin::Behind | Origin::Ahead if left_m >= LANE_M => (other + 1 < lanes).then_some(other + 1),
@@ -332,6 +358,8 @@ fn has(told: &Told, role: Role) -> bool {
 
 fn passes_right(told: &Told) -> bool {
     let in_lane = told.cp.lane.and_then(strip_of).is_none();
+    // Who stands beside the lanes does so beside the outermost.
+    let in_lane = in_lane && !told.stands_beside(false);
     in_lane && matches!(told.origin, Origin::Beside { side: LeftRight::Right })
         || in_lane
             && told.origin == Origin::Behind
@@ -343,6 +371,9 @@ fn passes_right(told: &Told) -> bool {
 
 /// Who is no longer than this has room between the ego and the stop line. [m]
 const USUAL_M: f64 = 6.0;
+
+/// Who stands at the kerb does so before a junction by so much. [m]
+const KERB_BEFORE_M: f64 = 10.0;
 
 /// From a junction's centre to where its arms begin, wider with more lanes. [m]
 pub(crate) fn corner_m(lanes: usize) -> f64 {
@@ -359,7 +390,11 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::No | Turning::Round => "own",
     };
     let one_way = is_one_way(told);
-    let parks = has(told, Role::Kerb) || told.crossed_near && told.cp.state == ContactState::Parked;
+    let at_kerb = told.is_at_kerb() && !crossing && told.sv.turning == Turning::No && !one_way;
+    let parks = at_kerb
+        || told.stands_beside(false)
+        || has(told, Role::Kerb)
+        || told.crossed_near && told.cp.state == ContactState::Parked;
     let usual: &[StripKind] = if parks { &[StripKind::Parking, StripKind::Sidewalk] } else { &[StripKind::Sidewalk] };
     // Of the partner's road, on both sides of the junction.
     let beside = told.beside_lanes(usual);
@@ -381,7 +416,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::Left => ("left+", told_lane(told, lanes).unwrap_or(0)),
         Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
         Turning::No | Turning::Round => {
-            let left = one_way || told.edge == Some(LeftRight::Left);
+            let left = one_way || told.edge == Some(LeftRight::Left) || told.layout.left_to_come;
             ("ahead+", told_lane(told, lanes).unwrap_or(if left { 0 } else { lanes - 1 }))
         }
     };
@@ -438,11 +473,14 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         let longer_m = if told.origin == Origin::Ahead { (size_of(&told.cp).0 - USUAL_M).max(0.0) } else { 0.0 };
         let before_m = if behind { 13.0 + longer_m } else { 5.0 };
         let both = has(told, Role::Lead) && told.origin == Origin::Ahead;
+        let before_m = if at_kerb { KERB_BEFORE_M } else { before_m };
         vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }]
     };
     let beside = if crosses { usual.to_vec() } else { beside };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes }, beside };
     let ground = with_way(map, vec!["own-".to_owned(), exit.to_owned()], across, places, true);
+    let stands_m = if at_kerb { ground.kerbs_m[1] } else { 0.0 };
+    let ground = Ground { stands_m, ..ground };
     if told.sv.turned { ground.after_turn() } else { ground }
 }
 

@@ -106,6 +106,9 @@ pub(crate) const fn manner_words(manner: Option<Manner>) -> &'static str {
 /// What the ego did before its last phase where that is told, and its last pace.
 pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Lead>, Pace) {
     let (sv, contact_s) = (&told.sv, told.contact_s);
+    if told.stays_at_kerb() {
+        return (None, STANDING);
+    }
     let choices = &told.choices;
     let longer_s = choices.longer_s[0];
     let stood_s = longer_s

@@ -434,7 +434,9 @@ impl Told {
         }
         // Who came back into the lane in which it stopped had left it before.
         let came_back = self.sv.returns && self.sv.stopped_aside == Some(Act::LaneChange);
-        let more = !self.sv.phases.is_empty() || !self.cp.phases.is_empty() || self.backs_out() || came_back;
+        // So does who comes to the kerb, and is passed there.
+        let to_kerb = self.sv.state == ContactState::Stopped && self.is_at_kerb() && !self.stays_at_kerb();
+        let more = to_kerb || !self.sv.phases.is_empty() || !self.cp.phases.is_empty() || self.backs_out() || came_back;
         let steps = self.sv.phases.len().max(self.cp.phases.len()).saturating_sub(CHECKED_PHASES) as f64;
         self.contact_s = if more { LATE_CONTACT_S + steps * PHASE_S } else { CONTACT_S };
         // Who is slow has come over the line of its signal or sign.

@@ -2,6 +2,7 @@
 
 use crate::acts::{self, Doing};
 use crate::phases::{self, Phase};
+use crate::sizes;
 use crate::things;
 use recrash_model::account::{
     Act, ActFact, ContactState, Control, ControlDevice, Fact, Kind, KindGroup, LaneWord, LeftRight, Manner, Obeyed,
@@ -225,7 +226,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         phases,
         acts,
         kind: partner_kind.unwrap_or_default(),
-        size: kind.and_then(size_of),
+        size: kind.and_then(|kind| sizes::told(party, kind).or_else(|| size_of(kind))),
         state,
         state_told,
         movement,
@@ -422,6 +423,8 @@ pub(crate) fn size_of(kind: Kind) -> Option<Size> {
         Kind::FireTruck => size(10.0, 2.5),
         Kind::Tram => size(22.0, 2.6),
         Kind::Forklift => size(3.0, 1.2),
+        Kind::ConstructionVehicle => size(6.0, 2.4),
+        Kind::PoliceCar | Kind::FirstResponder => size(4.9, 2.0),
         Kind::Trailer => size(5.0, 2.2),
         Kind::DeliveryRobot | Kind::Cart | Kind::Scooter => size(0.8, 0.6),
         Kind::Wall | Kind::Curb => size(6.0, 0.3),

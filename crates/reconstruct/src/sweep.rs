@@ -43,6 +43,9 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u
         for (came, heading) in headings(told, sv.heading, sv.heading) {
             for (curvature, by_rad) in bends(told) {
                 let length_m = by_rad / curvature.abs();
+                if told.swings_out(ground, by_rad * curvature.signum()) {
+                    continue;
+                }
                 for &(sv_zone, cp_zone) in &pairs {
                     for (sv_point, cp_point) in
                         points(sv_zone).iter().flat_map(|a| points(cp_zone).iter().map(move |b| (*a, *b)))

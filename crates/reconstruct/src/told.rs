@@ -5,6 +5,7 @@ use crate::choices::Choices;
 use crate::ground::LANE_M;
 use crate::kerb;
 use crate::lateral;
+use crate::layout::Layout;
 use crate::others::{self, Extra};
 use crate::pace::{self, GAINS_MPS, STARTS_AND_SLOWS_MPS};
 use crate::phases::{self, CONTACT_S};
@@ -32,6 +33,9 @@ const THROWN_MPS: f64 = 4.0;
 const DEPARTS_M: f64 = 1.6;
 const KERB_M: f64 = 2.6;
 const CHANGES_M: f64 = 2.2;
+
+/// An ego that leaves the kerb, and touches one that is parked there, leaves it by so much. [m]
+const LEAVES_KERB_M: f64 = 1.2;
 
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
@@ -106,6 +110,8 @@ pub(crate) struct Told {
     pub(crate) striker: Option<Striker>,
     /// Lanes in the ego's direction.
     pub(crate) lanes: Option<u8>,
+    /// What is told of the road and of places on it beside.
+    pub(crate) layout: Layout,
     /// The road has one lane more in each direction than is usual.
     pub(crate) more_lanes: bool,
     /// The road is crossed by one on which somebody is who has no part in what the ego does.
@@ -242,6 +248,7 @@ impl Told {
             rig: None,
             striker,
             lanes: told(&account.place.lanes),
+            layout: Layout::of(account, partner),
             more_lanes: false,
             crossed_near: false,
             reasons: others::reasons(account, origin),
@@ -622,7 +629,7 @@ impl Told {
     pub(crate) fn sv_aside(&self) -> Option<Aside> {
         let (left, right) = (LeftRight::Left, LeftRight::Right);
         let back = self.sv.phases.contains(&phases::Phase::Reverses);
-        let stopped = self.sv.stopped_aside.filter(|_| !back && !self.sv.came_to_park);
+        let stopped = self.sv.stopped_aside.filter(|_| !back && !self.sv.came_to_park && !self.is_at_kerb());
         let stands = self.sv.state.stands() && stopped.is_none();
         if self.sv.turning != Turning::No || stands || self.sv.state == ContactState::Reversing {
             return None;
@@ -644,6 +651,8 @@ impl Told {
             .or_else(|| side_of(&self.sv.zones).map(|side| if (side > 0.0) != makes_room { left } else { right }));
         let by = |usual: LeftRight, way_m: f64| if towards.unwrap_or(usual) == left { -way_m } else { way_m };
         let (from_t_m, to_t_m) = match movement {
+            // Who runs into one that is parked ahead of it has not come far.
+            _ if self.leaves_kerb() => (KERB_M, if self.stands_beside(false) { KERB_M - LEAVES_KERB_M } else { 0.0 }),
             Movement::ChangingLanes | Movement::Merging => (0.0, by(left, LANE_M)),
             Movement::CrossingIntoOpposingLane => (0.0, -LANE_M),
             Movement::LaneDeparture => (0.0, by(right, DEPARTS_M)),

@@ -150,6 +150,8 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                             (squeezed, SQUEEZED),
                             (other_way, OTHER_WAY),
                             (told.crosses_off_lanes(ground, cp), OFF_LANES),
+                            (told.is_parked_otherwise(ground, cp), PARKED_OTHERWISE),
+                            (told.swings_out(ground, heading - came), SWINGS_OUT),
                         ];
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
                         let cost = (off + worse, trial);
@@ -195,6 +197,12 @@ const BEFORE_LANE: u32 = 3;
 
 /// Of who has a signal or a sign on the crossing road, that it does not come along the lanes that lead there.
 const OFF_LANES: u32 = 1;
+
+/// Of who passes an ego at the kerb, that it swings out from there as it touches.
+const SWINGS_OUT: u32 = 2;
+
+/// Of who is told to stand beside the lanes, that its middle is in one, or that it stands askew.
+const PARKED_OTHERWISE: u32 = 2;
 
 /// Of who strikes the other with parts that nobody tells, that the other one's front does.
 const OTHER_WAY: u32 = 1;

@@ -110,7 +110,7 @@ fn who_is_told_to_have_gained_speed_does() {
 #[test]
 fn who_stood_before_the_other_began_to_reverse_does() {
     let account = story(
-        "The AV was stopped at the curb for a passenger pickup. A pickup truck reversed out of a driveway on the right, and the rear of the \
+        "The AV was stopped for a passenger pickup. A pickup truck reversed out of a driveway on the right, and the rear of the \
          pickup truck made contact with the right side of the stationary AV.",
     );
     let shown = made(&account);

@@ -1,0 +1,175 @@
+//! What the words tell of the road, and of the places on it, beside kinds of places and of lanes: which lane, counted from a side; who
+//! stands at the kerb; which door.
+
+use recrash_model::account::{Account, Act, ActFact, Fact, LeftRight, Party, RoadFeature, Source};
+
+/// A lane that is counted from a side of the road: "the third lane from the right".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Counted {
+    pub(crate) from: LeftRight,
+    /// 1 is the outermost.
+    pub(crate) number: usize,
+}
+
+impl Counted {
+    fn of(text: &str) -> Option<Self> {
+        let words: Vec<&str> = text.split(|letter: char| !letter.is_alphanumeric()).collect();
+        let has = |word: &str| words.iter().any(|other| other.eq_ignore_ascii_case(word));
+        let number = match (has("second") || has("2nd"), has("third") || has("3rd")) {
+            (true, _) => 2,
+            (_, true) => 3,
+            _ => return None,
+        };
+        let from = match (has("left") || has("leftmost"), has("right") || has("rightmost")) {
+            (true, false) => LeftRight::Left,
+            (false, true) => LeftRight::Right,
+            _ => return None,
+        };
+        Some(Self { from, number })
+    }
+
+    /// Its number from the left, 0 is the leftmost, on a road with so many; nothing where that has fewer.
+    pub(crate) fn place(self, lanes: usize) -> Option<usize> {
+        match self.from {
+            LeftRight::Left => (self.number <= lanes).then(|| self.number - 1),
+            LeftRight::Right => lanes.checked_sub(self.number),
+        }
+    }
+
+    pub(crate) fn words(self) -> String {
+        let number = if self.number == 2 { "second" } else { "third" };
+        let side = if self.from == LeftRight::Left { "left" } else { "right" };
+        format!("the {number} lane from the {side}")
+    }
+}
+
+/// What is told so of one side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Standing {
+    pub(crate) counted: Option<Counted>,
+    /// It stands at the kerb: "was stopped at the curb".
+    pub(crate) at_kerb: bool,
+    /// It is parked in a lane: "double parked".
+    pub(crate) double: bool,
+}
+
+/// What is told so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Layout {
+    pub(crate) sv: Standing,
+    pub(crate) cp: Standing,
+    /// The street is narrow; it is one-way.
+    pub(crate) narrow: bool,
+    pub(crate) one_way: bool,
+    /// The ego goes to turn left, and has not begun to.
+    pub(crate) left_to_come: bool,
+    /// The door that took part is told to be a rear one, or a front one.
+    pub(crate) rear_door: Option<bool>,
+}
+
+impl Layout {
+    pub(crate) fn of(account: &Account, partner: &Party) -> Self {
+        let has = |feature: RoadFeature| account.place.features.iter().any(|fact| fact.value == feature);
+        Self {
+            sv: standing(account, &account.sv),
+            cp: standing(account, partner),
+            narrow: has(RoadFeature::NarrowStreet),
+            one_way: has(RoadFeature::OneWay),
+            left_to_come: goes_to_turn_left(&account.sv),
+            rear_door: rear_door(account, partner),
+        }
+    }
+}
+
+fn standing(account: &Account, party: &Party) -> Standing {
+    let lane = party.lane.as_ref().and_then(|lane| Counted::of(text(&lane.source)?));
+    let double = sources(party).any(|source| text(source).is_some_and(|text| text.to_lowercase().contains("double")));
+    Standing { counted: lane, at_kerb: stands_at_kerb(account, party), double }
+}
+
+/// So many bytes behind the words that somebody stands, at most, begin those for the kerb: "was stopped to the right of the AV in a curbside
+/// parking spot".
+const BEHIND_STAND: usize = 50;
+
+/// Whether words for the kerb, or for room to park, stand right behind those that somebody stood.
+fn stands_at_kerb(account: &Account, party: &Party) -> bool {
+    let stands = |fact: &&ActFact| {
+        matches!(fact.act, Act::Hold | Act::Stop | Act::Park | Act::PullOver) && !fact.after_contact && !fact.begun
+    };
+    let ends: Vec<usize> =
+        party.acts.iter().filter(stands).filter_map(|fact| place(&fact.source)).map(|at| at.1).collect();
+    let kerb = |fact: &&Fact<RoadFeature>| {
+        let words = text(&fact.source).map(str::to_lowercase).unwrap_or_default();
+        fact.value == RoadFeature::ParkingLane && words.contains("curb")
+    };
+    let kerbs = account.place.features.iter().filter(kerb).filter_map(|fact| place(&fact.source));
+    let mut kerbs = kerbs.map(|at| at.0);
+    kerbs.any(|kerb| {
+        ends.iter().any(|end| (*end..*end + BEHIND_STAND).contains(&kerb) || kerb + BEHIND_STAND > *end && kerb < *end)
+    })
+}
+
+/// Whether somebody is told to be about to turn left, or to do so after the contact, and not to have turned before.
+fn goes_to_turn_left(party: &Party) -> bool {
+    let left = |fact: &ActFact| fact.act == Act::Turn && fact.side == Some(LeftRight::Left);
+    let turned = party.acts.iter().any(|fact| fact.act == Act::Turn && !fact.after_contact && !fact.begun);
+    !turned && party.acts.iter().any(left)
+}
+
+/// So many words before "door" tell which one it is.
+const BEFORE_DOOR: usize = 5;
+
+/// Whether the words for the door that opened tell a rear one, or a front one.
+fn rear_door(account: &Account, partner: &Party) -> Option<bool> {
+    let opens = |party: &Party| {
+        party.acts.iter().filter(|fact| fact.act == Act::OpenDoor).map(|fact| fact.source.clone()).collect::<Vec<_>>()
+    };
+    let mut all = opens(&account.sv);
+    all.extend(opens(partner));
+    all.extend(account.door.iter().map(|fact| fact.source.clone()));
+    all.iter().filter_map(text).find_map(|text| {
+        let text = text.to_lowercase();
+        let words: Vec<&str> =
+            text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let door = words.iter().position(|word| *word == "door")?;
+        words[door.saturating_sub(BEFORE_DOOR)..door].iter().rev().find_map(|word| match *word {
+            "rear" | "back" => Some(true),
+            "front" => Some(false),
+            _ => None,
+        })
+    })
+}
+
+fn sources(party: &Party) -> impl Iterator<Item = &Source> {
+    let kind = party.kind.iter().map(|fact| &fact.source);
+    let state = party.state.iter().map(|fact| &fact.source);
+    kind.chain(state).chain(party.acts.iter().map(|fact| &fact.source))
+}
+
+fn text(source: &Source) -> Option<&str> {
+    match source {
+        Source::Words { text, .. } => Some(text),
+        _ => None,
+    }
+}
+
+fn place(source: &Source) -> Option<(usize, usize)> {
+    match source {
+        Source::Words { start, end, .. } => Some((*start, *end)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counted_lanes_have_a_number_from_the_left() {
+        let third = Counted::of("third lane from the right").unwrap();
+        assert_eq!((third.place(4), third.place(3), third.place(2)), (Some(1), Some(0), None));
+        let second = Counted::of("the second from the left lane").unwrap();
+        assert_eq!((second.place(4), second.words().as_str()), (Some(1), "the second lane from the left"));
+        assert_eq!(Counted::of("the right lane"), None);
+    }
+}

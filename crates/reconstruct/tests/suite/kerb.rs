@@ -1,0 +1,83 @@
+//! Who is told to stand at the kerb stands beside the lanes, and who is told to be in a lane counted from a side is in that.
+
+use crate::ways::{made, story};
+use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::rollout::ActorTrack;
+use recrash_model::scenario::{MapSpec, StripKind};
+use recrash_reconstruct::Reconstruction;
+
+const PASSED: &str = "The AV was parked at the curb on Elm Street when a van traveling west passed the parked AV on the left and the right side of \
+                      the van made contact with the rear left of the AV.";
+
+const STOPS: &str = "The AV stopped at the curb on Elm Street for a passenger drop-off. An SUV approached the AV from behind and passed the AV on the \
+                          left, and the right side of the SUV made contact with the rear left of the stationary AV.";
+
+const REAR_DOOR: &str = "The AV was traveling straight on Elm Street when an occupant of a parallel parked car opened its rear door into the right side of \
+                         the AV.";
+
+const THIRD: &str = "The AV was stopped in the third lane from the right on Elm Street for a red light. A sedan approached the AV from behind and the \
+                     front of the sedan made contact with the rear of the AV.";
+
+const MACHINE: &str = "The AV was stopped on Elm Street. A skid steer loader to the right of the AV began to reverse, and the rear of the skid steer \
+                       loader made contact with the right side of the AV.";
+
+const NARROW: &str = "The AV was stopped on a narrow street facing north when a sedan traveling southbound made contact with the front of the AV with \
+                      its front.";
+
+fn partner(made: &Reconstruction) -> &ActorTrack {
+    made.rollout.actors.iter().find(|track| track.id == "cp").expect("a partner")
+}
+
+fn lanes(made: &Reconstruction) -> [usize; 2] {
+    let MapSpec::G(map) = &made.draft.map else { panic!("a map of roads") };
+    [&map.roads[0].right, &map.roads[0].left]
+        .map(|strips| strips.iter().filter(|strip| strip.kind == StripKind::Driving).count())
+}
+
+#[test]
+fn who_is_parked_at_the_kerb_is_passed_by_who_keeps_its_lane() {
+    let made = made(&story(PASSED));
+    let ego_y = made.rollout.ego_track().states[0].y;
+    assert!((-3.4..-2.4).contains(&ego_y), "{ego_y}");
+    let most = partner(&made).states.iter().take(90).map(|state| state.y).fold(0.0, f64::max);
+    assert!(most < 0.5, "it swings out by {most} m");
+}
+
+#[test]
+fn who_stops_at_the_kerb_comes_there() {
+    let made = made(&story(STOPS));
+    let ego = made.rollout.ego_track();
+    assert!(ego.states[0].y.abs() < 0.1 && ego.states.last().unwrap().y < -2.4, "{:?}", ego.states.last());
+}
+
+#[test]
+fn a_rear_door_is_hinged_behind_the_middle_of_a_car_beside_the_lanes() {
+    // The door is at the rear, and touches the ego with what is the flank of its car.
+    let mut account = story(REAR_DOOR);
+    account.partner.as_mut().expect("a partner").zones.clear();
+    let made = made(&account);
+    let cp = made.draft.actors.iter().find(|actor| actor.id == "cp").unwrap();
+    assert!(cp.parts[0].x_m < 0.0);
+    let flank_m = partner(&made).states[0].y.abs() - 0.926;
+    assert!(flank_m > 1.5, "{flank_m}");
+}
+
+#[test]
+fn a_counted_lane_is_counted_from_its_side() {
+    let made = made(&story(THIRD));
+    let check = made.verdict.checks.iter().find(|check| check.kind == CheckKind::SvLane).unwrap();
+    assert_eq!(check.result, CheckResult::Shown);
+    assert_eq!(check.expected, "the third lane from the right");
+    assert_eq!(check.observed, "lane 2 of 4, from the left");
+}
+
+#[test]
+fn a_machine_has_the_size_of_its_name() {
+    let made = made(&story(MACHINE));
+    assert!(partner(&made).length_m < 4.0, "{}", partner(&made).length_m);
+}
+
+#[test]
+fn a_narrow_street_has_a_lane_each_way() {
+    assert_eq!(lanes(&made(&story(NARROW))), [1, 1]);
+}
