@@ -5,6 +5,7 @@ use crate::door::Opening;
 use crate::extras;
 use crate::ground::{Ground, LANE_M};
 use crate::kerb;
+use crate::lanes;
 use crate::lateral;
 use crate::others::Role;
 use crate::pace::{
@@ -523,7 +524,8 @@ fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Plac
         .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
         .or_else(|| lateral::comes_by(told, staging, &pace, arm_m))
         .or_else(|| lateral::changed_behind(told, staging, &pace, arm_m))
-        .or_else(|| lateral::turns_in(told, staging, &pace, arm_m));
+        .or_else(|| lateral::turns_in(told, staging, &pace, arm_m))
+        .or_else(|| lanes::from_lane(told, staging, &pace, arm_m));
     if let Some((begin, mut course)) = on_lanes {
         course.push(beyond);
         let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();

@@ -4,6 +4,7 @@ use crate::acts;
 use crate::control;
 use crate::door;
 use crate::extras::STANDS_MPS;
+use crate::keeping;
 use crate::lateral::is_on_foot;
 use crate::movement::{self, Way};
 use crate::others;
@@ -580,6 +581,12 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     }
     let (all, net) = turns().fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
     beside || (all - net.abs()).to_degrees() > MOST_BACK_DEG
+}
+
+/// For how long the partner is off its lane.
+pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Option<f64> {
+    let touch = first_touch(rollout)?;
+    keeping::off_lane_s(told, scenario, touch.track.filter(|track| track.id == "cp")?, touch.time_s)
 }
 
 /// Whether somebody stood before a time.

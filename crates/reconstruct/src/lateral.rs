@@ -1,6 +1,7 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
 use crate::ground::{Ground, LANE_M};
+use crate::lanes;
 use crate::pace::{Pace, first_time, start_over, when};
 use crate::phases::{Beside, STOPS_SHORT_M};
 use crate::side::{Slant, Turning};
@@ -189,7 +190,12 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     }
     kerb_y_m(told, staging)
         .or_else(|| told.strip_y_m(&staging.ground))
-        .or_else(|| told.cp_from_left_m().map(|from_left_m| staging.cp.position.y + from_left_m))
+        .or_else(|| {
+            let from_left_m = told.cp_from_left_m()?;
+            let left = (staging.cp.position, from_left_m);
+            let lane_m = lanes::left_lane_m(&staging.ground, staging.cp_came, left).filter(|_| !told.back_straight);
+            Some(lane_m.unwrap_or(staging.cp.position.y + from_left_m))
+        })
         .or_else(|| {
             beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })
         })
@@ -336,8 +342,14 @@ pub(crate) fn turns_in(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     if let Some(found) = into_the_road(told, staging, pace, arm_m) {
         return Some(found);
     }
-    let bends = bend_before(cp, staging.cp_came, turn_m(told).min(pace.driven_m / turn.abs()), arm_m);
-    by_bend(bends, vec![cp], pace, arm_m)
+    let radius_m = turn_m(told).min(pace.driven_m / turn.abs());
+    let (came, ground) = (staging.cp_came, &staging.ground);
+    let lane = lanes::bend_from_lane(ground, cp, (came, radius_m), arm_m).filter(|_| !told.back_straight);
+    let on_lane = lane.and_then(|(bent, radius_m)| {
+        let poses = if bent.position.distance(cp.position) > 0.1 { vec![bent, cp] } else { vec![cp] };
+        by_bend(bend_before(bent, came, radius_m, arm_m), poses, pace, arm_m)
+    });
+    on_lane.or_else(|| by_bend(bend_before(cp, came, radius_m, arm_m), vec![cp], pace, arm_m))
 }
 
 /// Where a bend of this radius that ends in a pose begins.

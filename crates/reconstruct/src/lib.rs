@@ -14,7 +14,9 @@ mod door;
 mod extras;
 mod facts;
 mod ground;
+mod keeping;
 mod kerb;
+mod lanes;
 mod lateral;
 mod movement;
 mod near;
@@ -82,6 +84,13 @@ pub fn held_against(account: &Account, scenario: &Scenario, rollout: &Rollout) -
     Ok(Verdict { checks: facts::facts(&told::Told::of(account)?, scenario, rollout) })
 }
 
+/// For how long the partner of a reconstruction is in no lane of its direction before it does what is told to take it aside; nothing
+/// where it does not come along lanes. [s]
+pub fn off_lane_s(account: &Account, made: &Reconstruction) -> Option<f64> {
+    let scenario = recrash_roads::check(made.draft.clone()).ok()?.value;
+    facts::off_lane_s(&told::Told::read(account)?, &scenario, &made.rollout)
+}
+
 /// Stages an account: the first staging that shows every told fact, else the one that shows most.
 ///
 /// # Errors
@@ -99,15 +108,17 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
     staged(told.choosing(Choices::of(open, values)), account)
 }
 
-/// What cannot be shown in all its steps is shown in the last of them.
+/// What cannot be shown in all its steps is shown in the last of them; and where the partner cannot come out of the middle of its lane, it
+/// comes straight to where it touches.
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    let fewer = told.in_fewer_steps();
+    let others = told.in_fewer_steps().into_iter().chain([told.coming_straight()]);
+    let others: Vec<told::Told> = others.collect();
     let made = searched(told, account);
     let is_true = |made: &Result<Reconstruction, Untold>| made.as_ref().is_ok_and(Reconstruction::is_true);
-    match fewer.filter(|_| !is_true(&made)).map(|told| searched(told, account)) {
-        Some(shorter) if is_true(&shorter) => shorter,
-        _ => made,
+    if is_true(&made) {
+        return made;
     }
+    others.into_iter().map(|told| searched(told, account)).find(is_true).unwrap_or(made)
 }
 
 fn searched(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
@@ -129,7 +140,7 @@ fn searched(told: told::Told, account: &Account) -> Result<Reconstruction, Untol
     let Search { best, fullest, refused, .. } = search;
     let made = best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
     // A partner that strays is worth less than others who are told of.
-    let fuller = fullest.map(|(_, found)| found).filter(|found| found.cost.2 && made.is_true() && left_open(&made) > 0);
+    let fuller = fullest.map(|(_, found)| found).filter(|found| (found.cost.2 || found.cost.3 > 0) && made.is_true() && left_open(&made) > 0);
     let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
     Ok(fuller.unwrap_or(made))
 }
@@ -159,7 +170,8 @@ impl Search {
         let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
         let verdict = Verdict { checks: facts::facts(told, &scenario, &rollout) };
         let others = facts::others_stray(told, &scenario, &rollout);
-        let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout));
+        let off_s = facts::off_lane_s(told, &scenario, &rollout).unwrap_or(0.0);
+        let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout), off_s.ceil() as u32);
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
         let fuller =
@@ -175,7 +187,7 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        cost == (0, false, false)
+        cost == (0, false, false, 0)
     }
 }
 
@@ -188,10 +200,11 @@ fn left_open(made: &Reconstruction) -> usize {
     made.verdict.checks.iter().filter(|check| is_of_others(check)).count()
 }
 
-/// The best of what was tried: told facts that are not shown, then whether others are not as told, and whether the partner strays.
+/// The best of what was tried: told facts that are not shown, then whether others are not as told, whether the partner strays, and
+/// for how long it is off its lane. [s]
 #[derive(Clone)]
 struct Best {
-    cost: (usize, bool, bool),
+    cost: (usize, bool, bool, u32),
     made: Reconstruction,
     told: told::Told,
     ground: ground::Ground,

@@ -133,6 +133,8 @@ pub(crate) struct Told {
     pub(crate) backs_early: bool,
     /// Who of the two backed first, where both did.
     pub(crate) backs_first: Option<Striker>,
+    /// The partner comes straight to where it touches, also beside its lane.
+    pub(crate) back_straight: bool,
     /// When they touch. [s]
     pub(crate) contact_s: f64,
     pub(crate) choices: Choices,
@@ -250,6 +252,7 @@ impl Told {
             backs_late,
             backs_early,
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
+            back_straight: false,
             contact_s: CONTACT_S,
             choices: Choices::default(),
             assumed,
@@ -399,6 +402,11 @@ impl Told {
             self.speeds();
         }
         self
+    }
+
+    /// The same with a partner that comes straight to where it touches.
+    pub(crate) fn coming_straight(&self) -> Self {
+        Self { back_straight: true, ..self.clone() }
     }
 
     /// Whether a signal or sign is told.
