@@ -50,6 +50,9 @@ fn main() {
     let incidents = recrash_reader::incidents(&set.records);
     let accounts: Vec<Account> = incidents.par_iter().filter_map(recrash_reader::account).collect();
     let read = begun.elapsed();
+    let shown: Vec<&str> = flags.iter().filter_map(|flag| flag.strip_prefix("--show=")).collect();
+    let wanted = |account: &Account| shown.is_empty() || shown.contains(&account.report.report_id.as_str());
+    let accounts: Vec<Account> = accounts.into_iter().filter(wanted).collect();
     let results: Vec<_> = accounts.par_iter().map(|account| (account, reconstruct(account))).collect();
     println!(
         "{} incidents, {} accounts in {read:?}, staged in {:?}",
@@ -98,8 +101,8 @@ fn main() {
             }
         }
     }
-    for wanted in flags.iter().filter_map(|flag| flag.strip_prefix("--show=")) {
-        for (account, result) in results.iter().filter(|(account, _)| account.report.report_id == wanted) {
+    for wanted in &shown {
+        for (account, result) in results.iter().filter(|(account, _)| account.report.report_id == *wanted) {
             if !is_developed(account) {
                 continue;
             }

@@ -81,6 +81,11 @@ impl Doing {
         matches!(least(self.act), Some(Least::Aside(_) | Least::Turn(_) | Least::Any | Least::By))
     }
 
+    /// Whether it is that it swerved.
+    pub(crate) const fn is_swerve(&self) -> bool {
+        matches!(self.act, Act::Swerve)
+    }
+
     /// Whether it is a turn: of who may have begun it, or has yet to, none is asked for.
     pub(crate) const fn is_turn(&self) -> bool {
         matches!(self.act, Act::Turn)

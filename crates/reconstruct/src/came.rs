@@ -414,7 +414,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     };
     let plan = match lead {
         Some(lead) => phases::before(lead, plan, begin, lateral::came_over(told, &staging.ground, arm_m)),
-        None => lateral::turns_off(told, begin, &plan, arm_m).unwrap_or(plan),
+        None => lateral::turns_off(told, staging, begin, &plan, arm_m).unwrap_or(plan),
     };
     let stands = plan.course.is_empty();
     let mut actors = vec![actor(plan)];

@@ -531,7 +531,7 @@ const MOST_BACK_DEG: f64 = 30.0;
 const WHEELED_M: f64 = 2.5;
 const TIGHTEST_M: f64 = 4.5;
 const SIDEWAYS_MPS2: f64 = 6.0;
-const SKIDS_RAD: f64 = 0.03;
+const SKIDS_RAD: f64 = 0.005;
 
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
 const AS_STAGED_S: f64 = 0.15;
@@ -587,6 +587,13 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
 pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Option<f64> {
     let touch = first_touch(rollout)?;
     keeping::off_lane_s(told, scenario, touch.track.filter(|track| track.id == "cp")?, touch.time_s)
+}
+
+/// How far the partner's way is from what nobody tells otherwise: half seconds off its lane, and weaving.
+pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -> usize {
+    let off_s = off_lane_s(told, scenario, rollout).unwrap_or(0.0);
+    let touch = first_touch(rollout).and_then(|touch| Some((touch.track.filter(|track| track.id == "cp")?, touch.time_s)));
+    (2.0 * off_s) as usize + touch.map_or(0, |(track, time_s)| keeping::weaves(told, track, time_s))
 }
 
 /// Whether somebody stood before a time.

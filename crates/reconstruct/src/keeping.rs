@@ -7,9 +7,10 @@ use crate::side::Turning;
 use crate::strips::strip_of;
 use crate::told::Told;
 use recrash_model::account::{ContactState, LaneWord, Origin};
+use recrash_model::geometry::Vec2;
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::rollout::{ActorState, ActorTrack};
+use recrash_model::rollout::{ActorState, ActorTrack, STEP_S};
 use recrash_model::scenario::StripKind;
 use recrash_model::template::Movement;
 use recrash_roads::{RoadPart, Scenario};
@@ -105,4 +106,31 @@ fn is_off(told: &Told, scenario: &Scenario, track: &ActorTrack, state: &ActorSta
         }
     }
     off
+}
+
+/// Who is not told to leave its lane goes aside by no more, and turns by no more; and who is not told to swerve or turn feels no more sideways.
+/// [m, rad, m/s^2]
+const ASIDE_M: f64 = 0.5;
+const TURNS_RAD: f64 = 0.26;
+const SIDEWAYS_MPS2: f64 = 3.0;
+
+/// In how many ways the partner weaves or swerves that nobody tells of.
+pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
+    if !told.comes_along_lanes() || told.cp.turning != Turning::No || told.is_thrown() {
+        return 0;
+    }
+    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let (first, last) = (&track.states[0], &track.states[until]);
+    let along = Vec2::from_heading(first.heading);
+    let aside_m = |state: &ActorState| along.cross(state.position() - first.position()).abs();
+    let goes_aside = track.states[..=until].iter().map(aside_m).fold(0.0, f64::max) > ASIDE_M;
+    let turned = math::wrap_angle(last.heading - first.heading).abs() > TURNS_RAD;
+    let stays = !told.leaves_its_lane() && !matches!(told.origin, Origin::Beside { .. });
+    let sideways = |pair: &[ActorState]| {
+        let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
+        rate * pair[0].velocity().length()
+    };
+    let swerves = !told.cp.acts.iter().any(Doing::is_swerve)
+        && track.states[..=until].windows(2).any(|pair| sideways(pair) > SIDEWAYS_MPS2);
+    [stays && goes_aside, stays && turned, swerves].into_iter().filter(|is| *is).count()
 }

@@ -1,7 +1,9 @@
 //! Lanes that lead the way by which somebody comes, and how it comes from the middle of one of them to where it touches.
 
 use crate::ground::{Ground, LANE_M};
+use crate::lateral::turn_m;
 use crate::pace::Pace;
+use crate::side::Turning;
 use crate::told::Told;
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{ContactState, LeftRight, Origin};
@@ -48,6 +50,16 @@ impl Lanes {
         list
     }
 
+    /// Whether somebody may come along a lane: from beside, in one beside the ego.
+    fn may_lead(&self, told: &Told, sv: Pose, lane_m: f64) -> bool {
+        let ego_m = self.left_m(sv.position);
+        match told.origin {
+            Origin::Beside { side: LeftRight::Left } => lane_m - ego_m > BESIDE_M,
+            Origin::Beside { side: LeftRight::Right } => ego_m - lane_m > BESIDE_M,
+            _ => true,
+        }
+    }
+
     /// The pose in the middle of a lane, so far before a place. [m]
     fn before(&self, place: Vec2, back_m: f64, lane_m: f64) -> Pose {
         let way = Vec2::from_heading(self.way_rad);
@@ -65,7 +77,7 @@ const TIGHTEST_M: f64 = 8.0;
 const TIGHTEST_LENGTHS: f64 = 0.75;
 
 /// Who is no farther beside the middle of its lane where it touches keeps its line. [m]
-const KEEPS_M: f64 = 0.5;
+const KEEPS_M: f64 = 0.7;
 
 /// Who touches at an angle of more than this turns. [rad]
 const TURNS_RAD: f64 = 0.6;
@@ -90,13 +102,7 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
     let tightest_m = TIGHTEST_M.max(TIGHTEST_LENGTHS * size_of(&told.cp).0).max(speed_mps * speed_mps / SIDEWAYS_MPS2);
     // Where it would come from without bending twice.
     let straight_m = lanes.left_m(cp.position) - turn.signum() * tightest_m * (1.0 - math::cos(turn));
-    let ego_m = lanes.left_m(staging.sv.position);
-    let fits = |lane_m: f64| match told.origin {
-        Origin::Beside { side: LeftRight::Left } => lane_m - ego_m > BESIDE_M,
-        Origin::Beside { side: LeftRight::Right } => ego_m - lane_m > BESIDE_M,
-        _ => true,
-    };
-    let lane_m = *lanes.nearest(straight_m, fits).first()?;
+    let lane_m = *lanes.nearest(straight_m, |lane_m| lanes.may_lead(told, staging.sv, lane_m)).first()?;
     if turn.abs() < 0.01 && (lane_m - straight_m).abs() < KEEPS_M {
         return None;
     }
@@ -136,8 +142,14 @@ const TIGHTER: [f64; 2] = [1.0, 0.75];
 const BEGINS_M: f64 = 0.3;
 
 /// Where a bend ends that begins in the middle of a lane and leads to a pose, and its radius: at the pose, or before it. [m]
-pub(crate) fn bend_from_lane(ground: &Ground, end: Pose, (came, radius_m): (f64, f64), arm_m: f64) -> Option<(Pose, f64)> {
-    let lanes = Lanes::of(ground, came)?;
+pub(crate) fn bend_from_lane(
+    told: &Told,
+    (ground, sv): (&Ground, Pose),
+    end: Pose,
+    (came, radius_m): (f64, f64),
+) -> Option<(Pose, f64)> {
+    let lanes = Lanes::of(ground, came).filter(|_| !told.back_straight)?;
+    let arm_m = recrash_roads::arm_m(told.cp.kind, size_of(&told.cp).0);
     let (turn, way) = (math::wrap_angle(end.heading - came), Vec2::from_heading(end.heading));
     let axle_m = lanes.left_m(end.position - way * arm_m);
     let straight = |radius_m: f64, lane_m: f64| {
@@ -147,8 +159,35 @@ pub(crate) fn bend_from_lane(ground: &Ground, end: Pose, (came, radius_m): (f64,
     };
     TIGHTER.into_iter().find_map(|part| {
         let radius_m = radius_m * part;
-        let found = lanes.lefts_m.iter().filter_map(|lane_m| straight(radius_m, *lane_m));
+        let may = lanes.lefts_m.iter().filter(|lane_m| lanes.may_lead(told, sv, **lane_m));
+        let found = may.filter_map(|lane_m| straight(radius_m, *lane_m));
         let on_m = found.min_by(f64::total_cmp)?;
         Some((Pose { position: end.position - way * on_m, ..end }, radius_m))
     })
 }
+
+/// Who goes straight on has turned by no more than this. [rad]
+const STRAIGHT_RAD: f64 = 0.26;
+
+/// How much somebody who touches so would have to bend to come there out of a lane of its direction: none, where it is in the middle of one;
+/// [`NOWHERE`], where none leads there.
+pub(crate) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: f64) -> u32 {
+    let turn = math::wrap_angle(cp.heading - came);
+    if !told.comes_along_lanes() || told.drives_elsewhere() || told.cp.state == ContactState::Reversing {
+        return 0;
+    }
+    if matches!(told.cp.turning, Turning::Left | Turning::Right) {
+        let radius_m = turn_m(told);
+        return if bend_from_lane(told, (ground, sv), cp, (came, radius_m)).is_some() { 0 } else { NOWHERE };
+    }
+    let Some(lanes) = Lanes::of(ground, came) else { return 0 };
+    let left_m = lanes.left_m(cp.position);
+    let lane_m = lanes.nearest(left_m, |lane_m| lanes.may_lead(told, sv, lane_m)).first().copied();
+    let off_m = lane_m.map_or(f64::from(NOWHERE), |lane_m| (lane_m - left_m).abs() - KEEPS_M).max(0.0);
+    let aside = told.leaves_its_lane() || matches!(told.origin, Origin::Beside { .. });
+    let weaves = if turn.abs() > STRAIGHT_RAD && !aside { 2 } else { 0 };
+    if aside && off_m < LANE_M { 0 } else { (off_m.ceil() as u32 + weaves).min(NOWHERE) }
+}
+
+/// More than anybody bends.
+const NOWHERE: u32 = 9;

@@ -140,7 +140,7 @@ fn searched(told: told::Told, account: &Account) -> Result<Reconstruction, Untol
     let Search { best, fullest, refused, .. } = search;
     let made = best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
     // A partner that strays is worth less than others who are told of.
-    let fuller = fullest.map(|(_, found)| found).filter(|found| (found.cost.2 || found.cost.3 > 0) && made.is_true() && left_open(&made) > 0);
+    let fuller = fullest.map(|(_, found)| found).filter(|found| (found.cost.2 || found.cost.4 > 0) && made.is_true() && left_open(&made) > 0);
     let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
     Ok(fuller.unwrap_or(made))
 }
@@ -170,8 +170,10 @@ impl Search {
         let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
         let verdict = Verdict { checks: facts::facts(told, &scenario, &rollout) };
         let others = facts::others_stray(told, &scenario, &rollout);
-        let off_s = facts::off_lane_s(told, &scenario, &rollout).unwrap_or(0.0);
-        let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout), off_s.ceil() as u32);
+        let strays = facts::strays(told, &scenario, &rollout);
+        let off = facts::off_its_way(told, &scenario, &rollout);
+        let unseen = verdict.checks.iter().filter(|check| is_of_acts(check)).count();
+        let cost = (verdict.failures().count(), others, strays, unseen, off);
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
         let fuller =
@@ -187,7 +189,7 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        cost == (0, false, false, 0)
+        cost == (0, false, false, 0, 0)
     }
 }
 
@@ -196,15 +198,20 @@ fn is_of_others(check: &Check) -> bool {
     matches!(check.kind, CheckKind::Reason | CheckKind::Others) && check.result == CheckResult::CannotBeShown
 }
 
+/// Whether an act of one of the two is told, and not to be seen.
+fn is_of_acts(check: &Check) -> bool {
+    matches!(check.kind, CheckKind::SvActs | CheckKind::CpActs) && check.result == CheckResult::CannotBeShown
+}
+
 fn left_open(made: &Reconstruction) -> usize {
     made.verdict.checks.iter().filter(|check| is_of_others(check)).count()
 }
 
-/// The best of what was tried: told facts that are not shown, then whether others are not as told, whether the partner strays, and
-/// for how long it is off its lane. [s]
+/// The best of what was tried: told facts that are not shown, then whether others are not as told, whether the partner strays, how many
+/// told acts are not to be seen, and how far it is off its lane and weaves.
 #[derive(Clone)]
 struct Best {
-    cost: (usize, bool, bool, u32),
+    cost: (usize, bool, bool, usize, usize),
     made: Reconstruction,
     told: told::Told,
     ground: ground::Ground,

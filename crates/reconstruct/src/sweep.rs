@@ -5,7 +5,7 @@ use crate::came::sv_at_contact;
 use crate::ground::Ground;
 use crate::lateral::turn_m;
 use crate::told::Told;
-use crate::touch::{Staging, headings, points, size_of, velocity, zone_pairs, zones_off};
+use crate::touch::{BENT, Staging, headings, points, size_of, velocity, zone_pairs, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::ContactState;
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -53,6 +53,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u
                             continue;
                         };
                         let off = off(seen.0, seen.1);
+                        let trial = trial + if swings_out(told, sv, cp, curvature) { BENT } else { 0 };
                         let bend = Some(Bend { from: back(told, cp, curvature, length_m), length_m });
                         found.push(Staging {
                             ground: ground.clone(),
@@ -75,11 +76,20 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u
 
 /// Curvatures to the left, and by how much they turn. [1/m, rad]
 fn bends(told: &Told) -> impl Iterator<Item = (f64, f64)> {
-    let most = 1.0 / turn_m(told);
+    let gentle_m = math::sq(told.cp.speed_mps) / PASSES_MPS2;
+    let most = 1.0 / if told.passes_from_behind() { turn_m(told).max(gentle_m) } else { turn_m(told) };
     BENDS
         .into_iter()
         .flat_map(move |part| [part * most, -part * most])
         .flat_map(|bend| BY_RAD.map(|by_rad| (bend, by_rad)))
+}
+
+/// Who passes feels no more than this sideways. [m/s^2]
+const PASSES_MPS2: f64 = 2.5;
+
+/// Whether somebody who passes would swing out of the ego's lane as late as it touches: it is out by then, and comes in.
+fn swings_out(told: &Told, sv: Pose, cp: Pose, curvature: f64) -> bool {
+    told.passes_from_behind() && curvature * (cp.position.y - sv.position.y) > 0.0
 }
 
 /// Where somebody was so far before, whose rear axle drives on a circle.

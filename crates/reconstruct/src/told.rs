@@ -579,6 +579,10 @@ impl Told {
                 {
                     self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
                 }
+                // Who turns round ahead of it came along as fast as it.
+                Origin::Ahead if sv > 0.5 && self.cp.turning == Turning::Round => {
+                    self.cp.speed_mps = self.cp.speed_mps.min(sv);
+                }
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
                 _ => {}
             }
