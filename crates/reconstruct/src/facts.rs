@@ -592,7 +592,8 @@ pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, rollout: &Rollout) ->
 /// How far the partner's way is from what nobody tells otherwise: half seconds off its lane, and weaving.
 pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -> usize {
     let off_s = off_lane_s(told, scenario, rollout).unwrap_or(0.0);
-    let touch = first_touch(rollout).and_then(|touch| Some((touch.track.filter(|track| track.id == "cp")?, touch.time_s)));
+    let touch =
+        first_touch(rollout).and_then(|touch| Some((touch.track.filter(|track| track.id == "cp")?, touch.time_s)));
     (2.0 * off_s) as usize + touch.map_or(0, |(track, time_s)| keeping::weaves(told, track, time_s))
 }
 

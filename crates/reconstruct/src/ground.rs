@@ -270,9 +270,7 @@ fn is_one_way(told: &Told) -> bool {
 /// Lanes in the ego's direction: as told, and at least as many as the told lanes need.
 fn lanes_for(told: &Told, usual: usize) -> usize {
     // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
-    let beside_opposite = told.cp.lane == Some(LaneWord::Opposing)
-        || told.comes_over
-        || told.is_passed_by_oncoming();
+    let beside_opposite = told.cp.lane == Some(LaneWord::Opposing) || told.comes_over || told.is_passed_by_oncoming();
     let usual = if beside_opposite && told.sv.lane.is_none() { 1 } else { usual };
     // A street with driveways, or stalls, on both sides.
     let from_left = matches!(

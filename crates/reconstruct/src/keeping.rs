@@ -57,6 +57,7 @@ impl Told {
             || cp.slants.is_some()
             || cp.backs_in
             || self.comes_over
+            || self.comes_along_kerb()
             || cp.acts.iter().any(Doing::is_aside)
     }
 
@@ -76,7 +77,10 @@ pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
     let until_s = contact_s - if leaves { LEAVES_S } else { NEARS_S };
     let until = ((until_s / EVERY_S).floor().max(0.0) as usize * EVERY).min(track.states.len() - 1);
     let off = |state: &&ActorState| state.speed() > -STANDS_MPS && is_off(told, scenario, track, state, leaves);
-    let steps = track.states[..=until].iter().step_by(EVERY).filter(off).count();
+    // Who has turned out of its road is in no lane of that any more.
+    let first = track.states[0].heading;
+    let on_road = |state: &&ActorState| !leaves || math::wrap_angle(state.heading - first).abs() < ALONG_RAD;
+    let steps = track.states[..=until].iter().step_by(EVERY).take_while(on_road).filter(off).count();
     Some(EVERY_S * steps as f64)
 }
 
@@ -130,7 +134,11 @@ pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
         let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
         rate * pair[0].velocity().length()
     };
-    let swerves = !told.cp.acts.iter().any(Doing::is_swerve)
+    // Whose rear touches swings it out, or cuts in.
+    let rear = told.cp.zones.iter().any(|zone| zone.is_rear());
+    let swerves = !rear
+        && !told.cp.stood_first
+        && !told.cp.acts.iter().any(Doing::is_swerve)
         && track.states[..=until].windows(2).any(|pair| sideways(pair) > SIDEWAYS_MPS2);
     [stays && goes_aside, stays && turned, swerves].into_iter().filter(|is| *is).count()
 }

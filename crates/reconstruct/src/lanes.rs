@@ -79,6 +79,9 @@ const TIGHTEST_LENGTHS: f64 = 0.75;
 /// Who is no farther beside the middle of its lane where it touches keeps its line. [m]
 const KEEPS_M: f64 = 0.7;
 
+/// Who is not told to have left its lane does not come from a lane that is farther aside. [m]
+const MOST_M: f64 = 4.0;
+
 /// Who touches at an angle of more than this turns. [rad]
 const TURNS_RAD: f64 = 0.6;
 
@@ -103,7 +106,8 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
     // Where it would come from without bending twice.
     let straight_m = lanes.left_m(cp.position) - turn.signum() * tightest_m * (1.0 - math::cos(turn));
     let lane_m = *lanes.nearest(straight_m, |lane_m| lanes.may_lead(told, staging.sv, lane_m)).first()?;
-    if turn.abs() < 0.01 && (lane_m - straight_m).abs() < KEEPS_M {
+    let aside_m = (lane_m - straight_m).abs();
+    if turn.abs() < 0.01 && aside_m < KEEPS_M || aside_m > MOST_M {
         return None;
     }
     let backs_m = LEAVES_S.map(|leaves_s| (leaves_s * speed_mps).max(LEAST_M));
@@ -148,7 +152,7 @@ pub(crate) fn bend_from_lane(
     end: Pose,
     (came, radius_m): (f64, f64),
 ) -> Option<(Pose, f64)> {
-    let lanes = Lanes::of(ground, came).filter(|_| !told.back_straight)?;
+    let lanes = Lanes::of(ground, came).filter(|_| !told.back_straight && told.comes_along_lanes())?;
     let arm_m = recrash_roads::arm_m(told.cp.kind, size_of(&told.cp).0);
     let (turn, way) = (math::wrap_angle(end.heading - came), Vec2::from_heading(end.heading));
     let axle_m = lanes.left_m(end.position - way * arm_m);
@@ -173,7 +177,10 @@ const STRAIGHT_RAD: f64 = 0.26;
 /// [`NOWHERE`], where none leads there.
 pub(crate) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: f64) -> u32 {
     let turn = math::wrap_angle(cp.heading - came);
-    if !told.comes_along_lanes() || told.drives_elsewhere() || told.cp.state == ContactState::Reversing {
+    // By its way, where it goes with an ego that turns.
+    let with_ego = told.sv.turning != Turning::No && !matches!(told.origin, Origin::Opposite | Origin::Cross { .. });
+    let elsewhere = !told.comes_along_lanes() || told.drives_elsewhere() || told.comes_along_kerb();
+    if elsewhere || with_ego || told.cp.state == ContactState::Reversing {
         return 0;
     }
     if matches!(told.cp.turning, Turning::Left | Turning::Right) {

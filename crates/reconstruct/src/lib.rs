@@ -140,7 +140,9 @@ fn searched(told: told::Told, account: &Account) -> Result<Reconstruction, Untol
     let Search { best, fullest, refused, .. } = search;
     let made = best.map(Best::with_near).ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
     // A partner that strays is worth less than others who are told of.
-    let fuller = fullest.map(|(_, found)| found).filter(|found| (found.cost.2 || found.cost.4 > 0) && made.is_true() && left_open(&made) > 0);
+    let fuller = fullest
+        .map(|(_, found)| found)
+        .filter(|found| (found.cost.2 || found.cost.4 > 0) && made.is_true() && left_open(&made) > 0);
     let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
     Ok(fuller.unwrap_or(made))
 }
@@ -172,7 +174,9 @@ impl Search {
         let others = facts::others_stray(told, &scenario, &rollout);
         let strays = facts::strays(told, &scenario, &rollout);
         let off = facts::off_its_way(told, &scenario, &rollout);
-        let unseen = verdict.checks.iter().filter(|check| is_of_acts(check)).count();
+        // From beside the road it may show them by another way than along the ego's.
+        let along = told.comes_along_lanes();
+        let unseen = verdict.checks.iter().filter(|check| along && is_of_acts(check)).count();
         let cost = (verdict.failures().count(), others, strays, unseen, off);
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);

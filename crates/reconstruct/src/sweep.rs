@@ -76,16 +76,15 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u
 
 /// Curvatures to the left, and by how much they turn. [1/m, rad]
 fn bends(told: &Told) -> impl Iterator<Item = (f64, f64)> {
-    let gentle_m = math::sq(told.cp.speed_mps) / PASSES_MPS2;
-    let most = 1.0 / if told.passes_from_behind() { turn_m(told).max(gentle_m) } else { turn_m(told) };
-    BENDS
+    let most = 1.0 / turn_m(told);
+    let [tight, wide] = BENDS;
+    // Who passes does so gently, where that shows as much.
+    let parts = if told.passes_from_behind() { [wide, tight] } else { [tight, wide] };
+    parts
         .into_iter()
         .flat_map(move |part| [part * most, -part * most])
         .flat_map(|bend| BY_RAD.map(|by_rad| (bend, by_rad)))
 }
-
-/// Who passes feels no more than this sideways. [m/s^2]
-const PASSES_MPS2: f64 = 2.5;
 
 /// Whether somebody who passes would swing out of the ego's lane as late as it touches: it is out by then, and comes in.
 fn swings_out(told: &Told, sv: Pose, cp: Pose, curvature: f64) -> bool {
