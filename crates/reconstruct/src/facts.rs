@@ -531,7 +531,10 @@ const MOST_BACK_DEG: f64 = 30.0;
 const WHEELED_M: f64 = 2.5;
 const TIGHTEST_M: f64 = 4.5;
 const SIDEWAYS_MPS2: f64 = 6.0;
-const SKIDS_RAD: f64 = 0.005;
+const SKIDS_RAD: f64 = 0.03;
+
+/// And who is slow does not turn on the spot. [rad]
+const PIVOTS_RAD: f64 = 0.005;
 
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
 const AS_STAGED_S: f64 = 0.15;
@@ -574,7 +577,8 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M;
     let tighter = |(turn, state): (f64, &ActorState)| {
         let speed_mps = state.velocity().length().max(0.1);
-        wheels && turn.abs() > SKIDS_RAD + STEP_S * (speed_mps / TIGHTEST_M).min(SIDEWAYS_MPS2 / speed_mps)
+        let skids = turn.abs() > SKIDS_RAD + STEP_S * (speed_mps / TIGHTEST_M).min(SIDEWAYS_MPS2 / speed_mps);
+        wheels && (skids || turn.abs() > PIVOTS_RAD + STEP_S * speed_mps / TIGHTEST_M)
     };
     if turns().zip(&track.states).any(tighter) {
         return true;
