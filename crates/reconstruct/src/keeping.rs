@@ -19,8 +19,9 @@ use recrash_roads::{RoadPart, Scenario};
 const KEEPS_M: f64 = 0.7;
 
 /// Who is told to leave its lane may be on its way out of it for so long before the contact; who is not told to, comes to the told zones in
-/// the last of its way. [s]
+/// the last of its way. Who comes out of the ego's lane to pass goes along between two before. [s]
 const LEAVES_S: f64 = 3.0;
+const PASSES_S: f64 = 5.0;
 const NEARS_S: f64 = 2.0;
 
 /// Between lanes somebody who leaves its own is at more than this to them. [rad]
@@ -74,7 +75,12 @@ pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, c
         return None;
     }
     let leaves = told.leaves_its_lane();
-    let until_s = contact_s - if leaves { LEAVES_S } else { NEARS_S };
+    let last_s = match leaves {
+        true if told.passes_from_behind() => PASSES_S,
+        true => LEAVES_S,
+        false => NEARS_S,
+    };
+    let until_s = contact_s - last_s;
     let until = ((until_s / EVERY_S).floor().max(0.0) as usize * EVERY).min(track.states.len() - 1);
     let off = |state: &&ActorState| state.speed() > -STANDS_MPS && is_off(told, scenario, track, state, leaves);
     // Who has turned out of its road is in no lane of that any more.

@@ -51,6 +51,9 @@ const FIRST_TRIES: usize = 24;
 pub(crate) const MOST_TRIES: usize = 400;
 const MOST_RUNS: usize = 1000;
 
+/// That a way of touching is a step farther from the told zones is worth as much as so many half seconds off its lane.
+const ZONE_STEP: usize = 3;
+
 /// A crash, reconstructed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconstruction {
@@ -177,7 +180,8 @@ impl Search {
         // From beside the road it may show them by another way than along the ego's.
         let along = told.comes_along_lanes();
         let unseen = verdict.checks.iter().filter(|check| along && is_of_acts(check)).count();
-        let cost = (verdict.failures().count(), others, strays, unseen, off);
+        let shows = (verdict.failures().count(), others, strays, unseen);
+        let cost = (shows.0, shows.1, shows.2, shows.3, off + ZONE_STEP * staging.cost.0 as usize);
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
         let fuller =
@@ -193,7 +197,7 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        cost == (0, false, false, 0, 0)
+        shows == (0, false, false, 0) && off == 0
     }
 }
 
