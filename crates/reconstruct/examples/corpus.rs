@@ -6,7 +6,7 @@ use recrash_model::metrics::{Answer, CheckKind, CheckResult};
 use recrash_model::profile::SystemProfile;
 use recrash_model::rollout::{ActorTrack, EventKind};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_reconstruct::{Reconstruction, reconstruct};
+use recrash_reconstruct::{Reconstruction, off_lane_s, reconstruct};
 use recrash_records::{SourceText, ingest};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -50,6 +50,9 @@ fn main() {
     let incidents = recrash_reader::incidents(&set.records);
     let accounts: Vec<Account> = incidents.par_iter().filter_map(recrash_reader::account).collect();
     let read = begun.elapsed();
+    let shown: Vec<&str> = flags.iter().filter_map(|flag| flag.strip_prefix("--show=")).collect();
+    let wanted = |account: &Account| shown.is_empty() || shown.contains(&account.report.report_id.as_str());
+    let accounts: Vec<Account> = accounts.into_iter().filter(wanted).collect();
     let results: Vec<_> = accounts.par_iter().map(|account| (account, reconstruct(account))).collect();
     println!(
         "{} incidents, {} accounts in {read:?}, staged in {:?}",
@@ -98,8 +101,8 @@ fn main() {
             }
         }
     }
-    for wanted in flags.iter().filter_map(|flag| flag.strip_prefix("--show=")) {
-        for (account, result) in results.iter().filter(|(account, _)| account.report.report_id == wanted) {
+    for wanted in &shown {
+        for (account, result) in results.iter().filter(|(account, _)| account.report.report_id == *wanted) {
             if !is_developed(account) {
                 continue;
             }
@@ -145,6 +148,21 @@ fn main() {
         .par_iter()
         .filter(|(_, result)| result.as_ref().is_ok_and(|made| made.is_true() && drives_beside(made)));
     println!("partners of told ones that are beside the road at some second before the contact: {}", beside.count());
+    let off: Vec<_> = results
+        .par_iter()
+        .filter_map(|(account, result)| {
+            let made = result.as_ref().ok().filter(|made| made.is_true())?;
+            Some((account, off_lane_s(account, made)?))
+        })
+        .collect();
+    if flags.iter().any(|flag| flag == "--off") {
+        for (account, off_s) in off.iter().filter(|(account, off_s)| *off_s > 0.0 && is_developed(account)) {
+            let cp = account.partner.as_ref().and_then(|party| told(&party.movement));
+            println!("{} off its lane for {off_s:.1} s: {:?} {cp:?}", account.report, told(&account.came_from));
+        }
+    }
+    let keep = off.iter().filter(|(_, off_s)| *off_s == 0.0).count();
+    println!("partners of told ones that come along lanes: {}, that keep their lane: {keep}", off.len());
     let crash = results
         .iter()
         .filter_map(|(account, result)| Some((account, result.as_ref().ok().filter(|made| others_crash(made))?)));

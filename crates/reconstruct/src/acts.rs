@@ -108,6 +108,16 @@ impl Doing {
         self.after_other.is_some()
     }
 
+    /// Whether who does it leaves the line that it drives on.
+    pub(crate) fn is_aside(&self) -> bool {
+        matches!(least(self.act), Some(Least::Aside(_) | Least::Turn(_) | Least::Any | Least::By))
+    }
+
+    /// Whether it is that it swerved.
+    pub(crate) const fn is_swerve(&self) -> bool {
+        matches!(self.act, Act::Swerve)
+    }
+
     /// Whether it is a turn: of who may have begun it, or has yet to, none is asked for.
     pub(crate) const fn is_turn(&self) -> bool {
         matches!(self.act, Act::Turn)

@@ -5,6 +5,7 @@ use crate::door::Opening;
 use crate::extras;
 use crate::ground::{Ground, LANE_M};
 use crate::kerb;
+use crate::lanes;
 use crate::lateral;
 use crate::others::Role;
 use crate::pace::{
@@ -414,7 +415,7 @@ fn partner(told: &Told, staging: &Staging) -> (Vec<Actor>, Vec<ObjectSpec>) {
     };
     let plan = match lead {
         Some(lead) => phases::before(lead, plan, begin, lateral::came_over(told, &staging.ground, arm_m)),
-        None => lateral::turns_off(told, begin, &plan, arm_m).unwrap_or(plan),
+        None => lateral::turns_off(told, staging, begin, &plan, arm_m).unwrap_or(plan),
     };
     let stands = plan.course.is_empty();
     let mut actors = vec![actor(plan)];
@@ -524,7 +525,8 @@ fn line_to(told: &Told, staging: &Staging, pace: Pace, at: impl Fn(Pose) -> Plac
         .or_else(|| lateral::keeps_lane(told, staging, &pace, arm_m))
         .or_else(|| lateral::comes_by(told, staging, &pace, arm_m))
         .or_else(|| lateral::changed_behind(told, staging, &pace, arm_m))
-        .or_else(|| lateral::turns_in(told, staging, &pace, arm_m));
+        .or_else(|| lateral::turns_in(told, staging, &pace, arm_m))
+        .or_else(|| lanes::from_lane(told, staging, &pace, arm_m));
     if let Some((begin, mut course)) = on_lanes {
         course.push(beyond);
         let course = course.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse }).collect();

@@ -4,6 +4,7 @@ use crate::acts;
 use crate::control;
 use crate::door;
 use crate::extras::STANDS_MPS;
+use crate::keeping;
 use crate::kerb;
 use crate::lateral::is_on_foot;
 use crate::layout::Counted;
@@ -545,6 +546,9 @@ const TIGHTEST_M: f64 = 4.5;
 const SIDEWAYS_MPS2: f64 = 6.0;
 const SKIDS_RAD: f64 = 0.03;
 
+/// And who is slow does not turn on the spot. [rad]
+const PIVOTS_RAD: f64 = 0.005;
+
 /// Who meets the other earlier or later than this has touched it elsewhere than was staged. [s]
 const AS_STAGED_S: f64 = 0.15;
 
@@ -589,13 +593,28 @@ pub(crate) fn strays(told: &Told, scenario: &Scenario, rollout: &Rollout) -> boo
     let wheels = VehicleSpec::of(told.cp.kind).length_m > WHEELED_M;
     let tighter = |(turn, state): (f64, &ActorState)| {
         let speed_mps = state.velocity().length().max(0.1);
-        wheels && turn.abs() > SKIDS_RAD + STEP_S * (speed_mps / TIGHTEST_M).min(SIDEWAYS_MPS2 / speed_mps)
+        let skids = turn.abs() > SKIDS_RAD + STEP_S * (speed_mps / TIGHTEST_M).min(SIDEWAYS_MPS2 / speed_mps);
+        wheels && (skids || turn.abs() > PIVOTS_RAD + STEP_S * speed_mps / TIGHTEST_M)
     };
     if turns().zip(&track.states).any(tighter) {
         return true;
     }
     let (all, net) = turns().fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
     beside || (all - net.abs()).to_degrees() > MOST_BACK_DEG
+}
+
+/// For how long the partner is off its lane.
+pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Option<f64> {
+    let touch = first_touch(rollout)?;
+    keeping::off_lane_s(told, scenario, touch.track.filter(|track| track.id == "cp")?, touch.time_s)
+}
+
+/// How far the partner's way is from what nobody tells otherwise: half seconds off its lane, and weaving.
+pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -> usize {
+    let off_s = off_lane_s(told, scenario, rollout).unwrap_or(0.0);
+    let touch =
+        first_touch(rollout).and_then(|touch| Some((touch.track.filter(|track| track.id == "cp")?, touch.time_s)));
+    (2.0 * off_s) as usize + touch.map_or(0, |(track, time_s)| keeping::weaves(told, track, time_s))
 }
 
 /// Whether somebody stood before a time.

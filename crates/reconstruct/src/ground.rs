@@ -237,6 +237,16 @@ impl Told {
         self.layout.one_way && !opposing && !over && !has(self, Role::Oncoming)
     }
 
+    /// Whether the partner turns out of a crossing road into the ego's, the ego's way.
+    fn turns_into_own_road(&self) -> bool {
+        let side = match self.cp.turning {
+            Turning::Left => LeftRight::Left,
+            Turning::Right => LeftRight::Right,
+            Turning::No | Turning::Round => return false,
+        };
+        self.origin == Origin::Cross { side } && self.sv.turning == Turning::No && self.sv.state == ContactState::Moving
+    }
+
     /// Whether the partner crosses a street on foot, or as an animal, where no road crosses it.
     fn crosses_street(&self) -> bool {
         matches!(self.cp.kind, PartnerKind::Pedestrian | PartnerKind::Animal) && self.place == PlaceKind::Street
@@ -280,9 +290,7 @@ fn is_one_way(told: &Told) -> bool {
 /// Lanes in the ego's direction: as told, and at least as many as the told lanes need.
 fn lanes_for(told: &Told, usual: usize) -> usize {
     // Who comes by on the opposite side, or comes over from there, does so beside the only lane.
-    let beside_opposite = told.cp.lane == Some(LaneWord::Opposing)
-        || told.comes_over
-        || told.is_met_by_oncoming() && told.sv.turning == Turning::No;
+    let beside_opposite = told.cp.lane == Some(LaneWord::Opposing) || told.comes_over || told.is_passed_by_oncoming();
     let usual = if beside_opposite && told.sv.lane.is_none() { 1 } else { usual };
     // A street with driveways, or stalls, on both sides.
     let from_left = matches!(
@@ -460,6 +468,8 @@ fn junction(told: &Told, crossing: bool) -> Ground {
             inside(&[6.0, 10.0, 14.0, 3.0, 18.0, 22.0, 28.0])
         } else if told.goes_straight_behind() {
             inside(&[8.0, 9.0, 10.0, 14.0, 18.0, 22.0])
+        } else if told.turns_into_own_road() {
+            inside(&[26.0, 30.0, 22.0, 12.0, 8.0, 16.0, 5.0, 20.0])
         } else if told.sv.turning != Turning::No {
             inside(&[10.0, 14.0, 6.0, 18.0, 3.0, 22.0, 28.0])
         } else {

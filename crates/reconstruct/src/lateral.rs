@@ -1,6 +1,7 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
 use crate::ground::{Ground, LANE_M};
+use crate::lanes;
 use crate::pace::{Pace, first_time, start_over, when};
 use crate::phases::{Beside, STOPS_SHORT_M};
 use crate::side::{Slant, Turning};
@@ -100,6 +101,15 @@ impl Told {
             && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
     }
 
+    /// Whether an oncoming partner that drives straight on touches an ego that goes straight on or stands.
+    pub(crate) fn is_passed_by_oncoming(&self) -> bool {
+        self.origin == Origin::Opposite
+            && self.cp.turning == Turning::No
+            && self.sv.turning == Turning::No
+            && self.thing.is_none()
+            && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+    }
+
     /// Whether the partner came along behind the ego on the opposite side, and changed from there into a lane of its own direction.
     pub(crate) fn leaves_opposite(&self) -> bool {
         let changes = matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging));
@@ -189,7 +199,12 @@ pub(crate) fn line_y_m(told: &Told, staging: &Staging) -> Option<f64> {
     }
     kerb_y_m(told, staging)
         .or_else(|| told.strip_y_m(&staging.ground))
-        .or_else(|| told.cp_from_left_m().map(|from_left_m| staging.cp.position.y + from_left_m))
+        .or_else(|| {
+            let from_left_m = told.cp_from_left_m()?;
+            let left = (staging.cp.position, from_left_m);
+            let lane_m = lanes::left_lane_m(&staging.ground, staging.cp_came, left).filter(|_| !told.back_straight);
+            Some(lane_m.unwrap_or(staging.cp.position.y + from_left_m))
+        })
         .or_else(|| {
             beside(told).map(|side| staging.sv.position.y + if side == LeftRight::Left { LANE_M } else { -LANE_M })
         })
@@ -336,8 +351,23 @@ pub(crate) fn turns_in(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     if let Some(found) = into_the_road(told, staging, pace, arm_m) {
         return Some(found);
     }
-    let bends = bend_before(cp, staging.cp_came, turn_m(told).min(pace.driven_m / turn.abs()), arm_m);
-    by_bend(bends, vec![cp], pace, arm_m)
+    let radius_m = turn_m(told).min(pace.driven_m / turn.abs());
+    let came = staging.cp_came;
+    bend_from_lane(told, staging, (cp, came, radius_m), pace, arm_m)
+        .or_else(|| by_bend(bend_before(cp, came, radius_m, arm_m), vec![cp], pace, arm_m))
+}
+
+/// Along the middle of a lane, by a bend of about this radius, and straight on to a pose where it has to.
+fn bend_from_lane(
+    told: &Told,
+    staging: &Staging,
+    (end, came, radius_m): (Pose, f64, f64),
+    pace: &Pace,
+    arm_m: f64,
+) -> Option<(Pose, Vec<Pose>)> {
+    let (bent, radius_m) = lanes::bend_from_lane(told, (&staging.ground, staging.sv), end, (came, radius_m))?;
+    let poses = if bent.position.distance(end.position) > 0.1 { vec![bent, end] } else { vec![end] };
+    by_bend(bend_before(bent, came, radius_m, arm_m), poses, pace, arm_m)
 }
 
 /// Where a bend of this radius that ends in a pose begins.
@@ -394,7 +424,13 @@ const TURNED_STANDS_S: f64 = 1.0;
 
 /// The same plan of who reverses, with how it came there before: along the road, by a bend to where it stands. Nothing where it is not
 /// told to have come, or has no time to.
-pub(crate) fn turns_off(told: &Told, begin: Pose, plan: &ActorPlan, arm_m: f64) -> Option<ActorPlan> {
+pub(crate) fn turns_off(
+    told: &Told,
+    staging: &Staging,
+    begin: Pose,
+    plan: &ActorPlan,
+    arm_m: f64,
+) -> Option<ActorPlan> {
     let crosses = matches!(told.origin, Origin::Cross { .. });
     let came_there = told.cp.came_there || crosses;
     let Some(Slant::Stood { oncoming, .. }) = told.cp.slants.filter(|_| came_there) else { return None };
@@ -404,8 +440,10 @@ pub(crate) fn turns_off(told: &Told, begin: Pose, plan: &ActorPlan, arm_m: f64) 
     let driven_m = TURNS_OFF_MPS * (stands_s - 0.5 * braking_s);
     let pace = Pace { speed_mps: TURNS_OFF_MPS, acts: Vec::new(), driven_m: driven_m + STOPS_SHORT_M };
     let turn = math::wrap_angle(begin.heading - came).abs();
-    let bends = bend_before(begin, came, TURN_M.min(driven_m / turn.max(0.1)), arm_m);
-    let (start, poses) = by_bend(bends, vec![begin], &pace, arm_m)?;
+    let radius_m = TURN_M.min(driven_m / turn.max(0.1));
+    let from_lane = bend_from_lane(told, staging, (begin, came, radius_m), &pace, arm_m);
+    let bends = || by_bend(bend_before(begin, came, radius_m, arm_m), vec![begin], &pace, arm_m);
+    let (start, poses) = from_lane.or_else(bends)?;
     let at = |pose: Pose| Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees());
     let legs = poses.into_iter().map(|pose| Leg::Curve { to: at(pose), reverse: false });
     let stop = when(stands_s - braking_s, Deed::Stop { rate_mps2: TURNS_OFF_MPS2, at_m: None });

@@ -14,7 +14,9 @@ mod door;
 mod extras;
 mod facts;
 mod ground;
+mod keeping;
 mod kerb;
+mod lanes;
 mod lateral;
 mod layout;
 mod movement;
@@ -51,6 +53,9 @@ const FIRST_TRIES: usize = 24;
 pub(crate) const MOST_TRIES: usize = 400;
 const MOST_RUNS: usize = 1000;
 
+/// That a way of touching is a step farther from the told zones is worth as much as so many half seconds off its lane.
+const ZONE_STEP: usize = 3;
+
 /// A crash, reconstructed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconstruction {
@@ -84,6 +89,13 @@ pub fn held_against(account: &Account, scenario: &Scenario, rollout: &Rollout) -
     Ok(Verdict { checks: facts::facts(&told::Told::of(account)?, scenario, rollout) })
 }
 
+/// For how long the partner of a reconstruction is in no lane of its direction before it does what is told to take it aside; nothing
+/// where it does not come along lanes. [s]
+pub fn off_lane_s(account: &Account, made: &Reconstruction) -> Option<f64> {
+    let scenario = recrash_roads::check(made.draft.clone()).ok()?.value;
+    facts::off_lane_s(&told::Told::read(account)?, &scenario, &made.rollout)
+}
+
 /// Stages an account: the first staging that shows every told fact, else the one that shows most.
 ///
 /// # Errors
@@ -101,16 +113,17 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
     staged(told.choosing(Choices::of(open, values)), account)
 }
 
-/// What cannot be shown in all its steps is shown in the last of them; what the two did is brought into the told order where it is not.
+/// What cannot be shown in all its steps is shown in the last of them; and where the partner cannot come out of the middle of its lane, it
+/// comes straight to where it touches. What the two did is brought into the told order where it is not.
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    let fewer = told.in_fewer_steps();
+    let others: Vec<told::Told> = told.in_fewer_steps().into_iter().chain([told.coming_straight()]).collect();
     let made = in_order(told, account);
     let is_true = |made: &Result<Found, Untold>| made.as_ref().is_ok_and(|found| found.made.is_true());
-    let made = match fewer.filter(|_| !is_true(&made)).map(|told| in_order(told, account)) {
-        Some(shorter) if is_true(&shorter) => shorter,
-        _ => made,
+    let other = match is_true(&made) {
+        true => None,
+        false => others.into_iter().map(|told| in_order(told, account)).find(is_true),
     };
-    made.map(|found| found.made)
+    other.unwrap_or(made).map(|found| found.made)
 }
 
 /// The same, of which one is taken at another time that shows more of what the two did, and no less else.
@@ -172,7 +185,9 @@ fn searched(told: told::Told, account: &Account) -> Result<Found, Untold> {
     let best = best.ok_or(if refused > 0 { Untold::NoRoom } else { Untold::NoContact })?;
     let (cost, made) = (best.cost, best.with_near());
     // A partner that strays is worth less than others who are told of.
-    let fuller = fullest.map(|(_, found)| found).filter(|found| found.cost.2 && made.is_true() && left_open(&made) > 0);
+    let fuller = fullest
+        .map(|(_, found)| found)
+        .filter(|found| (found.cost.2 || found.cost.4 > 0) && made.is_true() && left_open(&made) > 0);
     let fuller = fuller.map(Best::with_near).filter(|fuller| left_open(fuller) < left_open(&made));
     let strays = fuller.is_some() || cost.1 || cost.2;
     Ok(Found { made: fuller.unwrap_or(made), strays })
@@ -180,8 +195,7 @@ fn searched(told: told::Told, account: &Account) -> Result<Found, Untold> {
 
 /// How many told facts of what the two did are not shown.
 fn acts_left_open(made: &Reconstruction) -> usize {
-    let of_acts = |check: &&Check| matches!(check.kind, CheckKind::SvActs | CheckKind::CpActs);
-    made.verdict.checks.iter().filter(of_acts).filter(|check| check.result == CheckResult::CannotBeShown).count()
+    made.verdict.checks.iter().filter(|check| is_of_acts(check)).count()
 }
 
 /// What was found among the stagings that were run.
@@ -209,7 +223,13 @@ impl Search {
         let rollout = recrash_sim::simulate(&scenario, Ego::Recorded);
         let verdict = Verdict { checks: facts::facts(told, &scenario, &rollout) };
         let others = facts::others_stray(told, &scenario, &rollout);
-        let cost = (verdict.failures().count(), others, facts::strays(told, &scenario, &rollout));
+        let strays = facts::strays(told, &scenario, &rollout);
+        let off = facts::off_its_way(told, &scenario, &rollout);
+        // From beside the road it may show them by another way than along the ego's.
+        let along = told.comes_along_lanes();
+        let unseen = verdict.checks.iter().filter(|check| along && is_of_acts(check)).count();
+        let shows = (verdict.failures().count(), others, strays, unseen);
+        let cost = (shows.0, shows.1, shows.2, shows.3, off + ZONE_STEP * staging.cost.0 as usize);
         let missing = verdict.checks.iter().filter(|check| is_of_others(check)).count();
         let better = self.best.as_ref().is_none_or(|best| cost < best.cost);
         let fuller =
@@ -225,7 +245,7 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        cost == (0, false, false)
+        shows == (0, false, false, 0) && off == 0
     }
 }
 
@@ -234,14 +254,20 @@ fn is_of_others(check: &Check) -> bool {
     matches!(check.kind, CheckKind::Reason | CheckKind::Others) && check.result == CheckResult::CannotBeShown
 }
 
+/// Whether an act of one of the two is told, and not to be seen.
+fn is_of_acts(check: &Check) -> bool {
+    matches!(check.kind, CheckKind::SvActs | CheckKind::CpActs) && check.result == CheckResult::CannotBeShown
+}
+
 fn left_open(made: &Reconstruction) -> usize {
     made.verdict.checks.iter().filter(|check| is_of_others(check)).count()
 }
 
-/// The best of what was tried: told facts that are not shown, then whether others are not as told, and whether the partner strays.
+/// The best of what was tried: told facts that are not shown, then whether others are not as told, whether the partner strays, how many
+/// told acts are not to be seen, and how far it is off its lane and weaves.
 #[derive(Clone)]
 struct Best {
-    cost: (usize, bool, bool),
+    cost: (usize, bool, bool, usize, usize),
     made: Reconstruction,
     told: told::Told,
     ground: ground::Ground,

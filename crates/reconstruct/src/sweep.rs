@@ -5,7 +5,7 @@ use crate::came::sv_at_contact;
 use crate::ground::Ground;
 use crate::lateral::turn_m;
 use crate::told::Told;
-use crate::touch::{Staging, headings, points, size_of, velocity, zone_pairs, zones_off};
+use crate::touch::{BENT, Staging, headings, points, size_of, velocity, zone_pairs, zones_off};
 use recrash_metrics::contact::contact_geometry;
 use recrash_model::account::ContactState;
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
@@ -56,6 +56,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u
                             continue;
                         };
                         let off = off(seen.0, seen.1);
+                        let trial = trial + if swings_out(told, sv, cp, curvature) { BENT } else { 0 };
                         let bend = Some(Bend { from: back(told, cp, curvature, length_m), length_m });
                         found.push(Staging {
                             ground: ground.clone(),
@@ -79,10 +80,18 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u
 /// Curvatures to the left, and by how much they turn. [1/m, rad]
 fn bends(told: &Told) -> impl Iterator<Item = (f64, f64)> {
     let most = 1.0 / turn_m(told);
-    BENDS
+    let [tight, wide] = BENDS;
+    // Who passes does so gently, where that shows as much.
+    let parts = if told.passes_from_behind() { [wide, tight] } else { [tight, wide] };
+    parts
         .into_iter()
         .flat_map(move |part| [part * most, -part * most])
         .flat_map(|bend| BY_RAD.map(|by_rad| (bend, by_rad)))
+}
+
+/// Whether somebody who passes would swing out of the ego's lane as late as it touches: it is out by then, and comes in.
+fn swings_out(told: &Told, sv: Pose, cp: Pose, curvature: f64) -> bool {
+    told.passes_from_behind() && curvature * (cp.position.y - sv.position.y) > 0.0
 }
 
 /// Where somebody was so far before, whose rear axle drives on a circle.

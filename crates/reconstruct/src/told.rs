@@ -144,6 +144,8 @@ pub(crate) struct Told {
     pub(crate) queued: bool,
     /// Who was behind the ego in a queue stands close to it.
     pub(crate) close: bool,
+    /// The partner comes straight to where it touches, also beside its lane.
+    pub(crate) back_straight: bool,
     /// When they touch. [s]
     pub(crate) contact_s: f64,
     pub(crate) choices: Choices,
@@ -265,6 +267,7 @@ impl Told {
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
             queued: false,
             close: true,
+            back_straight: false,
             contact_s: CONTACT_S,
             choices: Choices::default(),
             assumed,
@@ -415,6 +418,11 @@ impl Told {
             self.speeds();
         }
         self
+    }
+
+    /// The same with a partner that comes straight to where it touches.
+    pub(crate) fn coming_straight(&self) -> Self {
+        Self { back_straight: true, ..self.clone() }
     }
 
     /// Whether a signal or sign is told.
@@ -588,6 +596,10 @@ impl Told {
                     if self.sv.state != ContactState::Reversing && !self.cp.stood_first && !self.queues() =>
                 {
                     self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
+                }
+                // Who turns round ahead of it came along as fast as it.
+                Origin::Ahead if sv > 0.5 && self.cp.turning == Turning::Round => {
+                    self.cp.speed_mps = self.cp.speed_mps.min(sv);
                 }
                 Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
                 _ => {}

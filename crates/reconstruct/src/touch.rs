@@ -8,6 +8,7 @@ use crate::came::sv_at_contact;
 use crate::door::{self, Opening};
 use crate::ground::{Ground, LANE_M, ground_for};
 use crate::kerb;
+use crate::lanes;
 use crate::lateral::{is_on_foot, turn_m};
 use crate::roadside;
 use crate::side::{Side, Slant, Turning};
@@ -154,7 +155,8 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                             (told.swings_out(ground, heading - came), SWINGS_OUT),
                         ];
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
-                        let cost = (off + worse, trial);
+                        let bends = lanes::bends(told, (ground, sv), cp, came);
+                        let cost = (off + worse, bends as usize * BENT + trial);
                         let (ground, bend, door) = (ground.clone(), None, None);
                         let cp_follows_m = None;
                         found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, cp_follows_m, bend, door, cost });
@@ -174,6 +176,9 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
 /// its flank or its rear.
 const FAR_OFF: u32 = 2;
 const RUBS_OFF: u32 = 1;
+
+/// Of ways of touching that fit alike, those are tried first to which the partner comes along a lane; more than there are ways. [trials]
+pub(crate) const BENT: usize = 1_000_000;
 
 /// Whether two that touch do so with a front on a rear, and not along a flank: seen along the ego they overlap less than across it.
 fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {

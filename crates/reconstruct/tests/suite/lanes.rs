@@ -5,7 +5,7 @@ use crate::ways::{before_contact, degrees_between, made, partner, speeds, story}
 use recrash_model::account::{Fact, Untold};
 use recrash_model::scenario::{MapSpec, StripKind};
 use recrash_model::zones::ContactZone;
-use recrash_reconstruct::{Reconstruction, reconstruct};
+use recrash_reconstruct::{Reconstruction, off_lane_s, reconstruct};
 
 /// Lanes of the ego's first road: those that go its way, and those that come towards it.
 fn lanes(made: &Reconstruction) -> (usize, usize) {
@@ -75,4 +75,44 @@ fn an_ego_that_hardly_moves_came_up_to_who_was_ahead_beside_it() {
     let made = made(&story(text));
     let (ego, sweeper) = (&made.rollout.ego_track().states[0], &partner(&made).0[0]);
     assert!(sweeper.x > ego.x + 3.0, "{} m ahead", sweeper.x - ego.x);
+}
+
+#[test]
+fn who_touches_beside_its_lane_comes_along_the_middle_of_that_until_late() {
+    for text in [
+        "The AV was stopped on Elm Street. A sedan behind the AV failed to stop and the front left of the sedan made contact with the rear \
+         right of the AV.",
+        "The AV was traveling north. A truck in the left lane drifted to the right and the right side of the truck made contact with the \
+         left side of the AV.",
+        "The AV was traveling north through the intersection. A van from the left ran a red light and the front of the van made contact \
+         with the left side of the AV.",
+    ] {
+        let account = story(text);
+        assert_eq!(off_lane_s(&account, &made(&account)), Some(0.0), "{text}");
+    }
+}
+
+#[test]
+fn who_turns_across_begins_its_turn_in_the_middle_of_a_lane_of_its_direction() {
+    let account = story(
+        "The AV was traveling north straight through the intersection. An oncoming sedan made a left turn and the front of the sedan made \
+         contact with the front left of the AV.",
+    );
+    let shown = made(&account);
+    let MapSpec::G(map) = &shown.draft.map else { panic!("a graph") };
+    assert_eq!(off_lane_s(&account, &shown), Some(0.0), "{:?}", map.roads[0]);
+    let states = partner(&shown).0;
+    assert!(degrees_between(states[0].heading, std::f64::consts::PI) < 1.0 && states[0].y > 3.0, "{:?}", states[0]);
+}
+
+#[test]
+fn who_turned_off_before_it_backs_came_along_its_own_side() {
+    let account = story(
+        "The AV was traveling northbound when a pickup truck traveling southbound turned left in front of the AV and came to a stop. The \
+         pickup truck then reversed and its rear made contact with the left side of the AV.",
+    );
+    let shown = made(&account);
+    let first = partner(&shown).0[0];
+    let side_m = first.y - shown.rollout.ego_track().states[0].y;
+    assert!(degrees_between(first.heading, std::f64::consts::PI) > 90.0 || side_m > 3.0, "{first:?}");
 }

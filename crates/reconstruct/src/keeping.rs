@@ -1,0 +1,150 @@
+//! Whether a partner keeps a lane of its own direction until it leaves it for what is told of it.
+
+use crate::acts::Doing;
+use crate::extras::STANDS_MPS;
+use crate::lateral::is_on_foot;
+use crate::side::Turning;
+use crate::strips::strip_of;
+use crate::told::Told;
+use recrash_model::account::{ContactState, LaneWord, Origin};
+use recrash_model::geometry::Vec2;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::math;
+use recrash_model::rollout::{ActorState, ActorTrack, STEP_S};
+use recrash_model::scenario::StripKind;
+use recrash_model::template::Movement;
+use recrash_roads::{RoadPart, Scenario};
+
+/// Who keeps its lane is no farther beside its middle; who is narrow, where its box stays in the lane. [m]
+const KEEPS_M: f64 = 0.7;
+
+/// Who is told to leave its lane may be on its way out of it for so long before the contact; who is not told to, comes to the told zones in
+/// the last of its way. Who comes out of the ego's lane to pass goes along between two before. [s]
+const LEAVES_S: f64 = 3.0;
+const PASSES_S: f64 = 5.0;
+const NEARS_S: f64 = 2.0;
+
+/// Between lanes somebody who leaves its own is at more than this to them. [rad]
+const CHANGES_RAD: f64 = 0.04;
+
+/// A lane leads no farther from somebody's way. [rad]
+const ALONG_RAD: f64 = 0.8;
+
+/// Its way is looked at in steps of this. [steps, s]
+const EVERY: usize = 5;
+const EVERY_S: f64 = 0.5;
+
+impl Told {
+    /// Whether the partner drives along lanes until it touches, or leaves them: none of who walks, stands from the start, or comes out of
+    /// what is beside them.
+    pub(crate) fn comes_along_lanes(&self) -> bool {
+        let along = matches!(
+            self.origin,
+            Origin::Behind | Origin::Ahead | Origin::Beside { .. } | Origin::Opposite | Origin::Cross { .. }
+        );
+        let drives = !is_on_foot(self.cp.kind) && !matches!(self.cp.kind, PartnerKind::FixedObject);
+        along && drives && self.thing.is_none() && self.cp.state != ContactState::Parked && !self.comes_across()
+    }
+
+    /// Whether the partner is told to have gone aside before the contact: turned, changed lanes, drifted, passed, pulled out or parked.
+    pub(crate) fn leaves_its_lane(&self) -> bool {
+        let cp = &self.cp;
+        let goes_on = cp.movement.is_none_or(|movement| {
+            matches!(movement, Movement::Straight | Movement::Stopped | Movement::Backing | Movement::WrongWay)
+        });
+        !goes_on
+            || cp.turning != Turning::No
+            || cp.dodges
+            || cp.slants.is_some()
+            || cp.backs_in
+            || self.comes_over
+            || self.comes_along_kerb()
+            || cp.acts.iter().any(Doing::is_aside)
+    }
+
+    /// Whether the partner is told to have driven where no lane of its direction is.
+    pub(crate) fn drives_elsewhere(&self) -> bool {
+        self.cp.movement == Some(Movement::WrongWay) || self.cp.lane == Some(LaneWord::Opposing)
+    }
+}
+
+/// For how long the partner is in no lane of its direction before it leaves its own for what is told; nothing of who does not come along
+/// lanes. [s]
+pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> Option<f64> {
+    if !told.comes_along_lanes() || told.drives_elsewhere() {
+        return None;
+    }
+    let leaves = told.leaves_its_lane();
+    let last_s = match leaves {
+        true if told.passes_from_behind() => PASSES_S,
+        true => LEAVES_S,
+        false => NEARS_S,
+    };
+    let until_s = contact_s - last_s;
+    let until = ((until_s / EVERY_S).floor().max(0.0) as usize * EVERY).min(track.states.len() - 1);
+    let off = |state: &&ActorState| state.speed() > -STANDS_MPS && is_off(told, scenario, track, state, leaves);
+    // Who has turned out of its road is in no lane of that any more.
+    let first = track.states[0].heading;
+    let on_road = |state: &&ActorState| !leaves || math::wrap_angle(state.heading - first).abs() < ALONG_RAD;
+    let steps = track.states[..=until].iter().step_by(EVERY).take_while(on_road).filter(off).count();
+    Some(EVERY_S * steps as f64)
+}
+
+/// Whether somebody is in no lane of its direction there. Nobody has to keep one in a junction, nor between two that it changes.
+fn is_off(told: &Told, scenario: &Scenario, track: &ActorTrack, state: &ActorState, leaves: bool) -> bool {
+    let network = scenario.network();
+    let strip = told.cp.lane.and_then(strip_of);
+    let narrow = track.width_m < 1.2;
+    let mut off = true;
+    for lane in &network.lanes {
+        let (s_m, t_m) = lane.local(state.position());
+        if !(0.0..=lane.length_m).contains(&s_m) || t_m.abs() > 0.5 * lane.width_at(s_m) {
+            continue;
+        }
+        let across_rad = math::wrap_angle(lane.heading(s_m) - state.heading).abs();
+        let most_m = KEEPS_M.max(0.5 * (lane.width_at(s_m) - track.width_m));
+        let may = match network.road(lane.road).part {
+            RoadPart::Inner => return false,
+            RoadPart::Beside(kind) => {
+                strip == Some(kind) || narrow && matches!(kind, StripKind::Bike | StripKind::Shoulder)
+            }
+            _ => true,
+        };
+        let changes = leaves && (CHANGES_RAD..ALONG_RAD).contains(&across_rad);
+        if may && across_rad < ALONG_RAD && (t_m.abs() <= most_m || changes) {
+            off = false;
+        }
+    }
+    off
+}
+
+/// Who is not told to leave its lane goes aside by no more, and turns by no more; and who is not told to swerve or turn feels no more sideways.
+/// [m, rad, m/s^2]
+const ASIDE_M: f64 = 0.5;
+const TURNS_RAD: f64 = 0.26;
+const SIDEWAYS_MPS2: f64 = 3.0;
+
+/// In how many ways the partner weaves or swerves that nobody tells of.
+pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
+    if !told.comes_along_lanes() || told.cp.turning != Turning::No || told.is_thrown() {
+        return 0;
+    }
+    let until = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let (first, last) = (&track.states[0], &track.states[until]);
+    let along = Vec2::from_heading(first.heading);
+    let aside_m = |state: &ActorState| along.cross(state.position() - first.position()).abs();
+    let goes_aside = track.states[..=until].iter().map(aside_m).fold(0.0, f64::max) > ASIDE_M;
+    let turned = math::wrap_angle(last.heading - first.heading).abs() > TURNS_RAD;
+    let stays = !told.leaves_its_lane() && !matches!(told.origin, Origin::Beside { .. });
+    let sideways = |pair: &[ActorState]| {
+        let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
+        rate * pair[0].velocity().length()
+    };
+    // Whose rear touches swings it out, or cuts in.
+    let rear = told.cp.zones.iter().any(|zone| zone.is_rear());
+    let swerves = !rear
+        && !told.cp.stood_first
+        && !told.cp.acts.iter().any(Doing::is_swerve)
+        && track.states[..=until].windows(2).any(|pair| sideways(pair) > SIDEWAYS_MPS2);
+    [stays && goes_aside, stays && turned, swerves].into_iter().filter(|is| *is).count()
+}
