@@ -45,6 +45,10 @@ const PUSH_MPS: f64 = 10.0;
 const THROW_S: f64 = 0.25;
 const THROW_M: f64 = 1.0;
 
+/// With less of that the partner does not come to the ego; and a usual speed on a street. [m/s]
+const LEAST_THROW_MPS: f64 = 7.0;
+const STREET_MPS: f64 = 11.2;
+
 /// Who is pushed while it rolls towards an ego that stands does so at this speed. [m/s]
 const PUSHED_ROLLING_MPS: f64 = 2.0;
 
@@ -642,6 +646,15 @@ fn as_the_ego(told: &Told, staging: &Staging) -> Option<Pace> {
     }
 }
 
+/// How much faster than the partner is who throws it: of two that are alike half of it is left, where told; and no faster than is usual
+/// on a street, where it can be. [m/s]
+fn push_mps(told: &Told, partner_mps: f64) -> f64 {
+    match told.cp.impact_mps {
+        Some(mps) => (2.0 * (mps - partner_mps)).clamp(LEAST_THROW_MPS, PUSH_MPS),
+        None => (STREET_MPS - partner_mps).clamp(LEAST_THROW_MPS, PUSH_MPS),
+    }
+}
+
 /// The partner stands behind the ego, or comes along behind it, and another runs into it: a car at [`PUSH_MPS`] over its speed.
 fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     let cp = &told.cp;
@@ -663,25 +676,26 @@ fn thrown(told: &Told, staging: &Staging) -> Vec<Actor> {
     let driven_m = ROLLING_MPS * from_s + 0.5 * (ROLLING_MPS + rolls_mps) * braking_s;
     let moves_up = phases::lead(&cp.phases, told.contact_s - STOOD_S, ROLLING_MPS, phases::MOVES_UP_M, 0.0);
     let ego_drives_mps = if told.sv.state.stands() { 0.0 } else { told.sv.speed_mps };
+    let push_mps = push_mps(told, ego_drives_mps + rolls_mps);
     let (partner, pusher_mps) = if told.sv.state == ContactState::Parked {
-        (ActorPlan::standing(place(at(THROW_M))), PUSH_MPS)
+        (ActorPlan::standing(place(at(THROW_M))), push_mps)
     } else if let Some(pace) = as_the_ego(told, staging).filter(|_| ego_drives_mps > 0.0) {
-        (on(pace.speed_mps, at(THROW_M + pace.driven_m), pace.acts), ego_drives_mps + PUSH_MPS)
+        (on(pace.speed_mps, at(THROW_M + pace.driven_m), pace.acts), ego_drives_mps + push_mps)
     } else if ego_drives_mps > 0.0 {
-        (on(ego_drives_mps, at(THROW_M + ego_drives_mps * told.contact_s), Vec::new()), ego_drives_mps + PUSH_MPS)
+        (on(ego_drives_mps, at(THROW_M + ego_drives_mps * told.contact_s), Vec::new()), ego_drives_mps + push_mps)
     } else if rolls_mps > 0.0 {
         // It slows behind the ego, and rolls yet when it is pushed.
         let slow = vec![when(from_s, Deed::Speed { to_mps: rolls_mps, rate_mps2: STOPPING_MPS2 })];
         let rolled_m = rolls_mps * (told.contact_s - from_s - braking_s);
-        (on(ROLLING_MPS, at(THROW_M + driven_m + rolled_m), slow), rolls_mps + PUSH_MPS)
+        (on(ROLLING_MPS, at(THROW_M + driven_m + rolled_m), slow), rolls_mps + push_mps)
     } else if let Some(lead) = moves_up.filter(|lead| !lead.reverses()) {
         // It stood behind the ego, moved up, and stands again.
         let from = at(THROW_M + lead.driven_m());
-        (on(lead.speed_mps, from, lead.acts.into_iter().chain([next(Deed::Hold { for_s: None })]).collect()), PUSH_MPS)
+        (on(lead.speed_mps, from, lead.acts.into_iter().chain([next(Deed::Hold { for_s: None })]).collect()), push_mps)
     } else {
         let stop =
             vec![when(from_s, Deed::Stop { rate_mps2: STOPPING_MPS2, at_m: None }), next(Deed::Hold { for_s: None })];
-        (on(ROLLING_MPS, at(THROW_M + driven_m), stop), PUSH_MPS)
+        (on(ROLLING_MPS, at(THROW_M + driven_m), stop), push_mps)
     };
     let (kind, size, pusher_m) = pusher(told);
     let until_m = THROW_M + 0.5 * (size_of(cp).0 + pusher_m) + pusher_mps * (told.contact_s - THROW_S);

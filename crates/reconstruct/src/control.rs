@@ -5,7 +5,9 @@ use crate::ground::Ground;
 use crate::others::Role;
 use crate::side::{Side, Turning};
 use crate::told::Told;
-use recrash_model::account::{Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState, StandReason};
+use recrash_model::account::{
+    ContactState, Control as Said, ControlDevice, LeftRight, Obeyed, Origin, SignalState, StandReason,
+};
 use recrash_model::geometry::Vec2;
 use recrash_model::metrics::CheckResult;
 use recrash_model::rollout::{ActorTrack, STEP_S};
@@ -22,28 +24,46 @@ const CHANGED_BEFORE_DRIVING_S: f64 = 7.5;
 /// What changed within this time has just changed. [s]
 const JUST_S: f64 = 10.0;
 
-/// A yellow light. [s]
+/// A yellow light; the shortest that there is, for who brakes for it. [s]
 const YELLOW_S: f64 = 4.0;
+const SHORT_YELLOW_S: f64 = 3.0;
+
+/// A light has turned yellow so long before who stops for it brakes, and is red so long before the contact at the latest. [s]
+const YELLOW_BEFORE_BRAKING_S: f64 = 0.5;
+const RED_BEFORE_CONTACT_S: f64 = 0.5;
+
+/// Who came to a stop at red is seen to stand at red for so long, where there is time for it; and a light is green so long before the
+/// first of the queue sets off, and before the contact, at the latest. [s]
+const STANDS_AT_RED_S: f64 = 1.0;
+const GREEN_AT_LEAST_S: f64 = 0.2;
 
 /// Who stands no farther before a line stands at it. [m]
 const AT_LINE_M: f64 = 8.0;
 
+/// Who is no farther before a line comes to it. [m]
+const COMES_TO_M: f64 = 40.0;
+
 /// A line is taken to be so much longer on both sides. [m]
 const BESIDE_M: f64 = 1.5;
+
+/// The arm by which the partner comes. What stood before a driveway, a stall or the kerb is at no arm; at the ego's it would be a sign
+/// that nobody told.
+const fn arm_of(origin: Origin) -> &'static str {
+    match origin {
+        Origin::Cross { side: LeftRight::Left } => "left-",
+        Origin::Cross { side: LeftRight::Right } => "right-",
+        Origin::Opposite => "ahead-",
+        Origin::Behind | Origin::Ahead | Origin::Beside { .. } => "own-",
+        _ => "",
+    }
+}
 
 /// The devices that are told, and on the other arms what goes with them.
 pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[Actor]) -> Vec<Control> {
     if !ground.junction {
         return Vec::new();
     }
-    let cp_arm = match told.origin {
-        Origin::Cross { side: LeftRight::Left } => "left-",
-        Origin::Cross { side: LeftRight::Right } => "right-",
-        Origin::Opposite => "ahead-",
-        Origin::Behind | Origin::Ahead | Origin::Beside { .. } => "own-",
-        // What stood before a driveway, a stall or the kerb is at no arm; at the ego's it would be a sign that nobody told.
-        _ => "",
-    };
+    let cp_arm = arm_of(told.origin);
     let crosses = matches!(cp_arm, "left-" | "right-");
     let at = |arm: &str, device: Device| Control { at: arm.to_owned(), set_back_m: 0.0, lanes: Vec::new(), device };
     let said = [("own-", &told.sv), (cp_arm, &told.cp)]
@@ -59,19 +79,36 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
             list.push(at(arm, device));
         }
     }
+    // At a stop that is told to be one for all there is a sign on every arm.
+    if told.all_way && list.iter().any(|control| matches!(control.device, Device::StopSign {})) {
+        for arm in ["own-", "ahead-", "left-", "right-"] {
+            if !list.iter().any(|control| control.at == arm) {
+                list.push(at(arm, Device::StopSign {}));
+            }
+        }
+    }
     let signal = |said: &Option<(&'static str, &Side, Said)>| {
         let (_, side, said) = said.as_ref().filter(|(_, _, said)| said.device == ControlDevice::Signal)?;
         let is_ego = std::ptr::eq(*side, &told.sv);
         // Who waits in the ego's lane, ahead of it or behind it, waits for the same light.
         let in_lane = matches!(told.origin, Origin::Ahead | Origin::Behind);
+        // Nobody backs because it is green.
+        let in_lane = in_lane && told.cp.state != ContactState::Reversing;
         let waits = |actor: &&Actor| actor.id == Role::Lead.id() || in_lane && actor.id == "cp";
         let others = actors.iter().filter(waits).map(|actor| &actor.plan);
         let of_queue = others.chain([ego]).filter_map(sets_off_s);
-        let changed_s = match of_queue.filter(|_| is_ego).reduce(f64::min) {
+        let first_s = of_queue.filter(|_| is_ego).reduce(f64::min);
+        // Who sets off behind an ego that has yet to come to a stand, and stays, does not do so because it is green.
+        let stays_s = halts(ego).pop().filter(|halt| halt.is_last && halt.stands_s < told.contact_s);
+        let stays_s = stays_s.filter(|_| sets_off_s(ego).is_none()).map(|halt| halt.stands_s);
+        let first_s = first_s.filter(|first_s| stays_s.is_none_or(|stays_s| stays_s + GREEN_BEFORE_S < *first_s));
+        let changed_s = match first_s {
             Some(sets_off_s) => sets_off_s - GREEN_BEFORE_S,
             None if side.state.stands() => told.contact_s - CHANGED_S,
             None => told.contact_s - CHANGED_BEFORE_DRIVING_S,
         };
+        let before_s = first_s.unwrap_or(told.contact_s);
+        let halt = is_ego.then(|| halts(ego).into_iter().rfind(|halt| halt.stands_s < before_s)).flatten();
         // Who stood at red, and drives over its line without running it, does so at green.
         let drives_on = told.sv.state.stands() && told.sv.turning != Turning::No
             || told.sv.stood_first && said.obeyed == Some(Obeyed::Yes) && told.origin != Origin::Behind;
@@ -81,7 +118,16 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         let crossed = actors.iter().any(|actor| actor.id == Role::Crosser.id());
         let on_red = is_ego && crossed && said.state.is_none() && said.obeyed.is_none();
         let state = if on_red && told.sv.turning == Turning::Right { Some(SignalState::Red) } else { state };
-        Some(program(state, side, told.contact_s, changed_s.max(0.1)))
+        let latest_s = before_s - GREEN_AT_LEAST_S;
+        let changed_s = halt.filter(|_| state == Some(SignalState::TurnedGreen)).map_or(changed_s, |halt| {
+            // It stood at red first.
+            changed_s.max((halt.stands_s + STANDS_AT_RED_S).min(latest_s))
+        });
+        let braking = halts(ego).pop().filter(|halt| is_ego && halt.is_last);
+        match braking.filter(|_| state == Some(SignalState::TurnedRed)) {
+            Some(halt) => Some(turns_red(halt.brakes_s, told.contact_s)),
+            None => Some(program(state, side, told.contact_s, changed_s.max(0.1))),
+        }
     };
     let (own, other) = (signal(&said[0]), signal(&said[1]));
     if own.is_none() && other.is_none() {
@@ -113,6 +159,58 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         }
     }
     list
+}
+
+/// How somebody brakes by its plan.
+#[derive(Clone, Copy)]
+struct Halt {
+    /// When it begins to, and when it stands; never where it drives on. [s]
+    brakes_s: f64,
+    stands_s: f64,
+    /// It does not gain speed again.
+    is_last: bool,
+}
+
+/// Every time that somebody brakes.
+fn halts(plan: &ActorPlan) -> Vec<Halt> {
+    let (mut list, mut speed_mps, mut free_s): (Vec<Halt>, f64, f64) = (Vec::new(), plan.speed_mps, 0.0);
+    for act in &plan.acts {
+        let begins_s = match act.when {
+            Some(Trigger::TimeS(time_s)) => time_s,
+            _ => free_s,
+        };
+        match act.deed {
+            Deed::Stop { rate_mps2, at_m } if speed_mps > 0.0 => {
+                let braking_s = speed_mps / rate_mps2;
+                let brakes_s = begins_s + at_m.map_or(0.0, |at_m| (at_m / speed_mps - 0.5 * braking_s).max(0.0));
+                free_s = brakes_s + braking_s;
+                list.push(Halt { brakes_s, stands_s: free_s, is_last: true });
+                speed_mps = 0.0;
+            }
+            Deed::Speed { to_mps, rate_mps2 } => {
+                free_s = begins_s + (to_mps - speed_mps).abs() / rate_mps2;
+                if let Some(halt) = list.last_mut().filter(|_| to_mps > speed_mps) {
+                    halt.is_last = false;
+                }
+                if to_mps < speed_mps {
+                    list.push(Halt { brakes_s: begins_s, stands_s: f64::MAX, is_last: true });
+                }
+                speed_mps = to_mps;
+            }
+            _ => {}
+        }
+    }
+    list
+}
+
+/// A light that turns yellow for who then brakes, and red.
+fn turns_red(brakes_s: f64, contact_s: f64) -> Vec<Phase> {
+    let red_s = (brakes_s - YELLOW_BEFORE_BRAKING_S + SHORT_YELLOW_S).min(contact_s - RED_BEFORE_CONTACT_S);
+    vec![
+        Phase { show: Aspect::Green, for_s: (red_s - SHORT_YELLOW_S).max(0.1) },
+        Phase { show: Aspect::Yellow, for_s: SHORT_YELLOW_S },
+        Phase { show: Aspect::Red, for_s: ALWAYS_S },
+    ]
 }
 
 /// When the ego sets off last, where it does. [s]
@@ -188,14 +286,28 @@ pub(crate) fn words(said: Said) -> String {
     format!("{state}{device}{obeyed}")
 }
 
-/// Whether a told signal or sign stood before somebody, showed what is told, and was obeyed or not as told.
-pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> (CheckResult, String) {
+/// The arm at which the partner's own signal or sign stands, where it comes by a crossing road; any other is not its own.
+pub(crate) fn own_arm(told: &Told, scenario: &Scenario) -> Option<&'static str> {
+    let arm = Some(arm_of(told.origin)).filter(|_| matches!(told.origin, Origin::Cross { .. }));
+    arm.filter(|arm| scenario.draft().control.iter().any(|control| control.at == *arm))
+}
+
+/// Whether a told signal or sign stood before somebody, at its arm where that is known, showed what is told, and was obeyed or not as
+/// told. Who came to a stand for a light that changed did so before it was green.
+pub(crate) fn check(
+    said: Said,
+    arm: Option<&str>,
+    scenario: &Scenario,
+    track: &ActorTrack,
+    contact_s: f64,
+) -> (CheckResult, String) {
     let until = ((contact_s / STEP_S).floor() as usize).min(track.states.len() - 1);
     let junction = matches!(&scenario.draft().map, MapSpec::G(map) if !map.junctions.is_empty());
     if scenario.draft().control.is_empty() && !junction {
         return (CheckResult::CannotBeShown, "there is no junction to draw it at".to_owned());
     }
     let all = scenario.draft().control.iter().zip(scenario.control());
+    let all = all.filter(|(control, _)| arm.is_none_or(|arm| control.at == arm));
     let met = all.filter_map(|(control, placed)| Some((control, line_of(scenario, control, placed)?)));
     let found = met.filter_map(|(control, line)| Some((control, passage(track, &line, until)?))).next();
     let Some((control, passage)) = found else {
@@ -216,6 +328,8 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
         let back = |tenth: i32| shows((contact_s - 0.1 * f64::from(tenth)).max(0.0));
         (0..=(JUST_S * 10.0) as i32).any(|tenth| back(tenth).is_some_and(|seen| was.contains(&seen)))
     };
+    let stood = &passage.stands_s;
+    let waited = stood.is_empty() || stood.iter().any(|at_s| shows(*at_s) != Some(Aspect::Green));
     let state = match said.state {
         None => true,
         Some(SignalState::Red) => {
@@ -223,8 +337,10 @@ pub(crate) fn check(said: Said, scenario: &Scenario, track: &ActorTrack, contact
         }
         Some(SignalState::Green) => shows(time_s) == Some(Aspect::Green),
         Some(SignalState::Yellow) => shows(time_s) == Some(Aspect::Yellow),
-        Some(SignalState::TurnedGreen) => shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]),
-        Some(SignalState::TurnedRed) => shows(contact_s) == Some(Aspect::Red) && just(&[Aspect::Green, Aspect::Yellow]),
+        Some(SignalState::TurnedGreen) => shows(contact_s) == Some(Aspect::Green) && just(&[Aspect::Red]) && waited,
+        Some(SignalState::TurnedRed) => {
+            shows(contact_s) == Some(Aspect::Red) && just(&[Aspect::Green, Aspect::Yellow]) && waited
+        }
     };
     let kept = match control.device {
         Device::StopSign {} => passage.crossed_s.is_none() || passage.stood_s.is_some(),
@@ -260,6 +376,8 @@ struct Passage {
     crossed_s: Option<f64>,
     /// When it stood at the line first. [s]
     stood_s: Option<f64>,
+    /// When it came to stand on its way to the line. [s]
+    stands_s: Vec<f64>,
 }
 
 /// A stop line, and the direction across it.
@@ -291,21 +409,30 @@ fn passage(track: &ActorTrack, line: &Line, until: usize) -> Option<Passage> {
         ((0.0..=1.0).contains(&share), (point - line.from).dot(line.ahead))
     };
     let mut stood_s = None;
+    let mut stands_s = Vec::new();
     for step in 0..=until {
         let (beside, past_m) = on(front(step));
         let at_line = beside && (-AT_LINE_M..=0.5).contains(&past_m);
-        if at_line && track.states[step].velocity().length() < STANDS_MPS {
+        let stands = |step: usize| track.states[step].velocity().length() < STANDS_MPS;
+        if at_line && stands(step) {
             stood_s = stood_s.or(Some(STEP_S * step as f64));
+        }
+        if stands(step) && beside && (-COMES_TO_M..=0.5).contains(&past_m) && (step == 0 || !stands(step - 1)) {
+            stands_s.push(STEP_S * step as f64);
         }
         if step > 0 {
             let (was_beside, was_m) = on(front(step - 1));
             if was_m <= 0.0 && past_m > 0.0 && (beside || was_beside) {
-                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood_s });
+                return Some(Passage { crossed_s: Some(STEP_S * step as f64), stood_s, stands_s });
             }
         }
     }
     let state = &track.states[until];
     let (beside, past_m) = on(front(until));
     let heads_there = Vec2::from_heading(state.heading).dot(line.ahead) > 0.5;
-    (beside && heads_there && (-40.0..=0.5).contains(&past_m)).then_some(Passage { crossed_s: None, stood_s })
+    (beside && heads_there && (-COMES_TO_M..=0.5).contains(&past_m)).then_some(Passage {
+        crossed_s: None,
+        stood_s,
+        stands_s,
+    })
 }

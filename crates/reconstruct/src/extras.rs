@@ -16,14 +16,14 @@ use recrash_model::scenario::{Actor, ActorPlan, Deed, Leg, Place, Strip, StripKi
 use recrash_model::vehicle::VehicleSpec;
 
 /// From the ego's front to who stands ahead, and to who crosses on foot, also between the two. [m]
-const LEAD_GAP_M: f64 = 2.5;
+pub(crate) const LEAD_GAP_M: f64 = 2.5;
 const WALKER_GAP_M: f64 = 3.0;
 const CROSSER_GAP_M: f64 = 2.0;
 const WALKER_BETWEEN_M: f64 = 0.5 * LEAD_GAP_M;
 
 /// An ego that slows for somebody could stop before it, braking so, and has this much room besides. [m/s^2, m]
 const BRAKES_MPS2: f64 = 2.5;
-const ROOM_M: f64 = 2.0;
+pub(crate) const ROOM_M: f64 = 2.0;
 
 /// Who drives ahead of the ego is so far ahead of it, and slows so much earlier. [m, s]
 const HEADWAY_M: f64 = 7.0;
@@ -47,6 +47,16 @@ const CLEARED_S: f64 = 0.8;
 const RIDES_MPS: f64 = 3.5;
 const RUNS_MPS: f64 = 3.0;
 const CROSSES_MPS: f64 = 7.0;
+
+/// An animal that stays before an ego which stands comes to a stand so, and so far beyond the middle of its way: no farther than this
+/// from that at the contact. [m/s^2, m]
+const RUNS_STOPS_MPS2: f64 = 3.0;
+const STAYS_BEYOND_M: f64 = 1.5;
+const CLOSE_M: f64 = 4.0;
+
+/// Who stays close to the ego stands so far ahead of its front, and beside its flank. [m]
+const STAYS_AHEAD_M: f64 = 0.5;
+const STAYS_BESIDE_M: f64 = 0.8;
 
 /// From the ego's front to who is parked ahead at the kerb, and to whom it goes round. [m]
 const PARKED_AHEAD_M: f64 = 9.0;
@@ -141,9 +151,10 @@ impl Scene<'_> {
         let plans = match extra.role {
             Role::Lead | Role::Thing => self.lead(extra, length_m).into_iter().collect(),
             Role::Slower => self.slower(length_m).into_iter().collect(),
+            Role::Walker if extra.stays => vec![self.stays_close(extra)],
             Role::Walker if kind == PartnerKind::Pedestrian => vec![self.crosses(extra, WALKS_MPS, self.clears_s())],
             Role::Walker => vec![self.crosses(extra, RIDES_MPS, self.clears_s())],
-            Role::Animal => vec![self.crosses(extra, RUNS_MPS, self.runs_s())],
+            Role::Animal => vec![self.runs(extra)],
             Role::Crosser => self.crosser(extra).into_iter().collect(),
             Role::Oncoming => self.oncoming().into_iter().collect(),
             Role::Kerb => self.parked(extra, length_m),
@@ -335,6 +346,28 @@ impl Scene<'_> {
         straight_plan(met.position - way * (speed_mps * at_s), way, (speed_mps, self.told.contact_s))
     }
 
+    /// An animal that runs across, as the ego comes to a stop; before an ego that stands for longer it stays there.
+    fn runs(&self, extra: &Extra) -> ActorPlan {
+        let runs_s = self.runs_s();
+        let plan = self.crosses(extra, RUNS_MPS, runs_s);
+        let stays = self.sets_off().is_none() && self.stand.is_some();
+        if !stays || (self.told.contact_s - runs_s) * RUNS_MPS < CLOSE_M {
+            return plan;
+        }
+        let stop = Deed::Stop { rate_mps2: RUNS_STOPS_MPS2, at_m: Some(RUNS_MPS * runs_s + STAYS_BEYOND_M) };
+        ActorPlan { acts: vec![when(0.1, stop)], ..plan }
+    }
+
+    /// Somebody on foot who stands close to the ego, beside its way: on the right where nobody tells on which side.
+    fn stays_close(&self, extra: &Extra) -> ActorPlan {
+        let (step, room_m) = self.stops();
+        let met = self.ahead(step, self.front_m() + STAYS_AHEAD_M + room_m);
+        let right = Vec2::from_heading(met.heading).left() * -1.0;
+        let aside = if extra.side == Some(LeftRight::Left) { right * -1.0 } else { right };
+        let at = met.position + aside * (0.5 * size_of(&self.told.sv).1 + STAYS_BESIDE_M);
+        ActorPlan::standing(Place::at(at.x, at.y, met.heading.to_degrees() + 90.0))
+    }
+
     /// A vehicle on the crossing road, ahead of the ego.
     fn crosser(&self, extra: &Extra) -> Option<ActorPlan> {
         let (step, _) = self.stops();
@@ -474,6 +507,12 @@ impl Scene<'_> {
         (1..=last).find(|step| across(*step)).map(|step| at(step).0)
     }
 
+    /// From which side a partner comes that begins beside the ego's lane.
+    fn partner_from(&self) -> Option<LeftRight> {
+        let (_, t_m) = self.ground.beside(self.partner?.states[0].position());
+        (t_m.abs() > LANE_M).then_some(if t_m < 0.0 { LeftRight::Left } else { LeftRight::Right })
+    }
+
     /// Who hides a partner that comes across stands short of where that comes out. [m]
     fn hides_m(&self, t_m: f64, length_m: f64) -> Option<f64> {
         let (partner_m, wide_m) = size_of(&self.told.cp);
@@ -484,7 +523,7 @@ impl Scene<'_> {
     /// Who stands in the next lane where the ego is at the contact; ahead of a partner that is there too, and short of where one
     /// comes across.
     fn stands_beside(&self, extra: &Extra, length_m: f64) -> ActorPlan {
-        let usual = self.told.comes_from_side().unwrap_or(LeftRight::Right);
+        let usual = self.told.comes_from_side().or_else(|| self.partner_from()).unwrap_or(LeftRight::Right);
         let side = extra.side.unwrap_or(usual);
         let t_m = if side == LeftRight::Right { LANE_M } else { -LANE_M };
         let (s_m, _) = self.at(self.until);

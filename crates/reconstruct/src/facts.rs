@@ -273,7 +273,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         [(CheckKind::SvControl, &told.sv, Some(ego_track)), (CheckKind::CpControl, &told.cp, touch.track)]
     {
         if let (Some(said), Some(track)) = (side.control, track) {
-            held(kind, control::words(said), control::check(said, scenario, track, touch.time_s));
+            let arm = control::own_arm(told, scenario).filter(|_| kind == CheckKind::CpControl);
+            held(kind, control::words(said), control::check(said, arm, scenario, track, touch.time_s));
         }
     }
     if told.sv.state.stands() && !told.reasons.is_empty() {
@@ -387,7 +388,7 @@ fn reason(told: &Told, scenario: &Scenario, rollout: &Rollout, time_s: f64) -> (
     let ego = rollout.ego_track();
     let controlled = |device: ControlDevice| {
         let said = Said { device, state: None, obeyed: Some(Obeyed::Yes) };
-        control::check(said, scenario, ego, time_s).0 == CheckResult::Shown
+        control::check(said, None, scenario, ego, time_s).0 == CheckResult::Shown
     };
     let holds = |reason: &StandReason| match reason {
         StandReason::RedLight => controlled(ControlDevice::Signal),

@@ -1,8 +1,9 @@
 //! The road around a crash: drawn from what is told of the place, with the ego's lane along the x axis.
 
+use crate::extras;
 use crate::layout::Counted;
-use crate::others::Role;
-use crate::side::Turning;
+use crate::others::{self, Role};
+use crate::side::{self, Turning};
 use crate::strips::strip_of;
 use crate::things::Lies;
 use crate::told::{Aside, Told};
@@ -12,6 +13,7 @@ use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
 use recrash_model::template::Movement;
+use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{LanePath, RoadNetwork};
 use std::rc::Rc;
 
@@ -359,6 +361,19 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
     }
 }
 
+/// From the stop line to the middle of an ego that stands in a queue: the first of it stands at the line; of several there are two. [m]
+fn queue_m(told: &Told) -> Option<f64> {
+    let lead = told.extras.iter().find(|extra| extra.role == Role::Lead)?;
+    let kind = lead.kind.partner_kind().unwrap_or(PartnerKind::PassengerCar);
+    let long_m = side::size_of(lead.kind).map_or(VehicleSpec::of(kind).length_m, |size| size.length_m);
+    let ahead = if lead.several { 2.0 } else { 1.0 };
+    let aside_m = if told.sv_aside().is_some() { extras::ROOM_M } else { 0.0 };
+    let stands_m = 0.5 * size_of(&told.sv).0 + ahead * (extras::LEAD_GAP_M + long_m) + aside_m + FIRST_AT_LINE_M;
+    // Who has set off behind it has come nearer to the line.
+    let came_m = 0.5 * told.sv.speed_mps * told.sv.speed_mps / SETS_OFF_MPS2;
+    Some(if others::sets_off(told) { stands_m - came_m } else { stands_m })
+}
+
 /// Whether somebody with this part is drawn.
 fn has(told: &Told, role: Role) -> bool {
     told.extras.iter().any(|extra| extra.role == role)
@@ -382,6 +397,12 @@ const USUAL_M: f64 = 6.0;
 
 /// Who stands at the kerb does so before a junction by so much. [m]
 const KERB_BEFORE_M: f64 = 10.0;
+
+/// The first of a queue stands so far before the line. [m]
+const FIRST_AT_LINE_M: f64 = 0.6;
+
+/// No ego that sets off behind it comes nearer to the line by more than with this. [m/s^2]
+const SETS_OFF_MPS2: f64 = 2.0;
 
 /// From a junction's centre to where its arms begin, wider with more lanes. [m]
 pub(crate) fn corner_m(lanes: usize) -> f64 {
@@ -447,18 +468,17 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         areas: Vec::new(),
     };
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
-    let at_line: &[f64] = match told.sv.state {
-        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => {
-            match has(told, Role::Lead) {
-                true => &[-13.0, -15.0],
-                false => &[-5.0, -8.0],
-            }
-        }
-        ContactState::SettingOff if told.sv.control.is_some() => &[3.0, 1.0, 5.0, -3.0],
-        _ => &[],
+    let queue_m = queue_m(told);
+    let at_line: Vec<f64> = match told.sv.state {
+        ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => match queue_m {
+            Some(queue_m) => vec![-queue_m, -queue_m - 2.0],
+            None => vec![-5.0, -8.0],
+        },
+        ContactState::SettingOff if told.sv.control.is_some() => vec![3.0, 1.0, 5.0, -3.0],
+        _ => Vec::new(),
     };
     let places = if crossing || told.sv.turning != Turning::No {
-        let mut all = inside(at_line);
+        let mut all = inside(&at_line);
         let waits = told.sv.state == ContactState::Stopped && told.origin == Origin::Behind;
         if told.sv.turns_later {
             all.extend(inside(&BEFORE_TURN_M));
@@ -481,8 +501,12 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         let behind = has(told, Role::Lead) || told.origin == Origin::Ahead && told.thing.is_none();
         // What is long stands before the line too.
         let longer_m = if told.origin == Origin::Ahead { (size_of(&told.cp).0 - USUAL_M).max(0.0) } else { 0.0 };
-        let before_m = if behind { 13.0 + longer_m } else { 5.0 };
         let both = has(told, Role::Lead) && told.origin == Origin::Ahead;
+        let before_m = match queue_m.filter(|_| !both) {
+            Some(queue_m) => queue_m,
+            None if behind => 13.0 + longer_m,
+            None => 5.0,
+        };
         let before_m = if at_kerb { KERB_BEFORE_M } else { before_m };
         vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }]
     };

@@ -2,7 +2,7 @@
 
 use crate::extras::STANDS_MPS;
 use crate::ground::LANE_M;
-use crate::others::{Extra, Role};
+use crate::others::{Extra, Role, text};
 use crate::told::Told;
 use recrash_model::account::{Act, ActFact, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind};
 use recrash_model::geometry::Vec2;
@@ -164,6 +164,9 @@ impl Near {
             &[first, last] => (last, Some(first)),
             _ => return None,
         };
+        // A queue stands.
+        let queue = other.place.as_ref().is_some_and(|fact| text(&fact.source).contains("queue"));
+        let does = if queue && does == Does::Untold { Does::Stands } else { does };
         if !does.fits(place) || !also.is_none_or(|also| also.fits(place)) {
             return None;
         }

@@ -2,6 +2,7 @@
 //! first place that shows what is told of them, where they hinder nobody.
 
 mod deeds;
+mod several;
 
 use crate::control;
 use crate::extras::STANDS_MPS;
@@ -169,6 +170,12 @@ pub(crate) fn with_near(
                 assumed.push(format!("where {id} is that has no part in what the ego does: {}", near.words()));
             }
             assumed.extend(extra.assumed());
+        }
+    }
+    for extra in told.wanted.iter().filter(|extra| extra.several) {
+        let Some(scene) = Scene::of(told, ground, &rollout) else { break };
+        if let Some(with) = scene.with_second(extra, (&draft, &rollout)) {
+            (draft, rollout) = with;
         }
     }
     (draft, rollout, assumed)

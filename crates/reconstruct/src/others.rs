@@ -1,13 +1,14 @@
 //! Others than the two: who is told of besides them, and what they are to the ego.
 
 use crate::ground::LANE_M;
-use crate::near::Near;
+use crate::near::{Does, Near};
 use crate::phases::Phase;
 use crate::side::Turning;
 use crate::told::{Aside, Told};
 use crate::touch::side_of;
 use recrash_model::account::{
-    Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, Source, StandReason,
+    Account, Act, ActFact, ContactState, Kind, KindGroup, LeftRight, Origin, Other, PlaceKind, SignalState, Source,
+    StandReason,
 };
 use recrash_model::rollout::{EventKind, Rollout};
 use recrash_model::template::Movement;
@@ -84,6 +85,7 @@ impl Extra {
             Role::Lead if self.goes => "one stands ahead and drives on",
             Role::Lead => "one stands ahead",
             Role::Slower => "one ahead slows",
+            Role::Walker if self.stays => "somebody stays close",
             Role::Walker => "somebody crosses",
             Role::Animal => "an animal crosses",
             Role::Crosser => "one comes along the crossing road",
@@ -119,6 +121,10 @@ pub(crate) struct Extra {
     pub(crate) awaited: bool,
     /// The ego has gone round it, and is back in its lane.
     pub(crate) behind: bool,
+    /// Who is on foot is told to stay where it is, and not to cross.
+    pub(crate) stays: bool,
+    /// More than one.
+    pub(crate) several: bool,
     /// On which side of the ego it is, or from which it comes, where told.
     pub(crate) side: Option<LeftRight>,
     /// What is told of one who has no part in what the ego does.
@@ -137,9 +143,16 @@ impl Extra {
             first: false,
             awaited: true,
             behind: false,
+            stays: false,
+            several: false,
             side: None,
             near: None,
         }
+    }
+
+    /// One of whom neither place nor deed is told: that it is somewhere near is assumed, and nothing of it can be looked at.
+    pub(crate) fn is_assumed(&self) -> bool {
+        self.near.is_some_and(|near| near.place.is_none() && !near.across && near.does == Does::Untold)
     }
 
     /// Of one whom nobody names, and who is there because the ego stood: that it is assumed.
@@ -201,6 +214,17 @@ pub(crate) fn reasons(account: &Account, origin: Origin) -> Vec<StandReason> {
     .collect()
 }
 
+/// Whether a stop is told to be one for all arms.
+pub(crate) fn is_all_way(account: &Account) -> bool {
+    let features = account.place.features.iter().map(|fact| &fact.source);
+    let signs = [Some(&account.sv), account.partner.as_ref()].into_iter().flatten().flat_map(|party| &party.controls);
+    let said = features.chain(signs.map(|fact| &fact.source)).map(text);
+    said.into_iter().any(|words| ALL_WAY.iter().any(|word| words.contains(word)))
+}
+
+/// Words for a stop with a sign on every arm.
+const ALL_WAY: [&str; 6] = ["four-way", "four way", "4-way", "4 way", "all-way", "all way"];
+
 /// Who threw the partner at the ego, where told.
 pub(crate) fn pusher(account: &Account) -> Option<Kind> {
     account.others.iter().find(|other| other.touched_partner).map(|other| other.kind.value)
@@ -247,7 +271,8 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
         let near = |list: &[Extra]| {
             let before = list.iter().filter(|extra| extra.role == Role::Near).count();
             let near = Near::of(other, &text(&other.kind.source), before).filter(|_| !other.touched_partner);
-            near.map(|near| Extra { awaited: story.is_near(other), ..Extra::near(near, number, kind) })
+            let (awaited, several) = (story.is_near(other), other.several);
+            near.map(|near| Extra { awaited, several, ..Extra::near(near, number, kind) })
         };
         // Traffic that an ego passes which is not told to have slowed or stood is there.
         let passes =
@@ -266,6 +291,7 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 known.of.push(number);
                 known.goes |= goes;
                 known.parked |= parked;
+                known.several = true;
                 known.first |= first;
             }
             Some(_) => list.extend(near(&list)),
@@ -273,6 +299,8 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                 let side = story.side(role, told, other);
                 let awaited = story.is_near(other) || other.several;
                 let behind = role == Role::Obstacle && story.is_back(other);
+                let stays = role == Role::Walker && stays_close(other);
+                let several = other.several;
                 list.push(Extra {
                     role,
                     of: vec![number],
@@ -282,6 +310,8 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
                     first,
                     awaited,
                     behind,
+                    stays,
+                    several,
                     side,
                     near: None,
                 });
@@ -300,7 +330,8 @@ pub(crate) fn wanted(told: &Told, account: &Account) -> Vec<Extra> {
     };
     let queue = told.reasons.iter().any(waits);
     if queue && is_drawn(told, Role::Lead) && list.iter().all(|extra| extra.role != Role::Lead) {
-        list.insert(0, Extra::of_reason(Role::Lead));
+        let several = told.reasons.contains(&StandReason::Queue);
+        list.insert(0, Extra { several, ..Extra::of_reason(Role::Lead) });
     }
     let in_way = list.iter().any(|extra| matches!(extra.role, Role::Lead | Role::Obstacle));
     let thing = thing_in_way(account).filter(|_| !in_way && is_drawn(told, Role::Thing));
@@ -375,7 +406,7 @@ pub(crate) fn waits_ahead(told: &Told) -> bool {
 }
 
 /// Whether the ego stood, and is under way again at the contact.
-fn sets_off(told: &Told) -> bool {
+pub(crate) fn sets_off(told: &Told) -> bool {
     let stood = told.sv.stood_first || told.sv.phases.contains(&Phase::Stands);
     told.sv.state == ContactState::SettingOff || told.sv.state == ContactState::Moving && stood
 }
@@ -676,6 +707,24 @@ impl Story<'_> {
         if !(near && !beside || ahead && reacts) || leaves || elsewhere || place == Some(Origin::Behind) {
             return None;
         }
+        // Who stands somewhere, and is not told to have gone, stands yet when the ego drives on: not in its lane.
+        let only_holds = !acts_not && before_contact(other).all(|fact| matches!(fact.act, Act::Hold | Act::Park));
+        if only_holds && place.is_none() && sets_off(told) && is_straight(told) && !queue && !told.is_controlled() {
+            return None;
+        }
+        // At green nobody stands before the line: who stops ahead does so behind the junction.
+        let drawn = matches!(told.place, PlaceKind::Street | PlaceKind::Intersection);
+        let behind = drawn && !matches!(told.origin, Origin::Cross { .. });
+        let green = told.sv.control.is_some_and(|said| said.state == Some(SignalState::Green));
+        if green
+            && other.several
+            && behind
+            && told.sv.state == ContactState::Stopped
+            && !queue
+            && told.sv.turning == Turning::No
+        {
+            return Some(Role::Beyond);
+        }
         let slows = said(&["slow"]) || did(&[Act::Slow, Act::Turn, Act::Park, Act::Stop]) && !did(&[Act::Hold]);
         let moves = matches!(told.sv.state, ContactState::Moving) && !sets_off(told);
         Some(if slows && moves { Role::Slower } else { Role::Lead })
@@ -709,6 +758,12 @@ impl Story<'_> {
     }
 }
 
+/// Whether who is on foot is told last to stand or to stay, and not to have crossed.
+fn stays_close(other: &Other) -> bool {
+    let crosses = before_contact(other).any(|fact| fact.act == Act::Cross);
+    !crosses && before_contact(other).last().is_some_and(|fact| matches!(fact.act, Act::Hold | Act::Stop))
+}
+
 fn before_contact(other: &Other) -> impl Iterator<Item = &ActFact> {
     other.acts.iter().filter(|fact| !fact.after_contact && !fact.begun)
 }
@@ -721,7 +776,7 @@ fn span(source: &Source) -> Option<(usize, usize)> {
     }
 }
 
-fn text(source: &Source) -> String {
+pub(crate) fn text(source: &Source) -> String {
     match source {
         Source::Words { text, .. } => text.to_lowercase(),
         _ => String::new(),

@@ -19,6 +19,9 @@ const AHEAD_M: f64 = 8.0;
 const CROSSING_M: f64 = 30.0;
 const BRAKES_MPS2: f64 = 2.0;
 
+/// Who stays close to the ego is no farther from its way when the two touch. [m]
+const CLOSE_M: f64 = 4.0;
+
 /// Who is parked beside the way is no farther off, ahead or behind. [m]
 const PARKED_M: f64 = 40.0;
 
@@ -51,7 +54,8 @@ impl<'a> Seen<'a> {
             let words = list.iter().map(|extra| extra.words()).chain(throws.then_some("one throws the partner"));
             words.collect::<Vec<_>>().join(", ")
         };
-        let told: Vec<&Extra> = self.told.wanted.iter().filter(|extra| !extra.of.is_empty()).collect();
+        let named = self.told.wanted.iter().filter(|extra| !extra.of.is_empty() && !extra.is_assumed());
+        let told: Vec<&Extra> = named.collect();
         let there: Vec<&Extra> = told.iter().copied().filter(|extra| self.holds(extra)).collect();
         let throws = self.throws() && self.told.throwers > 0;
         let count = there.iter().map(|extra| extra.of.len()).sum::<usize>() + usize::from(throws);
@@ -164,6 +168,7 @@ impl<'a> Seen<'a> {
             && match extra.role {
                 Role::Lead | Role::Thing => self.leads(extra, track),
                 Role::Slower => self.slows_ahead(track),
+                Role::Walker if extra.stays => self.stays_close(track) && self.is_on_side(extra, track),
                 Role::Walker | Role::Animal => self.crosses(track, AHEAD_M) && self.is_on_side(extra, track),
                 Role::Crosser => self.crosses(track, CROSSING_M) && self.is_on_side(extra, track),
                 Role::Oncoming => self.comes_by(extra, track),
@@ -237,6 +242,17 @@ impl<'a> Seen<'a> {
             let near = (0.0..within_m + self.stopping_m(step)).contains(&ahead_m);
             near && left_m * before_m <= 0.0 && left_m != before_m && self.gives_way(step)
         })
+    }
+
+    /// Whether somebody is close to the ego, beside its way.
+    fn is_close(&self, track: &ActorTrack, step: usize) -> bool {
+        let (ahead_m, left_m) = self.beside(track, step);
+        left_m.abs() < CLOSE_M && (-self.ego.length_m..AHEAD_M).contains(&ahead_m)
+    }
+
+    /// Whether somebody on foot stands close to the ego at the contact, and has not crossed its way.
+    fn stays_close(&self, track: &ActorTrack) -> bool {
+        Self::mps(track, self.until) < STANDS_MPS && self.is_close(track, self.until)
     }
 
     /// Whether somebody who crosses comes from the told side.

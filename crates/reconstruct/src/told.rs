@@ -116,6 +116,8 @@ pub(crate) struct Told {
     pub(crate) more_lanes: bool,
     /// The road is crossed by one on which somebody is who has no part in what the ego does.
     pub(crate) crossed_near: bool,
+    /// A stop for all: there is a sign on every arm.
+    pub(crate) all_way: bool,
     /// Why the ego stood.
     pub(crate) reasons: Vec<StandReason>,
     /// Others than the two.
@@ -253,6 +255,7 @@ impl Told {
             layout: Layout::of(account, partner),
             more_lanes: false,
             crossed_near: false,
+            all_way: others::is_all_way(account),
             reasons: others::reasons(account, origin),
             others: account.others.len(),
             door: told(&account.door),
@@ -277,6 +280,9 @@ impl Told {
         this.phases();
         this.gives_way_to_merge = this.stops_for_merge(&account.sv, partner);
         this.wanted = others::wanted(&this, account);
+        // Nothing is told of them that can be looked at.
+        let assumed = this.wanted.iter().filter(|extra| extra.is_assumed());
+        this.others -= assumed.map(|extra| extra.of.len()).sum::<usize>();
         if this.origin_told {
             this.speeds();
         }
@@ -325,7 +331,8 @@ impl Told {
             self.sv.turns_later = matches!(self.sv.turning, Turning::Left | Turning::Right);
         }
         // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
-        let follows = self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear;
+        let in_line = self.crash_type == CrashType::FrontToRear || self.is_thrown();
+        let follows = self.origin == Origin::Behind && in_line;
         let turns = matches!(self.cp.turning, Turning::Left | Turning::Right);
         if follows && turns && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff) {
             (self.cp.turning, self.cp.turns_later) = (Turning::No, true);

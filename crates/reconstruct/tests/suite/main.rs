@@ -5,6 +5,7 @@ mod acts;
 #[path = "../../../reader/tests/suite/common.rs"]
 #[allow(dead_code, reason = "the reader's own tests use the rest")]
 mod common;
+mod in_step;
 mod kerb;
 mod lanes;
 mod moves;

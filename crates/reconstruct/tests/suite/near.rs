@@ -1,9 +1,10 @@
 //! Others who have no part in what the ego does are near it, where they are told, and do what is told; and a rollout in which they do not
 //! does not pass for it.
 
-use crate::others::{shown_but, track};
-use crate::ways::{before_contact, degrees_between};
+use crate::others::{shown_but, told, track};
+use crate::ways::{before_contact, degrees_between, made};
 use recrash_model::kinds::PartnerKind;
+use recrash_model::metrics::CheckKind;
 use recrash_model::scenario::{Actor, ActorPlan, Deed, Place};
 
 const SIREN: &str =
@@ -43,7 +44,9 @@ fn stands(actor: &mut Actor) {
 
 #[test]
 fn who_is_told_nowhere_is_in_sight_and_said_to_be_assumed() {
-    let shown = shown_but(SIREN, "near", far_off);
+    // Neither where it is nor what it does is told: nothing is looked at.
+    let shown = made(&told(SIREN));
+    assert!(shown.verdict.checks.iter().all(|check| check.kind != CheckKind::Others), "{:?}", shown.verdict);
     let (near, last) = (track(&shown, "near"), before_contact(&shown));
     let ego = shown.rollout.ego_track().states[last];
     assert_eq!(near.kind, PartnerKind::FirstResponder);

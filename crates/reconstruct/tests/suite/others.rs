@@ -96,7 +96,7 @@ const PASSED_IN_TRAFFIC: &str = "The AV was stopped in traffic on Elm Street at 
 const BUS_BACKS: &str = "The AV was traveling north and stopped behind a bus that was parked at the curb in front of the AV. The bus then reversed and the rear of the \
                          bus made contact with the front of the stationary AV.";
 
-fn told(text: &str) -> Account {
+pub(crate) fn told(text: &str) -> Account {
     let whole = if text.contains("made contact") { text.to_owned() } else { format!("{text} {STRUCK}") };
     story(&whole)
 }

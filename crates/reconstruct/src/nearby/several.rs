@@ -1,0 +1,113 @@
+//! The second one of those who are told to be several: as the first, beside it or behind it.
+
+use super::{CLEAR_M, Scene, hinders_nobody};
+use crate::control;
+use crate::ground::corner_m;
+use crate::others::{Extra, Role};
+use crate::seen::Seen;
+use recrash_model::geometry::Vec2;
+use recrash_model::kinds::PartnerKind;
+use recrash_model::rollout::Rollout;
+use recrash_model::scenario::{Actor, ActorPlan, Leg, Place, ScenarioDraft};
+use recrash_model::vehicle::VehicleSpec;
+use recrash_sim::Ego;
+
+/// Between two of a queue or of a row, tried in turn; who drives ahead of or behind another keeps more. [m]
+const GAPS_M: [f64; 4] = [2.5, 1.5, 4.0, 7.0];
+const DRIVING_GAPS_M: [f64; 2] = [8.0, 14.0];
+
+/// Two who walk go side by side, or one behind the other. [m]
+const SIDE_BY_SIDE_M: f64 = 1.2;
+const ONE_BEHIND_M: f64 = 1.6;
+
+impl Scene<'_> {
+    /// The same with a second one of them, where it has room and hinders nobody.
+    pub(super) fn with_second(
+        &self,
+        extra: &Extra,
+        begun: (&ScenarioDraft, &Rollout),
+    ) -> Option<(ScenarioDraft, Rollout)> {
+        let (draft, rollout) = begun;
+        let id = extra.id();
+        let actor = draft.actors.iter().find(|actor| actor.id == id).filter(|_| extra.several)?;
+        let second_id = second_id(extra, draft)?;
+        let place = |by: Vec2| {
+            let second = Actor { id: second_id.clone(), plan: shifted(&actor.plan, by)?, ..actor.clone() };
+            if self.is_in_junction(extra, &second) {
+                return None;
+            }
+            let mut with = draft.clone();
+            with.actors.push(second.clone());
+            let recorded = with.ego.recorded.clone()?;
+            with.control = control::devices(self.told, self.ground, &recorded, &with.actors);
+            let scenario = recrash_roads::check(with).ok()?.value;
+            let driven = recrash_sim::simulate(&scenario, Ego::Recorded);
+            let seen = Seen::new(self.told, &driven, self.contact_s);
+            (hinders_nobody(&second.id, &scenario, (rollout, &driven)) && seen.holds(extra))
+                .then(|| (scenario.draft().clone(), driven))
+        };
+        offsets(actor)?.into_iter().find_map(place)
+    }
+
+    /// Whether somebody who stands along the ego's road would stand in the junction.
+    fn is_in_junction(&self, extra: &Extra, actor: &Actor) -> bool {
+        let Some(at) = point(&actor.plan.start) else { return true };
+        let stands = actor.plan.speed_mps == 0.0 && !matches!(extra.role, Role::Blocker | Role::Beyond);
+        let (s_m, _) = self.ground.beside(at);
+        let half_m = 0.5 * length_m(actor);
+        let ends_m = self.ground.first_m() + 2.0 * corner_m(self.ground.lanes);
+        self.ground.junction && stands && s_m + half_m > self.ground.first_m() && s_m - half_m < ends_m
+    }
+}
+
+/// Its name; nothing where there is a second one already. At the kerbs of both sides two stand, and a third is the second on its side; and
+/// of those near a number names another one.
+fn second_id(extra: &Extra, draft: &ScenarioDraft) -> Option<String> {
+    let id = extra.id();
+    let is_free = |id: &String| draft.actors.iter().all(|actor| actor.id != *id);
+    match extra.role {
+        Role::Near => Some(format!("{id}-too")),
+        Role::Kerb => (2..=3).map(|number| format!("{id}-{number}")).find(is_free),
+        _ => Some(format!("{id}-2")),
+    }
+    .filter(is_free)
+}
+
+fn length_m(actor: &Actor) -> f64 {
+    actor.size.map_or(VehicleSpec::of(actor.kind).length_m, |size| size.length_m)
+}
+
+/// Where the second is, from the first.
+fn offsets(actor: &Actor) -> Option<Vec<Vec2>> {
+    let Place::Plane { heading_deg, .. } = actor.plan.start else { return None };
+    let along = Vec2::from_heading(heading_deg.to_radians());
+    if matches!(actor.kind, PartnerKind::Pedestrian | PartnerKind::Cyclist | PartnerKind::Animal) {
+        let aside = along.left() * (SIDE_BY_SIDE_M.max(VehicleSpec::of(actor.kind).width_m + 1.4 * CLEAR_M));
+        let behind = along * (length_m(actor) + ONE_BEHIND_M);
+        return Some(vec![aside, aside * -1.0, behind * -1.0, behind]);
+    }
+    let gaps: &[f64] = if actor.plan.speed_mps > 0.0 { &DRIVING_GAPS_M } else { &GAPS_M };
+    let both = gaps.iter().flat_map(|gap_m| [gap_m + length_m(actor), -gap_m - length_m(actor)]);
+    Some(both.map(|by_m| along * by_m).collect())
+}
+
+fn point(place: &Place) -> Option<Vec2> {
+    match place {
+        Place::Plane { x_m, y_m, .. } => Some(Vec2::new(*x_m, *y_m)),
+        Place::Lane { .. } => None,
+    }
+}
+
+/// The same way, so far from it.
+fn shifted(plan: &ActorPlan, by: Vec2) -> Option<ActorPlan> {
+    let moved = |place: &Place| match place {
+        Place::Plane { x_m, y_m, heading_deg } => Some(Place::at(x_m + by.x, y_m + by.y, *heading_deg)),
+        Place::Lane { .. } => None,
+    };
+    let leg = |leg: &Leg| match leg {
+        Leg::Curve { to, reverse } => Some(Leg::Curve { to: moved(to)?, reverse: *reverse }),
+        _ => None,
+    };
+    let course = plan.course.iter().map(leg).collect::<Option<_>>()?;
+    Some(ActorPlan { start: moved(&plan.start)?, course, ..plan.clone() })
+}
