@@ -10,6 +10,7 @@ impl Chunker<'_> {
     /// A noun with what stands behind it from `at` on and belongs to it; "'s rear bumper" is left to others.
     pub(super) fn finish(&self, mut noun: Noun, first: usize, at: usize) -> Option<(Noun, usize)> {
         let at = self.alias_behind(&mut noun, at);
+        self.kind_in_brackets(&mut noun, at);
         let at = self.vehicle_behind(&mut noun, at);
         // "a person in the driver's seat of the van" is somebody in the van.
         if noun.kind == Some(Kind::Pedestrian)
@@ -51,6 +52,19 @@ impl Chunker<'_> {
         let owner = noun.clone();
         (noun.owner, noun.occupant, noun.kind, noun.subject) = (Some(Box::new(owner)), Some((who, false)), None, false);
         behind + length
+    }
+
+    /// "Car 2 (Ford F-150 XLT)": what a numbered vehicle is.
+    fn kind_in_brackets(&self, noun: &mut Noun, at: usize) {
+        if noun.number.is_none() || noun.occupant.is_some() || self.text(at) != "(" || self.alias(at).is_some() {
+            return;
+        }
+        let close = at + self.parenthesis(at);
+        let kind = (at + 1..close).find_map(|at| match self.head(at) {
+            Some((Meaning::Kind(kind), _)) if kind.is_vehicle() && kind != Kind::Vehicle => Some(kind),
+            _ => None,
+        });
+        noun.kind = kind.filter(|_| noun.kind == Some(Kind::Vehicle)).or(noun.kind);
     }
 
     /// "the driver of the bus", "a passenger inside the van".

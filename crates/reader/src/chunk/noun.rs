@@ -479,6 +479,8 @@ impl Chunker<'_> {
             // "car 1" is who reports.
             draft.subject |= number == 1;
             noun.number = Some(number).filter(|number| *number > 1);
+            // "Car 2" is a name.
+            noun.kind = Some(Kind::Vehicle);
             draft.at += 1;
         }
         // "AV 2", "a different AV": another one of the same company.

@@ -12,12 +12,14 @@ const RIGHT: &[&str] = &["right", "rightmost", "outside", "slow"];
 const TURN: &[&str] = &["turn", "turning"];
 
 /// What the words before "lane" make of it: the first whose words are all there.
-const LANES: [(&[&[&str]], LaneWord); 10] = [
+const LANES: [(&[&[&str]], LaneWord); 11] = [
     (&[&["bike", "bicycle"]], LaneWord::Bike),
     (&[&["bus"]], LaneWord::Bus),
     (&[&["opposing", "opposite", "oncoming"]], LaneWord::Opposing),
     (&[&["parking", "curb"]], LaneWord::Curb),
     (&[&["emergency"]], LaneWord::Shoulder),
+    // "the middle shared turn lane", "the center two-way turn lane": between both directions.
+    (&[TURN, &["center", "middle", "centre", "shared", "way"]], LaneWord::LeftTurn),
     (&[TURN, LEFT], LaneWord::LeftTurn),
     (&[TURN, RIGHT], LaneWord::RightTurn),
     (&[LEFT], LaneWord::Left),
@@ -33,6 +35,7 @@ fn in_lane_names(word: &str) -> bool {
         || matches!(word, "adjacent" | "next" | "neighboring" | "same" | "inside" | "outside" | "curb" | "parking")
         || matches!(word, "opposing" | "opposite" | "oncoming" | "designated" | "emergency" | "slow" | "fast")
         || matches!(word, "passing" | "number" | "second" | "of" | "and" | "two" | "three" | "four")
+        || matches!(word, "shared" | "way")
 }
 
 impl Chunker<'_> {
@@ -123,7 +126,8 @@ impl Chunker<'_> {
         if let Some(length) = self.counted_lane(at) {
             return Some((LaneWord::Center, length));
         }
-        if !in_lane_names(word) || matches!(word, "and" | "of" | "two" | "three" | "four") {
+        let two_way = word == "two" && self.text(at + 1) == "way";
+        if !in_lane_names(word) || !two_way && matches!(word, "and" | "of" | "two" | "three" | "four" | "way") {
             return None;
         }
         let end = (at..self.tokens.len().min(at + LONGEST_LANE_NAME)).find(|&at| {

@@ -259,7 +259,10 @@ pub(super) fn doer(reading: &Reading<'_>, frame: &Frame) -> Option<Actor> {
         let kind = reading.story.world.actors[*actor].kind;
         matches!(kind, Some(Kind::LooseWheel | Kind::Debris | Kind::Cargo | Kind::Object))
     };
-    let comes_off = matches!(frame.act(), Some(Act::Roll | Act::Fall)) && frame.who == Some(SUBJECT);
+    // "A panel on the rear of the van fell off": no part of the van that still is one.
+    let part = frame.with.is_some() && frame.act() == Some(Act::Fall);
+    let comes_off = matches!(frame.act(), Some(Act::Roll | Act::Fall))
+        && (frame.who == Some(SUBJECT) || part && frame.who.is_some());
     reading.contacts.partner.filter(loose).filter(|_| comes_off).or(frame.who)
 }
 

@@ -19,6 +19,8 @@ pub(crate) struct Contacts {
     pub earlier: Vec<usize>,
     /// The subject vehicle was not touched.
     pub others_only: bool,
+    /// Who the headline says it was: the story calls the partner otherwise.
+    pub retold: Option<Actor>,
 }
 
 impl Contacts {
@@ -51,6 +53,10 @@ impl Contacts {
             let told = &frames[first];
             let full = told.on.is_some() || told.with.is_some() || !told.relations.is_empty();
             let again = again.filter(|(number, _)| !(full && goes_on(story, *number)));
+            let named = [frames[first].who, frames[first].object].contains(&Some(partner));
+            contacts.retold = again.map(|_| partner).filter(|headline| {
+                named && !story.world.actors[*headline].several && again.is_some_and(|(_, other)| other != headline)
+            });
             let (first, partner) = again.copied().unwrap_or((first, partner));
             let (first, partner) = as_column(story, record, &touching, first, partner);
             contacts.first = Some(first);

@@ -75,6 +75,7 @@ fn named(words: &[&str]) -> Option<(ControlDevice, Option<SignalState>, usize)> 
         ["green", "light" | "signal" | "traffic" | "arrow", ..] => (ControlDevice::Signal, Some(SignalState::Green), 2),
         ["yellow", "light" | "signal", ..] => (ControlDevice::Signal, Some(SignalState::Yellow), 2),
         ["traffic", "light" | "signal", ..] => (ControlDevice::Signal, None, 2),
+        ["stop" | "sign", "controlled", ..] => (ControlDevice::StopSign, None, 2),
         ["stop", "sign" | "signs", ..] => (ControlDevice::StopSign, None, 2),
         ["four" | "4" | "three" | "3" | "all", "way", "stop", ..] => (ControlDevice::StopSign, None, 3),
         ["yield", "sign", ..] => (ControlDevice::YieldSign, None, 2),
@@ -89,14 +90,25 @@ fn was_green(reading: &Reading<'_>, frame: &Frame, before: &[Fact<Control>]) -> 
     !red && words.iter().any(|token| matches!(token.text.as_str(), "is" | "was" | "were"))
 }
 
-/// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed.
+/// "slowed to about 6 mph", "accelerated to 5 mph": the words before the number, where nothing is told of a later speed. "Up to 10 mph" is
+/// the most that it reached.
 fn slowed_to(before: &[Token], frame: &Frame) -> bool {
+    if before.windows(2).any(|pair| pair[0].text == "up" && pair[1].text == "to") {
+        return false;
+    }
     let to = before.iter().rev().find(|token| {
         !matches!(token.text.as_str(), "about" | "approximately" | "around" | "roughly" | "only" | "just" | "~")
     });
     matches!(frame.act(), Some(Act::Slow | Act::Accelerate))
         && frame.happened()
         && to.is_some_and(|token| token.text == "to")
+}
+
+/// Whether somebody braked or stopped behind this frame, before the contact.
+fn slows_later(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
+    reading.before(actor).any(|(later, frame)| {
+        later > number && frame.happened() && matches!(frame.act(), Some(Act::Slow | Act::Stop | Act::Hold))
+    })
 }
 
 /// Speeds that the words tell of somebody.
@@ -129,7 +141,9 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
         let limit = near.iter().any(|word| matches!(*word, "zone" | "limit" | "posted"));
         let meaning = if limit {
             SpeedMeaning::Posted
-        } else if frame.is_contact() || slowed_to(&tokens[at.saturating_sub(3)..at], frame) {
+        } else if frame.is_contact()
+            || slowed_to(&tokens[at.saturating_sub(4)..at], frame) && !slows_later(reading, actor, number)
+        {
             SpeedMeaning::Impact
         } else {
             SpeedMeaning::Approach

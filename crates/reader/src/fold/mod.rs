@@ -315,11 +315,10 @@ fn words_of(story: &Story) -> u32 {
 /// Everybody else who is in the story up to the contact.
 fn others(reading: &Reading<'_>) -> Vec<Other> {
     let story = &reading.story;
+    let is_partner = |actor| [reading.contacts.partner, reading.contacts.retold].contains(&Some(actor));
     let mut all = Vec::new();
     for (actor, known) in story.world.actors.iter().enumerate().skip(1) {
-        let (Some(kind), false) =
-            (known.kind, Some(actor) == reading.contacts.partner || known.announced || known.towed_by.is_some())
-        else {
+        let (Some(kind), false) = (known.kind, is_partner(actor) || known.announced || known.towed_by.is_some()) else {
             continue;
         };
         let acts = acts::acts(reading, actor);

@@ -61,6 +61,10 @@ fn of_its_own(reading: &Reading<'_>, sv: &Party, partner: Option<Kind>) -> Party
     });
     let elsewhere = !passes_partner && column.is_some_and(|column| column != Movement::Passing);
     sv.acts.retain(|fact| fact.act != Act::Pass || !elsewhere);
+    // "proceeded straight past a stopped van".
+    let straight_past =
+        |fact: &ActFact| fact.act == Act::Pass && fact.side.is_none() && words_of(fact).contains(" past ");
+    sv.acts.retain(|fact| column != Some(Movement::Straight) || !straight_past(fact));
     // Who touches a thing on its way out of a lot is in no traffic yet.
     let thing = partner.is_some_and(|kind| kind.group() == KindGroup::Object);
     sv.acts.retain(|fact| fact.act != Act::PullOut || !thing || column.is_none());
@@ -339,6 +343,11 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
     }
 }
 
+/// "merged", "attempting a merge".
+fn is_merge(words: &str) -> bool {
+    words.starts_with("merg") || words.ends_with(" merge")
+}
+
 /// What an act says of the movement, and how much.
 fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
     Some(match (fact.act, fact.side) {
@@ -353,7 +362,7 @@ fn weight(fact: &ActFact, column: Option<Movement>) -> Option<(u8, Movement)> {
         (Act::Reverse, _) if column == Some(Movement::ParkingManeuver) => (4, Movement::ParkingManeuver),
         (Act::Reverse, _) => (4, Movement::Backing),
         (Act::LaneChange, _) if column == Some(Movement::EnteringTraffic) => (3, Movement::EnteringTraffic),
-        (Act::LaneChange, _) if words_of(fact).starts_with("merg") && column != Some(Movement::ChangingLanes) => {
+        (Act::LaneChange, _) if is_merge(&words_of(fact)) && column != Some(Movement::ChangingLanes) => {
             (3, Movement::Merging)
         }
         (Act::LaneChange, _) => (3, Movement::ChangingLanes),

@@ -149,13 +149,24 @@ fn nobody_else(reading: &Reading<'_>) -> bool {
     story.frames.iter().any(touches) && !story.world.actors.iter().skip(1).any(|actor| known(actor.kind))
 }
 
-/// Words name an end or a side where the column ticks one corner of it: both are meant.
+/// Words that name an end or a side keep the one corner of it that the column ticks beside them: "rear-ended", and the left corner. Words
+/// that name the corner say more than a column that ticks its end or its side, and stand alone.
 pub(crate) fn refine(zones: &mut Vec<Fact<ContactZone>>, column: &[ContactZone], name: &str) {
-    if let ([told], [ticked]) = (zones.as_slice(), column)
-        && super::steps(told.value, *ticked) == 1
-    {
-        zones.push(Fact::of_column(*ticked, name));
+    let [told] = zones.as_slice() else { return };
+    if !told.source.is_told() || is_corner(told.value) {
+        return;
     }
+    let told = told.value;
+    let mut corners = column.iter().filter(|ticked| is_corner(**ticked) && super::steps(told, **ticked) == 1);
+    if let (Some(corner), None) = (corners.next(), corners.next()) {
+        zones.push(Fact::of_column(*corner, name));
+    }
+}
+
+/// Whether a zone is one of the four corners, and no whole end or side.
+fn is_corner(zone: ContactZone) -> bool {
+    use ContactZone as Z;
+    matches!(zone, Z::FrontLeft | Z::FrontRight | Z::RearLeft | Z::RearRight)
 }
 
 fn kind_of(kind: PartnerKind) -> Kind {

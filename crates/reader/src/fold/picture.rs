@@ -347,6 +347,12 @@ pub(crate) fn settle(account: &Account) -> Option<Fact<Origin>> {
     if matches!(group, Some(KindGroup::Object | KindGroup::Animal)) {
         return None;
     }
+    // Across its rear, as told.
+    let by_words = account.came_from.as_ref().is_some_and(|fact| fact.source.is_told());
+    let rear = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value.is_rear());
+    if by_words && rear && matches!(told(&account.came_from), Some(Origin::Cross { .. })) {
+        return None;
+    }
     let scene = Scene { sv: &account.sv, cp, place: &account.place };
     let now = account.came_from.as_ref();
     let told_way = now.and_then(|fact| Way::of(fact.value));

@@ -4,6 +4,7 @@ use super::Reading;
 use super::acts::{doer, in_headline};
 use crate::frame::Frame;
 use crate::lexicon::{Form, Lexicon, Progress, Relation, Sense};
+use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ContactState, Fact, Kind, StandReason, Standing};
 
@@ -173,7 +174,8 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
             let within = |(other, from, count): &(StandReason, usize, usize)| {
                 *other != reason && rank(*other) < rank(reason) && *from < at + length && at < from + count
             };
-            if !all.iter().any(|known| known.value == reason) && !named.iter().any(within) {
+            let place = reason == StandReason::Pedestrian && is_a_place(tokens, begins + at);
+            if !place && !all.iter().any(|known| known.value == reason) && !named.iter().any(within) {
                 all.push(reading.told(reason, begins + at, begins + at + length));
             }
         }
@@ -201,6 +203,14 @@ pub(super) fn reasons(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<StandReas
     all.sort_by_key(|reason| rank(reason.value));
     all.truncate(2);
     all
+}
+
+/// "just past the crosswalk", "short of the crosswalk": where, and for nobody.
+fn is_a_place(tokens: &[Token], at: usize) -> bool {
+    let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
+    let article = usize::from(matches!(word(1), "the" | "a" | "its"));
+    tokens[at].text == "crosswalk"
+        && matches!(word(1 + article), "past" | "beyond" | "before" | "behind" | "over" | "near" | "of" | "after")
 }
 
 fn stands_still(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {

@@ -14,7 +14,11 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
     let column = record.sv_movement.known();
     let words = told(&account.sv.state);
     let stopping = told(&account.sv.standing) == Some(Standing::Stopping);
+    let to_stop = slowed_to_stop(reading);
+    let stopping = stopping || to_stop;
     let rolls = record.sv_speed_mps.is_some_and(|speed| speed > if stopping { 0.3 } else { 0.6 });
+    // "accelerated up to 10 mph, then stopped": the column speed is that of before.
+    let rolls = rolls && !(column == Some(Movement::Stopped) && was_told_before(account));
     let drives = record.sv_speed_mps.is_some_and(|speed| speed >= DRIVES_MPS);
     let zero = record.sv_speed_mps.is_some_and(|speed| speed < 0.1);
     let value = match (words, column) {
@@ -88,6 +92,9 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         }
         _ => None,
     };
+    if let (true, Some(ContactState::Moving)) = (to_stop, value) {
+        slow_only(account);
+    }
     if let Some(value) = value {
         let name = if zero { "SV Precrash Speed (MPH)" } else { "SV Pre-Crash Movement" };
         account.sv.state = Some(Fact::of_column(value, name));
@@ -105,6 +112,42 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
         account.sv.reasons.push(Fact::by_rule(StandReason::Parked, "it was parked"));
     }
 }
+
+/// Whether the last that is told of the subject vehicle is that it "slowed to stop", a purpose.
+fn slowed_to_stop(reading: &Reading<'_>) -> bool {
+    let acts = reading.before(SUBJECT).filter(|(_, frame)| frame.happened() && frame.act().is_some());
+    acts.last().is_some_and(|(_, frame)| {
+        let words: Vec<&str> =
+            reading.story.tokens[frame.first..frame.end].iter().map(|token| token.text.as_str()).collect();
+        let slows = words.first().is_some_and(|word| word.starts_with("slow"));
+        frame.act() == Some(Act::Stop) && slows && words.ends_with(&["to", "stop"])
+    })
+}
+
+/// It slowed, and did not come to stand.
+fn slow_only(account: &mut Account) {
+    let mut acts = account.sv.acts.iter_mut().rev();
+    if let Some(stop) = acts.find(|fact| fact.act == Act::Stop && !fact.after_contact) {
+        stop.act = Act::Slow;
+    }
+    account.sv.standing = None;
+}
+
+/// Whether the words tell the column's speed of the way there. [m/s]: as near as a report rounds.
+fn was_told_before(account: &Account) -> bool {
+    let column = account.sv.speeds.iter().find(|speed| !speed.source.is_told()).map(|speed| speed.value.mps);
+    let before = |mps: f64| {
+        account.sv.speeds.iter().any(|speed| {
+            speed.source.is_told()
+                && speed.value.meaning == SpeedMeaning::Approach
+                && (speed.value.mps - mps).abs() < ROUNDED_MPS
+        })
+    };
+    column.is_some_and(before)
+}
+
+/// Speeds that are this near are the same one: half a mile per hour. [m/s]
+const ROUNDED_MPS: f64 = 0.25;
 
 /// Who is this fast at the contact does not stand. [m/s]
 const DRIVES_MPS: f64 = 2.0;

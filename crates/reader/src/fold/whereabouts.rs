@@ -11,6 +11,16 @@ use recrash_model::account::{Act, Fact, LaneWord, LeftRight, Origin};
 pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
     let clues = Clues { reading, actor };
     let relation = first_relation(&clues);
+    // Whom the subject vehicle goes around was in its way, and is beside it only then.
+    let passed = |frame: &Frame| {
+        frame.who == Some(SUBJECT)
+            && frame.act() == Some(Act::Pass)
+            && frame.object == Some(actor)
+            && frame.side.is_some()
+    };
+    let relation = relation.filter(|relation| {
+        !matches!(relation, Relation::Left | Relation::Right) || !reading.story.frames.iter().any(passed)
+    });
     let value = match relation {
         Some(Relation::Behind) => Some(Origin::Behind),
         Some(Relation::Ahead) => Some(Origin::Ahead),

@@ -66,6 +66,12 @@ pub(super) fn apply(frames: &mut Vec<Frame>, tokens: &[Token], sentences: &[Sent
         {
             frames[number].with = Some(Piece::of(part));
         }
+        if begins_to_pass(frames, number, tokens) {
+            let taken = &frames[number];
+            let sets_off = Frame { sense: Sense::Act(Act::SetOff), object: None, side: None, ..taken.clone() };
+            frames.insert(number, sets_off);
+            number += 1;
+        }
         let frame = &frames[number];
         let goes =
             matches!(frame.act(), Some(Act::Follow | Act::Enter | Act::Cross | Act::Turn | Act::SetOff | Act::Pass));
@@ -145,6 +151,20 @@ fn turns_back_in(frames: &[Frame], number: usize, words: &[&str]) -> bool {
         && frames[..number].iter().any(|before| {
             before.who == frame.who && matches!(before.act(), Some(Act::Pass | Act::LaneChange)) && !before.negated
         })
+}
+
+/// "began to move around it", told of one that stands: it sets off first.
+fn begins_to_pass(frames: &[Frame], number: usize, tokens: &[Token]) -> bool {
+    let frame = &frames[number];
+    if frame.act() != Some(Act::Pass) || frame.progress != Progress::Real || !frame.happened() {
+        return false;
+    }
+    let words = &tokens[frame.first.saturating_sub(3)..frame.end];
+    let begins = words.iter().any(|token| matches!(token.text.as_str(), "began" | "begins" | "started" | "starts"));
+    let before = frames[..number].iter().rev().find(|other| {
+        other.who == frame.who && other.act().is_some() && other.happened() && other.progress == Progress::Real
+    });
+    begins && before.is_some_and(|other| matches!(other.act(), Some(Act::Hold | Act::Stop)) && !other.aside)
 }
 
 /// "emerged on the right from behind a stopped bus": into view, and from no kerb.

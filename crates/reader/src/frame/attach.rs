@@ -25,6 +25,8 @@ impl Parser<'_> {
 
     /// Where somebody is: of the frame, or of the noun before.
     pub(super) fn relate(&mut self, relation: Relation, to: Option<Actor>, carry: &mut Carry) {
+        // "fell off the vehicle ahead of it": that vehicle.
+        let fell_off = relation == Relation::Ahead && self.fell_off_last(carry);
         let mut who = None;
         if let Some(frame) = carry.frame {
             // "made contact with the van ahead": the van.
@@ -40,7 +42,7 @@ impl Parser<'_> {
                 return self.note(last.actor, relation);
             }
             // "stopped behind a van": who stopped. "yield to a car ahead of the van": the car.
-            let of_object = carry.last.is_some() && carry.governed_object(&self.frames[frame]);
+            let of_object = carry.last.is_some() && (fell_off || carry.governed_object(&self.frames[frame]));
             if of_object {
                 who = carry.last.as_ref().map(|last| last.actor);
             } else {
@@ -88,7 +90,15 @@ impl Parser<'_> {
             && self.frames.iter().any(|before| {
                 before.sentence == self.sentence && before.who == Some(who) && before.act() == Some(Act::Pass)
             });
-        if relation == Relation::Ahead && (ends_there || passed) {
+        if relation == Relation::Ahead && (ends_there && !fell_off || passed) {
+            return;
+        }
+        // "passing behind it", "crossed behind it": where its path lies, and not where it came from.
+        let path = carry.frame.map(|frame| &self.frames[frame]).is_some_and(|frame| {
+            matches!(frame.act(), Some(Act::Pass | Act::Cross))
+                && self.tokens[frame.end.min(self.tokens.len() - 1)].text == "behind"
+        });
+        if relation == Relation::Behind && path && to == Some(SUBJECT) {
             return;
         }
         match to {
@@ -105,6 +115,16 @@ impl Parser<'_> {
             }
             _ => {}
         }
+    }
+
+    /// Whether something is told to fall off the vehicle that was named last.
+    fn fell_off_last(&self, carry: &Carry) -> bool {
+        let (Some(frame), Some(last)) = (carry.frame, &carry.last) else { return false };
+        let frame = &self.frames[frame];
+        frame.act() == Some(Act::Fall)
+            && carry.governed
+            && frame.who != Some(last.actor)
+            && self.world.actors[last.actor].kind.is_some_and(|kind| kind.is_vehicle())
     }
 
     pub(super) fn follows(&mut self, who: Option<Actor>, whom: Actor) {
@@ -287,7 +307,7 @@ impl Parser<'_> {
 
     pub(super) fn lane(&mut self, lane: LaneWord, placed: &Placed, carry: &mut Carry) {
         let into = matches!(carry.preposition, Some("into" | "onto" | "to")) || carry.to;
-        let from = carry.preposition == Some("from");
+        let from = matches!(carry.preposition, Some("from" | "out"));
         // "was part way across the bicycle lane": not its own.
         if matches!(carry.preposition, Some("across" | "over" | "past" | "between")) {
             carry.preposition = None;

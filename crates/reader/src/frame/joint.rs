@@ -1,8 +1,10 @@
 //! Where one clause ends and the next begins: "and", "when", "after", "before", "because", a comma, "that".
 
-use super::parser::{Carry, Parser};
+use super::parser::{Carry, Mention, Parser};
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::{Form, Relation};
+use crate::world::SUBJECT;
+use recrash_model::account::{Kind, KindGroup};
 
 impl Parser<'_> {
     pub(super) fn joint(&mut self, joint: Joint, carry: &mut Carry, behind: &[Placed]) {
@@ -12,11 +14,14 @@ impl Parser<'_> {
             .map(|placed| &placed.chunk)
             .find(|chunk| joint != Joint::And || !matches!(chunk, Chunk::Word));
         // "rolled across the street and into the van": one way.
-        let into = matches!(behind.first().map(|placed| &placed.chunk), Some(Chunk::Preposition("into" | "against")));
-        // "maneuvered forward and to the left": so too.
+        let into = matches!(
+            behind.first().map(|placed| &placed.chunk),
+            Some(Chunk::Preposition("into" | "against" | "around" | "past"))
+        );
+        // "maneuvered forward and to the left", "went around and to the left of it": so too.
         let aside = behind.first().is_some_and(|placed| {
             let to = placed.first >= 2 && self.tokens[placed.first].text == "to";
-            to && self.tokens[placed.first - 2].text == "forward"
+            to && matches!(self.tokens[placed.first - 2].text.as_str(), "forward" | "around" | "past")
                 && matches!(placed.chunk, Chunk::Relation(Relation::Left | Relation::Right))
         });
         if joint == Joint::And && (into || aside) && carry.frame.is_some() {
@@ -99,6 +104,7 @@ impl Parser<'_> {
             return true;
         }
         if let Some(last) = carry.last.clone() {
+            let last = if self.tokens[all[at].first].text == "who" { self.person_of(last) } else { last };
             if !carry.relative {
                 carry.outer = carry.subject.clone().filter(|_| !carry.has_verb);
             }
@@ -130,6 +136,23 @@ impl Parser<'_> {
             carry.has_verb = carry.pending.is_empty() && carry.main.is_some();
         }
         true
+    }
+
+    /// "touched one of the pedestrians, who stood to the right of the AV, who fell": whoever is named last and is no vehicle.
+    fn person_of(&self, last: Mention) -> Mention {
+        let known = &self.world.actors;
+        let person = |actor: usize| {
+            let kind = known[actor].kind.map(Kind::group);
+            matches!(kind, Some(KindGroup::OnFoot | KindGroup::Cyclist | KindGroup::Motorcycle))
+                && known[actor].sentence == Some(self.sentence)
+        };
+        let vehicle =
+            last.person.is_none() && (last.actor == SUBJECT || known[last.actor].kind.is_some_and(Kind::is_vehicle));
+        let found = (1..known.len()).filter(|actor| person(*actor)).max_by_key(|actor| known[*actor].last);
+        match found.filter(|_| vehicle) {
+            Some(actor) => Mention { actor, piece: None, person: None, end: last.end },
+            None => last,
+        }
     }
 
     /// Behind a clause that tells of a place the sentence goes on with whom it is about.

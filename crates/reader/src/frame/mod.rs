@@ -181,6 +181,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             COMPANY.clone_into(&mut tokens[at].text);
         }
     }
+    hold_by_hand(&mut tokens);
     let sentences = crate::token::sentences(&tokens);
     let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
     // "A gleeper struck it": who is meant is told by the record.
@@ -234,6 +235,27 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     Story { tokens, sentences, standing, frames, world }
+}
+
+/// "a hand held stop sign", "holding up a stop sign": a paddle, and no sign that stands there.
+fn hold_by_hand(tokens: &mut [Token]) {
+    for at in 1..tokens.len().saturating_sub(1) {
+        if tokens[at].text != "stop" || tokens[at + 1].text != "sign" {
+            continue;
+        }
+        let held = tokens[at.saturating_sub(4)..at].iter().any(|token| {
+            matches!(
+                token.text.as_str(),
+                "held" | "handheld" | "holding" | "holds" | "waving" | "carrying" | "wielding"
+            )
+        });
+        let paddle = tokens.get(at + 2).is_some_and(|next| next.text == "paddle");
+        if held || paddle {
+            for (token, name) in tokens[at..].iter_mut().zip(["signal", "paddle"]) {
+                name.clone_into(&mut token.text);
+            }
+        }
+    }
 }
 
 /// Nouns that nobody knows, and that may be a road user: "a gleeper was", "by a gleeper".

@@ -1,9 +1,9 @@
 //! Nouns, parts and pronouns: who is meant by them, and whether a clause begins with them or they belong to the verb before.
 
 use super::parser::{Carry, Mention, Parser};
-use super::row::{relation_behind, transitive};
+use super::row::{another_finite, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
-use crate::lexicon::Sense;
+use crate::lexicon::{Adjective, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Kind, KindGroup};
 
@@ -16,6 +16,9 @@ impl Parser<'_> {
             let actor = self.its(carry);
             self.mention(Mention { actor, piece: None, person: None, end: placed.end }, placed, carry, next);
             return false;
+        }
+        if self.is_what_it_is(noun, all, at, carry) {
+            return true;
         }
         let hint = relation_behind(all, at);
         if let Some(actor) = self.apposed(noun, all, at, carry) {
@@ -48,6 +51,16 @@ impl Parser<'_> {
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
         false
+    }
+
+    /// "The AV was the lead vehicle stopped at a light", "waited as the first car in line": what it is, and nobody else.
+    fn is_what_it_is(&self, noun: &Noun, all: &[Placed], at: usize, carry: &Carry) -> bool {
+        let first = noun.adjectives.iter().any(|adjective| matches!(adjective, Adjective::Lead | Adjective::First));
+        let vehicle = noun.kind.is_some_and(Kind::is_vehicle) && noun.occupant.is_none() && !noun.several;
+        let of_subject =
+            carry.subject.as_ref().is_some_and(|subject| subject.actor == SUBJECT && subject.piece.is_none());
+        let as_one = at > 0 && self.tokens[all[at - 1].first].text == "as" && !another_finite(all, at);
+        first && vehicle && of_subject && (carry.be || as_one)
     }
 
     /// "its toolbox scratched the door": whose it is does so.
@@ -131,6 +144,9 @@ impl Parser<'_> {
 
     /// Somebody is named: where somebody is, behind a preposition, as the object of the verb before, or as who a clause is about.
     pub(super) fn mention(&mut self, mention: Mention, placed: &Placed, carry: &mut Carry, next: Option<&Chunk>) {
+        if let Some(thing) = carry.attached.take() {
+            self.attach(thing, mention.actor);
+        }
         if let Some(relation) = carry.relation.take() {
             self.relate(relation, Some(mention.actor), carry);
             // "was eastbound alongside cars parked there": the cars.
@@ -158,6 +174,22 @@ impl Parser<'_> {
         match open {
             Some(frame) if !carry.after_comma => self.object(frame, mention, placed, carry),
             _ => self.subject(mention, carry, next),
+        }
+    }
+
+    /// "a dolly attached to the back of the truck": what is told of it in the sentence is told of the truck.
+    fn attach(&mut self, thing: Actor, vehicle: Actor) {
+        let kind = |actor: Actor| self.world.actors[actor].kind;
+        let drawn = kind(thing).is_some_and(|kind| kind.group() == KindGroup::Object || kind == Kind::Trailer);
+        let draws = vehicle != SUBJECT && kind(vehicle).is_some_and(Kind::is_vehicle);
+        if !drawn || !draws || thing == vehicle {
+            return;
+        }
+        self.world.tow(vehicle, thing);
+        for frame in self.frames.iter_mut().filter(|frame| frame.sentence == self.sentence) {
+            for actor in [&mut frame.who, &mut frame.object] {
+                *actor = actor.map(|actor| if actor == thing { vehicle } else { actor });
+            }
         }
     }
 

@@ -6,7 +6,7 @@ use super::row::transitive;
 use crate::chunk::{Chunk, Placed};
 use crate::lexicon::{Form, Progress, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Kind, KindGroup};
+use recrash_model::account::{Act, Kind, KindGroup, LeftRight};
 
 impl Parser<'_> {
     /// A noun behind a preposition.
@@ -30,6 +30,16 @@ impl Parser<'_> {
                 self.frames[frame].object.get_or_insert(mention.actor);
             }
             "toward" | "towards" => self.comes_toward(frame, mention),
+            "around" | "past" if self.goes_past(frame, mention) => {
+                let taken = &mut self.frames[frame];
+                taken.sense = Sense::Act(Act::Pass);
+                (taken.object, taken.end) = (Some(mention.actor), placed.end);
+                // "around and to the left of it": it is on the right.
+                if let (Some(SUBJECT), Some(side)) = (taken.who, taken.side) {
+                    let other = if side == LeftRight::Left { Relation::Right } else { Relation::Left };
+                    self.note(mention.actor, other);
+                }
+            }
             "of" | "for" | "in" | "through" | "around" | "past" | "across" | "from" | "near" | "under" | "over" => {
                 let taken = &mut self.frames[frame];
                 if taken.object.is_none() && transitive(taken.sense) && !taken.is_contact() {
@@ -38,6 +48,17 @@ impl Parser<'_> {
             }
             _ => {}
         }
+    }
+
+    /// "proceeded slowly past two workers", "steered around the truck".
+    fn goes_past(&self, frame: usize, mention: &Mention) -> bool {
+        let taken = &self.frames[frame];
+        let moves = matches!(
+            taken.sense,
+            Sense::Act(Act::Follow | Act::SetOff | Act::Drift | Act::Accelerate | Act::Pass | Act::PullOut)
+        );
+        let by = self.world.actors[mention.actor].kind.is_some_and(|kind| kind.group() != KindGroup::Object);
+        moves && by && taken.who.is_some_and(|who| who != mention.actor) && mention.piece.is_none()
     }
 
     /// "was towed by a truck".

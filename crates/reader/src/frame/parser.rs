@@ -87,6 +87,8 @@ pub(super) struct Carry {
     pub(super) stranger: bool,
     /// "Between" waits for the second of a pair.
     pub(super) pair: bool,
+    /// A thing that is attached to who is named next.
+    pub(super) attached: Option<Actor>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -165,6 +167,10 @@ impl Parser<'_> {
 fn preposition(word: &'static str, carry: &mut Carry) {
     // "out of" goes out.
     let out = word == "of" && carry.preposition == Some("out");
+    // "past a row of parked cars".
+    if word == "of" && matches!(carry.preposition, Some("past" | "around")) {
+        return;
+    }
     carry.preposition = if out { Some("out") } else { Some(word) };
     carry.relation = None;
     carry.to |= word == "to";

@@ -311,8 +311,16 @@ pub(super) fn relation_behind(all: &[Placed], at: usize) -> Option<Relation> {
     let goes_on = |at: usize| match all.get(at).map(|p| &p.chunk) {
         Some(Chunk::Verb(Sense::Act(Act::Follow) | Sense::Approach, Form::Ing) | Chunk::Relative | Chunk::Be) => true,
         // "the car that was stopped behind it".
-        Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold), _)) => {
-            matches!(all[at - 1].chunk, Chunk::Be | Chunk::Relative)
+        Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold), _))
+            if matches!(all[at - 1].chunk, Chunk::Be | Chunk::Relative) =>
+        {
+            true
+        }
+        // "The van stopped in front of it reversed": its verb stands behind.
+        Some(Chunk::Verb(Sense::Act(Act::Stop | Act::Hold) | Sense::Parked, Form::Past))
+            if matches!(all[at - 1].chunk, Chunk::Noun(_)) =>
+        {
+            another_finite(all, at)
         }
         // "the car that had been behind it".
         Some(Chunk::Word) => matches!(all[at - 1].chunk, Chunk::Relative),

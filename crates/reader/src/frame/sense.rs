@@ -11,8 +11,8 @@ use recrash_model::account::Act;
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 7] =
-    [stands_backed_up, remains_so, is_ridden, blows_another, nearly_stops, moves_another, holds_a_thing];
+const SENSES: [Rule; 8] =
+    [stands_backed_up, remains_so, is_ridden, blows_another, nearly_stops, half_stops, moves_another, holds_a_thing];
 
 impl Parser<'_> {
     /// What a verb says here.
@@ -67,6 +67,22 @@ fn nearly_stops(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Optio
     let before = verb.placed().first.checked_sub(1).map_or("", |at| parser.tokens[at].text.as_str());
     let nearly = verb.sense == Sense::Act(Act::Stop) && matches!(before, "almost" | "nearly");
     nearly.then_some(Sense::Act(Act::Slow))
+}
+
+/// "failed to completely stop", "did not come to a full stop", "was unable to stop in time": it slowed. Of a sign or a light it is told that
+/// it was run.
+fn half_stops(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    if verb.sense != Sense::Act(Act::Stop) || !carry.negated {
+        return None;
+    }
+    let placed = verb.placed();
+    let word = |at: usize| parser.tokens.get(at).map_or("", |token| token.text.as_str());
+    let around = placed.first.saturating_sub(1)..placed.end + 2;
+    let whole = around.clone().any(|at| {
+        matches!(word(at), "completely" | "fully" | "entirely" | "complete" | "full" | "quite" | "altogether")
+    });
+    let control = (placed.end..placed.end + 7).any(|at| matches!(word(at), "sign" | "light" | "signal" | "line"));
+    (whole && !control).then_some(Sense::Act(Act::Slow))
 }
 
 /// "driving it forward into the van", "the impact moved the bus".

@@ -2,10 +2,17 @@
 
 use super::parser::{Carry, Mention, Parser};
 use super::row::acts;
-use crate::chunk::{Joint, Placed, Spot};
+use super::verb::Spoken;
+use crate::chunk::{Chunk, Joint, Placed, Spot};
 use crate::lexicon::{Form, Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, LeftRight};
+
+/// Participles that tell how somebody stands, and no act.
+const HOW_ONE_STANDS: [&str; 12] = [
+    "block", "obstruct", "encroach", "protrud", "occupy", "straddl", "jut", "extend", "stick", "reach", "imped",
+    "overhang",
+];
 
 impl Parser<'_> {
     /// What an adjective says that somebody does: "a passing van", "a left-turning bus".
@@ -185,6 +192,36 @@ impl Parser<'_> {
             return carry.last.clone();
         }
         carry.subject.clone()
+    }
+
+    /// "with traffic still waiting ahead, a van struck it": of the noun behind "with".
+    pub(super) fn beside(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        if verb.form != Form::Ing || carry.be || carry.began {
+            return None;
+        }
+        let touches = carry.frame.is_some_and(|frame| self.frames[frame].is_contact());
+        let word = |at: &usize| matches!(verb.all[*at].chunk, Chunk::Word);
+        let noun = (0..verb.at).rev().take(3).find(|at| !word(at))?;
+        let with = noun.checked_sub(1).is_some_and(|at| matches!(verb.all[at].chunk, Chunk::Preposition("with")));
+        let named = carry.last.as_ref().filter(|last| last.end == verb.all[noun].end && last.piece.is_none())?;
+        (with && !touches && acts(self.world.actors[named.actor].kind)).then(|| named.clone())
+    }
+
+    /// "came upon a truck stopped in the road, blocking two lanes, and reaching into its own": of the truck, and whether it stands so.
+    pub(super) fn stands_so(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<(Mention, bool)> {
+        if verb.form != Form::Ing || carry.be || !(carry.after_comma || carry.row || carry.joint.is_some()) {
+            return None;
+        }
+        let so = |word: &str| HOW_ONE_STANDS.iter().any(|stem| word.starts_with(stem));
+        let last = self.frames.last().filter(|frame| frame.sentence == self.sentence)?;
+        let who = last.who.filter(|who| *who != SUBJECT)?;
+        let stood = last.state && matches!(last.sense, Sense::Act(Act::Hold) | Sense::Parked)
+            || last.form == Form::Ing && last.sense == Sense::Other && so(&self.tokens[last.first].text);
+        // "a sweeper traveling along the curb, encroaching into its lane".
+        let moves = last.form == Form::Ing && last.act() == Some(Act::Follow);
+        let apart = carry.subject.as_ref().is_some_and(|subject| subject.actor != who);
+        let mention = Mention { actor: who, piece: None, person: None, end: last.end };
+        ((stood || moves) && apart && so(verb.word(self))).then_some((mention, stood))
     }
 
     /// Whether the noun named last stands right before.

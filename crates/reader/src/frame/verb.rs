@@ -56,8 +56,16 @@ impl Parser<'_> {
         if carry.place && carry.subject.is_none() {
             return;
         }
+        if self.is_attached(all, at) {
+            carry.attached = carry.last.as_ref().filter(|last| last.piece.is_none()).map(|last| last.actor);
+            carry.be = false;
+            return;
+        }
         let mut verb = Spoken { sense, form, all, at };
+        let stops = verb.sense == Sense::Act(Act::Stop);
         verb.sense = self.sense_here(&verb, carry);
+        // What did not end in a standstill was begun.
+        carry.negated &= !(stops && verb.sense == Sense::Act(Act::Slow));
         let finite = matches!(form, Form::Past | Form::Present) || form == Form::Ing && carry.be;
         leave_relative(&verb, carry);
         let own_progress = carry.progress;
@@ -70,7 +78,13 @@ impl Parser<'_> {
         verb.sense = if both { Sense::ContactMade } else { verb.sense };
         let to = std::mem::take(&mut carry.to) && form == Form::Base;
         let purpose = to && !carry.began;
-        let who = self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at));
+        let so = self.stands_so(&verb, carry);
+        if so.as_ref().is_some_and(|(_, stood)| *stood) {
+            verb.sense = Sense::Other;
+        }
+        let beside = so.map(|(mention, _)| mention).or_else(|| self.beside(&verb, carry));
+        let who =
+            beside.or_else(|| self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at)));
         let who = who.filter(|_| !carry.stranger && !both);
         let mut frame = self.begun_frame(&verb, who.as_ref(), carry);
         if leads {

@@ -4,7 +4,18 @@ use super::parser::{Carry, Mention, Parser};
 use crate::chunk::{Chunk, Placed, is_determiner};
 use crate::lexicon::{Form, Sense};
 
+/// Participles of a thing that a vehicle carries or draws.
+const ATTACHED: [&str; 8] =
+    ["attached", "hitched", "hooked", "coupled", "connected", "strapped", "secured", "fastened"];
+
 impl Parser<'_> {
+    /// Whether something is told to be "attached to" who is named next.
+    pub(super) fn is_attached(&self, all: &[Placed], at: usize) -> bool {
+        let word = |at: usize| self.tokens.get(at).map_or("", |token| token.text.as_str());
+        let end = all[at].end;
+        ATTACHED.contains(&word(all[at].first)) && end == all[at].first + 1 && word(end) == "to"
+    }
+
     /// Whether a comma before it still stands before what follows.
     pub(super) fn word(&mut self, all: &[Placed], at: usize, carry: &mut Carry) -> bool {
         let placed = &all[at];
@@ -20,10 +31,16 @@ impl Parser<'_> {
             return false;
         }
         let next = all.get(at + 1).map(|placed| &placed.chunk);
+        // "a dolly attached to the back of the truck": they are one.
+        if self.is_attached(all, at) {
+            carry.attached = carry.last.as_ref().filter(|last| last.piece.is_none()).map(|last| last.actor);
+        }
         // "time to turn" is no turn; "at which time it turned" is one.
         let waits_for = !matches!(word, "time" | "space" | "room" | "set" | "order" | "ready" | "route")
             || matches!(next, Some(Chunk::Preposition("to" | "for")));
-        if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for) {
+        // "nudged over in order to get by": a purpose like any other.
+        let in_order = word == "order" && placed.first > 0 && self.tokens[placed.first - 1].text == "in";
+        if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for && !in_order) {
             (carry.progress, carry.began) = (Some(progress), true);
         }
         // "the junction where Elm Street merges with Oak Street": nobody of the story does that.

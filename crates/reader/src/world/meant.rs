@@ -27,7 +27,7 @@ enum Meant {
 type Rule = fn(&mut World, &Sought<'_>) -> Option<Meant>;
 
 /// Who is meant by a noun with a kind: the first rule that says something counts.
-const RULES: [Rule; 12] = [
+const RULES: [Rule; 13] = [
     World::told_of_first,
     World::own_bus,
     World::behind_own_name,
@@ -38,6 +38,7 @@ const RULES: [Rule; 12] = [
     World::group,
     World::first,
     World::there,
+    World::elsewhere,
     World::parked,
     World::of_kind,
 ];
@@ -210,6 +211,25 @@ impl World {
             .map(Meant::Known)
     }
 
+    /// "The van behind it", where the only van that is known is ahead of it: another one.
+    fn elsewhere(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let other_end = match sought.hint? {
+            Relation::Behind => Relation::Ahead,
+            Relation::Ahead => Relation::Behind,
+            _ => return None,
+        };
+        let noun = sought.noun;
+        if noun.several || !noun.names.is_empty() || noun.number.is_some() || !sought.kind.is_vehicle() {
+            return None;
+        }
+        let fitting = |known: &Known| sought.fits(known) && !known.several;
+        let latest = self.latest(fitting)?;
+        let placed = &self.actors[latest].relations;
+        // Told of it alone, and as where it stood: who passes is ahead and behind.
+        let there = placed.len() == 1 && placed[0].0 == other_end;
+        there.then_some(Meant::New)
+    }
+
     /// "The parked car" is who was called so.
     fn parked(&mut self, sought: &Sought<'_>) -> Option<Meant> {
         if !sought.has(Adjective::Parked) || sought.noun.several {
@@ -239,7 +259,9 @@ impl World {
         let Some(found) = found else {
             // "The vehicle" of a story that knows no other one.
             let only = kind == Kind::Vehicle || kind == Kind::PassengerCar && self.plain && self.actors.len() == 1;
-            if known && only && hint.is_none() && noun.names.is_empty() {
+            // "Close to the parked cars": a group is none of the two.
+            let group = noun.several && sought.has(Adjective::Parked);
+            if known && only && hint.is_none() && noun.names.is_empty() && !group {
                 self.plain |= self.actors[SUBJECT].mentions == 0;
                 return Some(Meant::Known(SUBJECT));
             }

@@ -110,6 +110,8 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
     let feature = [RoadFeature::Roundabout, RoadFeature::Ramp]
         .into_iter()
         .find(|feature| account.place.features.iter().any(|known| known.value == *feature));
+    let features: Vec<String> = account.place.features.iter().map(|feature| coded(&feature.value)).collect();
+    let controls: Vec<String> = sv.controls.iter().map(|control| coded(&control.value.device)).collect();
     BTreeMap::from([
         ("crash_type", name(&account.crash_type)),
         ("role", name(&account.role)),
@@ -123,9 +125,12 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("door", name(&account.door)),
         ("left", if account.partner_left.is_some() { "yes".to_owned() } else { "no".to_owned() }),
         ("place", name(&account.place.kind)),
+        ("features", features.join(" ")),
         ("feature", feature.map(|feature| coded(&feature)).unwrap_or_default()),
         ("others", others.join(" ")),
         ("other_places", other_places.join(" ")),
+        ("sv_lane", name(&sv.lane)),
+        ("sv_controls", controls.join(" ")),
         ("sv_state", name(&sv.state)),
         ("standing", name(&sv.standing)),
         ("reason", sv.reasons.first().map(|reason| coded(&reason.value)).unwrap_or_default()),

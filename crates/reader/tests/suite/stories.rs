@@ -1,4 +1,5 @@
-//! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, and `families.toml`, each kind of crash in many wordings.
+//! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, `families.toml`, each kind of crash in many
+//! wordings, and `wordings.toml`, what was misread in many.
 
 use crate::common::{self, account_of, facts};
 use recrash_model::kinds::PartnerKind;
@@ -20,7 +21,7 @@ struct Story {
 }
 
 fn stories() -> Vec<Story> {
-    let files = [include_str!("stories.toml"), include_str!("families.toml")];
+    let files = [include_str!("stories.toml"), include_str!("families.toml"), include_str!("wordings.toml")];
     files.iter().flat_map(|text| toml::from_str::<File>(text).unwrap().story).collect()
 }
 

@@ -220,8 +220,42 @@ pub(super) fn side_of_lane(own: LaneWord, other: LaneWord) -> Option<LeftRight> 
     }
 }
 
+/// On which side the partner's lane lies where both are counted from one side: "the third lane from the right", "the rightmost lane".
+fn by_count(account: &Account) -> Option<LeftRight> {
+    let count = |fact: &Option<Fact<LaneWord>>| match &fact.as_ref()?.source {
+        Source::Words { text, .. } => counted(&text.to_lowercase()),
+        _ => None,
+    };
+    let ((own, from), (other, side)) = (count(&account.sv.lane)?, count(&account.partner.as_ref()?.lane)?);
+    match other.cmp(&own) {
+        _ if from != side => None,
+        std::cmp::Ordering::Less => Some(side),
+        std::cmp::Ordering::Equal => None,
+        std::cmp::Ordering::Greater => Some(side.other()),
+    }
+}
+
+/// Which lane from which side the words for it count.
+fn counted(words: &str) -> Option<(u8, LeftRight)> {
+    let side = match (words.contains("left"), words.contains("right")) {
+        (true, false) => LeftRight::Left,
+        (false, true) => LeftRight::Right,
+        _ => return None,
+    };
+    let number = words.split(|c: char| !c.is_alphanumeric()).find_map(|word| match word {
+        "second" | "2nd" => Some(2),
+        "third" | "3rd" => Some(3),
+        "leftmost" | "rightmost" | "left" | "right" => Some(1),
+        _ => None,
+    })?;
+    Some((number, side))
+}
+
 /// On which side the partner's lane lies.
 fn lane_side(account: &Account) -> Option<LeftRight> {
+    if let Some(side) = by_count(account) {
+        return Some(side);
+    }
     side_of_lane(account.sv.lane.as_ref()?.value, account.partner.as_ref()?.lane.as_ref()?.value)
 }
 

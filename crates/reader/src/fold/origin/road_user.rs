@@ -47,7 +47,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 32] = [
+const RULES: [Rule; 33] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -55,6 +55,7 @@ const RULES: [Rule; 32] = [
     |case| case.ahead_in_the_lane_that_was_left(),
     |case| case.backwards(),
     |case| case.opens_a_door(),
+    |case| case.passes_behind(),
     |case| case.on_a_side_street(),
     |case| case.enters_from_a_road(),
     |case| case.leaves_the_kerb(),
@@ -313,11 +314,37 @@ impl<'a> Case<'a> {
 
     /// A door of a parked one.
     fn opens_a_door(&self) -> Told {
-        if !self.parked || !self.did(Act::OpenDoor) {
+        // "was stopped in a curbside parking spot".
+        let stands = told(&self.partner.state).is_some_and(ContactState::stands);
+        let at_the_kerb = || at_curb(self.reading, self.actor) || in_stall(self.reading, self.actor).is_some();
+        if !(self.parked || stands && at_the_kerb()) || !self.did(Act::OpenDoor) {
             return None;
         }
         let opens = |frame: &Frame| frame.sense == Sense::Parked || frame.act() == Some(Act::OpenDoor);
         told_as(Origin::Parked { side: self.side_or_touched() }, self.clues.source(opens))
+    }
+
+    /// "passing behind it": across its rear, which is then on the side that it touches with.
+    fn passes_behind(&self) -> Told {
+        let (number, _) = self.frames().find(|(_, frame)| {
+            let word = self.reading.story.tokens[frame.first].text.as_str();
+            // "drove behind it" as well, where its flank met the rear of who stood.
+            let drove = self.sv_stands && only(self.partner, is_flank) && (word.starts_with("dr") || word == "went");
+            let crosses = word.starts_with("pass") || word.starts_with("cross") || drove;
+            crosses && frame.relations.contains(&(Relation::Behind, Some(SUBJECT)))
+        })?;
+        if !has_zone(&self.account.sv, Z::is_rear) {
+            return None;
+        }
+        let side = if has_zone(self.partner, |zone| matches!(zone, Z::Left | Z::FrontLeft | Z::RearLeft)) {
+            LeftRight::Left
+        } else if has_zone(self.partner, |zone| matches!(zone, Z::Right | Z::FrontRight | Z::RearRight)) {
+            LeftRight::Right
+        } else {
+            return None;
+        };
+        let (first, end) = self.reading.window(number);
+        told_as(Origin::Cross { side }, self.reading.words(first, end))
     }
 
     /// "on the cross street to its left".

@@ -1,0 +1,88 @@
+//! Words beside columns: what each of them says of zones, speeds and kinds.
+
+use crate::common::{self, facts};
+use recrash_model::kinds::PartnerKind;
+use recrash_model::record::{Coded, CrashRecord};
+use recrash_model::template::Movement;
+use recrash_model::zones::ContactZone as Z;
+use std::collections::BTreeMap;
+
+fn beside(text: &str, set: impl Fn(&mut CrashRecord)) -> BTreeMap<&'static str, String> {
+    let mut record = common::record("1-1", 1, text);
+    set(&mut record);
+    facts(&recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account"))
+}
+
+/// The zones of the subject vehicle of who ran into whose rear, beside this column.
+fn rear_zones(words: &str, column: &[Z]) -> String {
+    let text = format!("The AV was stopped at a red light when it was {words}.");
+    beside(&text, |record| record.sv_zones = column.to_vec()).remove("sv_zones").unwrap_or_default()
+}
+
+#[test]
+fn words_for_an_end_keep_the_one_corner_that_the_column_ticks() {
+    let words = ["rear-ended by a sedan", "struck in the rear by a sedan", "hit from behind by a sedan"];
+    for words in words {
+        assert_eq!(rear_zones(words, &[Z::RearLeft]), "rear rear_left", "{words}");
+        assert_eq!(rear_zones(words, &[Z::RearLeft, Z::Rear]), "rear rear_left", "{words}");
+        // Both corners are the whole end.
+        assert_eq!(rear_zones(words, &[Z::RearLeft, Z::Rear, Z::RearRight]), "rear", "{words}");
+    }
+}
+
+#[test]
+fn words_for_a_corner_stand_alone_before_a_coarser_column() {
+    for words in ["right rear corner", "rear right fender", "rear passenger side bumper"] {
+        let text = format!("The AV was stopped when a van made contact with the {words} of the AV.");
+        let zones = beside(&text, |record| record.sv_zones = vec![Z::Right]);
+        assert_eq!(zones["sv_zones"], "rear_right", "{words}");
+    }
+}
+
+#[test]
+fn who_slowed_to_stop_and_rolls_by_the_column_moves() {
+    let told = [
+        "The AV was traveling east and slowed to stop for a red light when a van made contact with the rear of the AV.",
+        "The AV, slowing to stop for a bus, was struck in the rear by a van.",
+        "As the AV slowed down to stop at the light, a van from behind hit the rear of the AV.",
+    ];
+    for text in told {
+        let rolls = beside(text, |record| {
+            (record.sv_movement, record.sv_speed_mps) = (Coded::Known(Movement::Straight), Some(1.3));
+        });
+        assert_eq!(rolls["sv_state"], "moving", "{text}");
+        assert!(rolls["sv_acts"].ends_with("slow"), "{text}: {}", rolls["sv_acts"]);
+        let stands = beside(text, |record| {
+            (record.sv_movement, record.sv_speed_mps) = (Coded::Known(Movement::Stopped), Some(0.0));
+        });
+        assert_eq!(stands["sv_state"], "stopped", "{text}");
+    }
+}
+
+#[test]
+fn a_speed_that_was_reached_before_the_stop_is_none_of_the_impact() {
+    let told = [
+        "The AV set off on green, accelerated up to about 10 mph, and slowed, eventually coming to a complete stop, when a van hit its rear.",
+        "The AV reached 10 mph in the junction, braked for a fence and came to a stop. A van then struck the rear of the AV.",
+        "After it had sped up to 10 mph, the AV stopped for a fence, and a van ran into the rear of the AV.",
+    ];
+    for text in told {
+        let facts = beside(text, |record| {
+            (record.sv_movement, record.sv_speed_mps) = (Coded::Known(Movement::Stopped), Some(4.47));
+        });
+        assert_eq!(facts["sv_state"], "stopped", "{text}");
+        assert!(!facts["sv_speed"].contains("impact"), "{text}: {}", facts["sv_speed"]);
+    }
+}
+
+#[test]
+fn a_numbered_car_is_what_the_bracket_or_the_column_says() {
+    let pickup = |record: &mut CrashRecord| record.partner = Coded::Known(PartnerKind::PickupTruck);
+    for text in [
+        "Car 1 was stopped at a light when car 2 struck the rear of car 1.",
+        "Car 1 was turning left when car 2 (Ford F-150) hit the rear of car 1.",
+        "Car 1 was parked. Car 2 reversed and its rear touched the front of car 1.",
+    ] {
+        assert_eq!(beside(text, pickup)["cp_kind"], "pickup", "{text}");
+    }
+}
