@@ -29,6 +29,7 @@ mod roadside;
 mod seen;
 mod side;
 mod sizes;
+mod speeds;
 mod strips;
 mod sweep;
 mod things;

@@ -6,8 +6,9 @@ use crate::lateral::{self, PULL_OUT_M};
 use crate::phases::{self, Lead, MOVES_UP_M, Phase};
 use crate::roadside;
 use crate::side::{Side, Turning};
+use crate::speeds::WALKS_MPS;
 use crate::things;
-use crate::told::{Told, WALKS_MPS};
+use crate::told::Told;
 use crate::touch::{Staging, size_of};
 use recrash_model::account::{
     Account, Act as Done, ContactState, ControlDevice, LeftRight, Manner, Obeyed, Origin, Party, Source, Striker,

@@ -7,11 +7,10 @@ use crate::kerb;
 use crate::lateral;
 use crate::layout::Layout;
 use crate::others::{self, Extra};
-use crate::pace::{self, GAINS_MPS, STARTS_AND_SLOWS_MPS};
 use crate::phases::{self, CONTACT_S};
 use crate::roadside;
-use crate::side::{Side, Slant, Slowed, Turning, side};
-use crate::things::{self, Lies, SLIDES_MPS};
+use crate::side::{Side, Slant, Turning, side};
+use crate::things::{self, Lies};
 use crate::touch::side_of;
 use crate::trailer::{self, Rig};
 use recrash_model::account::{
@@ -19,14 +18,10 @@ use recrash_model::account::{
     Source, Striker, Untold, told,
 };
 use recrash_model::account::{StandReason, Standing};
-use recrash_model::kinds::PartnerKind;
 use recrash_model::metrics::CheckKind;
 use recrash_model::narrative::FirstMover;
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
-
-/// Speed at which a partner that is thrown at the ego meets it, about. [m/s]
-const THROWN_MPS: f64 = 4.0;
 
 /// Who leaves its lane leaves it by so much, who comes from the kerb or goes there by so much, and who changes lanes has done so much
 /// of it at the contact. [m]
@@ -39,29 +34,6 @@ const LEAVES_KERB_M: f64 = 1.2;
 
 /// Who pulls out has left the kerb by so much. [m]
 const PULLS_OUT_M: f64 = 1.5;
-
-/// Who comes after an ego that comes to a stop, and does not stop, is no slower. [m/s]
-const AFTER_MPS: f64 = 5.2;
-
-/// Who sets off behind an ego that moves is faster than it by so much. [m/s]
-const SETS_OFF_FASTER_MPS: f64 = 1.0;
-
-/// Who turns beside an ego that turns is faster than it by so much. [m/s]
-const ABREAST_MPS: f64 = 1.0;
-
-/// An ego that is no faster than this creeps, and who was ahead beside its line drives so. [m/s]
-const CREEPS_MPS: f64 = 0.5;
-const NEARED_MPS: f64 = 1.2;
-
-/// Who merges in front of an ego that stops for it does so slowly. [m/s]
-const MERGES_MPS: f64 = 1.5;
-
-/// Usual speed on foot. [m/s]
-pub(crate) const WALKS_MPS: f64 = 1.4;
-
-/// Speed in a turn, usual and at most. [m/s]
-pub(crate) const TURNS_MPS: f64 = 5.0;
-const FASTEST_TURN_MPS: f64 = 7.0;
 
 /// An account, in the terms of a staging.
 #[derive(Debug, Clone, PartialEq)]
@@ -497,138 +469,6 @@ impl Told {
             matches!(self.cp.movement, Some(Movement::ChangingLanes | Movement::Merging)) && self.cp.stood_first;
         let behind = self.origin == Origin::Behind && self.cp.state != ContactState::Reversing;
         self.pushed && behind && self.thing.is_none() && !changes
-    }
-
-    /// Speed at the contact of somebody who drives, by the posted speed, or the usual one of such a place: who comes up behind
-    /// somebody that stands brakes, late; who passes or drifts has slowed; who crosses has slowed a little. [m/s]
-    fn driven_mps(&self) -> f64 {
-        let usual_mps = match self.place {
-            PlaceKind::Highway => 27.0,
-            PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway | PlaceKind::Alley => 5.0,
-            _ => 11.2,
-        };
-        // In a turn nobody drives at the posted speed.
-        if self.origin == Origin::Behind && matches!(self.sv.turning, Turning::Left | Turning::Right) {
-            return TURNS_MPS;
-        }
-        let share = match self.origin {
-            Origin::Behind | Origin::Ahead => 0.5,
-            Origin::Beside { .. } => 0.6,
-            Origin::Cross { .. } | Origin::Opposite => 0.7,
-            _ => 0.4,
-        };
-        let speed_mps = share * self.posted_mps.unwrap_or(usual_mps);
-        // Else it would be ahead of an ego that comes to a stop.
-        let comes_after = matches!(self.origin, Origin::Behind | Origin::Beside { .. }) && usual_mps > 6.0;
-        if comes_after { speed_mps.max(AFTER_MPS) } else { speed_mps }
-    }
-
-    /// Speeds at the contact: as told, or such that who closes on whom does.
-    fn speeds(&mut self) {
-        let (driven_mps, slides) = (self.driven_mps(), self.is_sliding());
-        // Who came up to one that was ahead beside its line, and hardly moves, came faster.
-        let beside_ahead = matches!(self.origin, Origin::Beside { .. }) && self.ahead == Some(true);
-        let creeps = self.sv.impact_mps.is_some_and(|mps| mps <= CREEPS_MPS) && self.sv.state == ContactState::Moving;
-        let neared = beside_ahead && creeps && self.sv.turning == Turning::No && !self.sv.stood_first;
-        let neared = neared && self.cp.turning == Turning::No && self.cp.state == ContactState::Moving;
-        if neared && self.sv.phases.is_empty() {
-            self.sv.slowed_from = self.sv.slowed_from.or(Some(Slowed(None)));
-        }
-        let crosses = matches!(self.origin, Origin::Cross { .. });
-        let usual = |side: &Side| match side.state {
-            ContactState::Stopped | ContactState::Parked => 0.0,
-            ContactState::SettingOff if side.control.is_some() && crosses => 4.0,
-            ContactState::SettingOff => 1.5,
-            ContactState::Reversing => 1.2,
-            ContactState::Moving if side.is_slow() => 3.0,
-            ContactState::Moving if side.stood_first => 4.0,
-            ContactState::Moving => match side.kind {
-                PartnerKind::Pedestrian => WALKS_MPS,
-                PartnerKind::Animal => 4.0,
-                PartnerKind::FixedObject if slides => SLIDES_MPS,
-                PartnerKind::Cyclist | PartnerKind::OtherNonMotorist => 4.5,
-                _ if side.turning != Turning::No => TURNS_MPS,
-                _ => driven_mps,
-            },
-        };
-        let slow = matches!(self.place, PlaceKind::ParkingLot | PlaceKind::Garage | PlaceKind::Driveway);
-        let fit = |speed: f64| if slow { speed.min(3.0) } else { speed };
-        self.sv.speed_mps = match (self.sv.impact_mps, self.sv.state.stands()) {
-            (_, true) => 0.0,
-            (Some(told), false) => told.max(0.4),
-            (None, false) => fit(usual(&self.sv)),
-        };
-        self.cp.speed_mps = match (self.cp.impact_mps, self.cp.state.stands()) {
-            // It is thrown at the ego.
-            _ if self.is_thrown() => THROWN_MPS,
-            (_, true) => 0.0,
-            (Some(told), false) => told.max(0.4),
-            (None, false) if self.queues() => fit(pace::QUEUED_MPS),
-            (None, false) => pace::as_told(self.cp.manner, fit(usual(&self.cp)), slow, self.posted_mps),
-        };
-        // Who sets off behind an ego that moves is faster.
-        let sets_off = self.cp.state == ContactState::SettingOff || self.queues();
-        if self.cp.impact_mps.is_none() && sets_off && self.origin == Origin::Behind {
-            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + SETS_OFF_FASTER_MPS);
-        }
-        // So is who set off behind an ego that slowed again: as fast as that was between.
-        let waits = self.cp.stood_first || sets_off;
-        let slowed = self.sv.stood_first && self.sv.slowed_from.is_some();
-        if self.cp.impact_mps.is_none() && self.origin == Origin::Behind && waits && slowed {
-            self.cp.speed_mps = self.cp.speed_mps.max(self.sv.speed_mps + STARTS_AND_SLOWS_MPS);
-        }
-        if self.cp.impact_mps.is_none() && self.cp.state == ContactState::Moving && !self.comes_across() {
-            let sv = self.sv.speed_mps;
-            match self.origin {
-                // Whom the ego passes, and who was ahead of it, is slower.
-                Origin::Beside { .. }
-                    if sv > 0.5
-                        && (self.sv.movement == Some(Movement::Passing)
-                            || self.ahead == Some(true) && self.cp.turning == Turning::No) =>
-                {
-                    // Of an ego that slows, as fast as that is at the end: it came faster.
-                    let slower = if self.sv.slowed_from.is_some() { sv } else { sv - 2.5 };
-                    self.cp.speed_mps = self.cp.speed_mps.min(slower.max(0.4));
-                }
-                Origin::Beside { .. } if neared => self.cp.speed_mps = NEARED_MPS,
-                // Who turns beside an ego that turns is hardly faster.
-                Origin::Beside { .. } if self.sv.turning != Turning::No && self.cp.turning == self.sv.turning => {
-                    self.cp.speed_mps = sv + ABREAST_MPS;
-                }
-                // Who turns across from beside came up beside it, and slowed for its turn.
-                Origin::Beside { .. } if matches!(self.cp.turning, Turning::Left | Turning::Right) => {
-                    self.cp.speed_mps = self.cp.speed_mps.max((sv + 2.5).min(FASTEST_TURN_MPS));
-                }
-                Origin::Behind | Origin::Beside { .. }
-                    if self.sv.state != ContactState::Reversing && !self.cp.stood_first && !self.queues() =>
-                {
-                    self.cp.speed_mps = self.cp.speed_mps.max(sv + 2.5);
-                }
-                // Who turns round ahead of it came along as fast as it.
-                Origin::Ahead if sv > 0.5 && self.cp.turning == Turning::Round => {
-                    self.cp.speed_mps = self.cp.speed_mps.min(sv);
-                }
-                Origin::Ahead if sv > 0.5 => self.cp.speed_mps = self.cp.speed_mps.min((sv - 2.0).max(0.3)),
-                _ => {}
-            }
-        }
-        if self.cp.impact_mps.is_none() && self.gives_way_to_merge {
-            self.cp.speed_mps = MERGES_MPS;
-        }
-        // Who gained speed came at the usual one.
-        if self.cp.impact_mps.is_none() && self.cp.gains {
-            self.cp.speed_mps += GAINS_MPS;
-        }
-        if self.cp.impact_mps.is_none() && !self.is_thrown() {
-            self.cp.speed_mps *= self.choices.partner_speed;
-        }
-        if self.sv.impact_mps.is_none() && !self.sv.state.stands() {
-            self.assumed.push(format!("the ego's speed at the contact: {:.1} m/s", self.sv.speed_mps));
-        }
-        if self.cp.impact_mps.is_none() && !self.cp.state.stands() {
-            let words = pace::manner_words(self.cp.manner);
-            self.assumed.push(format!("the partner's speed at the contact: {:.1} m/s{words}", self.cp.speed_mps));
-        }
     }
 }
 
