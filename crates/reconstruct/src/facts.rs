@@ -610,12 +610,16 @@ pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, rollout: &Rollout) ->
     keeping::off_lane_s(told, scenario, touch.track.filter(|track| track.id == "cp")?, touch.time_s)
 }
 
-/// How far the partner's way is from what nobody tells otherwise: half seconds off its lane, and weaving.
+/// How far the partner's way is from what nobody tells otherwise: half seconds off its lane, weaving, and leaving whom it rubs along.
 pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -> usize {
     let off_s = off_lane_s(told, scenario, rollout).unwrap_or(0.0);
     let touch =
         first_touch(rollout).and_then(|touch| Some((touch.track.filter(|track| track.id == "cp")?, touch.time_s)));
-    (2.0 * off_s) as usize + touch.map_or(0, |(track, time_s)| keeping::weaves(told, track, time_s))
+    let ego = rollout.ego_track();
+    let weaves = |(track, time_s)| {
+        keeping::weaves(told, track, time_s) + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
+    };
+    (2.0 * off_s) as usize + touch.map_or(0, weaves)
 }
 
 /// Whether somebody stood before a time.

@@ -148,3 +148,14 @@ pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
         && track.states[..=until].windows(2).any(|pair| sideways(pair) > SIDEWAYS_MPS2);
     [stays && goes_aside, stays && turned, swerves].into_iter().filter(|is| *is).count()
 }
+
+/// Whether somebody that passes and is told to touch with its flank or rear still moves away from the other one as it touches: it would not
+/// rub along it, but have left it.
+pub(crate) fn leaves_whom_it_passes(told: &Told, ego: &ActorTrack, track: &ActorTrack, contact_s: f64) -> bool {
+    let beside = !told.cp.zones.is_empty() && !told.cp.zones.iter().any(|zone| zone.is_front());
+    let step = ((contact_s / STEP_S) as usize).min(track.states.len() - 1);
+    let (met, other) = (&track.states[step], &ego.states[step.min(ego.states.len() - 1)]);
+    let along = Vec2::from_heading(other.heading);
+    let away_mps = along.cross(met.velocity()) * along.cross(met.position() - other.position()).signum();
+    told.passes_from_behind() && beside && away_mps > 0.0
+}

@@ -54,6 +54,12 @@ const FIRST_TRIES: usize = 24;
 pub(crate) const MOST_TRIES: usize = 400;
 const MOST_RUNS: usize = 1000;
 
+/// And where the same is tried in another way.
+const AGAIN_RUNS: usize = 100;
+
+/// Where one shows all that is told and nobody strays, no more are run to find one that keeps its lane better.
+const ENOUGH_RUNS: usize = 36;
+
 /// That a way of touching is a step farther from the told zones is worth as much as so many half seconds off its lane.
 const ZONE_STEP: usize = 3;
 
@@ -118,18 +124,18 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 /// comes straight to where it touches. What the two did is brought into the told order where it is not.
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
     let others: Vec<told::Told> = told.in_fewer_steps().into_iter().chain([told.coming_straight()]).collect();
-    let made = in_order(told, account);
+    let made = in_order(told, account, MOST_RUNS);
     let is_true = |made: &Result<Found, Untold>| made.as_ref().is_ok_and(|found| found.made.is_true());
     let other = match is_true(&made) {
         true => None,
-        false => others.into_iter().map(|told| in_order(told, account)).find(is_true),
+        false => others.into_iter().map(|told| in_order(told, account, AGAIN_RUNS)).find(is_true),
     };
     other.unwrap_or(made).map(|found| found.made)
 }
 
 /// The same, of which one is taken at another time that shows more of what the two did, and no less else.
-fn in_order(told: told::Told, account: &Account) -> Result<Found, Untold> {
-    let (told, mut best) = near_or_far(told, account)?;
+fn in_order(told: told::Told, account: &Account, most_runs: usize) -> Result<Found, Untold> {
+    let (told, mut best) = near_or_far(told, account, most_runs)?;
     if !best.made.is_true() {
         return Ok(best);
     }
@@ -137,7 +143,9 @@ fn in_order(told: told::Told, account: &Account) -> Result<Found, Untold> {
         if acts_left_open(&best.made) == 0 {
             break;
         }
-        let other = searched(told, account).ok().filter(|other| other.made.is_true() && other.strays <= best.strays);
+        let other = searched(told, account, AGAIN_RUNS)
+            .ok()
+            .filter(|other| other.made.is_true() && other.strays <= best.strays);
         let open = |found: &Found| (acts_left_open(&found.made), left_open(&found.made));
         if let Some(other) = other.filter(|other| open(other).0 < open(&best).0 && open(other).1 <= open(&best).1) {
             best = other;
@@ -147,13 +155,13 @@ fn in_order(told: told::Told, account: &Account) -> Result<Found, Untold> {
 }
 
 /// Who was behind the ego in a queue stands close to it; farther off where nothing true is found with that.
-fn near_or_far(told: told::Told, account: &Account) -> Result<(told::Told, Found), Untold> {
-    let near = searched(told.clone(), account);
+fn near_or_far(told: told::Told, account: &Account, most_runs: usize) -> Result<(told::Told, Found), Untold> {
+    let near = searched(told.clone(), account, most_runs);
     let good = |found: &Result<Found, Untold>| found.as_ref().is_ok_and(|found| found.made.is_true() && !found.strays);
     if good(&near) {
         return near.map(|found| (told, found));
     }
-    let afar = told.afar().map(|told| (searched(told.clone(), account), told));
+    let afar = told.afar().map(|told| (searched(told.clone(), account, AGAIN_RUNS), told));
     match afar.filter(|(far, _)| good(far) || !near.as_ref().is_ok_and(|near| near.made.is_true())) {
         Some((far, told)) => far.map(|found| (told, found)),
         None => near.map(|found| (told, found)),
@@ -166,8 +174,8 @@ struct Found {
     strays: bool,
 }
 
-fn searched(told: told::Told, account: &Account) -> Result<Found, Untold> {
-    let mut search = Search::default();
+fn searched(told: told::Told, account: &Account, most_runs: usize) -> Result<Found, Untold> {
+    let mut search = Search { most_runs, ..Search::default() };
     let mut variants: Vec<_> = told.variants().into_iter().map(|told| (told, None)).collect();
     'tried: for tries in [0..FIRST_TRIES, FIRST_TRIES..MOST_TRIES] {
         for (told, stagings) in &mut variants {
@@ -207,6 +215,7 @@ struct Search {
     fullest: Option<(usize, Best)>,
     refused: usize,
     runs: usize,
+    most_runs: usize,
 }
 
 impl Search {
@@ -216,7 +225,7 @@ impl Search {
             self.refused += 1;
             return false;
         };
-        if self.runs == MOST_RUNS {
+        if self.runs == self.most_runs {
             return true;
         }
         self.runs += 1;
@@ -246,7 +255,8 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        shows == (0, false, false, 0) && off == 0
+        let enough = self.runs >= ENOUGH_RUNS && self.best.as_ref().is_some_and(Best::shows_all);
+        shows == (0, false, false, 0) && off == 0 || enough
     }
 }
 
@@ -275,6 +285,11 @@ struct Best {
 }
 
 impl Best {
+    /// Whether every told fact is shown, and nobody strays.
+    fn shows_all(&self) -> bool {
+        matches!(self.cost, (0, false, false, 0, _))
+    }
+
     /// The same with those who have no part in what the ego does, where nothing told is missed for them.
     fn with_near(self) -> Reconstruction {
         let Self { cost, made, told, ground } = self;
