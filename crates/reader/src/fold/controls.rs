@@ -38,6 +38,13 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         for at in first..end {
             let words: Vec<&str> = tokens[at..end.min(at + 4)].iter().map(|token| token.text.as_str()).collect();
             let Some((device, state, length)) = named(&words) else { continue };
+            // "as there is no stop sign", "without a signal".
+            let none = (1..3).any(|back| {
+                at.checked_sub(back).is_some_and(|at| matches!(tokens[at].text.as_str(), "no" | "without"))
+            });
+            if none && !frame.negated {
+                continue;
+            }
             let broken = match device {
                 ControlDevice::Signal => ran == Some(Act::RunRed),
                 _ => ran == Some(Act::RunStop),

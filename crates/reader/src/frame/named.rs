@@ -48,6 +48,12 @@ impl Parser<'_> {
                 carry.frame = None;
             }
         }
+        // "As it was passing the van a coupe reversed": the coupe begins the clause around it.
+        let beside = carry.last.as_ref().is_some_and(|last| last.end == placed.first && last.piece.is_none());
+        let inner = carry.joint.is_some_and(|joint| joint != Joint::And) && carry.has_verb && !carry.relative;
+        if beside && inner && noun.article == Article::Indefinite && carry.preposition.is_none() {
+            carry.after_comma |= another_finite(all, at);
+        }
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
         false
@@ -104,8 +110,13 @@ impl Parser<'_> {
         let placed = &all[at];
         if let Some(owner) = &piece.owner {
             let hint = relation_behind(all, at);
+            let verb = all.get(at + 1).map(|next| &next.chunk);
+            self.world.touches = matches!(verb, Some(Chunk::Verb(Sense::Contact, _)));
             let actor = self.world.resolve(owner, (placed.first, placed.end), hint);
-            let actor = self.as_a_result(actor, placed.first);
+            self.world.touches = false;
+            let told = owner.compass.is_some()
+                || owner.adjectives.iter().any(|word| matches!(word, Adjective::First | Adjective::Another));
+            let actor = if told { actor } else { self.as_a_result(actor, placed.first) };
             self.attribute(owner, actor, placed, carry);
             return Some(actor);
         }
@@ -162,6 +173,14 @@ impl Parser<'_> {
             return;
         }
         if let Some(preposition) = carry.preposition.take() {
+            // "a coupe east of the van reversed": where the coupe was.
+            let place = preposition == "of" && placed.first >= 2 && {
+                let word = self.tokens[placed.first - 2].text.as_str();
+                matches!(word, "north" | "south" | "east" | "west") && carry.frame.is_none()
+            };
+            if place && carry.subject.is_some() {
+                return;
+            }
             self.object_of(preposition, &mention, placed, carry);
             carry.last = Some(mention);
             (carry.governed, carry.to) = (true, false);

@@ -288,6 +288,15 @@ pub(super) fn another_finite(all: &[Placed], at: usize) -> bool {
     false
 }
 
+/// Whether a finite verb stands right behind the next comma: "stopped behind it, set off".
+pub(super) fn goes_on_behind_comma(behind: &[Placed]) -> bool {
+    let joins = |placed: &&Placed| !matches!(placed.chunk, Chunk::Joint(_));
+    let mut rest = behind.iter().take_while(joins).map(|placed| &placed.chunk);
+    let comma = rest.any(|chunk| matches!(chunk, Chunk::Comma));
+    let next = rest.find(|chunk| !matches!(chunk, Chunk::Word));
+    comma && matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be))
+}
+
 pub(super) fn next_preposition(all: &[Placed], at: usize) -> Option<&'static str> {
     all[at + 1..].iter().take(4).find_map(|placed| match placed.chunk {
         Chunk::Preposition(word) => Some(word),
