@@ -138,7 +138,7 @@ impl Parser<'_> {
         // "It waited and, although a message came, opened its door": who the sentence is about goes on.
         let goes_on = matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present)));
         // "It stopped and, after a bus had gone by, turned": it turned.
-        if let Some(main) = carry.resumes.take_if(|_| goes_on && carry.has_verb) {
+        if let Some(main) = carry.resumes.take_if(|_| goes_on) {
             (carry.stranger, carry.row, carry.has_verb, carry.joint) = (false, true, true, None);
             (carry.subject, carry.main, carry.frame) = (Some(main.clone()), Some(main), None);
             carry.clause += 1;
@@ -151,7 +151,7 @@ impl Parser<'_> {
         let still = carry
             .described
             .take()
-            .filter(|described| carry.frame.is_some_and(|frame| self.frames[frame].who == Some(described.actor)));
+            .filter(|described| carry.frame.is_none_or(|frame| self.frames[frame].who == Some(described.actor)));
         carry.described = carry.subject.clone().filter(|_| carry.relative).or(still);
         if carry.relative && carry.has_verb {
             // A relative clause ends at its comma.

@@ -1,7 +1,7 @@
 //! Nouns, parts and pronouns: who is meant by them, and whether a clause begins with them or they belong to the verb before.
 
 use super::parser::{Carry, Mention, Parser};
-use super::row::{another_finite, relation_behind, transitive};
+use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
 use crate::lexicon::{Adjective, Sense};
 use crate::world::{Actor, SUBJECT};
@@ -49,10 +49,14 @@ impl Parser<'_> {
             }
         }
         // "As it was passing the van a coupe reversed": the coupe begins the clause around it.
-        let beside = carry.last.as_ref().is_some_and(|last| last.end == placed.first && last.piece.is_none());
+        let open = carry.frame.is_some_and(|frame| {
+            let frame = &self.frames[frame];
+            frame.object.is_none() && transitive(frame.sense) && frame.act() != Some(Act::Follow)
+        });
         let inner = carry.joint.is_some_and(|joint| joint != Joint::And) && carry.has_verb && !carry.relative;
-        if beside && inner && noun.article == Article::Indefinite && carry.preposition.is_none() {
-            carry.after_comma |= another_finite(all, at);
+        let loose = carry.preposition.is_none() && carry.relation.is_none() && !carry.be && !open;
+        if loose && inner && carry.mains.len() == 1 && noun.article == Article::Indefinite {
+            carry.after_comma |= another_finite(all, at) || goes_on_behind_comma(&all[at + 1..]);
         }
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);

@@ -288,13 +288,16 @@ pub(super) fn another_finite(all: &[Placed], at: usize) -> bool {
     false
 }
 
-/// Whether a finite verb stands right behind the next comma: "stopped behind it, set off".
+/// Whether a finite verb stands right behind a comma, up to the next word that joins clauses: "stopped behind it, set off".
 pub(super) fn goes_on_behind_comma(behind: &[Placed]) -> bool {
-    let joins = |placed: &&Placed| !matches!(placed.chunk, Chunk::Joint(_));
-    let mut rest = behind.iter().take_while(joins).map(|placed| &placed.chunk);
-    let comma = rest.any(|chunk| matches!(chunk, Chunk::Comma));
-    let next = rest.find(|chunk| !matches!(chunk, Chunk::Word));
-    comma && matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be))
+    let clause: Vec<&Chunk> = behind
+        .iter()
+        .map(|placed| &placed.chunk)
+        .take_while(|chunk| !matches!(chunk, Chunk::Joint(_)))
+        .filter(|chunk| !matches!(chunk, Chunk::Word))
+        .collect();
+    let finite = |chunk: &Chunk| matches!(chunk, Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be);
+    clause.windows(2).any(|pair| matches!(pair[0], Chunk::Comma) && finite(pair[1]))
 }
 
 pub(super) fn next_preposition(all: &[Placed], at: usize) -> Option<&'static str> {

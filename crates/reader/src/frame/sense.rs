@@ -11,7 +11,7 @@ use recrash_model::account::Act;
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 10] = [
+const SENSES: [Rule; 11] = [
     stands_backed_up,
     remains_so,
     is_ridden,
@@ -22,6 +22,7 @@ const SENSES: [Rule; 10] = [
     holds_a_thing,
     gets_in,
     stands_open,
+    swings_over,
 ];
 
 impl Parser<'_> {
@@ -122,4 +123,13 @@ fn stands_open(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option
         .any(|token| matches!(token.text.as_str(), "with" | "had" | "having"));
     let open = parser.tokens[placed.end - 1].text == "open";
     (verb.sense == Sense::Act(Act::OpenDoor) && had && open).then_some(Sense::Other)
+}
+
+/// "swung left into the van's lane" is no turn at a corner.
+fn swings_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let Sense::Sided(Act::Turn, side) = verb.sense else { return None };
+    let swings = ["sw", "cut", "hook"].iter().any(|stem| verb.word(parser).starts_with(stem));
+    let behind = &parser.tokens[verb.placed().end..];
+    let lane = behind.windows(2).take(5).any(|pair| pair[0].text == "'s" && pair[1].text == "lane");
+    (swings && lane).then_some(Sense::Sided(Act::Drift, side))
 }

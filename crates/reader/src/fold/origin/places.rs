@@ -82,7 +82,8 @@ pub(super) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
                 && matches!(word(at + 1), "on" | "to")
                 && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
             // "from the perpendicular left of it".
-            let square = word(at) == "perpendicular" && matches!(word(at + 1), "left" | "right");
+            let square = word(at) == "perpendicular" && matches!(word(at + 1), "left" | "right")
+                || matches!(word(at), "street" | "road") && word(at + 1) == "perpendicular";
             crosses && road || there || square
         })
     })
