@@ -54,7 +54,7 @@ impl Parser<'_> {
             frame.object.is_none() && transitive(frame.sense) && frame.act() != Some(Act::Follow)
         });
         let inner = carry.joint.is_some_and(|joint| joint != Joint::And) && carry.has_verb && !carry.relative;
-        let loose = carry.preposition.is_none() && carry.relation.is_none() && !carry.be && !open;
+        let loose = carry.preposition.is_none() && carry.relation.is_none() && !(carry.be || carry.fresh || open);
         if loose && inner && carry.mains.len() == 1 && noun.article == Article::Indefinite {
             carry.after_comma |= another_finite(all, at) || goes_on_behind_comma(&all[at + 1..]);
         }
