@@ -42,6 +42,8 @@ pub struct Noun {
     pub one_of: bool,
     /// It is called a tractor, the front half of a truck.
     pub tractor: bool,
+    /// It is called the second.
+    pub second: bool,
     /// More than one.
     pub several: bool,
     /// Somebody in a vehicle.
@@ -63,6 +65,7 @@ impl Noun {
             compass: None,
             one_of: false,
             tractor: false,
+            second: false,
             several: false,
             occupant: None,
             owner: None,

@@ -174,6 +174,7 @@ impl Chunker<'_> {
                     draft.noun.names.push(word.to_owned());
                 }
                 draft.noun.several |= matches!(word, "several" | "multiple" | "many" | "two" | "three" | "four");
+                draft.noun.second |= word == "second";
                 draft.noun.adjectives.push(adjective);
             }
             Meaning::Make if capital || draft.make => {
@@ -354,6 +355,12 @@ impl Chunker<'_> {
         {
             return None;
         }
+        // "the bus only lane", "its vehicle speed".
+        let behind = |ahead: usize| self.text(at + found.length + ahead);
+        let only = behind(0) == "only" && matches!(behind(1), "lane" | "lanes");
+        if only || self.text(at) == "vehicle" && matches!(behind(0), "speed" | "speeds") {
+            return None;
+        }
         // "light", "sign" of "traffic sign" and "stop sign" are no things that are struck, unless they are.
         if self.text(at) == "traffic"
             && matches!(
@@ -375,6 +382,12 @@ impl Chunker<'_> {
                     | "barrier"
                     | "island"
                     | "cones"
+                    | "rules"
+                    | "rule"
+                    | "law"
+                    | "laws"
+                    | "regulations"
+                    | "code"
             )
         {
             return None;

@@ -40,8 +40,13 @@ impl Chunker<'_> {
         if aside && first > self.first && self.tokens[first - 1].kind == TokenKind::Mark {
             return None;
         }
+        // "at the west side of the curb": a place.
+        let of_street = first > self.first
+            && self.compass_word(first - 1)
+            && self.text(first) == "side"
+            && (first..first + 4).any(|at| self.text(at) == "curb");
         self.parts(first, &mut draft);
-        if draft.piece.parts.is_empty() || draft.at == first {
+        if of_street || draft.piece.parts.is_empty() || draft.at == first {
             return None;
         }
         if self.text(first) == "our" {

@@ -39,6 +39,14 @@ fn in_lane_names(word: &str) -> bool {
 }
 
 impl Chunker<'_> {
+    /// Whether one of the eight directions stands here alone.
+    pub(super) fn compass_word(&self, at: usize) -> bool {
+        matches!(
+            self.text(at),
+            "north" | "northeast" | "east" | "southeast" | "south" | "southwest" | "west" | "northwest"
+        )
+    }
+
     /// One of eight directions, and its tokens.
     pub(super) fn compass(&self, at: usize) -> Option<(Compass, usize)> {
         let word = self.text(at);
@@ -103,8 +111,9 @@ impl Chunker<'_> {
         }
         // A street's name: "on West Elm Street", "US-9 South".
         let token = &self.tokens[at];
-        let named_behind =
-            self.tokens.get(at + length).is_some_and(|next| next.capital && next.kind != TokenKind::Name);
+        let named_behind = self.tokens.get(at + length).is_some_and(|next| {
+            next.capital && next.kind != TokenKind::Name || token.capital && next.text.contains("xxx")
+        });
         let named_before = at > self.first && self.tokens[at - 1].kind == TokenKind::Number;
         if (token.capital && named_behind)
             || named_before

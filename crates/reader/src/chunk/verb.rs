@@ -4,7 +4,7 @@
 
 use super::{Chunk, Chunker, DETERMINERS, Placed};
 use crate::lexicon::{Form, Found, Meaning, Sense};
-use recrash_model::account::{Act, KindGroup};
+use recrash_model::account::{Act, KindGroup, LeftRight};
 
 /// A phrase that the lexicon knows as a verb, and what stands around it.
 struct Candidate<'a> {
@@ -22,7 +22,7 @@ struct Candidate<'a> {
 }
 
 /// A phrase is no verb where one of these says so, whichever it is: their order does not matter.
-const NO_VERB: [fn(&Candidate<'_>) -> bool; 19] = [
+const NO_VERB: [fn(&Candidate<'_>) -> bool; 20] = [
     |verb| verb.is_determined(),
     |verb| verb.is_described(),
     |verb| verb.is_turn_of_a_side(),
@@ -37,6 +37,7 @@ const NO_VERB: [fn(&Candidate<'_>) -> bool; 19] = [
     |verb| verb.is_of_a_lane(),
     |verb| verb.is_the_back(),
     |verb| verb.is_of_a_pace_or_street(),
+    |verb| verb.is_a_speed(),
     |verb| verb.is_a_side_moved_to(),
     |verb| verb.is_an_opening(),
     |verb| verb.is_cross_traffic(),
@@ -228,6 +229,12 @@ impl Candidate<'_> {
             && matches!(self.word(1), "pace" | "speed" | "speeds" | "street" | "streets" | "roads")
     }
 
+    /// "at slow speeds".
+    fn is_a_speed(&self) -> bool {
+        let how = matches!(self.word_before, "slow" | "low" | "high" | "reduced" | "moderate" | "excessive" | "slower");
+        self.word(0) == "speeds" && (how || self.word_before == "at")
+    }
+
     /// "moved left without signaling".
     fn is_a_side_moved_to(&self) -> bool {
         let moves = ["mov", "veer", "turn", "steer", "swerv", "merg", "drift", "shift", "slid", "swung", "pull"];
@@ -251,9 +258,9 @@ impl Candidate<'_> {
         self.word(0) == "sliding" && matches!(self.word(1), "door" | "doors" | "gate")
     }
 
-    /// "the stop sign".
+    /// "the stop sign", "stop signs facing the other road".
     fn is_contacts_or_stop_sign(&self) -> bool {
-        self.word(0) == "contacts" || self.word(0) == "stop" && self.word(1) == "sign"
+        self.word(0) == "contacts" || self.word(0) == "stop" && matches!(self.word(1), "sign" | "signs")
     }
 
     /// "climbed the curb" is a contact; a hill is climbed too.
@@ -302,13 +309,26 @@ impl Chunker<'_> {
         // "coming from the left": where it comes from stands behind.
         let side = verb.behind(0) == "the" && matches!(verb.behind(1), "left" | "right" | "opposite" | "rear");
         let from = sense == Sense::Approach && found.length > 1 && verb.last_word() == "from" && side;
+        // "turning right onto the left lane" is a right turn.
+        let said = match verb.word(1) {
+            "left" => Some(LeftRight::Left),
+            "right" => Some(LeftRight::Right),
+            _ => None,
+        };
+        if let (Sense::Sided(Act::Turn, side), Some(said)) = (sense, said)
+            && side != said
+            && found.length > 2
+        {
+            return Some((Sense::Sided(Act::Turn, said), form, 2));
+        }
         Some((sense, form, if from { found.length - 1 } else { found.length }))
     }
 
     /// The longest verb of the lexicon here: "rolled into the roadway" touches nobody.
     fn verb_phrase(&self, at: usize) -> Option<Found> {
         let found = self.lexicon.longest(self.tokens, at, |meaning| matches!(meaning, Meaning::Verb(..)))?;
-        let touches = |meaning| matches!(meaning, Meaning::Verb(Sense::Contact | Sense::OpenDoorInto, _));
+        let touches =
+            |meaning| matches!(meaning, Meaning::Verb(Sense::Contact | Sense::ReverseContact | Sense::OpenDoorInto, _));
         if touches(found.meaning) && self.goes_to_a_place(at + found.length) {
             let others = |meaning| matches!(meaning, Meaning::Verb(..)) && !touches(meaning);
             return self.lexicon.longest(self.tokens, at, others);

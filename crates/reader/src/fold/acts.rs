@@ -4,6 +4,7 @@ use super::Reading;
 use crate::chunk::{Joint, Spot};
 use crate::frame::{Frame, sided};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
+use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, Manner, RoadFeature};
 use recrash_model::template::Movement;
@@ -15,7 +16,8 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
         let thrown = reading.contacts.earlier.contains(&number)
             && frame.object == Some(actor)
             && Some(actor) == reading.contacts.partner;
-        let pushed = thrown || (frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened());
+        let push = frame.sense == Sense::Push && frame.object == Some(actor) && frame.happened();
+        let pushed = thrown || push && !merely_caused(reading, number, frame);
         if doer(reading, frame) != Some(actor) && !pushed {
             continue;
         }
@@ -151,6 +153,21 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
     })
+}
+
+/// "It slid on the wet road. This caused the front of the car to touch it": nobody pushed the car.
+fn merely_caused(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let tokens = &reading.story.tokens;
+    let word = tokens[frame.first].text.as_str();
+    let before = &tokens[reading.story.sentences[frame.sentence].first..frame.first];
+    let blow = |token: &Token| {
+        matches!(token.text.as_str(), "impact" | "collision" | "contact" | "force" | "crash" | "hit" | "struck")
+    };
+    let touched = reading.story.frames[..number].iter().any(|other| {
+        let of_others = other.is_contact() && ![other.who, other.object].contains(&Some(SUBJECT));
+        of_others || other.sense == Sense::Push && other.happened()
+    });
+    word.starts_with("caus") && !touched && !before.iter().any(blow)
 }
 
 /// What somebody did last before a frame, of the frames that are wanted.

@@ -38,6 +38,13 @@ pub(super) fn controls(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Control>
         for at in first..end {
             let words: Vec<&str> = tokens[at..end.min(at + 4)].iter().map(|token| token.text.as_str()).collect();
             let Some((device, state, length)) = named(&words) else { continue };
+            // "as there is no stop sign", "without a signal", "does not have a light".
+            let before = |back: usize| at.checked_sub(back).map_or("", |at| tokens[at].text.as_str());
+            let none = (1..3).any(|back| matches!(before(back), "no" | "without"))
+                || (1..4).any(|back| before(back) == "have" && before(back + 1) == "not");
+            if none && !frame.negated {
+                continue;
+            }
             let broken = match device {
                 ControlDevice::Signal => ran == Some(Act::RunRed),
                 _ => ran == Some(Act::RunStop),

@@ -15,12 +15,18 @@ pub(super) fn driver(reading: &Reading<'_>) -> Option<Fact<Driver>> {
     // The crash is told first as a headline, and then again after what led to it.
     let early = story.standing.iter().position(|standing| !standing);
     let headline = reading.contacts.first.is_some_and(|first| Some(story.frames[first].sentence) == early);
+    // Or without the parts that met, and again with them.
+    let bare = reading.contacts.first.is_some_and(|first| {
+        let frame = &story.frames[first];
+        frame.on.is_none() && frame.with.is_none()
+    });
     let told_again = |number: usize| {
-        headline
+        (headline || bare)
             && story.frames[number + 1..].iter().any(|frame| {
                 frame.is_contact()
                     && !frame.looks_back
                     && !frame.aside
+                    && (headline || frame.on.is_some() || frame.with.is_some())
                     && [frame.who, frame.object].contains(&Some(SUBJECT))
             })
     };

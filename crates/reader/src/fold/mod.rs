@@ -227,6 +227,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     let is_thing = kind.is_some_and(|kind| kind.group() == KindGroup::Object && kind != Kind::Door);
     account.door = account.door.filter(|_| !is_thing);
     account.came_from = origin::came_from(&reading, &account);
+    party::front_by_column(&reading, &mut account);
     if let (Some(lane), Some(partner)) = (open::oncoming_lane(&reading, &account), &mut account.partner) {
         partner.lane = Some(lane);
     }

@@ -2,6 +2,7 @@
 
 use super::Reading;
 use crate::chunk::Joint;
+use crate::frame::Frame;
 use crate::lexicon::Sense;
 use crate::world::SUBJECT;
 use recrash_model::account::{
@@ -28,7 +29,7 @@ fn of_subject(reading: &Reading<'_>, account: &Account) -> Option<Fact<Movement>
     let sv = &account.sv;
     let column = reading.record.sv_movement.known();
     let kind = account.partner.as_ref().and_then(|partner| told(&partner.kind));
-    let mut movement = movement(&of_its_own(reading, sv, kind), column, "SV Pre-Crash Movement");
+    let mut movement = movement(reading, &of_its_own(reading, sv, kind), column, "SV Pre-Crash Movement");
     let drives = matches!(told(&sv.state), Some(ContactState::Moving | ContactState::SettingOff));
     if movement.is_none() && drives {
         movement = drives_on();
@@ -62,8 +63,9 @@ fn of_its_own(reading: &Reading<'_>, sv: &Party, partner: Option<Kind>) -> Party
     let elsewhere = !passes_partner && column.is_some_and(|column| column != Movement::Passing);
     sv.acts.retain(|fact| fact.act != Act::Pass || !elsewhere);
     // "proceeded straight past a stopped van".
-    let straight_past =
-        |fact: &ActFact| fact.act == Act::Pass && fact.side.is_none() && words_of(fact).contains(" past ");
+    let straight_past = |fact: &ActFact| {
+        fact.act == Act::Pass && fact.side.is_none() && format!("{} ", words_of(fact)).contains(" past ")
+    };
     sv.acts.retain(|fact| column != Some(Movement::Straight) || !straight_past(fact));
     // Who touches a thing on its way out of a lot is in no traffic yet.
     let thing = partner.is_some_and(|kind| kind.group() == KindGroup::Object);
@@ -84,7 +86,7 @@ fn of_partner(reading: &Reading<'_>, account: &Account, partner: &Party) -> Opti
         return None;
     }
     let column = reading.record.cp_movement.known();
-    let movement = movement(partner, column, "CP Pre-Crash Movement")
+    let movement = movement(reading, partner, column, "CP Pre-Crash Movement")
         .or_else(|| of_nothing_told(reading, account, partner, group));
     let passes = column == Some(Movement::Passing) || partner.did(Act::Pass);
     let from_side = matches!(
@@ -149,7 +151,8 @@ fn by_way(reading: &Reading<'_>, account: &Account, partner: &Party, mut fact: F
         fact.value = column;
     }
     let goes_on = matches!(fact.value, Movement::Straight | Movement::LaneDeparture | Movement::ChangingLanes);
-    if let (true, true, Some(source)) = (oncoming, goes_on, over_the_line(reading)) {
+    let over = || over_the_line(reading).or_else(|| into_its_lane(reading));
+    if let (true, true, Some(source)) = (oncoming, goes_on, if oncoming { over() } else { None }) {
         fact = Fact { value: Movement::CrossingIntoOpposingLane, source };
     }
     fact
@@ -195,6 +198,22 @@ fn over_the_line(reading: &Reading<'_>) -> Option<Source> {
             (first..end).any(|at| matches!(tokens[at].text.as_str(), "over" | "across" | "crossed" | "crossing"));
         (crosses && line && over).then(|| reading.of(frame))
     })
+}
+
+/// The words that bring one who comes the other way to its left, and into the lane of the subject vehicle.
+fn into_its_lane(reading: &Reading<'_>) -> Option<Source> {
+    let actor = reading.contacts.partner?;
+    let tokens = &reading.story.tokens;
+    let over = |frame: &Frame| matches!(frame.act(), Some(Act::Drift | Act::Swerve | Act::LaneChange | Act::Enter));
+    let mut moves = reading.before(actor).filter(|(_, frame)| frame.happened() && over(frame));
+    let left = reading.before(actor).any(|(_, frame)| over(frame) && frame.side == Some(LeftRight::Left));
+    let its_lane = |number: usize| {
+        let (first, end) = reading.window(number);
+        let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
+        (first..end).any(|at| word(at) == "'s" && word(at + 1) == "lane" || word(at) == "its" && word(at + 1) == "lane")
+    };
+    let (_, frame) = moves.find(|(number, _)| its_lane(*number))?;
+    left.then(|| reading.of(frame))
 }
 
 /// Whether the partner goes round somebody else, up to the contact.
@@ -274,7 +293,19 @@ fn words(source: &Source) -> String {
     }
 }
 
-fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<Movement>> {
+fn movement(reading: &Reading<'_>, party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<Movement>> {
+    // "changed lanes as it approached": at the same time, in the sentence of the contact.
+    let frame_of = |fact: &ActFact| reading.story.frames.get(fact.step as usize);
+    let contact = reading.contacts.first.map(|number| reading.story.frames[number].sentence);
+    let meanwhile = |fact: &ActFact| {
+        let changes = party.acts.iter().rev().find(|other| other.act == Act::LaneChange && other.step < fact.step);
+        frame_of(fact).zip(changes.and_then(frame_of)).is_some_and(|(near, change)| {
+            near.joint == Some(Joint::While)
+                && near.clause > change.clause
+                && contact == Some(near.sentence)
+                && near.sentence == change.sentence
+        })
+    };
     if let (Some(ContactState::Reversing), Some(Movement::ParkingManeuver)) = (told(&party.state), column) {
         return Some(Fact::of_column(Movement::ParkingManeuver, name));
     }
@@ -292,8 +323,9 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
     let before = || party.acts.iter().filter(|fact| !fact.after_contact);
     let mut best: Option<(u8, Movement, &Source)> = None;
     for fact in before() {
-        // Who goes on from a stop has done with going backwards.
+        // Who goes on from a stop has done with going backwards; who "reversing, approached" it has not.
         if matches!(fact.act, Act::SetOff | Act::Follow)
+            && !words_of(fact).starts_with("approach")
             && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::Backing)
         {
             best = None;
@@ -323,6 +355,7 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
         // Who changed lanes and then draws near is in its lane.
         if fact.act == Act::Follow
             && words_of(fact).starts_with("approach")
+            && !meanwhile(fact)
             && best.as_ref().is_some_and(|(_, known, _)| *known == Movement::ChangingLanes)
         {
             best = None;
@@ -333,6 +366,8 @@ fn movement(party: &Party, column: Option<Movement>, name: &str) -> Option<Fact<
             best = Some((weight, value, &fact.source));
         }
     }
+    // Who runs a red light comes along, and enters no traffic.
+    let column = column.filter(|column| *column != Movement::EnteringTraffic || !party.did(Act::RunRed));
     match (best, column) {
         (Some((0, ..)) | None, Some(column)) if column != Movement::Stopped && column != Movement::Parked => {
             Some(Fact::of_column(column, name))

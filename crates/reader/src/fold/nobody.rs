@@ -156,11 +156,16 @@ pub(super) fn is_remark(reading: &Reading<'_>, (first, end): (usize, usize), act
         && (2..9).any(|by| ["misclassif", "misidentif", "mistook"].iter().any(|stem| back(by).starts_with(stem)));
     // "Looking for cross traffic", "a truck-mounted sign".
     let looked_for = back(1) == "for" && matches!(back(2), "looking" | "checking" | "watching");
+    // "There is no stop sign at the junction for vehicles on that street".
+    let plural = matches!(word(end.checked_sub(1)), "vehicles" | "traffic" | "cars" | "drivers");
+    let sign = (2..10).find(|by| matches!(back(*by), "sign" | "signs"));
+    let none = sign.is_some_and(|by| (1..4).any(|more| back(by + more) == "no"));
+    let signed = plural && back(1) == "for" && none;
     let mounted = word(Some(end)) == "mounted";
     let valet = inside(&["valet"]) && (word(Some(end)) == "parking" || inside(&["automated"]));
     let restricted = inside(&["traffic"])
         && (end..end + 3).any(|at| matches!(word(Some(at)), "restricted" | "prohibited" | "permitted"));
-    either || called || required || taken_for || looked_for || mounted || valet || restricted
+    either || called || required || taken_for || looked_for || signed || mounted || valet || restricted
 }
 
 /// Whether somebody of whom no act is told is the partner, as the first sentence of the story named it: that tells the crash, and the

@@ -3,7 +3,7 @@
 use super::party::has_zone;
 use super::striker::struck_who_backed_away;
 use super::types::{cp_state, group, sv_state};
-use recrash_model::account::{Account, ContactState, CrashType, Fact, KindGroup, Origin, Party, Striker, told};
+use recrash_model::account::{Account, Act, ContactState, CrashType, Fact, KindGroup, Origin, Party, Striker, told};
 use recrash_model::narrative::FirstMover;
 use recrash_model::zones::ContactZone as Z;
 
@@ -32,7 +32,10 @@ fn by_standing(account: &Account, state: ContactState) -> Said {
             (FirstMover::Cp, "things stand")
         });
     }
-    if told(&account.door) == Some(Striker::Cp) {
+    // One that stands open was there.
+    let opened = account.partner.as_ref().is_some_and(|partner| partner.did(Act::OpenDoor));
+    let drove_on = told(&account.striker) == Some(Striker::Sv) && !state.stands();
+    if told(&account.door) == Some(Striker::Cp) && (opened || !drove_on) {
         return Some((FirstMover::Sv, "a door was opened into it"));
     }
     match (state.stands(), cp_state(account).is_some_and(ContactState::stands)) {

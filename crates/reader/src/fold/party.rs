@@ -11,7 +11,7 @@ use crate::frame::Frame;
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, Party, Speed, SpeedMeaning, told,
+    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, Origin, Party, Speed, SpeedMeaning, told,
 };
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
@@ -40,7 +40,8 @@ pub(crate) fn party(reading: &Reading<'_>, actor: Actor) -> Party {
         heading: known
             .heading
             .filter(|(_, first, _)| before(*first))
-            .map(|(compass, first, end)| reading.told(compass, first, end)),
+            .map(|(compass, first, end)| reading.told(compass, first, end))
+            .or_else(|| across_from(reading, actor)),
         heading_after: after(reading, actor),
         lane: known
             .lane
@@ -62,6 +63,26 @@ fn after(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
         .before(actor)
         .find(|(_, frame)| frame.onto && frame.heading.is_some() && frame.happened() && frame.act().is_some())?;
     frame.heading.map(|(compass, first, end)| reading.told(compass, first, end))
+}
+
+/// "left a lot on the west side of the street and crossed it": east.
+fn across_from(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Compass>> {
+    if !reading.did(actor, Act::Cross) {
+        return None;
+    }
+    let tokens = &reading.story.tokens;
+    let leaves = |frame: &Frame| frame.act() == Some(Act::PullOut) && frame.happened();
+    let (_, frame) = reading.before(actor).find(|(_, frame)| leaves(frame))?;
+    let end = reading.story.sentences[frame.sentence].end.min(frame.end + 6);
+    let at = (frame.end..end).find(|&at| tokens[at].text == "side" && tokens[at - 2].text == "the")?;
+    let side = match tokens[at - 1].text.as_str() {
+        "north" => Compass::North,
+        "east" => Compass::East,
+        "south" => Compass::South,
+        "west" => Compass::West,
+        _ => return None,
+    };
+    Some(reading.told(side.turned(4), at - 1, at + 1))
 }
 
 /// What only the columns tell, and the column speed; words win.
@@ -112,6 +133,19 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
         partner.state = state.map(|state| Fact::of_column(state, "CP Pre-Crash Movement"));
     } else {
         partner_state(reading, account);
+    }
+}
+
+/// "The rear of one that backed from ahead made contact with the rear of it" cannot be: where the column has its front, that was meant.
+pub(crate) fn front_by_column(reading: &Reading<'_>, account: &mut Account) {
+    let column = &reading.record.sv_zones;
+    let backs = reading.contacts.partner.is_some_and(|partner| reading.did(partner, Act::Reverse));
+    let ahead = told(&account.came_from) == Some(Origin::Ahead);
+    let stands = told(&account.sv.state).is_some_and(ContactState::stands);
+    let rear = !account.sv.zones.is_empty() && account.sv.zones.iter().all(|zone| zone.value == ContactZone::Rear);
+    let front = !column.is_empty() && column.iter().all(|zone| zone.is_front());
+    if backs && ahead && stands && rear && front {
+        account.sv.zones = ticked(reading, SUBJECT, column, "SV Contact Area");
     }
 }
 

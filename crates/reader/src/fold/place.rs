@@ -27,7 +27,16 @@ pub(crate) fn place(reading: &Reading<'_>) -> Place {
         for (kind, at, length) in lexicon.places(words) {
             // Somebody turns into it.
             let way_in = words.get(at + length).is_some_and(|next| WAYS_IN.contains(&next.text.as_str()));
-            if place.kind.is_none() && !(way_in && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot)) {
+            // "exited a garage", "turned into a garage": there it came from, or went to.
+            let way_out = at > 0
+                && words[at.saturating_sub(4)..at].iter().any(|before| {
+                    matches!(
+                        before.text.as_str(),
+                        "exited" | "exiting" | "leaving" | "into" | "out" | "enter" | "entered"
+                    )
+                });
+            let aside = way_in || way_out && kind == PlaceKind::Garage;
+            if place.kind.is_none() && !(aside && matches!(kind, PlaceKind::Garage | PlaceKind::ParkingLot)) {
                 place.kind = Some(reading.told(kind, sentence.first + at, sentence.first + at + length));
             }
         }

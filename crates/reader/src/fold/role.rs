@@ -28,7 +28,7 @@ struct Case<'a> {
 type Said = Option<(Role, &'static str)>;
 type Rule = fn(&Case<'_>) -> Said;
 
-const RULES: [Rule; 20] = [
+const RULES: [Rule; 21] = [
     |case| case.own_door(),
     |case| case.thrown(),
     |case| case.stood(),
@@ -43,6 +43,7 @@ const RULES: [Rule; 20] = [
     |case| case.turned_across_who_walks(),
     |case| case.turned_round(),
     |case| case.crossed_from_a_stop(),
+    |case| case.stood_within_its_change(),
     |case| case.changed_lanes_into_one_beside(),
     |case| case.changed_lanes_into_one_that_drove_on(),
     |case| case.struck_at_its_rear(),
@@ -332,6 +333,16 @@ impl Case<'_> {
         self.reading
             .before(actor)
             .any(|(_, frame)| frame.negated && (frame.act() == Some(Act::Stop) || frame.sense == Sense::Yield))
+    }
+
+    /// It had come to a stop half over in the next lane, and both went on from there.
+    fn stood_within_its_change(&self) -> Said {
+        let before: Vec<Act> =
+            self.account.sv.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+        let half = matches!(before.as_slice(), [.., Act::LaneChange, Act::Stop | Act::Hold, Act::LaneChange]);
+        let lateral = self.crash_type == Some(CrashType::Lateral) && self.is_beside();
+        (half && lateral && self.striker == Some(Striker::Cp) && !self.other_moves())
+            .then_some((Role::Both, "it stood half over, and both went on"))
     }
 
     fn changed_lanes_into_one_beside(&self) -> Said {

@@ -108,6 +108,22 @@ impl Told {
             Act::Follow | Act::Enter if self.stands() && text.starts_with("continu") => return None,
             // "was stopped at a light, heading west".
             Act::Follow | Act::Turn if self.stands() && same_clause => return None,
+            // "An SUV reversing along the kerb approached".
+            Act::Follow
+                if self.state() == Some(ContactState::Reversing)
+                    && frame.sense == Sense::Approach
+                    && text.starts_with("approach")
+                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
+            {
+                return None;
+            }
+            // "reversed out of a driveway and entered the lane": backwards.
+            Act::Enter
+                if self.state() == Some(ContactState::Reversing)
+                    && self.since.is_some_and(|(sentence, _)| sentence == frame.sentence) =>
+            {
+                return None;
+            }
             Act::Follow if self.stands() => ContactState::SettingOff,
             Act::Accelerate if self.state() == Some(ContactState::SettingOff) => ContactState::SettingOff,
             Act::Pushed | Act::Fall => return None,

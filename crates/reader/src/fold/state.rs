@@ -86,7 +86,7 @@ pub(super) fn sv_state(reading: &Reading<'_>, account: &mut Account) {
             Some(if column == Some(Movement::Parked) { ContactState::Parked } else { ContactState::Stopped })
         }
         (Some(ContactState::Moving), Some(Movement::Stopped | Movement::Parked))
-            if zero && !moves_at_contact(reading) =>
+            if zero && !moves_at_contact(reading) && !turns_meanwhile(reading) =>
         {
             Some(ContactState::Stopped)
         }
@@ -217,6 +217,14 @@ fn sets_off_at_contact(reading: &Reading<'_>) -> bool {
         frame.sentence == sentence
             && frame.happened()
             && matches!(frame.act(), Some(Act::SetOff | Act::Follow | Act::Enter | Act::Turn))
+    })
+}
+
+/// Whether the last that is told of the subject vehicle is that the other came "as it began to turn".
+fn turns_meanwhile(reading: &Reading<'_>) -> bool {
+    let acts = reading.before(SUBJECT).filter(|(_, frame)| frame.happened() && frame.act().is_some());
+    acts.last().is_some_and(|(_, frame)| {
+        frame.act() == Some(Act::Turn) && frame.joint == Some(crate::chunk::Joint::While) && !frame.described
     })
 }
 

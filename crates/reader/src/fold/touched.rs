@@ -1,10 +1,11 @@
 //! Where somebody was touched, as the words tell it.
 
 use super::Reading;
+use crate::chunk::Piece;
 use crate::frame::zone_of;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::Fact;
+use recrash_model::account::{Fact, Kind};
 use recrash_model::zones::ContactZone;
 
 /// Zones of the contact that is the crash.
@@ -32,7 +33,13 @@ pub(super) fn zones(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<ContactZone
             None
         };
         let behind_run = frame.sense == Sense::RearEnd;
-        let zone = piece.and_then(zone_of).or_else(|| {
+        // "the open rear door of the car": one of its sides, whichever.
+        let car = || {
+            let kind = reading.story.world.actors[actor].kind;
+            matches!(kind, Some(Kind::PassengerCar | Kind::Suv | Kind::Pickup))
+        };
+        let side_door = |piece: &&Piece| piece.door && piece.open && zone_of(piece) == Some(ContactZone::Rear) && car();
+        let zone = piece.filter(|piece| !side_door(piece)).and_then(zone_of).or_else(|| {
             let struck = frame.object == Some(actor)
                 || (frame.object.is_none() && frame.who.is_some() && frame.who != Some(actor));
             match (behind_run, struck) {

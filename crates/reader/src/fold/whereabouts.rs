@@ -2,8 +2,8 @@
 
 use super::Reading;
 use super::origin::{Clues, first_relation, side_of_lane};
-use crate::frame::Frame;
-use crate::lexicon::Relation;
+use crate::frame::{Frame, zone_of};
+use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{Act, Fact, LaneWord, LeftRight, Origin};
 
@@ -30,7 +30,25 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         Some(Relation::Same | Relation::Beside) | None => None,
     };
     let told = value.zip(relation).map(|(value, relation)| Fact { value, source: clues.has(relation) });
-    told.or_else(|| in_queue(&clues)).or_else(|| in_other_lane(&clues)).or_else(|| by_directions(&clues))
+    told.or_else(|| behind_partner(reading, actor))
+        .or_else(|| in_queue(&clues))
+        .or_else(|| in_other_lane(&clues))
+        .or_else(|| by_directions(&clues))
+}
+
+/// Who struck the rear of a partner that is behind came from behind too.
+fn behind_partner(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
+    let partner = reading.contacts.partner?;
+    let rear = |frame: &Frame| {
+        let on = frame.on.as_ref().and_then(zone_of);
+        frame.sense == Sense::RearEnd || on.is_some_and(|zone| zone.is_rear())
+    };
+    let struck = reading.contacts.earlier.iter().map(|number| &reading.story.frames[*number]);
+    let frame =
+        struck.into_iter().find(|frame| frame.who == Some(actor) && frame.object == Some(partner) && rear(frame))?;
+    let behind = first_relation(&Clues { reading, actor: partner }) == Some(Relation::Behind);
+    let across = by_directions(&Clues { reading, actor }).is_some();
+    (behind && !across).then(|| Fact { value: Origin::Behind, source: reading.of(frame) })
 }
 
 /// The queue in which the subject vehicle stands is ahead of it.

@@ -254,6 +254,21 @@ impl Parser<'_> {
         if place {
             return;
         }
+        // "at the junction with the westbound Route 9", "drove across the westbound lanes": not its own.
+        let road = || {
+            self.tokens[placed.end..].iter().take(4).any(|next| {
+                matches!(next.text.as_str(), "interstate" | "highway" | "freeway" | "route" | "exit" | "ramp" | "ramps")
+            })
+        };
+        let of_road = match carry.preposition {
+            Some("with" | "across" | "over") => true,
+            Some("at" | "near") => road(),
+            _ => false,
+        };
+        if of_road || self.is_crossed(placed, carry) {
+            carry.preposition = None;
+            return;
+        }
         let from = carry.preposition == Some("from");
         // "arrived from the west" goes east.
         let bare = matches!(self.tokens[placed.first].text.as_str(), "north" | "south" | "east" | "west");
@@ -286,6 +301,19 @@ impl Parser<'_> {
                 }
             }
         }
+    }
+
+    /// Whether a direction is that of a lane which somebody crosses, or stops in on its way across.
+    fn is_crossed(&self, placed: &Placed, carry: &Carry) -> bool {
+        let lane = self.tokens.get(placed.end).is_some_and(|next| matches!(next.text.as_str(), "lane" | "lanes"));
+        let who = carry.frame.and_then(|frame| self.frames[frame].who).or(carry.subject.as_ref().map(|who| who.actor));
+        let crosses = |frame: &super::Frame| {
+            frame.who == who
+                && frame.happened()
+                && frame.act() == Some(Act::Cross)
+                && frame.sentence + 1 >= self.sentence
+        };
+        lane && who.is_some() && self.frames.iter().any(crosses)
     }
 
     pub(super) fn side(&mut self, side: LeftRight, carry: &Carry) {

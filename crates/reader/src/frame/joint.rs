@@ -1,6 +1,7 @@
 //! Where one clause ends and the next begins: "and", "when", "after", "before", "because", a comma, "that".
 
 use super::parser::{Carry, Mention, Parser};
+use super::row::goes_on_behind_comma;
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::{Form, Relation};
 use crate::world::SUBJECT;
@@ -28,14 +29,20 @@ impl Parser<'_> {
             (carry.preposition, carry.relation) = (None, None);
             return;
         }
+        // "driving on the right, and overlapping its lane, the van passed": more of who drives.
+        let unknown = behind
+            .first()
+            .filter(|placed| matches!(placed.chunk, Chunk::Word) && self.tokens[placed.first].text.ends_with("ing"));
+        let takes = matches!(behind.get(1).map(|placed| &placed.chunk), Some(Chunk::Noun(_) | Chunk::Piece(_)));
+        if joint == Joint::And && unknown.is_some() && takes && carry.subject.is_some() {
+            (carry.preposition, carry.relation, carry.frame) = (Some("of"), None, None);
+            return;
+        }
         // "between the van and a parked car": the second of a pair, and no new clause.
         let noun = matches!(next, Some(Chunk::Noun(_) | Chunk::Piece(_)));
         let ends = behind.get(1).is_none_or(|placed| match placed.chunk {
             // "and the van, coming from the left, hit it".
-            Chunk::Comma => !matches!(
-                behind.get(2).map(|placed| &placed.chunk),
-                Some(Chunk::Verb(_, Form::Ing) | Chunk::Not | Chunk::Relative)
-            ),
+            Chunk::Comma => !is_inserted(&behind[2..]),
             // "and the van then reversed" is a clause of its own.
             Chunk::Joint(joint) => joint != Joint::And || self.tokens[placed.first].text == "and",
             _ => false,
@@ -55,6 +62,12 @@ impl Parser<'_> {
             return;
         }
         carry.also = None;
+        // "It passed the van which was waiting while also running the light": it ran the light.
+        let also = |placed: &&Placed| !matches!(placed.chunk, Chunk::Word);
+        let ing = matches!(behind.iter().find(also).map(|placed| &placed.chunk), Some(Chunk::Verb(_, Form::Ing)));
+        if joint == Joint::While && ing && carry.relative && carry.has_verb && carry.main.is_some() {
+            (carry.subject, carry.relative) = (carry.main.clone(), false);
+        }
         self.leave_place(carry);
         carry.clause += 1;
         (carry.preposition, carry.relation, carry.be, carry.to) = (None, None, false, false);
@@ -124,11 +137,22 @@ impl Parser<'_> {
         carry.progress = None;
         // "It waited and, although a message came, opened its door": who the sentence is about goes on.
         let goes_on = matches!(next, Some(Chunk::Verb(_, Form::Past | Form::Present)));
+        // "It stopped and, after a bus had gone by, turned": it turned.
+        if let Some(main) = carry.resumes.take_if(|_| goes_on) {
+            (carry.stranger, carry.row, carry.has_verb, carry.joint) = (false, true, true, None);
+            (carry.subject, carry.main, carry.frame) = (Some(main.clone()), Some(main), None);
+            carry.clause += 1;
+        }
         if goes_on && carry.stranger && carry.joint.is_some() && carry.main.is_some() {
             (carry.stranger, carry.row, carry.has_verb) = (false, true, true);
             (carry.subject, carry.frame) = (carry.main.clone(), None);
         }
-        carry.described = carry.subject.clone().filter(|_| carry.relative);
+        // "a van that stood facing east, across the road, attempting to turn": still of the van.
+        let still = carry
+            .described
+            .take()
+            .filter(|described| carry.frame.is_none_or(|frame| self.frames[frame].who == Some(described.actor)));
+        carry.described = carry.subject.clone().filter(|_| carry.relative).or(still);
         if carry.relative && carry.has_verb {
             // A relative clause ends at its comma.
             carry.relative = false;
@@ -161,5 +185,16 @@ impl Parser<'_> {
             carry.subject = carry.main.clone();
             carry.has_verb = carry.main.is_some();
         }
+    }
+}
+
+/// Whether the words behind a comma say more of the noun before it, and its verb is still to come: "a van, coming from the left, hit it",
+/// "a van, first parked behind it, set off".
+fn is_inserted(behind: &[Placed]) -> bool {
+    let says = behind.iter().map(|placed| &placed.chunk).find(|chunk| !matches!(chunk, Chunk::Word));
+    match says {
+        Some(Chunk::Verb(_, Form::Ing) | Chunk::Not | Chunk::Relative) => true,
+        Some(Chunk::Verb(_, Form::Past) | Chunk::Relation(_)) => goes_on_behind_comma(behind),
+        _ => false,
     }
 }

@@ -182,6 +182,8 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     hold_by_hand(&mut tokens);
+    name_passenger_cars(&mut tokens);
+    name_loose_boards(&mut tokens);
     let sentences = crate::token::sentences(&tokens);
     let (mut standing, mut frames, mut world) = best(&tokens, &sentences, own);
     // "A gleeper struck it": who is meant is told by the record.
@@ -254,6 +256,41 @@ fn hold_by_hand(tokens: &mut [Token]) {
             for (token, name) in tokens[at..].iter_mut().zip(["signal", "paddle"]) {
                 name.clone_into(&mut token.text);
             }
+        }
+    }
+}
+
+/// "An unattended skateboard": nobody stands on it, also where it is named without that word.
+fn name_loose_boards(tokens: &mut [Token]) {
+    let alone =
+        |word: &str| matches!(word, "unattended" | "riderless" | "unoccupied" | "runaway" | "abandoned" | "loose");
+    if !tokens.windows(2).any(|pair| alone(&pair[0].text) && pair[1].text == "skateboard") {
+        return;
+    }
+    for token in tokens.iter_mut().filter(|token| token.text == "skateboard") {
+        "object".clone_into(&mut token.text);
+    }
+}
+
+/// "The passenger continued to reverse", told of a passenger car: its second word is left out.
+fn name_passenger_cars(tokens: &mut [Token]) {
+    let pair = |pair: &[Token], one: &str, other: &str| pair[0].text == one && pair[1].text == other;
+    if !tokens.windows(2).any(|run| pair(run, "passenger", "car") || pair(run, "passenger", "vehicle")) {
+        return;
+    }
+    for at in 1..tokens.len().saturating_sub(3) {
+        let word = |ahead: usize| tokens[at + ahead].text.as_str();
+        let to =
+            |ahead: usize| word(ahead) == "to" && matches!(word(ahead + 1), "reverse" | "back" | "proceed" | "drive");
+        let drives = match word(1) {
+            "reversed" | "accelerated" | "reversing" => true,
+            "proceeded" => matches!(word(2), "forward" | "straight" | "ahead"),
+            "continued" => matches!(word(2), "forward" | "straight" | "reversing") || to(2),
+            "began" | "started" => word(2) == "reversing" || to(2),
+            _ => false,
+        };
+        if tokens[at - 1].text == "the" && word(0) == "passenger" && drives {
+            "car".clone_into(&mut tokens[at].text);
         }
     }
 }

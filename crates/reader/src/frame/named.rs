@@ -1,7 +1,7 @@
 //! Nouns, parts and pronouns: who is meant by them, and whether a clause begins with them or they belong to the verb before.
 
 use super::parser::{Carry, Mention, Parser};
-use super::row::{another_finite, relation_behind, transitive};
+use super::row::{another_finite, goes_on_behind_comma, relation_behind, transitive};
 use crate::chunk::{Article, Chunk, Joint, Noun, Piece, Placed};
 use crate::lexicon::{Adjective, Sense};
 use crate::world::{Actor, SUBJECT};
@@ -47,6 +47,16 @@ impl Parser<'_> {
             if matches!(next, Some(Chunk::Be)) {
                 carry.frame = None;
             }
+        }
+        // "As it was passing the van a coupe reversed": the coupe begins the clause around it.
+        let open = carry.frame.is_some_and(|frame| {
+            let frame = &self.frames[frame];
+            frame.object.is_none() && transitive(frame.sense) && frame.act() != Some(Act::Follow)
+        });
+        let inner = carry.joint.is_some_and(|joint| joint != Joint::And) && carry.has_verb && !carry.relative;
+        let loose = carry.preposition.is_none() && carry.relation.is_none() && !(carry.be || carry.fresh || open);
+        if loose && inner && carry.mains.len() == 1 && noun.article == Article::Indefinite {
+            carry.after_comma |= another_finite(all, at) || goes_on_behind_comma(&all[at + 1..]);
         }
         let person = noun.occupant.map(|(who, _)| who);
         self.mention(Mention { actor, piece: None, person, end: placed.end }, placed, carry, next);
@@ -104,8 +114,13 @@ impl Parser<'_> {
         let placed = &all[at];
         if let Some(owner) = &piece.owner {
             let hint = relation_behind(all, at);
+            let verb = all.get(at + 1).map(|next| &next.chunk);
+            self.world.touches = matches!(verb, Some(Chunk::Verb(Sense::Contact, _)));
             let actor = self.world.resolve(owner, (placed.first, placed.end), hint);
-            let actor = self.as_a_result(actor, placed.first);
+            self.world.touches = false;
+            let told = owner.compass.is_some()
+                || owner.adjectives.iter().any(|word| matches!(word, Adjective::First | Adjective::Another));
+            let actor = if told { actor } else { self.as_a_result(actor, placed.first) };
             self.attribute(owner, actor, placed, carry);
             return Some(actor);
         }
@@ -162,6 +177,14 @@ impl Parser<'_> {
             return;
         }
         if let Some(preposition) = carry.preposition.take() {
+            // "a coupe east of the van reversed": where the coupe was.
+            let place = preposition == "of" && placed.first >= 2 && {
+                let word = self.tokens[placed.first - 2].text.as_str();
+                matches!(word, "north" | "south" | "east" | "west") && carry.frame.is_none()
+            };
+            if place && carry.subject.is_some() {
+                return;
+            }
             self.object_of(preposition, &mention, placed, carry);
             carry.last = Some(mention);
             (carry.governed, carry.to) = (true, false);

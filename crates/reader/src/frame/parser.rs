@@ -61,6 +61,8 @@ pub(super) struct Carry {
     pub(super) lead_who: Option<Mention>,
     /// Number of the clause.
     pub(super) clause: u32,
+    /// Who goes on behind a clause between commas: "It stopped and, after a bus had gone by, turned".
+    pub(super) resumes: Option<Mention>,
     /// "and" stands between the last verb and the next.
     pub(super) row: bool,
     /// Who the relative clause before the comma was about.
@@ -145,7 +147,16 @@ impl Parser<'_> {
                     Chunk::Preposition(word) => preposition(word, carry),
                     // "the corner of Oak Street and Elm Street": no clause begins.
                     Chunk::Joint(Joint::And) if self.names_on_both_sides(all, at) => {}
-                    Chunk::Joint(joint) => self.joint(*joint, carry, &all[at + 1..]),
+                    Chunk::Joint(joint) => {
+                        let inner = at >= 2
+                            && *joint != Joint::And
+                            && matches!(all[at - 1].chunk, Chunk::Comma)
+                            && matches!(all[at - 2].chunk, Chunk::Joint(Joint::And));
+                        if inner {
+                            carry.resumes.clone_from(&carry.main);
+                        }
+                        self.joint(*joint, carry, &all[at + 1..]);
+                    }
                     _ => {}
                 }
                 false

@@ -288,6 +288,18 @@ pub(super) fn another_finite(all: &[Placed], at: usize) -> bool {
     false
 }
 
+/// Whether a finite verb stands right behind a comma, up to the next word that joins clauses: "stopped behind it, set off".
+pub(super) fn goes_on_behind_comma(behind: &[Placed]) -> bool {
+    let clause: Vec<&Chunk> = behind
+        .iter()
+        .map(|placed| &placed.chunk)
+        .take_while(|chunk| !matches!(chunk, Chunk::Joint(_)))
+        .filter(|chunk| !matches!(chunk, Chunk::Word))
+        .collect();
+    let finite = |chunk: &Chunk| matches!(chunk, Chunk::Verb(_, Form::Past | Form::Present) | Chunk::Be);
+    clause.windows(2).any(|pair| matches!(pair[0], Chunk::Comma) && finite(pair[1]))
+}
+
 pub(super) fn next_preposition(all: &[Placed], at: usize) -> Option<&'static str> {
     all[at + 1..].iter().take(4).find_map(|placed| match placed.chunk {
         Chunk::Preposition(word) => Some(word),

@@ -6,13 +6,24 @@ use super::parser::{Carry, Parser};
 use super::row::single;
 use super::verb::Spoken;
 use crate::chunk::Chunk;
-use crate::lexicon::{Form, Sense};
+use crate::lexicon::{Form, Occupant, Sense};
 use recrash_model::account::Act;
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 8] =
-    [stands_backed_up, remains_so, is_ridden, blows_another, nearly_stops, half_stops, moves_another, holds_a_thing];
+const SENSES: [Rule; 11] = [
+    stands_backed_up,
+    remains_so,
+    is_ridden,
+    blows_another,
+    nearly_stops,
+    half_stops,
+    moves_another,
+    holds_a_thing,
+    gets_in,
+    stands_open,
+    swings_over,
+];
 
 impl Parser<'_> {
     /// What a verb says here.
@@ -96,4 +107,29 @@ fn holds_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Opti
     let held = (word.starts_with("hold") || word == "held") && single(verb.placed());
     let thing = matches!(verb.next(), Some(Chunk::Word | Chunk::Preposition("on") | Chunk::Piece(_) | Chunk::Noun(_)));
     (held && thing).then_some(Sense::Other)
+}
+
+/// "As the passenger entered the vehicle": the vehicle entered nothing.
+fn gets_in(_parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let rider = carry.subject.as_ref().is_some_and(|subject| subject.person == Some(Occupant::Rider));
+    (rider && verb.sense == Sense::Act(Act::Enter)).then_some(Sense::Other)
+}
+
+/// "parked with both doors open", "had its door open": it had been opened before.
+fn stands_open(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let had = parser.tokens[placed.first.saturating_sub(4)..placed.first]
+        .iter()
+        .any(|token| matches!(token.text.as_str(), "with" | "had" | "having"));
+    let open = parser.tokens[placed.end - 1].text == "open";
+    (verb.sense == Sense::Act(Act::OpenDoor) && had && open).then_some(Sense::Other)
+}
+
+/// "swung left into the van's lane" is no turn at a corner.
+fn swings_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let Sense::Sided(Act::Turn, side) = verb.sense else { return None };
+    let swings = ["sw", "cut", "hook"].iter().any(|stem| verb.word(parser).starts_with(stem));
+    let behind = &parser.tokens[verb.placed().end..];
+    let lane = behind.windows(2).take(5).any(|pair| pair[0].text == "'s" && pair[1].text == "lane");
+    (swings && lane).then_some(Sense::Sided(Act::Drift, side))
 }

@@ -146,6 +146,16 @@ impl Parser<'_> {
         {
             return Some(Mention { actor, piece: None, person: None, end: before.end });
         }
+        // "a van traveling west attempting to turn": of whom the participle before is told.
+        if let (Form::Ing, Some(before), Some(last)) = (form, carry.frame.map(|frame| &self.frames[frame]), &carry.last)
+            && !(carry.be || carry.fresh || carry.after_comma || carry.began)
+            && before.form == Form::Ing
+            && before.described
+            && !before.is_contact()
+            && before.who == Some(last.actor)
+        {
+            return Some(last.clone());
+        }
         if carry.subject.is_none()
             && form == Form::Ing
             && !carry.be
@@ -167,7 +177,9 @@ impl Parser<'_> {
         {
             // "yielded to a truck, which had no lights on, traveling south": the truck.
             let of_other = carry.main.as_ref().is_none_or(|main| main.actor != described.actor);
-            if sense == Sense::Face || (of_other && sense == Sense::Act(Act::Follow)) {
+            let moves = matches!(sense, Sense::Act(Act::Follow | Act::Turn | Act::UTurn | Act::Park | Act::Reverse))
+                || matches!(sense, Sense::Sided(Act::Turn, _));
+            if sense == Sense::Face || (of_other && moves) {
                 return carry.described.clone();
             }
         }
@@ -234,9 +246,9 @@ impl Parser<'_> {
         // Things are described by few verbs, and nobody by one that stands apart.
         let between = self.tokens.get(last.end..placed.first).unwrap_or_default();
         let place = carry.governed
-            || carry
-                .frame
-                .is_some_and(|frame| matches!(self.frames[frame].sense, Sense::Yield | Sense::See | Sense::Approach));
+            || carry.frame.is_some_and(|frame| {
+                matches!(self.frames[frame].sense, Sense::Yield | Sense::See | Sense::Approach | Sense::Act(Act::Slow))
+            });
         let describes =
             !matches!(sense, Sense::Push | Sense::Damage | Sense::Contact | Sense::RearEnd | Sense::TakeOver);
         let near = (between.len() <= 2 || form == Form::Past || (place && describes && between.len() <= 8))
@@ -246,7 +258,9 @@ impl Parser<'_> {
             || matches!(
                 sense,
                 Sense::Act(Act::Fall | Act::Roll | Act::Drift | Act::Park) | Sense::Other | Sense::Parked
-            );
+            )
+            // "a sign lying down in the lane".
+            || sense == Sense::Act(Act::Hold) && form == Form::Ing && between.is_empty();
         if !near || !lively {
             return false;
         }

@@ -3,7 +3,9 @@
 use super::Frame;
 use super::adverbs::goes_about;
 use super::parser::{Carry, Mention, Parser};
-use super::row::{another_finite, looks_somewhere, names_doer, next_is_verb, next_preposition, single};
+use super::row::{
+    another_finite, goes_on_behind_comma, looks_somewhere, names_doer, next_is_verb, next_preposition, single,
+};
 use super::sided;
 use crate::chunk::{Chunk, Joint, Placed};
 use crate::lexicon::{Form, Occupant, Progress, Sense};
@@ -101,6 +103,13 @@ impl Parser<'_> {
         if verb.sense == Sense::Push {
             carry.pushed = false;
         }
+        // "The driver disengaged it and steered left": who drives it.
+        if verb.sense == Sense::TakeOver
+            && frame.person == Some(Occupant::Driver)
+            && let Some(subject) = &mut carry.subject
+        {
+            subject.actor = SUBJECT;
+        }
         self.where_to(&mut frame, &verb, carry);
         let unnamed = frame.who.is_none()
             && !frame.passive
@@ -168,7 +177,9 @@ impl Parser<'_> {
             && !carry.be
             && !carry.has_verb
             && carry.last_is(carry.subject.as_ref())
-            && another_finite(verb.all, verb.at)
+            && (another_finite(verb.all, verb.at)
+                // "a van, first parked behind it, set off".
+                || carry.after_comma && goes_on_behind_comma(&verb.all[verb.at + 1..]))
     }
 
     /// Whether a verb of stopping tells that somebody stood: "was stopped", "a truck stopped in the road", "while stopped".
@@ -200,7 +211,9 @@ impl Parser<'_> {
         if purpose && !waits && frame.progress == Progress::Real {
             frame.progress = self.purpose(frame, verb, carry);
         }
-        let before = carry.joint == Some(Joint::Before) && carry.fresh && verb.form == Form::Ing;
+        // "drove on before slowing to a stop": one after the other.
+        let stops = matches!(verb.sense, Sense::Act(Act::Stop | Act::Slow | Act::Hold));
+        let before = carry.joint == Some(Joint::Before) && carry.fresh && verb.form == Form::Ing && !stops;
         if before && frame.progress == Progress::Real {
             frame.progress = Progress::Wished;
         }
@@ -298,6 +311,16 @@ impl Parser<'_> {
                 carry.preposition = Some("by");
             }
             // "fell from a truck": the truck is behind "from".
+            // "encroaching into the van's lane": the van does nothing.
+            Sense::Act(Act::Drift | Act::LaneChange | Act::Swerve)
+                if last == "into"
+                    && self
+                        .tokens
+                        .get(verb.all.get(verb.at + 1).map_or(0, |next| next.end))
+                        .is_some_and(|next| next.text == "'s") =>
+            {
+                carry.preposition = Some("of");
+            }
             Sense::Act(Act::Fall | Act::Roll | Act::Enter) if !single(placed) => {
                 let known = ["from", "off", "onto", "into", "over", "between", "behind"];
                 carry.preposition = known.into_iter().find(|known| *known == last);

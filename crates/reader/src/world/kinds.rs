@@ -42,7 +42,9 @@ pub(super) fn introduces(announced: Kind, said: Kind) -> bool {
 
 /// Whether a noun of the second kind can mean somebody known by the first.
 pub fn same_kind(known: Kind, said: Kind) -> bool {
-    if known == said {
+    // "The scooter" of a riderless one.
+    let empty = known == Kind::Scooter && matches!(said, Kind::ScooterRider | Kind::Bicycle | Kind::EBike);
+    if known == said || empty {
         return true;
     }
     let (one, other) = (known.group(), said.group());

@@ -27,12 +27,13 @@ enum Meant {
 type Rule = fn(&mut World, &Sought<'_>) -> Option<Meant>;
 
 /// Who is meant by a noun with a kind: the first rule that says something counts.
-const RULES: [Rule; 13] = [
+const RULES: [Rule; 15] = [
     World::told_of_first,
     World::own_bus,
     World::behind_own_name,
     World::own_truck,
     World::own_tractor,
+    World::second_again,
     World::another,
     World::brought_on,
     World::group,
@@ -40,6 +41,7 @@ const RULES: [Rule; 13] = [
     World::there,
     World::elsewhere,
     World::parked,
+    World::by_direction,
     World::of_kind,
 ];
 
@@ -150,6 +152,13 @@ impl World {
         (sought.noun.tractor && sought.is_definite() && own && only()).then_some(Meant::Known(SUBJECT))
     }
 
+    /// "A second van ..., and it hit a second van": named so once more.
+    fn second_again(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let noun = sought.noun;
+        let known = || self.latest(|known| known.second && sought.fits(known) && known.several == noun.several);
+        if noun.second { known().map(Meant::Known) } else { None }
+    }
+
     /// "Another van" is a second one of a kind: the announced one only where nobody of the kind was met. "The second van" may be
     /// who was brought on so.
     fn another(&mut self, sought: &Sought<'_>) -> Option<Meant> {
@@ -238,6 +247,30 @@ impl World {
         self.latest(|known| known.parked && sought.fits(known) && !known.several).map(Meant::Known)
     }
 
+    /// "The southbound van": who was told to go that way.
+    fn by_direction(&mut self, sought: &Sought<'_>) -> Option<Meant> {
+        let compass = sought.noun.compass.filter(|_| sought.is_definite())?;
+        let goes = |known: &Known| known.heading.is_some_and(|(heading, ..)| heading == compass);
+        self.latest(|known| known.several == sought.noun.several && sought.fits(known) && goes(known)).map(Meant::Known)
+    }
+
+    /// "A car moved up, and the front of the SUV touched it", where no SUV was told of: the only one who moved in that sentence.
+    fn slip_of_the_pen(&self, sought: &Sought<'_>, found: Option<Actor>) -> Option<Actor> {
+        let noun = sought.noun;
+        let plain = sought.is_definite() && noun.adjectives.is_empty() && noun.names.is_empty() && !noun.several;
+        let unmet = found.is_none_or(|found| self.actors[found].announced && self.actors[found].mentions == 1);
+        let car = |kind: Kind| kind.group() == KindGroup::Car && kind != Kind::Vehicle;
+        if !(self.touches && plain && unmet && sought.hint.is_none() && noun.number.is_none() && car(sought.kind)) {
+            return None;
+        }
+        let drives = |known: &&Known| !known.several && !known.announced && known.kind.is_some_and(Kind::is_vehicle);
+        let mut others = self.actors[1..].iter().filter(drives);
+        let (only, more) = (others.next()?, others.next());
+        let here = only.acted && only.sentence == Some(self.sentence) && only.kind.is_some_and(car);
+        let actor = self.actors.iter().position(|known| std::ptr::eq(known, only))?;
+        (here && more.is_none()).then_some(actor)
+    }
+
     /// "The van": who is called by its names, else is of just this kind, else of one that this may mean; else the subject vehicle,
     /// where nobody else can be meant.
     fn of_kind(&mut self, sought: &Sought<'_>) -> Option<Meant> {
@@ -255,6 +288,9 @@ impl World {
             .or_else(|| self.latest(|known| known.kind == Some(kind) && as_many(known)))
             .or_else(|| self.latest(as_many))
             .or_else(|| self.latest(|known| one_of && known.several && known.kind == Some(kind) && fits(known)));
+        if let Some(meant) = self.slip_of_the_pen(sought, found) {
+            return Some(Meant::Known(meant));
+        }
         let known = sought.is_definite() && !sought.has(Adjective::Other);
         let Some(found) = found else {
             // "The vehicle" of a story that knows no other one.

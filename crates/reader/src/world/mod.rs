@@ -29,6 +29,8 @@ pub struct Known {
     pub number: Option<u8>,
     /// "A second one", "another": it was brought on as another one of its kind.
     pub another: bool,
+    /// It was brought on as the second.
+    pub second: bool,
     /// More than one.
     pub several: bool,
     /// The headline named it, and the story has not yet.
@@ -78,6 +80,8 @@ pub struct World {
     pub own_driver: bool,
     /// The subject vehicle was first called "the vehicle".
     pub plain: bool,
+    /// The noun that is looked up owns the part which touches: "the front of the van made contact".
+    pub touches: bool,
     /// Number of the sentence that is read.
     pub sentence: usize,
     /// Who the sentence, or the one before, is about.
@@ -91,7 +95,16 @@ impl World {
         let words = own.vehicle.split(|c: char| !c.is_alphanumeric());
         let vehicle = words.filter(|word| word.len() > 2).map(str::to_lowercase).collect();
         let subject = Known { kind: own.kind, names, ..Known::default() };
-        Self { actors: vec![subject], clock: 0, vehicle, own_driver: false, plain: false, sentence: 0, topic: SUBJECT }
+        Self {
+            actors: vec![subject],
+            clock: 0,
+            vehicle,
+            own_driver: false,
+            plain: false,
+            touches: false,
+            sentence: 0,
+            topic: SUBJECT,
+        }
     }
 
     /// Who is meant by a noun. `hint`: where the words behind the noun say that it is, seen from the subject vehicle.
@@ -209,7 +222,7 @@ impl World {
 
     fn add(&mut self, noun: &Noun) -> Actor {
         let another = noun.adjectives.contains(&Adjective::Another);
-        self.actors.push(Known { several: noun.several, another, ..Known::default() });
+        self.actors.push(Known { several: noun.several, another, second: noun.second, ..Known::default() });
         self.actors.len() - 1
     }
 

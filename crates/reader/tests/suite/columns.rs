@@ -86,3 +86,45 @@ fn a_numbered_car_is_what_the_bracket_or_the_column_says() {
         assert_eq!(beside(text, pickup)["cp_kind"], "pickup", "{text}");
     }
 }
+
+#[test]
+fn a_rear_that_cannot_have_met_who_backs_from_ahead_is_the_front_of_the_column() {
+    let told = [
+        "The AV was traveling west when it slowed to a stop for a pickup. The pickup began to reverse in the AV's lane, and the rear of the \
+         pickup made contact with the rear of the stationary AV.",
+        "The AV was stopped behind a van. The van backed up and its rear hit the rear of the AV.",
+    ];
+    for text in told {
+        let facts = beside(text, |record| record.sv_zones = vec![Z::Front]);
+        assert_eq!((facts["came_from"].as_str(), facts["sv_zones"].as_str()), ("ahead", "front"), "{text}");
+        assert_eq!(beside(text, |_| ())["sv_zones"], "rear", "{text}");
+    }
+}
+
+#[test]
+fn who_begins_to_turn_as_another_comes_turns_whatever_the_column_says() {
+    let told = [
+        "After stopping at a stop sign the AV began to make a right turn. As the AV began to turn right, a cyclist came from behind, lost \
+         control, and the front of the bicycle made contact with the rear of the AV.",
+        "The AV had stopped at the corner. While the AV was turning right, a van from behind made contact with the rear of the AV.",
+    ];
+    for text in told {
+        let facts = beside(text, |record| {
+            (record.sv_movement, record.sv_speed_mps) = (Coded::Known(Movement::Stopped), Some(0.0));
+        });
+        assert_eq!((facts["sv_state"].as_str(), facts["sv_movement"].as_str()), ("moving", "right_turn"), "{text}");
+    }
+}
+
+#[test]
+fn who_runs_a_red_light_enters_no_traffic() {
+    let told = [
+        "The AV was traveling north and entered the intersection on a green light. A sedan traveling west entered the intersection against \
+         a red light, and the front of the sedan made contact with the right side of the AV.",
+        "The AV was going straight when a van heading east ran the red light and hit the left side of the AV.",
+    ];
+    for text in told {
+        let facts = beside(text, |record| record.cp_movement = Coded::Known(Movement::EnteringTraffic));
+        assert_eq!(facts["cp_movement"], "straight", "{text}");
+    }
+}

@@ -130,6 +130,8 @@ pub fn facts(account: &Account) -> BTreeMap<&'static str, String> {
         ("others", others.join(" ")),
         ("other_places", other_places.join(" ")),
         ("sv_lane", name(&sv.lane)),
+        ("sv_heading", name(&sv.heading)),
+        ("cp_heading", name(&partner.heading)),
         ("sv_controls", controls.join(" ")),
         ("sv_state", name(&sv.state)),
         ("standing", name(&sv.standing)),

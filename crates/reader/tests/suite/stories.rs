@@ -1,5 +1,5 @@
 //! The reader on mini narratives of our own: `stories.toml`, a case a behaviour, `families.toml`, each kind of crash in many
-//! wordings, and `wordings.toml`, what was misread in many.
+//! wordings, `wordings.toml`, what was misread in many, and `newer.toml`, what was misread in a newer edition.
 
 use crate::common::{self, account_of, facts};
 use recrash_model::kinds::PartnerKind;
@@ -21,7 +21,12 @@ struct Story {
 }
 
 fn stories() -> Vec<Story> {
-    let files = [include_str!("stories.toml"), include_str!("families.toml"), include_str!("wordings.toml")];
+    let files = [
+        include_str!("stories.toml"),
+        include_str!("families.toml"),
+        include_str!("wordings.toml"),
+        include_str!("newer.toml"),
+    ];
     files.iter().flat_map(|text| toml::from_str::<File>(text).unwrap().story).collect()
 }
 

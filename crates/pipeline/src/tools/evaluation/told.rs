@@ -118,7 +118,8 @@ fn came_from(account: &Account) -> Option<CameFrom> {
         Origin::Stall { side } | Origin::Driveway { side } | Origin::Parked { side } | Origin::Sidewalk { side } => {
             from_side(side?)
         }
-        Origin::Above => return None,
+        // The labels know no above: what falls on it is a thing ahead.
+        Origin::Above => CameFrom::Ahead,
     })
 }
 

@@ -20,8 +20,9 @@ pub(super) fn side_of_road(reading: &Reading<'_>, actor: Actor, account: &Accoun
         _ => None,
     };
     let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
-    let comes =
-        |act: Option<Act>| matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve));
+    let comes = |act: Option<Act>| {
+        matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve | Act::Reverse))
+    };
     reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(_, frame)| {
         let (first, end) = (frame.first, reading.story.sentences[frame.sentence].end);
         (first..end).find_map(|at| {
@@ -80,7 +81,10 @@ pub(super) fn on_side_street(reading: &Reading<'_>, actor: Actor) -> bool {
             let there = matches!(word(at), "street" | "road")
                 && matches!(word(at + 1), "on" | "to")
                 && (at + 2..at + 4).any(|at| matches!(word(at), "left" | "right"));
-            crosses && road || there
+            // "from the perpendicular left of it".
+            let square = word(at) == "perpendicular" && matches!(word(at + 1), "left" | "right")
+                || matches!(word(at), "street" | "road") && word(at + 1) == "perpendicular";
+            crosses && road || there || square
         })
     })
 }

@@ -211,7 +211,9 @@ impl<'a> Case<'a> {
         if self.drove_on(number) {
             return None;
         }
-        let side = self.side_or_touched();
+        let of_road = || side_of_road(self.reading, self.actor, self.account);
+        let drives_out = matches!(frame.out_of, Some(Spot::Driveway));
+        let side = self.side.or_else(|| if drives_out { of_road() } else { None }).or(self.touched);
         let origin = match frame.out_of? {
             Spot::Stall => self.out_of_a_stall(),
             Spot::SideStreet if self.side.is_some() => {
@@ -255,7 +257,9 @@ impl<'a> Case<'a> {
             return None;
         }
         let source = in_stall(self.reading, self.actor)?;
-        if self.behind_first() && !reverses {
+        // Backwards out of one that is behind it, into its rear.
+        let at_rear = only(&self.account.sv, Z::is_rear) && only(self.partner, Z::is_rear);
+        if self.behind_first() && (!reverses || at_rear) {
             return told_as(Origin::Behind, source);
         }
         told_as(Origin::Stall { side: self.side_or_touched() }, source)
@@ -292,7 +296,8 @@ impl<'a> Case<'a> {
             let side = if self.turn == Some(2) { LeftRight::Left } else { LeftRight::Right };
             return told_as(Origin::Cross { side }, heading.source.clone());
         }
-        if self.ahead || lead_of_subject(self.reading, self.actor) {
+        let from_front = self.clues.any(Relation::Opposite) && only(&self.account.sv, |zone| zone == Z::Front);
+        if self.ahead || lead_of_subject(self.reading, self.actor) || from_front && self.side.is_some() {
             return told_as(Origin::Ahead, self.words_of(Act::Reverse));
         }
         if self.clues.any(Relation::Opposite) {
@@ -430,12 +435,26 @@ impl<'a> Case<'a> {
             2 => told_as(Origin::Cross { side: LeftRight::Left }, source),
             6 => told_as(Origin::Cross { side: LeftRight::Right }, source),
             4 => told_as(Origin::Opposite, source),
+            // It turned into the road of the subject vehicle: it came along another one, which crosses.
+            3 | 5 if self.turned_into_its_road() => {
+                let side = if eighths == 3 { LeftRight::Left } else { LeftRight::Right };
+                told_as(Origin::Cross { side }, source)
+            }
             3 | 5 => {
                 let opposite = self.clues.any(Relation::Opposite) || self.partner.did(Act::WrongWay);
                 if opposite || !self.did(Act::Pass) { told_as(Origin::Opposite, source) } else { None }
             }
             _ => self.same_way(),
         }
+    }
+
+    /// "was heading southeast, the van westbound and turned onto the southeastbound road".
+    fn turned_into_its_road(&self) -> bool {
+        let road = |after: Compass| {
+            let own = self.account.sv.heading.as_ref().map(|own| own.value.eighths_to(after));
+            matches!(own, Some(0 | 4))
+        };
+        self.did(Act::Turn) && self.partner.heading_after.as_ref().is_some_and(|after| road(after.value))
     }
 
     /// Both go the same way.
