@@ -22,8 +22,12 @@ fn assert_sound(rollout: &Rollout) {
         assert_eq!(track.states.len(), steps, "{}", track.id);
         for state in &track.states {
             assert!(state.is_finite(), "{state:?}");
-            assert!(state.velocity().length() < 60.0 && state.speed() > -0.1, "{state:?}");
+            assert!(state.velocity().length() < 60.0, "{state:?}");
             assert!(state.steer.abs() <= 1.0 && state.throttle.abs() <= 1.0);
+        }
+        // Nobody drives backwards here; who spun on ice slides backwards until it stands.
+        for pair in track.states.windows(2).filter(|pair| pair[1].speed() < -0.1) {
+            assert!(pair[1].velocity().length() < pair[0].velocity().length(), "{pair:?}");
         }
     }
     assert!(rollout.events.is_sorted_by(|a, b| a.time_s <= b.time_s));
