@@ -28,7 +28,7 @@ use recrash_model::scenario::{
     Place, SCENARIO_FORMAT, ScenarioDraft, Size, Source,
 };
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::Course;
+use recrash_roads::{Course, check_on};
 
 /// The system under test takes over this long before the contact, or before the ego began to stop. [s]
 const HANDOVER_BEFORE_S: f64 = 5.0;
@@ -154,7 +154,8 @@ fn wanted_mps(told: &Told, recorded: &ActorPlan) -> f64 {
 
 /// The same with the others of the story, who go by what the two do.
 fn with_others(told: &Told, staging: &Staging, mut draft: ScenarioDraft) -> ScenarioDraft {
-    let alone = (!told.extras.is_empty()).then(|| recrash_roads::check(draft.clone()).ok()).flatten();
+    let known = Some(&staging.ground.network);
+    let alone = (!told.extras.is_empty()).then(|| check_on(draft.clone(), known).ok()).flatten();
     if let (Some(alone), Some(recorded)) = (alone, draft.ego.recorded.as_ref()) {
         let alone = recrash_sim::simulate(&alone.value, recrash_sim::Ego::Recorded);
         draft.actors.extend(extras::actors(told, staging, recorded, &alone));
@@ -219,7 +220,7 @@ pub(crate) fn sv_at_contact(told: &Told, ground: &Ground, sv_s_m: f64) -> Option
         duration_s: told.contact_s + GOES_ON_S,
         ..ScenarioDraft::default()
     };
-    let scenario = recrash_roads::check(alone).ok()?.value;
+    let scenario = check_on(alone, Some(&ground.network)).ok()?.value;
     let rollout = recrash_sim::simulate(&scenario, recrash_sim::Ego::Recorded);
     rollout.ego_track().states.get((told.contact_s / STEP_S).round() as usize).map(ActorState::pose)
 }

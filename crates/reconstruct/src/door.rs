@@ -13,6 +13,7 @@ use recrash_model::math;
 use recrash_model::scenario::{Part, PartKind, StripKind};
 use recrash_model::zones::ContactZone;
 use recrash_plan::acts::{Attached, PartState};
+use std::rc::Rc;
 
 /// From the hinge of a door to its end, and its thickness. [m]
 pub(crate) const DOOR_M: f64 = 1.0;
@@ -170,7 +171,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
     };
     let mut found = Vec::new();
     let mut trial = 0;
-    let beside = beside_line(told, ground);
+    let beside: Vec<Rc<Ground>> = beside_line(told, ground).into_iter().map(Rc::new).collect();
     for (sv_s_m, ground) in ground.places().into_iter().flat_map(|s_m| beside.iter().map(move |ground| (s_m, ground))) {
         let Some(sv) = sv_at_contact(told, ground, sv_s_m) else { continue };
         // The post of a gate is not at an angle to the way through it.
@@ -188,7 +189,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground) -> Vec<Staging> {
                         0
                     };
                     let off = owner_off + zones_off(&other.zones, other_zone) + in_lane;
-                    let (ground, door) = (ground.clone(), Some(opening.clone()));
+                    let (ground, door) = (Rc::clone(ground), Some(opening.clone()));
                     found.push(Staging {
                         ground,
                         sv_s_m,

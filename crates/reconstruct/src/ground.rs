@@ -16,6 +16,7 @@ use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{LanePath, RoadNetwork};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Width of driving lanes. [m]
 pub(crate) const LANE_M: f64 = 3.4;
@@ -37,6 +38,8 @@ const CORNER_M: f64 = 13.0;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ground {
     pub(crate) map: Rc<GraphMap>,
+    /// Its network: a scenario on it need not build it again.
+    pub(crate) network: Arc<RoadNetwork>,
     /// Roads of the ego's way.
     pub(crate) route: Vec<String>,
     pub(crate) lane: u8,
@@ -547,6 +550,7 @@ fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>,
     let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
     Ground {
         map: Rc::new(map),
+        network: Arc::new(network),
         route,
         lane,
         way: Rc::new(way),

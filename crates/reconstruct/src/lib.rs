@@ -46,8 +46,9 @@ use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult, Verdict};
 use recrash_model::rollout::Rollout;
 use recrash_model::scenario::ScenarioDraft;
 use recrash_model::tuning::Parameter;
-use recrash_roads::Scenario;
+use recrash_roads::{Scenario, check_on};
 use recrash_sim::Ego;
+use std::rc::Rc;
 
 /// Stagings of a variant that are tried first; and at most, where none of those of all variants shows every told fact, and in all.
 const FIRST_TRIES: usize = 24;
@@ -221,7 +222,7 @@ struct Search {
 impl Search {
     /// Runs a staging; true where nothing better can be found, or no more are run.
     fn runs(&mut self, account: &Account, told: &told::Told, staging: &touch::Staging) -> bool {
-        let Ok(checked) = recrash_roads::check(came::draft(account, told, staging)) else {
+        let Ok(checked) = check_on(came::draft(account, told, staging), Some(&staging.ground.network)) else {
             self.refused += 1;
             return false;
         };
@@ -247,7 +248,7 @@ impl Search {
         if better || fuller {
             let assumed = told.assumed.iter().cloned().chain(told.extras.iter().filter_map(Extra::assumed)).collect();
             let made = Reconstruction { draft: scenario.draft().clone(), rollout, verdict, assumed };
-            let found = Best { cost, made, told: told.clone(), ground: staging.ground.clone() };
+            let found = Best { cost, made, told: told.clone(), ground: Rc::clone(&staging.ground) };
             if fuller {
                 self.fullest = Some((missing, found.clone()));
             }
@@ -281,7 +282,7 @@ struct Best {
     cost: (usize, bool, bool, usize, usize),
     made: Reconstruction,
     told: told::Told,
-    ground: ground::Ground,
+    ground: Rc<ground::Ground>,
 }
 
 impl Best {
@@ -297,7 +298,7 @@ impl Best {
             return made;
         }
         let (draft, rollout, assumed) = nearby::with_near(&told, &ground, (made.draft.clone(), made.rollout.clone()));
-        let Ok(checked) = recrash_roads::check(draft) else { return made };
+        let Ok(checked) = check_on(draft, Some(&ground.network)) else { return made };
         let verdict = Verdict { checks: facts::facts(&told, &checked.value, &rollout) };
         if verdict.failures().count() > 0 {
             return made;

@@ -20,7 +20,7 @@ use recrash_model::kinds::PartnerKind;
 use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
 use recrash_model::scenario::{Actor, ActorPlan, Deed, Leg, Place, ScenarioDraft, Strip, StripKind};
 use recrash_model::vehicle::VehicleSpec;
-use recrash_roads::Scenario;
+use recrash_roads::{Scenario, check_on};
 use recrash_sim::Ego;
 
 /// Nobody comes closer to it. [m]
@@ -155,7 +155,7 @@ pub(crate) fn with_near(
             with.actors.push(actor);
             let recorded = with.ego.recorded.clone()?;
             with.control = control::devices(told, ground, &recorded, &with.actors);
-            let scenario = recrash_roads::check(with).ok()?.value;
+            let scenario = check_on(with, Some(&ground.network)).ok()?.value;
             let driven = recrash_sim::simulate(&scenario, Ego::Recorded);
             let fits = hinders_nobody(&id, &scenario, (&rollout, &driven))
                 && Seen::new(told, &driven, scene.contact_s).holds(extra)

@@ -18,6 +18,7 @@ use recrash_model::scenario::{Deed, Size, StripKind};
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use recrash_roads::{RoadPart, Scenario};
+use std::rc::Rc;
 
 /// Length and width of what goes along the road, where the words for it do not say more. [m]
 const ALONG: Size = Size { length_m: 8.0, width_m: 0.3 };
@@ -178,6 +179,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Sta
     for sv_s_m in ground.places() {
         for &sv_point in &sv_points {
             let Some((ground, sv)) = drifted(told, ground, sv_s_m, sv_point, right * told.edge_m()) else { continue };
+            let ground = Rc::new(ground);
             let along = ground.pose(ground.beside(at(told, sv, sv_point)).0, 0.0).heading;
             for &(turned, cp_point) in &ways(told, right) {
                 trial += 1;
@@ -186,7 +188,7 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, side: LeftRight) -> Vec<Sta
                 let cp_off = if told.thing.is_some() { 0 } else { zones_off(&told.cp.zones, cp_seen) };
                 let cost = (zones_off(&told.sv.zones, sv_seen) + cp_off, trial);
                 found.push(Staging {
-                    ground: ground.clone(),
+                    ground: Rc::clone(&ground),
                     sv_s_m,
                     sv,
                     cp,

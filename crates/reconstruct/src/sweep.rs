@@ -14,6 +14,7 @@ use recrash_model::scenario::{Leg, Place};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
 use recrash_roads::{Course, arm_m};
+use std::rc::Rc;
 
 /// Bends that are tried, to both sides, in parts of the tightest; and by how much they turn until the contact. [rad]
 const BENDS: [f64; 2] = [1.0, 0.5];
@@ -29,7 +30,7 @@ pub(crate) struct Bend {
 
 /// Ways in which the partner touches as it turns, the first of them with this number, nearer to the told zones than so many steps; none of
 /// who walks, stands, reverses or is thrown.
-pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u32) -> Vec<Staging> {
+pub(crate) fn stagings(told: &Told, ground: &Rc<Ground>, mut trial: usize, nearer: u32) -> Vec<Staging> {
     let drives = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff);
     let wheels = VehicleSpec::of(told.cp.kind).length_m > 2.5;
     if !drives || !wheels || told.thing.is_some() || told.rig.is_some() || told.is_thrown() {
@@ -46,20 +47,18 @@ pub(crate) fn stagings(told: &Told, ground: &Ground, mut trial: usize, nearer: u
                 if told.swings_out(ground, by_rad * curvature.signum()) {
                     continue;
                 }
+                let way = Way::of(told, sv, heading, (curvature, length_m));
                 for &(sv_zone, cp_zone) in &pairs {
                     for (sv_point, cp_point) in
                         points(sv_zone).iter().flat_map(|a| points(cp_zone).iter().map(move |b| (*a, *b)))
                     {
                         trial += 1;
-                        let Some((cp, seen)) = touch(told, (sv, sv_point), (heading, cp_point), (curvature, length_m))
-                        else {
-                            continue;
-                        };
+                        let Some((cp, seen)) = way.touch(told, sv_point, cp_point) else { continue };
                         let off = off(seen.0, seen.1);
                         let trial = trial + if swings_out(told, sv, cp, curvature) { BENT } else { 0 };
                         let bend = Some(Bend { from: back(told, cp, curvature, length_m), length_m });
                         found.push(Staging {
-                            ground: ground.clone(),
+                            ground: Rc::clone(ground),
                             sv_s_m,
                             sv,
                             cp,
@@ -97,10 +96,24 @@ fn swings_out(told: &Told, sv: Pose, cp: Pose, curvature: f64) -> bool {
 /// Where somebody was so far before, whose rear axle drives on a circle.
 fn back(told: &Told, centre: Pose, curvature: f64, back_m: f64) -> Pose {
     let arm_m = arm_m(told.cp.kind, size_of(&told.cp).0);
-    let (turned, way) = (curvature * back_m, Vec2::from_heading);
-    let chord = way(centre.heading - 0.5 * turned) * (2.0 * math::sin(0.5 * turned) / curvature);
-    let heading = centre.heading - turned;
-    Pose { position: centre.position - way(centre.heading) * arm_m - chord + way(heading) * arm_m, heading }
+    let moved = Moved::of(arm_m, centre.heading, curvature, back_m);
+    Pose { position: centre.position + moved.by, heading: centre.heading - curvature * back_m }
+}
+
+/// Somebody so far before on its circle: where it was, seen from where it comes to, and the way it faced.
+#[derive(Clone, Copy)]
+struct Moved {
+    by: Vec2,
+    axis: Vec2,
+}
+
+impl Moved {
+    fn of(arm_m: f64, heading: f64, curvature: f64, back_m: f64) -> Self {
+        let (turned, way) = (curvature * back_m, Vec2::from_heading);
+        let chord = way(heading - 0.5 * turned) * (2.0 * math::sin(0.5 * turned) / curvature);
+        let axis = way(heading - turned);
+        Self { by: axis * arm_m - way(heading) * arm_m - chord, axis }
+    }
 }
 
 /// Whether no bend of a line is tighter than the partner drives.
@@ -124,44 +137,78 @@ pub(crate) fn can_be_driven(told: &Told, begin: Pose, legs: &[Leg]) -> bool {
 const TIGHTEST_M: f64 = 5.0;
 const TIGHTEST_LENGTHS: f64 = 0.5;
 
-/// Places the partner so that the two points meet, and takes it back along its bend to where the boxes just touch; the zones that then meet.
-fn touch(
-    told: &Told,
-    (sv, sv_point): (Pose, (f64, f64)),
-    (heading, cp_point): (f64, (f64, f64)),
-    (curvature, length_m): (f64, f64),
-) -> Option<(Pose, (ContactZone, ContactZone))> {
-    let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
-    let own = OrientedBox::new(sv, sv_length, sv_width);
-    let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
-    let axis = Vec2::from_heading(heading);
-    let position = met - axis * (cp_point.0 * 0.5 * cp_length) - axis.left() * (cp_point.1 * 0.5 * cp_width);
-    let (own_mps, speed_mps) = (velocity(&told.sv, sv.heading), told.cp.speed_mps.max(0.1));
-    // Seen from the ego, which moves meanwhile.
-    let pose = |back_m: f64| {
-        let there = back(told, Pose { position, heading }, curvature, back_m);
-        Pose { position: there.position + own_mps * (back_m / speed_mps), ..there }
-    };
-    let apart = |back_m: f64| !OrientedBox::new(pose(back_m), cp_length, cp_width).overlaps(&own);
-    let mut inside = -AHEAD_M;
-    if apart(inside) {
-        return None;
+/// The partner's bend, seen from the ego that moves meanwhile: tried with many pairs of points that meet.
+struct Way {
+    own: OrientedBox,
+    own_mps: Vec2,
+    /// The partner where the bend ends: heading, and axis and size of its box.
+    heading: f64,
+    ends: OrientedBox,
+    cp_mps: f64,
+    arm_m: f64,
+    curvature: f64,
+    /// By steps back from [`AHEAD_M`] before its end, as far as the bend is long.
+    steps: Vec<Moved>,
+}
+
+impl Way {
+    fn of(told: &Told, sv: Pose, heading: f64, (curvature, length_m): (f64, f64)) -> Self {
+        let ((sv_length, sv_width), (cp_length, cp_width)) = (size_of(&told.sv), size_of(&told.cp));
+        let ends = OrientedBox::new(Pose { heading, ..sv }, cp_length, cp_width);
+        let mut way = Self {
+            own: OrientedBox::new(sv, sv_length, sv_width),
+            own_mps: velocity(&told.sv, sv.heading),
+            heading,
+            ends,
+            cp_mps: told.cp.speed_mps.max(0.1),
+            arm_m: arm_m(told.cp.kind, cp_length),
+            curvature,
+            steps: Vec::new(),
+        };
+        let most = 2 * (length_m / STEP_M).ceil() as usize;
+        way.steps = (0..=most).map(|step| way.moved(STEP_M * step as f64 - AHEAD_M)).collect();
+        way
     }
-    let steps = (length_m / STEP_M).ceil() as usize;
-    let clear = (1..=steps).map(|step| STEP_M * step as f64 - AHEAD_M).find(|back_m| apart(*back_m))?;
-    let mut outside = clear;
-    for _ in 0..30 {
-        let middle = 0.5 * (inside + outside);
-        if apart(middle) { outside = middle } else { inside = middle }
+
+    /// So far back, with the ego's own way taken off.
+    fn moved(&self, back_m: f64) -> Moved {
+        let moved = Moved::of(self.arm_m, self.heading, self.curvature, back_m);
+        Moved { by: moved.by + self.own_mps * (back_m / self.cp_mps), ..moved }
     }
-    // They stay apart on the way there.
-    if (1..=steps).any(|step| !apart(clear + STEP_M * step as f64)) {
-        return None;
+
+    /// Places the partner so that the two points meet, and takes it back along its bend to where the boxes just touch; the zones that
+    /// then meet.
+    fn touch(
+        &self,
+        told: &Told,
+        sv_point: (f64, f64),
+        cp_point: (f64, f64),
+    ) -> Option<(Pose, (ContactZone, ContactZone))> {
+        let (own, ends) = (&self.own, &self.ends);
+        let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
+        let centre =
+            met - ends.axis * (cp_point.0 * ends.half_length) - ends.axis.left() * (cp_point.1 * ends.half_width);
+        let at = |moved: Moved| OrientedBox { centre: centre + moved.by, axis: moved.axis, ..*ends };
+        let apart = |moved: Moved| !at(moved).overlaps(own);
+        if apart(self.steps[0]) {
+            return None;
+        }
+        let most = self.steps.len() / 2;
+        let clear = (1..=most).find(|step| apart(self.steps[*step]))?;
+        // They stay apart on the way there.
+        if self.steps[clear..=clear + most].iter().any(|moved| !apart(*moved)) {
+            return None;
+        }
+        let (mut inside, mut outside) = (-AHEAD_M, STEP_M * clear as f64 - AHEAD_M);
+        for _ in 0..30 {
+            let middle = 0.5 * (inside + outside);
+            if apart(self.moved(middle)) { outside = middle } else { inside = middle }
+        }
+        let cp = Pose { position: centre + self.moved(inside).by, heading: self.heading - self.curvature * inside };
+        let touching = at(self.moved(inside - 0.02));
+        let geometry = contact_geometry(own, self.own_mps, &touching, velocity(&told.cp, cp.heading));
+        Some((cp, (geometry.ego_zone, geometry.other_zone)))
     }
-    let cp = pose(inside);
-    let touching = OrientedBox::new(pose(inside - 0.02), cp_length, cp_width);
-    let geometry = contact_geometry(&own, own_mps, &touching, velocity(&told.cp, cp.heading));
-    Some((cp, (geometry.ego_zone, geometry.other_zone)))
 }
 
 /// The points meet so far ahead at most; and the way there is looked at in steps of this. [m]

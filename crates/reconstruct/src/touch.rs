@@ -24,12 +24,13 @@ use recrash_model::math;
 use recrash_model::template::Movement;
 use recrash_model::vehicle::VehicleSpec;
 use recrash_model::zones::ContactZone;
+use std::rc::Rc;
 
 /// A way of touching.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Staging {
-    /// The road.
-    pub(crate) ground: Ground,
+    /// The road: hundreds of ways of touching are tried on one.
+    pub(crate) ground: Rc<Ground>,
     /// Along the ego's way, where its centre is at the contact. [m]
     pub(crate) sv_s_m: f64,
     /// The ego at the contact.
@@ -71,7 +72,7 @@ pub(crate) fn size_of(side: &Side) -> (f64, f64) {
 
 /// Ways of touching, the best first.
 pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
-    let ground = ground_for(told);
+    let ground = Rc::new(ground_for(told));
     let by_part = told.door.is_some() || told.gate_swings;
     let mut found = match told.edge {
         _ if by_part => door::stagings(told, &ground),
@@ -96,7 +97,7 @@ pub(crate) fn stagings(told: &Told) -> Vec<Staging> {
 }
 
 /// Ways in which their bodies touch.
-fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
+fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
     let mut found: Vec<Staging> = Vec::new();
     let mut trial = 0;
     for sv_s_m in ground.places() {
@@ -108,7 +109,7 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
             let (sv_off, cp_off) = (zones_off(&told.sv.zones, sv_seen), zones_off(&told.cp.zones, cp_seen));
             // Zones are told to a step: its way through the turn is worth more than that.
             let off = if sv_off.max(cp_off) <= 1 { 0 } else { sv_off + cp_off };
-            let (ground, cp_follows_m) = (ground.clone(), Some(sv_s_m - back_m));
+            let (ground, cp_follows_m) = (Rc::clone(ground), Some(sv_s_m - back_m));
             found.push(Staging {
                 ground,
                 sv_s_m,
@@ -157,7 +158,7 @@ fn bodies(told: &Told, ground: &Ground) -> Vec<Staging> {
                         let worse: u32 = worse.iter().filter(|(is, _)| *is).map(|(_, steps)| steps).sum();
                         let bends = lanes::bends(told, (ground, sv), cp, came);
                         let cost = (off + worse, bends as usize * BENT + trial);
-                        let (ground, bend, door) = (ground.clone(), None, None);
+                        let (ground, bend, door) = (Rc::clone(ground), None, None);
                         let cp_follows_m = None;
                         found.push(Staging { ground, sv_s_m, sv, cp, cp_came: came, cp_follows_m, bend, door, cost });
                     }
@@ -543,8 +544,13 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
 
 /// Velocity at the contact. [m/s]
 pub(crate) fn velocity(side: &Side, heading: f64) -> Vec2 {
+    velocity_along(side, Vec2::from_heading(heading))
+}
+
+/// The same of who faces along this. [m/s]
+pub(crate) fn velocity_along(side: &Side, axis: Vec2) -> Vec2 {
     let backwards = if side.state == ContactState::Reversing { -1.0 } else { 1.0 };
-    Vec2::from_heading(heading) * (backwards * side.speed_mps)
+    axis * (backwards * side.speed_mps)
 }
 
 /// Places the partner so that the two points meet, and takes it back to where the boxes just touch; the zones that then
@@ -561,15 +567,17 @@ pub(crate) fn touch(
         told.rig.map_or_else(|| size_of(&told.cp), |rig| (rig.trailer.length_m, rig.trailer.width_m));
     let own = OrientedBox::new(sv, sv_length, sv_width);
     let met = own.to_world(Vec2::new(sv_point.0 * own.half_length, sv_point.1 * own.half_width));
-    let axis = Vec2::from_heading(heading);
+    let other = OrientedBox::new(Pose { heading, ..sv }, cp_length, cp_width);
+    let axis = other.axis;
     let centre = met - axis * (cp_point.0 * 0.5 * cp_length) - axis.left() * (cp_point.1 * 0.5 * cp_width);
-    let closing = velocity(&told.cp, heading) - velocity(&told.sv, sv.heading);
+    let velocities = (velocity_along(&told.sv, own.axis), velocity_along(&told.cp, axis));
+    let closing = velocities.1 - velocities.0;
     let speed = closing.length();
     if speed < 0.05 {
         return None;
     }
     let way = closing * (1.0 / speed);
-    let at = |back_m: f64| OrientedBox::new(Pose { position: centre - way * back_m, heading }, cp_length, cp_width);
+    let at = |back_m: f64| OrientedBox { centre: centre - way * back_m, ..other };
     // Apart some way back, together here or a little later.
     let (mut inside, mut outside) = (-0.05, None);
     if !at(inside).overlaps(&own) {
@@ -598,7 +606,7 @@ pub(crate) fn touch(
         return None;
     }
     let touching = at(inside - 0.01);
-    let geometry = contact_geometry(&own, velocity(&told.sv, sv.heading), &touching, velocity(&told.cp, heading));
+    let geometry = contact_geometry(&own, velocities.0, &touching, velocities.1);
     let cp = trailer::pose(told.rig, Pose { position: at(inside).centre, heading });
     let cp_zone = told.rig.map_or(geometry.other_zone, |rig| rig.zone(&touching, &geometry));
     Some((cp, geometry.ego_zone, cp_zone))

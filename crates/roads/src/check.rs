@@ -26,6 +26,14 @@ use std::sync::Arc;
 /// # Errors
 /// Diagnostics of which at least one is an error.
 pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
+    check_on(draft, None)
+}
+
+/// The same with a network that is known: it is built anew only where the draft's map is another. For many drafts on few maps.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_on(draft: ScenarioDraft, known: Option<&Arc<RoadNetwork>>) -> Result<Outcome<Scenario>, Vec<Diagnostic>> {
     let mut remarks = Remarks::default();
     let fit = numbers::check(&draft, &mut remarks);
     let planned = actors::numbers(&draft, &mut remarks);
@@ -34,8 +42,12 @@ pub fn check(draft: ScenarioDraft) -> Result<Outcome<Scenario>, Vec<Diagnostic>>
     if !fit.counts || !fit.map || !fit.ego {
         return Err(remarks.list);
     }
-    let network = match RoadNetwork::try_build(&draft.map) {
-        Ok(network) => Arc::new(network),
+    let built = match known.filter(|known| known.map == draft.map) {
+        Some(known) => Ok(Arc::clone(known)),
+        None => RoadNetwork::try_build(&draft.map).map(Arc::new),
+    };
+    let network = match built {
+        Ok(network) => network,
         Err(problems) => {
             remarks.list.extend(problems);
             return Err(remarks.list);
@@ -148,6 +160,9 @@ fn everybody(
     }
     all
 }
+
+/// A JSON path, which is written out only where there is something to say of it.
+type At<'a> = std::fmt::Arguments<'a>;
 
 /// The diagnostics of one check.
 #[derive(Default)]

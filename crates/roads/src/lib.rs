@@ -23,7 +23,7 @@ pub mod simulator;
 pub mod traffic;
 mod ways;
 
-pub use check::{arm_m, check};
+pub use check::{arm_m, check, check_on};
 pub use course::{Beside, Course, CourseLeg, CoursePiece, Spot, StopLine};
 pub use drawing::{DrawnArea, GroundShape, LineKind, RoadDrawing, RoadLine};
 pub use json_place::{add_lines, locate};

@@ -1,7 +1,7 @@
 //! Names, counts and ranges of a network of roads; what its geometry says is in [`crate::graph`].
 
 use super::numbers::{name, shorten};
-use super::{Remarks, shown};
+use super::{At, Remarks, shown};
 use crate::graph::undirected;
 use crate::near::near_names;
 use recrash_model::scenario::{AreaSpec, GraphMap, JunctionSpec, LinePiece, RoadSpec, RoadStart, Strip, StripKind};
@@ -36,7 +36,7 @@ pub(super) fn numbers(map: &GraphMap, remarks: &mut Remarks) -> bool {
     ids("map.roads", map.roads.iter().map(|road| road.id.as_str()), remarks);
     ids("map.junctions", map.junctions.iter().map(|junction| junction.id.as_str()), remarks);
     for (position, road) in map.roads.iter().enumerate() {
-        self::road(map, road, &format!("map.roads[{position}]"), remarks);
+        self::road(map, road, format_args!("map.roads[{position}]"), remarks);
     }
     if map.roads.first().is_some_and(|road| !road.right.iter().any(|strip| strip.kind == StripKind::Driving)) {
         let message = "the first road has no driving lane to its right";
@@ -44,10 +44,10 @@ pub(super) fn numbers(map: &GraphMap, remarks: &mut Remarks) -> bool {
         remarks.error("scenario.no-lane", "map.roads[0].right", message, hint);
     }
     for (position, junction) in map.junctions.iter().enumerate() {
-        self::junction(map, junction, &format!("map.junctions[{position}]"), remarks);
+        self::junction(map, junction, format_args!("map.junctions[{position}]"), remarks);
     }
     for (position, area) in map.areas.iter().enumerate() {
-        self::area(area, &format!("map.areas[{position}]"), remarks);
+        self::area(area, format_args!("map.areas[{position}]"), remarks);
     }
     remarks.list[before..].iter().all(|diagnostic| !diagnostic.is_error())
 }
@@ -75,21 +75,21 @@ fn known<'a>(path: String, what: &str, id: &str, ids: impl Iterator<Item = &'a s
     false
 }
 
-fn road(map: &GraphMap, road: &RoadSpec, path: &str, remarks: &mut Remarks) {
-    start(map, road, &format!("{path}.start"), remarks);
+fn road(map: &GraphMap, road: &RoadSpec, path: At<'_>, remarks: &mut Remarks) {
+    start(map, road, format_args!("{path}.start"), remarks);
     if road.line.is_empty() {
         let hint = format!("allowed: 1 to {MOST_PIECES} pieces");
         remarks.error("scenario.count", format!("{path}.line"), "the line has no piece", hint);
     }
-    if remarks.count(&format!("{path}.line"), road.line.len(), MOST_PIECES) {
+    if remarks.count(format_args!("{path}.line"), road.line.len(), MOST_PIECES) {
         for (number, piece) in road.line.iter().enumerate() {
-            self::piece(piece, &format!("{path}.line[{number}]"), remarks);
+            self::piece(piece, format_args!("{path}.line[{number}]"), remarks);
         }
     }
     for (side, strips) in [("right", &road.right), ("left", &road.left)] {
-        if remarks.count(&format!("{path}.{side}"), strips.len(), MOST_STRIPS) {
+        if remarks.count(format_args!("{path}.{side}"), strips.len(), MOST_STRIPS) {
             for (number, strip) in strips.iter().enumerate() {
-                self::strip(strip, &format!("{path}.{side}[{number}]"), remarks);
+                self::strip(strip, format_args!("{path}.{side}[{number}]"), remarks);
             }
         }
     }
@@ -98,7 +98,7 @@ fn road(map: &GraphMap, road: &RoadSpec, path: &str, remarks: &mut Remarks) {
         remarks.error("scenario.count", format!("{path}.right"), "the road has no strip", hint);
     }
     if let Some(limit) = road.speed_limit_mps {
-        remarks.number(&format!("{path}.speed_limit_mps"), limit, 1.0, 60.0, "m/s");
+        remarks.number(format_args!("{path}.speed_limit_mps"), limit, 1.0, 60.0, "m/s");
     }
     let length_m: f64 = road.line.iter().map(LinePiece::length_m).sum();
     let along = |path: String, s_m: f64, remarks: &mut Remarks| {
@@ -107,30 +107,30 @@ fn road(map: &GraphMap, road: &RoadSpec, path: &str, remarks: &mut Remarks) {
             remarks.error("scenario.range", path, message, format!("allowed: 0 to {} m", shown(length_m)));
         }
     };
-    if remarks.count(&format!("{path}.crosswalks"), road.crosswalks.len(), MOST_CROSSWALKS) {
+    if remarks.count(format_args!("{path}.crosswalks"), road.crosswalks.len(), MOST_CROSSWALKS) {
         for (number, crosswalk) in road.crosswalks.iter().enumerate() {
             let path = format!("{path}.crosswalks[{number}]");
             along(format!("{path}.s_m"), crosswalk.s_m, remarks);
-            remarks.number(&format!("{path}.width_m"), crosswalk.width_m, 1.0, 10.0, "m");
+            remarks.number(format_args!("{path}.width_m"), crosswalk.width_m, 1.0, 10.0, "m");
         }
     }
-    if remarks.count(&format!("{path}.driveways"), road.driveways.len(), MOST_DRIVEWAYS) {
+    if remarks.count(format_args!("{path}.driveways"), road.driveways.len(), MOST_DRIVEWAYS) {
         for (number, driveway) in road.driveways.iter().enumerate() {
             let path = format!("{path}.driveways[{number}]");
             along(format!("{path}.s_m"), driveway.s_m, remarks);
-            remarks.number(&format!("{path}.width_m"), driveway.width_m, 2.0, 20.0, "m");
-            remarks.number(&format!("{path}.depth_m"), driveway.depth_m, 1.0, 40.0, "m");
+            remarks.number(format_args!("{path}.width_m"), driveway.width_m, 2.0, 20.0, "m");
+            remarks.number(format_args!("{path}.depth_m"), driveway.depth_m, 1.0, 40.0, "m");
         }
     }
 }
 
-fn start(map: &GraphMap, road: &RoadSpec, path: &str, remarks: &mut Remarks) {
+fn start(map: &GraphMap, road: &RoadSpec, path: At<'_>, remarks: &mut Remarks) {
     let roads = || map.roads.iter().map(|road| road.id.as_str());
     match &road.start {
         RoadStart::At { x_m, y_m, heading_deg } => {
-            remarks.number(&format!("{path}.at.x_m"), *x_m, -2000.0, 2000.0, "m");
-            remarks.number(&format!("{path}.at.y_m"), *y_m, -2000.0, 2000.0, "m");
-            remarks.number(&format!("{path}.at.heading_deg"), *heading_deg, -360.0, 360.0, "deg");
+            remarks.number(format_args!("{path}.at.x_m"), *x_m, -2000.0, 2000.0, "m");
+            remarks.number(format_args!("{path}.at.y_m"), *y_m, -2000.0, 2000.0, "m");
+            remarks.number(format_args!("{path}.at.heading_deg"), *heading_deg, -360.0, 360.0, "deg");
         }
         RoadStart::After { road } => {
             known(format!("{path}.after.road"), "road", road, roads(), remarks);
@@ -138,20 +138,20 @@ fn start(map: &GraphMap, road: &RoadSpec, path: &str, remarks: &mut Remarks) {
         RoadStart::Arm { junction, bearing_deg, from_m } => {
             let junctions = map.junctions.iter().map(|junction| junction.id.as_str());
             known(format!("{path}.arm.junction"), "junction", junction, junctions, remarks);
-            remarks.number(&format!("{path}.arm.bearing_deg"), *bearing_deg, -360.0, 360.0, "deg");
-            remarks.number(&format!("{path}.arm.from_m"), *from_m, 4.0, 100.0, "m");
+            remarks.number(format_args!("{path}.arm.bearing_deg"), *bearing_deg, -360.0, 360.0, "deg");
+            remarks.number(format_args!("{path}.arm.from_m"), *from_m, 4.0, 100.0, "m");
         }
         RoadStart::IntoLane { road: other, lane } => ramp(map, road, path, "into_lane", other, *lane, remarks),
         RoadStart::FromLane { road: other, lane } => ramp(map, road, path, "from_lane", other, *lane, remarks),
     }
 }
 
-fn ramp(map: &GraphMap, road: &RoadSpec, path: &str, form: &str, other: &str, lane: u8, remarks: &mut Remarks) {
+fn ramp(map: &GraphMap, road: &RoadSpec, path: At<'_>, form: &str, other: &str, lane: u8, remarks: &mut Remarks) {
     let drives = |strips: &[Strip]| strips.iter().filter(|strip| strip.kind == StripKind::Driving).count();
     if drives(&road.right) == 0 {
         let message = "a road that begins or ends with a lane of another has a driving lane to its right";
         let hint = "give its right a strip {\"kind\": \"driving\"}";
-        remarks.error("scenario.no-lane", path, message, hint);
+        remarks.error("scenario.no-lane", path.to_string(), message, hint);
     }
     let at = format!("{path}.{form}.road");
     let Some(id) = undirected(other) else {
@@ -172,46 +172,48 @@ fn ramp(map: &GraphMap, road: &RoadSpec, path: &str, form: &str, other: &str, la
     }
 }
 
-fn piece(piece: &LinePiece, path: &str, remarks: &mut Remarks) {
+fn piece(piece: &LinePiece, path: At<'_>, remarks: &mut Remarks) {
     match piece {
         LinePiece::Straight { length_m } => {
-            remarks.number(&format!("{path}.straight.length_m"), *length_m, 0.1, 2000.0, "m");
+            remarks.number(format_args!("{path}.straight.length_m"), *length_m, 0.1, 2000.0, "m");
         }
         LinePiece::Arc { length_m, radius_m, to: _ } => {
-            remarks.number(&format!("{path}.arc.length_m"), *length_m, 0.1, 2000.0, "m");
-            remarks.number(&format!("{path}.arc.radius_m"), *radius_m, 4.0, 10_000.0, "m");
+            remarks.number(format_args!("{path}.arc.length_m"), *length_m, 0.1, 2000.0, "m");
+            remarks.number(format_args!("{path}.arc.radius_m"), *radius_m, 4.0, 10_000.0, "m");
         }
         LinePiece::Spiral { length_m, from_radius_m, to_radius_m, to: _ } => {
-            remarks.number(&format!("{path}.spiral.length_m"), *length_m, 1.0, 500.0, "m");
+            remarks.number(format_args!("{path}.spiral.length_m"), *length_m, 1.0, 500.0, "m");
             for (field, radius) in [("from_radius_m", from_radius_m), ("to_radius_m", to_radius_m)] {
                 if let Some(radius) = radius {
-                    remarks.number(&format!("{path}.spiral.{field}"), *radius, 4.0, 10_000.0, "m");
+                    remarks.number(format_args!("{path}.spiral.{field}"), *radius, 4.0, 10_000.0, "m");
                 }
             }
         }
-        LinePiece::Points { points } => self::points(points, 1, 64, 500.0, &format!("{path}.points.points"), remarks),
+        LinePiece::Points { points } => {
+            self::points(points, 1, 64, 500.0, format_args!("{path}.points.points"), remarks)
+        }
     }
 }
 
-fn points(points: &[[f64; 2]], least: usize, most: usize, reach_m: f64, path: &str, remarks: &mut Remarks) {
+fn points(points: &[[f64; 2]], least: usize, most: usize, reach_m: f64, path: At<'_>, remarks: &mut Remarks) {
     if points.len() < least {
         let message = format!("{} points", points.len());
-        remarks.error("scenario.count", path, message, format!("allowed: {least} to {most}"));
+        remarks.error("scenario.count", path.to_string(), message, format!("allowed: {least} to {most}"));
     }
     if remarks.count(path, points.len(), most) {
         for (number, point) in points.iter().enumerate() {
             for (axis, value) in point.iter().enumerate() {
-                remarks.number(&format!("{path}[{number}][{axis}]"), *value, -reach_m, reach_m, "m");
+                remarks.number(format_args!("{path}[{number}][{axis}]"), *value, -reach_m, reach_m, "m");
             }
         }
     }
 }
 
-fn strip(strip: &Strip, path: &str, remarks: &mut Remarks) {
+fn strip(strip: &Strip, path: At<'_>, remarks: &mut Remarks) {
     let mut fits = true;
     for (field, width) in [("width_m", strip.width_m), ("end_width_m", strip.end_width_m)] {
         if let Some(width) = width {
-            fits &= remarks.number(&format!("{path}.{field}"), width, 0.0, 20.0, "m");
+            fits &= remarks.number(format_args!("{path}.{field}"), width, 0.0, 20.0, "m");
         }
     }
     let least = if strip.kind == StripKind::Driving { LEAST_LANE_WIDTH_M } else { LEAST_STRIP_WIDTH_M };
@@ -233,18 +235,18 @@ fn strip(strip: &Strip, path: &str, remarks: &mut Remarks) {
     only("stall_angle_deg", strip.stall_angle_deg.is_some(), &[StripKind::Stalls]);
     only("stall_m", strip.stall_m.is_some(), &[StripKind::Stalls, StripKind::Parking]);
     if let Some(angle) = strip.stall_angle_deg {
-        remarks.number(&format!("{path}.stall_angle_deg"), angle, 0.0, 90.0, "deg");
+        remarks.number(format_args!("{path}.stall_angle_deg"), angle, 0.0, 90.0, "deg");
     }
     if let Some(width) = strip.stall_m {
-        remarks.number(&format!("{path}.stall_m"), width, 2.0, 20.0, "m");
+        remarks.number(format_args!("{path}.stall_m"), width, 2.0, 20.0, "m");
     }
 }
 
-fn junction(map: &GraphMap, junction: &JunctionSpec, path: &str, remarks: &mut Remarks) {
-    remarks.number(&format!("{path}.x_m"), junction.x_m, -2000.0, 2000.0, "m");
-    remarks.number(&format!("{path}.y_m"), junction.y_m, -2000.0, 2000.0, "m");
+fn junction(map: &GraphMap, junction: &JunctionSpec, path: At<'_>, remarks: &mut Remarks) {
+    remarks.number(format_args!("{path}.x_m"), junction.x_m, -2000.0, 2000.0, "m");
+    remarks.number(format_args!("{path}.y_m"), junction.y_m, -2000.0, 2000.0, "m");
     for (field, list) in [("ends", &junction.ends), ("u_turns", &junction.u_turns)] {
-        if remarks.count(&format!("{path}.{field}"), list.len(), MOST_ROADS) {
+        if remarks.count(format_args!("{path}.{field}"), list.len(), MOST_ROADS) {
             for (number, id) in list.iter().enumerate() {
                 let roads = map.roads.iter().map(|road| road.id.as_str());
                 known(format!("{path}.{field}[{number}]"), "road", id, roads, remarks);
@@ -253,6 +255,6 @@ fn junction(map: &GraphMap, junction: &JunctionSpec, path: &str, remarks: &mut R
     }
 }
 
-fn area(area: &AreaSpec, path: &str, remarks: &mut Remarks) {
-    points(&area.points, 3, 32, 2000.0, &format!("{path}.points"), remarks);
+fn area(area: &AreaSpec, path: At<'_>, remarks: &mut Remarks) {
+    points(&area.points, 3, 32, 2000.0, format_args!("{path}.points"), remarks);
 }

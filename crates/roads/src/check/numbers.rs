@@ -1,10 +1,11 @@
 //! Names, counts and ranges: everything that can be said without looking at the road.
 
-use super::{Remarks, shown};
+use super::{At, Remarks, shown};
 use recrash_model::scenario::{
     LateralMove, MapSpec, Obstacle, Partner, Policy, SCENARIO_FORMAT, SCENARIO_FORMAT_1, ScenarioDraft, Start,
 };
 use std::collections::BTreeSet;
+use std::fmt::Display;
 
 /// The fastest any vehicle drives: MetaDrive cuts the engine at 80 km/h. [m/s]
 pub(super) const MAX_SPEED_MPS: f64 = 80.0 / 3.6;
@@ -56,14 +57,14 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
     let mut partners = Vec::with_capacity(draft.partners.len());
     for (position, each) in draft.partners.iter().enumerate() {
         let path = format!("partners[{position}]");
-        name(&format!("{path}.id"), &each.id, 32, "_-", remarks);
+        name(format_args!("{path}.id"), &each.id, 32, "_-", remarks);
         if each.id == recrash_model::rollout::EGO_ID {
             remarks.error("scenario.id", format!("{path}.id"), "\"ego\" is the ego's own name", "choose another id");
         } else if !ids.insert(each.id.as_str()) {
             let message = format!("a partner before has the id {:?} too", shorten(&each.id));
             remarks.error("scenario.duplicate-id", format!("{path}.id"), message, "give each partner its own id");
         }
-        partners.push(partner(each, &path, remarks));
+        partners.push(partner(each, format_args!("{path}"), remarks));
     }
     let obstacles = draft.obstacles.iter().enumerate().map(|(n, each)| obstacle(each, n, remarks)).collect();
     Fit { counts: partners_fit && obstacles_fit, map, ego, partners, obstacles }
@@ -71,33 +72,35 @@ pub(super) fn check(draft: &ScenarioDraft, remarks: &mut Remarks) -> Fit {
 
 impl Remarks {
     /// Whether a number is finite and in range; says so where it is not.
-    pub(super) fn number(&mut self, path: &str, value: f64, min: f64, max: f64, unit: &str) -> bool {
+    pub(super) fn number(&mut self, path: impl Display, value: f64, min: f64, max: f64, unit: &str) -> bool {
+        if (min..=max).contains(&value) {
+            return true;
+        }
+        let path = path.to_string();
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let allowed = format!("allowed: {} to {}{unit}", shown(min), shown(max));
-        if !value.is_finite() {
-            let message = format!("{} is {value}, which is no finite number", last_name(path));
-            self.error("scenario.not-finite", path, message, allowed);
-            return false;
-        }
-        if !(min..=max).contains(&value) {
-            let message = format!("{} is {}{unit}, out of range", last_name(path), shown(value));
-            self.error("scenario.range", path, message, allowed);
-            return false;
-        }
-        true
+        let (code, message) = if value.is_finite() {
+            ("scenario.range", format!("{} is {}{unit}, out of range", last_name(&path), shown(value)))
+        } else {
+            ("scenario.not-finite", format!("{} is {value}, which is no finite number", last_name(&path)))
+        };
+        self.error(code, path, message, allowed);
+        false
     }
 
-    pub(super) fn count(&mut self, path: &str, found: usize, most: usize) -> bool {
+    pub(super) fn count(&mut self, path: impl Display, found: usize, most: usize) -> bool {
         if found > most {
+            let path = path.to_string();
             let message = format!("{found} {path}, at most {most} are allowed");
             self.error("scenario.count", path, message, "leave out those that the conflict does not need");
         }
         found <= most
     }
 
-    fn steps(&mut self, path: &str, value: u32) {
+    fn steps(&mut self, path: impl Display, value: u32) {
         if value > MAX_STEPS {
-            let message = format!("{} is {value} steps, out of range", last_name(path));
+            let path = path.to_string();
+            let message = format!("{} is {value} steps, out of range", last_name(&path));
             self.error("scenario.range", path, message, format!("allowed: 0 to {MAX_STEPS} steps of 0.1 s"));
         }
     }
@@ -112,22 +115,22 @@ pub(super) fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(40).chain(['…']).collect() }
 }
 
-pub(super) fn name(path: &str, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
-    let listed = marks.chars().map(|mark| format!("'{mark}'")).collect::<Vec<_>>().join(", ");
-    let allowed = format!("allowed: 1 to {longest} letters a-z A-Z, digits and {listed}");
+pub(super) fn name(path: impl Display, text: &str, longest: usize, marks: &str, remarks: &mut Remarks) {
     let length = text.chars().count();
-    if length == 0 || length > longest {
-        remarks.error("scenario.id", path, format!("the id has {length} characters"), allowed);
+    let allowed = || {
+        let listed = marks.chars().map(|mark| format!("'{mark}'")).collect::<Vec<_>>().join(", ");
+        format!("allowed: 1 to {longest} letters a-z A-Z, digits and {listed}")
+    };
+    let (message, hint) = if length == 0 || length > longest {
+        (format!("the id has {length} characters"), allowed())
     } else if let Some(bad) = text.chars().find(|c| !c.is_ascii_alphanumeric() && !marks.contains(*c)) {
-        remarks.error("scenario.id", path, format!("the id {:?} holds {bad:?}", shorten(text)), allowed);
+        (format!("the id {:?} holds {bad:?}", shorten(text)), allowed())
     } else if text.starts_with('.') {
-        remarks.error(
-            "scenario.id",
-            path,
-            format!("the id {text:?} begins with a dot"),
-            "begin with a letter or digit",
-        );
-    }
+        (format!("the id {text:?} begins with a dot"), "begin with a letter or digit".to_owned())
+    } else {
+        return;
+    };
+    remarks.error("scenario.id", path.to_string(), message, hint);
 }
 
 fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
@@ -180,73 +183,82 @@ fn map(map: &MapSpec, remarks: &mut Remarks) -> bool {
 }
 
 /// Whether what a placement needs is in range.
-fn partner(partner: &Partner, path: &str, remarks: &mut Remarks) -> bool {
-    let mut fit = remarks.number(&format!("{path}.speed_mps"), partner.speed_mps, 0.0, MAX_SPEED_MPS, "m/s");
+fn partner(partner: &Partner, path: At<'_>, remarks: &mut Remarks) -> bool {
+    let mut fit = remarks.number(format_args!("{path}.speed_mps"), partner.speed_mps, 0.0, MAX_SPEED_MPS, "m/s");
     match partner.start {
         Start::Offset { delta_s_m, delta_t_m } => {
-            fit &= remarks.number(&format!("{path}.start.delta_s_m"), delta_s_m, -1000.0, 1000.0, "m");
-            fit &= remarks.number(&format!("{path}.start.delta_t_m"), delta_t_m, -10.0, 10.0, "m");
+            fit &= remarks.number(format_args!("{path}.start.delta_s_m"), delta_s_m, -1000.0, 1000.0, "m");
+            fit &= remarks.number(format_args!("{path}.start.delta_t_m"), delta_t_m, -10.0, 10.0, "m");
         }
         Start::ArrivalGap { arrival_gap_s } => {
-            fit &= remarks.number(&format!("{path}.start.arrival_gap_s"), arrival_gap_s, -60.0, 60.0, "s");
+            fit &= remarks.number(format_args!("{path}.start.arrival_gap_s"), arrival_gap_s, -60.0, 60.0, "s");
         }
     }
     for (position, step) in partner.lateral.iter().enumerate() {
-        lateral(step, &format!("{path}.lateral[{position}]"), remarks);
+        lateral(step, format_args!("{path}.lateral[{position}]"), remarks);
     }
-    remarks.count(&format!("{path}.lateral"), partner.lateral.len(), 32);
-    policy(&partner.policy, &format!("{path}.policy"), remarks) && fit
+    remarks.count(format_args!("{path}.lateral"), partner.lateral.len(), 32);
+    policy(&partner.policy, format_args!("{path}.policy"), remarks) && fit
 }
 
-fn lateral(step: &LateralMove, path: &str, remarks: &mut Remarks) {
-    remarks.number(&format!("{path}.start_s"), step.start_s, 0.0, 120.0, "s");
-    remarks.number(&format!("{path}.duration_s"), step.duration_s, 0.5, 120.0, "s");
-    remarks.number(&format!("{path}.to_t_m"), step.to_t_m, -10.0, 10.0, "m");
+fn lateral(step: &LateralMove, path: At<'_>, remarks: &mut Remarks) {
+    remarks.number(format_args!("{path}.start_s"), step.start_s, 0.0, 120.0, "s");
+    remarks.number(format_args!("{path}.duration_s"), step.duration_s, 0.5, 120.0, "s");
+    remarks.number(format_args!("{path}.to_t_m"), step.to_t_m, -10.0, 10.0, "m");
 }
 
-fn policy(policy: &Policy, path: &str, remarks: &mut Remarks) -> bool {
-    let at = |name: &str| format!("{path}.{name}");
+fn policy(policy: &Policy, path: At<'_>, remarks: &mut Remarks) -> bool {
     let gain = |kp: Option<f64>, remarks: &mut Remarks| {
         if let Some(kp) = kp {
-            remarks.number(&at("speed_kp"), kp, 0.01, 10.0, "throttle per m/s");
+            remarks.number(format_args!("{path}.speed_kp"), kp, 0.01, 10.0, "throttle per m/s");
         }
     };
     // IDM divides by the speed it wants, so that may not be nothing.
     let least_idm_speed = 0.5;
     match *policy {
         Policy::SuddenBrake { target_speed, brake_step, brake_steps, speed_kp } => {
-            remarks.steps(&at("brake_step"), brake_step);
-            remarks.steps(&at("brake_steps"), brake_steps);
+            remarks.steps(format_args!("{path}.brake_step"), brake_step);
+            remarks.steps(format_args!("{path}.brake_steps"), brake_steps);
             gain(speed_kp, remarks);
-            remarks.number(&at("target_speed"), target_speed, 0.0, MAX_SPEED_MPS, "m/s")
+            remarks.number(format_args!("{path}.target_speed"), target_speed, 0.0, MAX_SPEED_MPS, "m/s")
         }
         Policy::AccelThenBrake { accel_mag, accel_steps, cruise_speed, brake_step, brake_steps, speed_kp } => {
-            remarks.number(&at("accel_mag"), accel_mag, -1.0, 1.0, "");
-            remarks.steps(&at("accel_steps"), accel_steps);
-            remarks.steps(&at("brake_step"), brake_step);
-            remarks.steps(&at("brake_steps"), brake_steps);
+            remarks.number(format_args!("{path}.accel_mag"), accel_mag, -1.0, 1.0, "");
+            remarks.steps(format_args!("{path}.accel_steps"), accel_steps);
+            remarks.steps(format_args!("{path}.brake_step"), brake_step);
+            remarks.steps(format_args!("{path}.brake_steps"), brake_steps);
             gain(speed_kp, remarks);
-            remarks.number(&at("cruise_speed"), cruise_speed, 0.0, MAX_SPEED_MPS, "m/s")
+            remarks.number(format_args!("{path}.cruise_speed"), cruise_speed, 0.0, MAX_SPEED_MPS, "m/s")
         }
-        Policy::IdmNominal { target_speed_mps } => {
-            remarks.number(&at("target_speed_mps"), target_speed_mps, least_idm_speed, MAX_SPEED_MPS, "m/s")
-        }
+        Policy::IdmNominal { target_speed_mps } => remarks.number(
+            format_args!("{path}.target_speed_mps"),
+            target_speed_mps,
+            least_idm_speed,
+            MAX_SPEED_MPS,
+            "m/s",
+        ),
         Policy::Stopped { depart_step, target_speed_mps } => {
             if let Some(step) = depart_step {
-                remarks.steps(&at("depart_step"), step);
+                remarks.steps(format_args!("{path}.depart_step"), step);
             }
             let least = if depart_step.is_some() { least_idm_speed } else { 0.0 };
-            remarks.number(&at("target_speed_mps"), target_speed_mps, least, MAX_SPEED_MPS, "m/s")
+            remarks.number(format_args!("{path}.target_speed_mps"), target_speed_mps, least, MAX_SPEED_MPS, "m/s")
         }
         Policy::Yielding { target_speed_mps, gap_s } => {
-            remarks.number(&at("gap_s"), gap_s, 0.0, 20.0, "s");
-            remarks.number(&at("target_speed_mps"), target_speed_mps, least_idm_speed, MAX_SPEED_MPS, "m/s")
+            remarks.number(format_args!("{path}.gap_s"), gap_s, 0.0, 20.0, "s");
+            remarks.number(
+                format_args!("{path}.target_speed_mps"),
+                target_speed_mps,
+                least_idm_speed,
+                MAX_SPEED_MPS,
+                "m/s",
+            )
         }
     }
 }
 
 fn obstacle(obstacle: &Obstacle, position: usize, remarks: &mut Remarks) -> bool {
-    let along = remarks.number(&format!("obstacles[{position}].s_m"), obstacle.s_m, 0.0, 2000.0, "m");
-    let across = remarks.number(&format!("obstacles[{position}].t_m"), obstacle.t_m, -50.0, 50.0, "m");
+    let along = remarks.number(format_args!("obstacles[{position}].s_m"), obstacle.s_m, 0.0, 2000.0, "m");
+    let across = remarks.number(format_args!("obstacles[{position}].t_m"), obstacle.t_m, -50.0, 50.0, "m");
     along && across
 }
