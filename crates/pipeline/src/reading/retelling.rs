@@ -1,6 +1,7 @@
 //! Accounts retold: a reconstruction each, and what becomes of every incident of crash files.
 
 use crate::error::PipelineError;
+use crate::files::store::{sha256, to_compact_json};
 use crate::progress::{Progress, ProgressEvent};
 use crate::reading::accounts::told_facts;
 use crate::reading::records;
@@ -11,9 +12,38 @@ use recrash_model::account::{
 use recrash_model::incident::Incident;
 use recrash_model::metrics::{Answer, CheckKind, CheckResult};
 use recrash_model::record::{CrashRecord, FunnelStep, Reading, RecordSet, Redaction, Reject, RejectReason};
+use recrash_model::scenario::ScenarioDraft;
 use recrash_reconstruct::{Reconstruction, reconstruct, told_kinds};
 use recrash_records::Filter;
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// Reconstructions of told accounts, from the stage that finds them to the one that writes them: an account is staged once a run. One that
+/// is not here, since it was edited or comes from an earlier run, is staged again, and comes out as it did.
+#[derive(Default)]
+pub(crate) struct Stagings(Mutex<BTreeMap<String, Staged>>);
+
+/// The scenario of an account, and what was assumed for it.
+pub(crate) struct Staged {
+    pub draft: ScenarioDraft,
+    pub assumed: Vec<String>,
+}
+
+impl Stagings {
+    fn keep(&self, account: &Account, made: &Reconstruction) {
+        let staged = Staged { draft: made.draft.clone(), assumed: made.assumed.clone() };
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key(account), staged);
+    }
+
+    /// That of this very account.
+    pub fn take(&self, account: &Account) -> Option<Staged> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&key(account))
+    }
+}
+
+fn key(account: &Account) -> String {
+    sha256(&to_compact_json(account))
+}
 
 /// Name of the work in progress bars.
 const STAGE: &str = "reconstruct";
@@ -133,7 +163,7 @@ pub(crate) type ReadAgain<'a> = dyn FnMut(&[Unread], usize) -> Result<Vec<Option
 
 /// Groups reports into incidents, reads and reconstructs each, and leaves those usable whose every told fact is shown: the
 /// report that speaks stands for its incident. What is not read whole goes to `read_again`; its account is taken where the crash is
-/// told by it.
+/// told by it. Scenarios of what is told go to `stagings`.
 ///
 /// # Errors
 /// Those of `read_again`.
@@ -142,6 +172,7 @@ pub(crate) fn tell(
     filter: Option<&Filter>,
     progress: &dyn Progress,
     read_again: &mut ReadAgain,
+    stagings: &Stagings,
 ) -> Result<(RecordSet, AccountSet), PipelineError> {
     let incidents = records::incidents(&set);
     let leading: BTreeMap<Place, &Incident> =
@@ -163,6 +194,11 @@ pub(crate) fn tell(
         let other = Retold { account: at, result };
         if other.untold().is_none() {
             (accounts[at], retold[at]) = (account, other);
+        }
+    }
+    for (account, retold) in accounts.iter().zip(&retold) {
+        if let (Ok(made), None) = (&retold.result, retold.untold()) {
+            stagings.keep(account, made);
         }
     }
     let of_incident: BTreeMap<&str, (&Account, &Retold)> =

@@ -42,7 +42,7 @@ pub(super) fn run(work: &StageWork) -> Result<StageReport, PipelineError> {
             logs = told;
             Ok(accounts)
         };
-        let (told, accounts) = tell(value, filter.as_ref(), work.progress, &mut again)?;
+        let (told, accounts) = tell(value, filter.as_ref(), work.progress, &mut again, suite.stagings())?;
         Ok(vec![
             (names::ACCOUNT_READERS.into(), to_json(&logs)),
             (names::RECORDS.into(), to_compact_json(&told)),

@@ -7,6 +7,7 @@ use super::{Bench, CaseStage};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
 use crate::models::cast::AgentLog;
+use crate::reading::retelling::Staged;
 use crate::simulators::{Simulator, built_in};
 use crate::stages::design::{DesignAttempt, DesignLog};
 use crate::suite::names;
@@ -91,16 +92,25 @@ fn narrate(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
 
 fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
     let id = &cluster.scenario_id;
-    let refused = |why: String| PipelineError::scenario(id, why);
-    let made = reconstruct(&account(bench.suite, id)?).map_err(|why| refused(why.label().to_owned()))?;
-    if let Some(missed) = made.verdict.failures().next() {
-        let (what, seen, told) = (missed.kind.label(), &missed.observed, &missed.expected);
-        return Err(refused(format!("{}: {what} is {seen}, not {told}", Untold::NotShown.label())));
-    }
-    let draft = named(made.draft, bench, cluster);
+    let account = account(bench.suite, id)?;
+    let found = bench.suite.stagings().take(&account);
+    let staged = found.map_or_else(|| staged(&account), Ok).map_err(|why| PipelineError::scenario(id, why))?;
+    let draft = named(staged.draft, bench, cluster);
     let attempt = DesignAttempt { draft: draft.clone(), diagnostics: Vec::new(), unfaithful: Some(Vec::new()) };
-    let log = DesignLog { assumed: made.assumed, ..DesignLog::by_rules(attempt) };
+    let log = DesignLog { assumed: staged.assumed, ..DesignLog::by_rules(attempt) };
     Ok(vec![(names::scenario(id), to_json(&draft)), (names::design_log(id), to_json(&log))])
+}
+
+/// The scenario of an account in which every told fact that can be shown is shown; else why there is none.
+fn staged(account: &Account) -> Result<Staged, String> {
+    let made = reconstruct(account).map_err(|why| why.label().to_owned())?;
+    match made.verdict.failures().next() {
+        None => Ok(Staged { draft: made.draft, assumed: made.assumed }),
+        Some(missed) => {
+            let (what, seen, told) = (missed.kind.label(), &missed.observed, &missed.expected);
+            Err(format!("{}: {what} is {seen}, not {told}", Untold::NotShown.label()))
+        }
+    }
 }
 
 /// A reconstruction as a case of the suite.

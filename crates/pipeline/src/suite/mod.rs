@@ -14,6 +14,7 @@ use crate::files::store::{Store, WriteFile, sha256, to_json, write_suite_file};
 use crate::models::{AnswerMode, ModelAccess, Models};
 use crate::options::{Options, RecordSource};
 use crate::reading::records;
+use crate::reading::retelling::Stagings;
 use crate::simulators::{Simulator, start_simulator};
 use journal::{Journal, Made, Unit};
 use names::is_failure_file;
@@ -170,6 +171,7 @@ pub struct Suite {
     patience: Patience,
     models: Option<Models>,
     remarks: Vec<Diagnostic>,
+    stagings: Stagings,
     /// Whether the options stand in the suite's file.
     saved: Mutex<bool>,
     /// Keeps others from working in the folder at the same time.
@@ -294,6 +296,7 @@ impl Suite {
             patience,
             models,
             remarks,
+            stagings: Stagings::default(),
             saved: Mutex::new(true),
             _lock,
             _folder: None,
@@ -313,6 +316,11 @@ impl Suite {
             Some(askers) => askers.install(work),
             None => self.in_pool(work),
         }
+    }
+
+    /// Scenarios that the records stage of this run has found.
+    pub(crate) fn stagings(&self) -> &Stagings {
+        &self.stagings
     }
 
     /// What this run has spent on models.
