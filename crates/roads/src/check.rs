@@ -13,7 +13,7 @@ mod places;
 pub use actors::arm_m;
 
 use crate::network::RoadNetwork;
-use crate::scenario::{ActorPlacement, Placement, Scenario};
+use crate::scenario::{ActorPlacement, Placement, Scenario, ego_size_m};
 use recrash_model::geometry::OrientedBox;
 use recrash_model::rollout::EGO_ID;
 use recrash_model::scenario::{MapSpec, ScenarioDraft};
@@ -146,7 +146,9 @@ fn everybody(
         let size = VehicleSpec::of(placement.kind);
         OrientedBox::new(placement.pose, size.length_m, size.width_m)
     };
-    let mut all = vec![("the ego".to_owned(), "ego".to_owned(), outline(ego))];
+    let (length_m, width_m) = ego_size_m(draft, ego.kind);
+    let own = OrientedBox::new(ego.pose, length_m, width_m);
+    let mut all = vec![("the ego".to_owned(), "ego".to_owned(), own)];
     for (position, (partner, placed)) in draft.partners.iter().zip(partners).enumerate() {
         let name = format!("partner {:?}", partner.id);
         all.extend(placed.iter().map(|placed| (name.clone(), format!("partners[{position}]"), outline(placed))));

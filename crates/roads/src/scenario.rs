@@ -127,9 +127,14 @@ impl Scenario {
         self.recorded.as_ref()
     }
 
+    /// Length and width of the ego. [m]
+    pub fn ego_size_m(&self) -> (f64, f64) {
+        ego_size_m(&self.draft, self.ego.kind)
+    }
+
     /// Where the ego's path passes stop lines.
     pub fn ego_stop_lines(&self) -> impl Iterator<Item = StopLine> + '_ {
-        let (path, half_length_m) = (&self.ego.path, 0.5 * VehicleSpec::of(self.ego.kind).length_m);
+        let (path, half_length_m) = (&self.ego.path, 0.5 * self.ego_size_m().0);
         self.control.iter().enumerate().flat_map(move |(control, placed)| {
             placed.lines.iter().filter_map(move |&(lane, line_m)| {
                 let segment = path.segments.iter().find(|segment| segment.lane == lane)?;
@@ -142,4 +147,10 @@ impl Scenario {
     pub fn control(&self) -> &[ControlPlacement] {
         &self.control
     }
+}
+
+/// Length and width of a draft's ego: its own, else those of its kind. [m]
+pub(crate) fn ego_size_m(draft: &ScenarioDraft, kind: PartnerKind) -> (f64, f64) {
+    let spec = VehicleSpec::of(kind);
+    draft.ego.size.map_or((spec.length_m, spec.width_m), |size| (size.length_m, size.width_m))
 }

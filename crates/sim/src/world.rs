@@ -21,9 +21,7 @@ use recrash_model::vehicle::VehicleSpec;
 use recrash_plan::acts::{self, Attached, Glimpse, Names, PartState, Programme, ego_stop_lines};
 use recrash_plan::constants::EGO_OVERTAKE_TIMER_STEPS;
 use recrash_plan::{Crossing, Plan, Way};
-use recrash_roads::{
-    ActorPlacement, Footprint, LanePath, Placement, RoadId, Scenario, StopLine, TRAFFIC_SPEED_MPS, TrafficPlacement,
-};
+use recrash_roads::{Footprint, LanePath, Placement, RoadId, Scenario, StopLine, TRAFFIC_SPEED_MPS, TrafficPlacement};
 
 /// What stands firm is taken for this heavy. [kg]
 const FIRM_KG: f64 = 1e6;
@@ -245,6 +243,8 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
         Seat::BuiltIn(Ego::Recorded) => Driver::Plan,
     };
     enter(setting, state, surface, Entrance::of(Role::Ego, scenario.ego(), driver));
+    setting.resize_last(scenario.ego_size_m());
+    state.resize_last(scenario.ego_size_m());
 
     for (number, (partner, placement)) in draft.partners.iter().zip(scenario.partners()).enumerate() {
         let plan = Plan::new(partner.kind, &partner.policy, placement.t_m, surface);
@@ -264,8 +264,12 @@ pub(crate) fn prepare(setting: &mut Setting, state: &mut State, scenario: &Scena
             driver: Driver::Plan,
         };
         enter(setting, state, surface, entrance);
-        setting.resize_last(placement);
-        state.resize_last(placement);
+        let size_m = (placement.length_m, placement.width_m);
+        setting.resize_last(size_m);
+        state.resize_last(size_m);
+        if let Some(mass_kg) = setting.masses_kg.last_mut() {
+            *mass_kg = placement.mass_kg.unwrap_or(FIRM_KG);
+        }
     }
 
     let spawns = recrash_roads::background_traffic(scenario);
@@ -411,13 +415,10 @@ impl Setting {
         self.stops.clear();
     }
 
-    /// Makes the last actor as large and as heavy as its placement says.
-    fn resize_last(&mut self, placement: &ActorPlacement) {
+    /// Makes the last actor so long and wide. [m]
+    fn resize_last(&mut self, (length_m, width_m): (f64, f64)) {
         if let Some(member) = self.cast.last_mut() {
-            (member.length_m, member.width_m) = (placement.length_m, placement.width_m);
-        }
-        if let Some(mass_kg) = self.masses_kg.last_mut() {
-            *mass_kg = placement.mass_kg.unwrap_or(FIRM_KG);
+            (member.length_m, member.width_m) = (length_m, width_m);
         }
     }
 }
@@ -545,10 +546,10 @@ impl State {
         }
     }
 
-    /// Makes the last actor as large as its placement says.
-    fn resize_last(&mut self, placement: &ActorPlacement) {
+    /// Makes the last actor so long and wide. [m]
+    fn resize_last(&mut self, (length_m, width_m): (f64, f64)) {
         if let Some(seen) = self.seen.last_mut() {
-            (seen.half_length, seen.half_width) = (0.5 * placement.length_m, 0.5 * placement.width_m);
+            (seen.half_length, seen.half_width) = (0.5 * length_m, 0.5 * width_m);
         }
     }
 

@@ -18,7 +18,7 @@ pub(super) fn entities(context: &Context<'_>) -> Element {
     let mut list = vec![
         Element::new("ScenarioObject")
             .with("name", EGO_ID)
-            .child(vehicle("ego", PartnerKind::PassengerCar, &draft.ego))
+            .child(vehicle("ego", PartnerKind::PassengerCar, context.scenario.ego_size_m(), &draft.ego))
             .child(Element::new("ObjectController").child(controller_slot())),
     ];
     for partner in &draft.partners {
@@ -92,18 +92,23 @@ fn road_user(kind: PartnerKind, description: &impl Serialize) -> Element {
         PartnerKind::FixedObject => {
             misc_object("object", "obstacle", [spec.length_m, spec.width_m, height_m(kind)], description)
         }
-        _ => vehicle(kind.label(), kind, description),
+        _ => vehicle(kind.label(), kind, (spec.length_m, spec.width_m), description),
     }
 }
 
-pub(super) fn vehicle(name: &str, kind: PartnerKind, description: &impl Serialize) -> Element {
+pub(super) fn vehicle(
+    name: &str,
+    kind: PartnerKind,
+    (length_m, width_m): (f64, f64),
+    description: &impl Serialize,
+) -> Element {
     let spec = VehicleSpec::of(kind);
     let to_centre = reference_to_centre(kind);
     let axle = |element: &str, steering: f64, x: f64| {
         Element::new(element)
             .with_number("maxSteering", steering)
             .with("wheelDiameter", "0.626")
-            .with_number("trackWidth", (0.88 * spec.width_m * 1e3).round() / 1e3)
+            .with_number("trackWidth", (0.88 * width_m * 1e3).round() / 1e3)
             .with_number("positionX", x)
             .with("positionZ", "0.313")
     };
@@ -112,7 +117,7 @@ pub(super) fn vehicle(name: &str, kind: PartnerKind, description: &impl Serializ
         element = element.with("role", "police");
     }
     element
-        .child(bounding_box(to_centre, [spec.length_m, spec.width_m, height_m(kind)]))
+        .child(bounding_box(to_centre, [length_m, width_m, height_m(kind)]))
         .child(
             Element::new("Performance")
                 .with_number("maxSpeed", spec.max_speed_mps)

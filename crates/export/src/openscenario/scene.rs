@@ -122,7 +122,7 @@ fn lamp(aspect: Aspect) -> &'static str {
 fn entities_of(context: &Context<'_>, rollout: &Rollout) -> Element {
     let draft = context.scenario.draft();
     let object = |name: &str, child: Element| Element::new("ScenarioObject").with("name", name).child(child);
-    let ego = vehicle("ego", draft.ego.kind, &draft.ego);
+    let ego = vehicle("ego", draft.ego.kind, context.scenario.ego_size_m(), &draft.ego);
     let mut list = vec![object(EGO_ID, ego).child(Element::new("ObjectController").child(entities::controller_slot()))];
     for track in &rollout.actors[1..] {
         list.push(object(&track.id, entities::recorded(track)));

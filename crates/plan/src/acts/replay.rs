@@ -11,7 +11,6 @@ use super::progress::{Mode, Progress};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::rollout::{STEP_S, SUBSTEPS};
 use recrash_model::scenario::{ActorPlan, Aspect, Doing, Part};
-use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{ActorPlacement, Scenario};
 
 /// What everybody with a plan does.
@@ -134,8 +133,7 @@ pub fn replay(scenario: &Scenario, handover: u32) -> Replay {
     };
     let mut members = Vec::with_capacity(1 + draft.actors.len());
     if let (Some(placement), Some(plan)) = (scenario.recorded(), &draft.ego.recorded) {
-        let body = VehicleSpec::of(scenario.ego().kind);
-        members.push(member(0, recrash_model::rollout::EGO_ID, plan, placement, (body.length_m, body.width_m)));
+        members.push(member(0, recrash_model::rollout::EGO_ID, plan, placement, scenario.ego_size_m()));
     }
     for (position, (actor, placement)) in draft.actors.iter().zip(scenario.actors()).enumerate() {
         let size_m = (placement.length_m, placement.width_m);

@@ -112,9 +112,13 @@ impl Scene {
             && draft.control.is_empty()
             && draft.ego.recorded.is_none()
             && draft.ego.stops.is_empty()
-            && draft.ego.parts.is_empty();
+            && draft.ego.parts.is_empty()
+            && draft.ego.size.is_none();
         if plain {
             return Ok(None);
+        }
+        if draft.ego.size.is_some() {
+            return Err("the ego is not as large as its kind".to_owned());
         }
         if draft.ego.parts.iter().any(|part| part.kind == PartKind::Trailer) {
             return Err("the ego draws a trailer".to_owned());

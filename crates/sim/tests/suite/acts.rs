@@ -52,6 +52,21 @@ fn track<'a>(rollout: &'a Rollout, id: &str) -> &'a recrash_model::rollout::Acto
 }
 
 #[test]
+fn an_ego_is_touched_where_its_own_size_ends() {
+    let mut draft = scene();
+    draft.ego.kind = PartnerKind::HeavyTruck;
+    draft.ego.size = Some(Size { length_m: 16.0, width_m: 2.6 });
+    draft.ego.recorded = Some(ActorPlan::standing(Place::at(100.0, 0.0, 0.0)));
+    draft.actors.push(actor("cp", 40.0, 0.0, 10.0, vec![straight_on(290.0, 0.0)], Vec::new()));
+    let rollout = recorded(draft);
+    assert_eq!((rollout.actors[0].length_m, rollout.actors[0].width_m), (16.0, 2.6));
+    let touched = rollout.events.iter().find(|event| matches!(event.kind, EventKind::Contact { .. }));
+    let front = 40.0 + 0.5 * track(&rollout, "cp").length_m;
+    let due_s = (92.0 - front) / 10.0;
+    assert!(touched.is_some_and(|event| (event.time_s - due_s).abs() < 0.03), "{:?}", rollout.events);
+}
+
+#[test]
 fn who_stands_stands_exactly() {
     let mut draft = scene();
     let acts = vec![

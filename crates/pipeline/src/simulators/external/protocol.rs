@@ -213,8 +213,8 @@ impl<'a> Reset<'a> {
             surface: draft.environment.surface,
             target_speed_mps: draft.ego.target_speed_mps,
             vehicle: Vehicle {
-                length_m: spec.length_m,
-                width_m: spec.width_m,
+                length_m: scenario.ego_size_m().0,
+                width_m: scenario.ego_size_m().1,
                 wheelbase_m: spec.front_axle_m + spec.rear_axle_m,
                 max_acceleration_mps2: spec.max_acceleration_mps2,
                 max_deceleration_mps2: spec.max_deceleration_mps2,
