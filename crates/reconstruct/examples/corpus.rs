@@ -72,10 +72,10 @@ fn main() {
         match result {
             Ok(made) => {
                 row[1] += 1;
-                row[2] += usize::from(made.is_true());
+                row[2] += usize::from(made.missed().is_none());
                 row[3] += usize::from(made.verdict.faithful() == Answer::Yes);
                 for fact in &made.verdict.checks {
-                    let open = made.is_true() && fact.result == CheckResult::CannotBeShown;
+                    let open = made.missed().is_none() && fact.result == CheckResult::CannotBeShown;
                     if open && flags.iter().any(|flag| flag == "--open") && is_developed(account) {
                         println!("{} {}: {} | {}", account.report, fact.kind.label(), fact.expected, fact.observed);
                     }
@@ -84,7 +84,7 @@ fn main() {
                     count[0] += 1;
                     count[1] += usize::from(fact.result == CheckResult::Shown);
                 }
-                if !made.is_true() && list && is_developed(account) {
+                if made.missed().is_some() && list && is_developed(account) {
                     let missed: Vec<String> = made
                         .verdict
                         .failures()

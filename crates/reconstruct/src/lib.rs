@@ -78,9 +78,18 @@ pub struct Reconstruction {
 }
 
 impl Reconstruction {
-    /// Whether no told fact is missed; some may be beyond what can be shown yet.
+    /// Whether no told fact is shown otherwise; some may be beyond what can be shown yet.
     pub fn is_true(&self) -> bool {
         self.verdict.faithful() != Answer::No
+    }
+
+    /// The first told fact without which this is not the crash: one that is shown otherwise, or something that the two are told to have
+    /// done and that is not to be seen. Nothing where the crash is told; others, or why the ego stood, may still not be drawn.
+    pub fn missed(&self) -> Option<&Check> {
+        use CheckKind::{CpActs, CpMovement, PassedOn, SvActs, SvMovement};
+        let is_deed = |kind| matches!(kind, SvMovement | CpMovement | SvActs | CpActs | PassedOn);
+        let open = |check: &Check| check.result == CheckResult::CannotBeShown && is_deed(check.kind);
+        self.verdict.failures().next().or_else(|| self.verdict.checks.iter().find(|check| open(check)))
     }
 }
 

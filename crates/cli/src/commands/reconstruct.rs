@@ -121,14 +121,12 @@ fn json(read: &Accounts, retold: &[Retold]) -> serde_json::Value {
 fn types(read: &Accounts, retold: &[Retold]) {
     type_table(&type_shares(&read.accounts, retold));
     println!("{} incidents, {} with a narrative that can be read", read.incidents.len(), read.accounts.len());
-    println!(
-        "told, and not drawn yet: lanes for buses, some others in the story, some acts; work zones are not looked at"
-    );
+    println!("told, and not drawn yet: lanes for buses, some others in the story; work zones are not looked at");
 }
 
 /// Prints how much of each crash type is told.
 pub fn type_table(types: &[TypeShare]) {
-    title("Readable incidents of which no told fact is shown otherwise");
+    title("Readable incidents: no told fact shown otherwise, nothing that the two did left out");
     let mut table =
         table(&["type", "incidents", "told", "share", "all facts shown", "a fact not drawn", "facts per 100 words"]);
     let mut row = |label: &str, incidents: usize, told: usize, whole: usize, facts: String| {

@@ -9,7 +9,7 @@ fn shares_reasons_and_facts_are_shown_on_a_screen() {
     let (code, shown, remarks) = place.run(&["reconstruct"]);
     assert_eq!(code, 0, "{remarks}");
     for words in [
-        "Readable incidents of which no told fact is shown otherwise",
+        "Readable incidents: no told fact shown otherwise, nothing that the two did left out",
         "told, and not drawn yet: lanes for buses",
         "Front to rear",
         "Why the others are not",

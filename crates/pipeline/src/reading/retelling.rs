@@ -10,7 +10,7 @@ use recrash_model::account::{
     ACCOUNTS_FORMAT, Account, AccountSet, CrashType, FactShare, TypeShare, Untold, UntoldIncident, told,
 };
 use recrash_model::incident::Incident;
-use recrash_model::metrics::{Answer, CheckKind, CheckResult};
+use recrash_model::metrics::{Answer, Check, CheckKind, CheckResult};
 use recrash_model::record::{CrashRecord, FunnelStep, Reading, RecordSet, Redaction, Reject, RejectReason};
 use recrash_model::scenario::ScenarioDraft;
 use recrash_reconstruct::{Reconstruction, reconstruct, told_kinds};
@@ -57,10 +57,10 @@ pub struct Retold {
 }
 
 impl Retold {
-    /// Why its crash is not told; nothing where every told fact is shown.
+    /// Why its crash is not told; nothing where no told fact is shown otherwise, and all that the two did is.
     pub fn untold(&self) -> Option<Untold> {
         match &self.result {
-            Ok(made) => (!made.is_true()).then_some(Untold::NotShown),
+            Ok(made) => made.missed().map(|_| Untold::NotShown),
             Err(why) => Some(*why),
         }
     }
@@ -73,12 +73,18 @@ impl Retold {
     /// The same, with the fact that is not shown.
     pub fn reason(&self) -> Option<String> {
         match &self.result {
-            Ok(made) => {
-                let missed = made.verdict.failures().next()?;
-                Some(format!("{} is not shown: {}, not {}", missed.kind.label(), missed.observed, missed.expected))
-            }
+            Ok(made) => Some(what_is_missed(made.missed()?)),
             Err(reason) => Some(reason.label().to_owned()),
         }
+    }
+}
+
+/// A told fact that is missed, and what is seen in its place.
+pub(crate) fn what_is_missed(missed: &Check) -> String {
+    let what = missed.kind.label();
+    match missed.result {
+        CheckResult::CannotBeShown => format!("{what} is not drawn: {}", missed.observed),
+        _ => format!("{what} is not shown: {}, not {}", missed.observed, missed.expected),
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Bench, CaseStage};
 use crate::error::PipelineError;
 use crate::files::store::{to_compact_json, to_json};
 use crate::models::cast::AgentLog;
-use crate::reading::retelling::Staged;
+use crate::reading::retelling::{Staged, what_is_missed};
 use crate::simulators::{Simulator, built_in};
 use crate::stages::design::{DesignAttempt, DesignLog};
 use crate::suite::names;
@@ -104,12 +104,9 @@ fn design(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
 /// The scenario of an account in which every told fact that can be shown is shown; else why there is none.
 fn staged(account: &Account) -> Result<Staged, String> {
     let made = reconstruct(account).map_err(|why| why.label().to_owned())?;
-    match made.verdict.failures().next() {
+    match made.missed() {
         None => Ok(Staged { draft: made.draft, assumed: made.assumed }),
-        Some(missed) => {
-            let (what, seen, told) = (missed.kind.label(), &missed.observed, &missed.expected);
-            Err(format!("{}: {what} is {seen}, not {told}", Untold::NotShown.label()))
-        }
+        Some(missed) => Err(format!("{}: {}", Untold::NotShown.label(), what_is_missed(missed))),
     }
 }
 
@@ -177,7 +174,7 @@ fn tune(bench: &Bench, cluster: &Cluster) -> Result<Files, PipelineError> {
             return Ok(scenario.draft().clone());
         }
         let made = reconstruct_with(&account, &open, values).map_err(|why| why.label().to_owned())?;
-        match made.verdict.failures().next() {
+        match made.missed() {
             Some(missed) => {
                 Err(format!("not as told: {} is {}, not {}", missed.kind.label(), missed.observed, missed.expected))
             }
