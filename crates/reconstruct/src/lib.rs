@@ -11,6 +11,7 @@ mod came;
 mod choices;
 mod control;
 mod door;
+mod entry;
 mod extras;
 mod facts;
 mod ground;
