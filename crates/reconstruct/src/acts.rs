@@ -151,6 +151,11 @@ impl Doing {
         matches!(self.act, Act::Swerve)
     }
 
+    /// Whether it was only about to pass.
+    pub(crate) const fn is_begun_pass(&self) -> bool {
+        matches!(self.act, Act::Pass) && self.begun
+    }
+
     /// To which side it passes, or was about to.
     pub(crate) fn passes_on(&self) -> Option<LeftRight> {
         self.side.filter(|_| self.act == Act::Pass)
@@ -166,6 +171,11 @@ impl Doing {
     /// Whether it passes, and is told to have turned behind that.
     const fn is_pass_before_turn(&self) -> bool {
         self.is_pass() && self.over
+    }
+
+    /// Whether it is a stand.
+    pub(crate) const fn is_stand(&self) -> bool {
+        matches!(self.act, Act::Stop | Act::Hold)
     }
 
     /// Whether it comes into a junction.

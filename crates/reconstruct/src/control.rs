@@ -131,7 +131,7 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         match (braking, state) {
             (Some(halt), Some(SignalState::TurnedRed)) => Some(turns_red(halt.brakes_s, told.contact_s)),
             // Who entered at yellow, and brakes in the junction, came to it then.
-            (Some(halt), Some(SignalState::Yellow)) if told.sv.enters() => Some(turns_yellow(halt.brakes_s)),
+            (Some(halt), Some(SignalState::Yellow)) if told.enters() => Some(turns_yellow(halt.brakes_s)),
             _ => Some(program(state, side, told.contact_s, changed_s.max(0.1))),
         }
     };

@@ -232,11 +232,11 @@ impl Told {
     }
 
     /// Whether the ego sets off at a signal with nobody ahead of it.
-    fn sets_off_first(&self) -> bool {
+    pub(crate) fn sets_off_first(&self) -> bool {
         let at_signal = self.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
         // Who waits behind it sets the pace where it does.
         let waits = self.cp.stood_first || self.cp.state == ContactState::SettingOff || self.queued;
-        let once = self.sv.phases.len() <= 3 && !waits;
+        let once = self.sv.phases.len() <= 3 && !waits && !self.plainly;
         self.sv.state == ContactState::SettingOff && at_signal && self.origin == Origin::Behind && once
     }
 
@@ -494,7 +494,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
     let queue_m = queue_m(told);
     let at_line: Vec<f64> = match told.sv.state {
-        _ if told.sv.enters() => Vec::new(),
+        _ if told.enters() => Vec::new(),
         ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => match queue_m {
             Some(queue_m) => vec![-queue_m, -queue_m - 2.0],
             None => vec![-5.0, -8.0],
@@ -533,7 +533,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
             None => 5.0,
         };
         let before_m = if at_kerb { KERB_BEFORE_M } else { before_m };
-        match told.sv.enters() && !at_kerb && told.edge.is_none() {
+        match told.enters() && !at_kerb && told.edge.is_none() {
             true => inside(&INSIDE_M),
             // From its line.
             false if told.sets_off_first() && before_m < USUAL_M => vec![APPROACH_M - over_line_m(told)],

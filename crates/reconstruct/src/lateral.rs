@@ -105,17 +105,23 @@ impl Told {
         let to = self.cp.aside.or_else(|| self.cp.acts.iter().rev().find_map(Doing::passes_on));
         let touched = side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
         let changes = self.cp.movement == Some(Movement::ChangingLanes);
-        changes && self.cp.stood_first && to.is_some() && to == touched
+        changes && self.cp.stood_first && to.is_some() && to == touched && !self.plainly
     }
 
     /// Whether the ego stopped for an oncoming partner that had begun to come over.
     fn stops_for_who_comes_over(&self) -> bool {
-        self.comes_over && self.sv.acts.iter().any(|doing| doing.answers(&self.cp.acts))
+        !self.plainly && self.comes_over && self.sv.acts.iter().any(|doing| doing.answers(&self.cp.acts))
     }
 
     /// Whether the partner stood behind the ego, and comes out of its lane to go round it.
     pub(crate) fn comes_out_from_stand(&self) -> bool {
-        self.passes_from_behind() && (self.cp.stood_first || self.cp.state == ContactState::SettingOff)
+        let stood = self.cp.stood_first || self.cp.state == ContactState::SettingOff;
+        self.passes_from_behind() && stood && self.sv.turning == Turning::No && !self.plainly
+    }
+
+    /// Whether the partner's way is staged by what it did before.
+    pub(crate) fn does_before(&self) -> bool {
+        self.comes_out_from_stand() || self.stops_for_who_comes_over() || self.passes_after_stand()
     }
 
     /// Whether the partner comes along the lane beside which the ego is parked.

@@ -118,6 +118,8 @@ pub(crate) struct Told {
     pub(crate) queued: bool,
     /// Who was behind the ego in a queue stands close to it.
     pub(crate) close: bool,
+    /// What the two did to each other before is not staged; it is asked for.
+    pub(crate) plainly: bool,
     /// The partner comes straight to where it touches, also beside its lane.
     pub(crate) back_straight: bool,
     /// When they touch. [s]
@@ -156,6 +158,10 @@ impl Told {
         let passed = acts::passes_partner(&account.sv, partner, &account.others);
         if !passed {
             sv.acts.retain(|doing| !doing.is_pass());
+        }
+        // Beside one that turns it shows nothing.
+        if sv.turning != Turning::No {
+            cp.acts.retain(|doing| !doing.is_begun_pass());
         }
         let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
         cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
@@ -247,6 +253,7 @@ impl Told {
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
             queued: false,
             close: true,
+            plainly: false,
             back_straight: false,
             contact_s: CONTACT_S,
             choices: Choices::default(),
@@ -307,7 +314,7 @@ impl Told {
         let slows = self.sv.slowed_from.is_some() || self.sv.state == ContactState::Stopped;
         if unsaid && slows && self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear {
             let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
-            self.sv.turns_later = turns && !self.sv.enters();
+            self.sv.turns_later = turns && !self.enters();
         }
         // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
         let in_line = self.crash_type == CrashType::FrontToRear || self.is_thrown();
@@ -409,6 +416,23 @@ impl Told {
     /// The same with a partner that comes straight to where it touches.
     pub(crate) fn coming_straight(&self) -> Self {
         Self { back_straight: true, ..self.clone() }
+    }
+
+    /// Whether the ego is told to have come into the junction.
+    pub(crate) fn enters(&self) -> bool {
+        !self.plainly && self.sv.enters()
+    }
+
+    /// The same without what they did to each other, where that is staged: it is asked for, and said not to be seen.
+    pub(crate) fn plainly(&self) -> Option<Self> {
+        let staged = self.enters() || self.sets_off_first() || self.sv.goes_round || self.does_before();
+        staged.then(|| {
+            let mut told = Self { plainly: true, ..self.clone() };
+            if told.sv.goes_round {
+                (told.sv.aside, told.sv.goes_round, told.sv.dodges) = (None, false, false);
+            }
+            told
+        })
     }
 
     /// Whether a signal or sign is told.

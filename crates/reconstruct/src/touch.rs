@@ -282,7 +282,8 @@ impl Told {
         }
     }
 
-    /// Whether of two that drive on beside each other the one comes to the other who is not told to have struck it.
+    /// Whether of two that drive on beside each other, of whom the partner leaves its lane, the one comes to the other who is not told to have
+    /// struck it.
     fn strikes_otherwise(&self, (sv, cp): (Pose, Pose)) -> bool {
         let drives = |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No;
         let beside = self.crash_type == CrashType::Lateral && matches!(self.origin, Origin::Beside { .. });
@@ -295,7 +296,7 @@ impl Told {
             Some(Striker::Sv) => cp_mps > sv_mps,
             _ => false,
         };
-        beside && drives(&self.sv) && drives(&self.cp) && other
+        beside && self.leaves_its_lane() && drives(&self.sv) && drives(&self.cp) && other
     }
 
     /// Whether the partner is told to pass, and to touch with its flank or its rear.

@@ -23,6 +23,9 @@ const MAKES_ROOM: &str = "The AV was traveling north on a narrow street. A van t
 const CROSSED_OVER: &str = "The AV was traveling north on Elm Street. A van traveling south drifted into the lane of the AV. The AV then came to a stop, and the front of the van \
                             made contact with the front of the stationary AV.";
 
+const STOOD_AND_PASSED: &str = "The AV was stopped on a narrow street to yield. A van traveling in the opposite direction came to a stop, then proceeded forward and passed the AV on the \
+                                left, and the left side of the van made contact with the left side of the AV.";
+
 fn acts(made: &Reconstruction, kind: CheckKind) -> (CheckResult, &str) {
     let check = made.verdict.checks.iter().find(|check| check.kind == kind).expect("told");
     (check.result, &check.expected)
@@ -94,4 +97,14 @@ fn who_stops_for_one_that_comes_over_sees_it_come_before_it_brakes() {
     let (other, ego) = (partner(&shown).0, ego(&shown));
     let brakes = ego.iter().position(|state| state.speed() < ego[0].speed() - 0.5).expect("it brakes");
     assert!(other[0].y - other[brakes].y > 0.02, "{:?}", other[brakes]);
+}
+
+#[test]
+fn who_stood_before_it_passed_stood_short_of_the_ego() {
+    let shown = made(&story(STOOD_AND_PASSED));
+    let (result, expected) = acts(&shown, CheckKind::CpActs);
+    assert!(result == CheckResult::Shown && expected.ends_with("passed on the left"), "{:?}", shown.verdict);
+    let (other, ego) = (partner(&shown).0, ego(&shown));
+    let stood = (0..ego.len()).rfind(|step| other[*step].speed() < 0.1).expect("it stood");
+    assert!(other[stood].x - ego[stood].x > 4.5, "{:?}", other[stood]);
 }
