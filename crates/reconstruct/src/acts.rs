@@ -3,7 +3,9 @@
 use crate::extras::STANDS_MPS;
 use crate::movement::LEFT_LINE_M;
 use crate::touch::side_of;
-use recrash_model::account::{Act, ActFact, ContactState, LeftRight, Party, StandReason, told as told_of};
+use recrash_model::account::{
+    Act, ActFact, ContactState, Fact, Kind, LeftRight, Other as OtherParty, Party, Source, StandReason, told as told_of,
+};
 use recrash_model::geometry::Vec2;
 use recrash_model::math;
 use recrash_model::metrics::CheckResult;
@@ -25,8 +27,8 @@ pub(crate) struct Doing {
     after_other: Option<u32>,
 }
 
-/// What is told of somebody until the contact that can be seen, in order; that it passed the other one where that is asked for.
-pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doing> {
+/// What is told of somebody until the contact that can be seen, in order.
+pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
     let mut acts: Vec<&ActFact> = party.acts.iter().filter(|fact| !fact.after_contact).collect();
     acts.sort_by_key(|fact| fact.step);
     let stands = |act: Act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park);
@@ -50,7 +52,10 @@ pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doin
             Act::PullOut => list.is_empty() && told_of(&party.movement) == Some(Movement::Straight),
             // What somebody who stands, or had yet to, tried to.
             Act::Reverse => fact.begun && state.stands(),
-            Act::Pass => !passes || fact.begun || !touches_beside,
+            // Who had only begun to pass on a side has gone out to it.
+            Act::Pass if fact.begun => fact.side.is_none() || state.stands(),
+            Act::Pass => !touches_beside,
+            Act::Enter => fact.begun || !is_of_junction(fact),
             act => least(act).is_none(),
         };
         let waits = match fact.act {
@@ -79,6 +84,34 @@ pub(crate) fn told(party: &Party, state: ContactState, passes: bool) -> Vec<Doin
     list
 }
 
+/// Whether the ego is told to have passed the partner: by its name, and nobody else has that.
+pub(crate) fn passes_partner(sv: &Party, partner: &Party, others: &[OtherParty]) -> bool {
+    let last_word = |text: &str| text.to_lowercase().split_whitespace().next_back().map(str::to_owned);
+    let name = |fact: &Fact<Kind>| match &fact.source {
+        Source::Words { text, .. } => last_word(text),
+        _ => None,
+    };
+    let Some(partner) = partner.kind.as_ref().and_then(name) else { return false };
+    let named = |fact: &&ActFact| match &fact.source {
+        Source::Words { text, .. } => text.to_lowercase().contains(&partner),
+        _ => false,
+    };
+    let mut passed = sv.acts.iter().filter(|fact| fact.act == Act::Pass && !fact.after_contact);
+    partner != "av"
+        && passed.any(|fact| named(&fact))
+        && !others.iter().any(|other| name(&other.kind).as_ref() == Some(&partner))
+}
+
+/// Whether somebody is told to have entered a junction, and not a road or a lane.
+fn is_of_junction(fact: &ActFact) -> bool {
+    matches!(&fact.source, Source::Words { text, .. } if text.to_lowercase().contains("intersection"))
+}
+
+/// What is asked of somebody where a junction is drawn, or none is.
+pub(crate) fn asked(told: &[Doing], junction: bool) -> Vec<Doing> {
+    told.iter().filter(|doing| junction || !doing.is_entry()).copied().collect()
+}
+
 /// Who passes last passes on the side on which the ego is touched: what is told of the other side was said of something else.
 pub(crate) fn passes_where_touched(acts: &mut [Doing], ego_zones: &[ContactZone]) {
     let touched = side_of(ego_zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
@@ -100,7 +133,7 @@ impl Doing {
 
     /// Whether it passes, and touches beside.
     pub(crate) const fn is_pass(&self) -> bool {
-        matches!(self.act, Act::Pass)
+        matches!(self.act, Act::Pass) && !self.begun
     }
 
     /// Whether the words put it behind something that the other one did.
@@ -116,6 +149,38 @@ impl Doing {
     /// Whether it is that it swerved.
     pub(crate) const fn is_swerve(&self) -> bool {
         matches!(self.act, Act::Swerve)
+    }
+
+    /// Whether it was only about to pass.
+    pub(crate) const fn is_begun_pass(&self) -> bool {
+        matches!(self.act, Act::Pass) && self.begun
+    }
+
+    /// To which side it passes, or was about to.
+    pub(crate) fn passes_on(&self) -> Option<LeftRight> {
+        self.side.filter(|_| self.act == Act::Pass)
+    }
+
+    /// Whether it is a stop, or slowing, behind something by which the other one left its line, and that one's way to it.
+    pub(crate) fn answers(&self, other: &[Doing]) -> bool {
+        let slows = matches!(self.act, Act::Stop | Act::Slow);
+        let aside = |doing: &Doing| doing.goes_aside() && self.after_other.is_some_and(|after| doing.step <= after);
+        slows && other.iter().any(aside)
+    }
+
+    /// Whether it passes, and is told to have turned behind that.
+    const fn is_pass_before_turn(&self) -> bool {
+        self.is_pass() && self.over
+    }
+
+    /// Whether it is a stand.
+    pub(crate) const fn is_stand(&self) -> bool {
+        matches!(self.act, Act::Stop | Act::Hold)
+    }
+
+    /// Whether it comes into a junction.
+    pub(crate) const fn is_entry(&self) -> bool {
+        matches!(self.act, Act::Enter)
     }
 
     /// Whether it is a turn: of who may have begun it, or has yet to, none is asked for.
@@ -143,6 +208,8 @@ enum Least {
     Any,
     /// Comes beside the other one, which was ahead of it on its own way.
     By,
+    /// Its front comes into the junction.
+    In,
 }
 
 /// Who slows or gains speed does so by this. [m/s]
@@ -158,6 +225,9 @@ const CHANGED_LANES_M: f64 = 2.2;
 const CHANGES_LANES_RAD: f64 = 0.6;
 const DRIFTS_M: f64 = 0.2;
 
+/// Who has begun to pass has gone aside by so much. [m]
+const BEGUN_PASS_M: f64 = 0.5;
+
 /// What is told to have come behind an act of the other one begins no earlier than so long before that. [steps]
 const BEFORE_OTHER: usize = 5;
 
@@ -166,6 +236,9 @@ const FOUND_EARLY: usize = 7;
 
 /// Who passes comes beside the other one by so much of its length at least: a front on a rear has none. [m]
 const BESIDE_M: f64 = 0.3;
+
+/// One that is at more than this to another's way, and to the way back, stands across it. [rad]
+const ALONG_RAD: f64 = 0.9;
 
 /// Who turns has turned by so much, who turns round, and who comes from the kerb or draws up at it where it does not go aside. [deg]
 const TURNS_DEG: f64 = 15.0;
@@ -198,27 +271,40 @@ fn least(act: Act) -> Option<Least> {
         Act::UTurn => Least::Turn(ROUND_DEG),
         Act::PullOut | Act::PullOver | Act::Park => Least::Any,
         Act::Pass => Least::By,
+        Act::Enter => Least::In,
         _ => return None,
     })
 }
 
-/// One of the two: what is told of it, and its way.
-pub(crate) type Did<'a> = (&'a [Doing], &'a ActorTrack);
+/// One of the two: what is told of it, its way, and the first step at which its front is in the junction.
+pub(crate) struct Did<'a> {
+    pub(crate) told: &'a [Doing],
+    pub(crate) track: &'a ActorTrack,
+    pub(crate) entered: Option<usize>,
+}
+
+impl Did<'_> {
+    /// Its way until then, beside that of the other one.
+    fn way<'a>(&'a self, other: Option<&'a Did<'_>>, time_s: f64) -> Way<'a> {
+        let until = |track: &ActorTrack| ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
+        let by = other.map(|other| Other {
+            states: &other.track.states[..=until(other.track)],
+            half_m: 0.5 * (self.track.length_m + other.track.length_m),
+            beyond_m: 0.5 * (other.track.length_m - self.track.length_m),
+        });
+        let until = until(self.track);
+        Way { states: &self.track.states[..=until], other: by, entered: self.entered.filter(|at| *at <= until) }
+    }
+}
 
 /// Whether everything that is told of somebody is seen, in order, and behind what the other one had done by the words; and what is.
-pub(crate) fn check(one: Did<'_>, other: Option<Did<'_>>, time_s: f64) -> (CheckResult, String) {
-    let until = |track: &ActorTrack| ((time_s * 10.0).floor() as usize).min(track.states.len() - 1);
-    fn states(track: &ActorTrack, until: usize) -> &[ActorState] {
-        &track.states[..=until]
-    }
-    let met = |of: &ActorTrack, by: &ActorTrack| 0.5 * (of.length_m + by.length_m);
-    let (told, track) = one;
-    let beside = other.map(|(_, other)| (states(other, until(other)), met(track, other)));
-    let way = Way(states(track, until(track)), beside);
-    let others: Vec<(u32, usize)> = other.map_or(Vec::new(), |(acts, other)| {
-        let way = Way(states(other, until(other)), Some((states(track, until(track)), met(track, other))));
-        let seen = way.times(acts, &[]);
-        acts.iter().zip(seen).filter_map(|(doing, at)| Some((doing.step, at? + doing.found_early()))).collect()
+pub(crate) fn check(one: &Did<'_>, other: Option<&Did<'_>>, time_s: f64) -> (CheckResult, String) {
+    let (told, way) = (one.told, one.way(other, time_s));
+    let others: Vec<(u32, usize)> = other.map_or(Vec::new(), |other| {
+        let seen = other.way(Some(one), time_s).times(other.told, &[]);
+        // Passing goes on while the other one does something.
+        let bounds = other.told.iter().zip(seen).filter(|(doing, _)| !doing.is_pass());
+        bounds.filter_map(|(doing, at)| Some((doing.step, at? + doing.found_early()))).collect()
     });
     let (alone, in_order) = (way.times(told, &[]), way.times(told, &others));
     let of = |wanted: fn(Option<usize>, Option<usize>) -> bool| -> Vec<Doing> {
@@ -233,40 +319,60 @@ pub(crate) fn check(one: Did<'_>, other: Option<Did<'_>>, time_s: f64) -> (Check
     }
 }
 
-/// The states of somebody until the contact, and of the other one, with half of the length of both. [m]
-struct Way<'a>(&'a [ActorState], Option<(&'a [ActorState], f64)>);
+/// The states of somebody until the contact, those of the other one, and when its front was in the junction.
+struct Way<'a> {
+    states: &'a [ActorState],
+    other: Option<Other<'a>>,
+    entered: Option<usize>,
+}
+
+/// The other one's states, half of the length of both, and how far the middle of who has passed it is ahead of its middle. [m]
+#[derive(Clone, Copy)]
+struct Other<'a> {
+    states: &'a [ActorState],
+    half_m: f64,
+    beyond_m: f64,
+}
 
 impl Way<'_> {
     fn speed(&self, at: usize) -> f64 {
-        self.0[at].speed()
+        self.states[at].speed()
     }
 
     /// When each of the told acts begins, one after the other; none of them before the other one's behind which it is told, whose times
     /// these are.
     fn times(&self, told: &[Doing], others: &[(u32, usize)]) -> Vec<Option<usize>> {
-        let mut from = 0;
+        // Who goes aside or turns may have entered before.
+        let (mut from, mut since) = (0, 0);
         let begins = |doing: &Doing| {
             // Who stands may have stood before.
             let bound = doing.after_other.filter(|_| doing.act != Act::Hold);
-            let behind = others.iter().find(|(step, _)| Some(*step) == bound);
+            // Behind what cannot be seen it is behind the last that can be before that.
+            let behind = others.iter().filter(|(step, _)| bound.is_some_and(|bound| *step <= bound));
+            let behind = behind.max_by_key(|(step, _)| *step);
             let least = behind.map_or(0, |(_, at)| at.saturating_sub(BEFORE_OTHER + 2 * doing.found_early()));
-            let at = self.begins(*doing, from.max(least))?;
+            let earliest = if doing.is_entry() { since } else { from };
+            let at = self.begins(*doing, earliest.max(least))?;
             // What was under way then had begun before; who goes aside may go on to.
             if at == least && from < least && !doing.goes_aside() && self.begins(*doing, from) != Some(at) {
                 return None;
             }
-            from = at.saturating_sub(OVERLAP);
+            let least = if doing.is_entry() { from } else { 0 };
+            from = at.saturating_sub(OVERLAP).max(least);
+            if !doing.is_aside() {
+                since = from;
+            }
             Some(at)
         };
         told.iter().map(begins).collect()
     }
 
     fn is_still(&self, at: usize) -> bool {
-        self.0[at].velocity().length() < STANDS_MPS
+        self.states[at].velocity().length() < STANDS_MPS
     }
 
     fn last(&self) -> usize {
-        self.0.len() - 1
+        self.states.len() - 1
     }
 
     /// The first step from this one on at which a value, of that step and a later one, begins to come to this much and does.
@@ -278,25 +384,31 @@ impl Way<'_> {
         })
     }
 
-    /// How far it is ahead of the other one's middle at a step, the way that it goes itself. [m]
+    /// How far it is ahead of the other one's middle at a step, the way that it goes itself; along that one, but where it stands across. [m]
     fn ahead_m(&self, other: &[ActorState], at: usize) -> f64 {
-        let (own, other) = (&self.0[at], &other[at.min(other.len() - 1)]);
-        let same_way = math::wrap_angle(own.heading - other.heading).abs() < std::f64::consts::FRAC_PI_2;
-        let along = Vec2::from_heading(other.heading).dot(own.position() - other.position());
-        if same_way { along } else { -along }
+        let (own, other) = (&self.states[at], &other[at.min(other.len() - 1)]);
+        let turned = math::wrap_angle(own.heading - other.heading).abs();
+        let along = |heading: f64| Vec2::from_heading(heading).dot(own.position() - other.position());
+        match turned {
+            turned if turned < ALONG_RAD => along(other.heading),
+            turned if turned > math::PI - ALONG_RAD => -along(other.heading),
+            _ => along(own.heading),
+        }
     }
 
-    /// When it comes beside the other one, on the told side of that, behind which it was on its own way, from this step on.
-    fn passes(&self, side: Option<LeftRight>, from: usize) -> Option<usize> {
-        let (other, half_m) = self.1?;
-        let beside_m = |at: usize| self.ahead_m(other, at) + half_m;
+    /// When it comes beside the other one, on the told side of that, behind which it was on its own way, from this step on; where it turned
+    /// then, when its front is beyond that one.
+    fn passes(&self, doing: Doing, from: usize) -> Option<usize> {
+        let Other { states, half_m, beyond_m } = self.other?;
+        let ahead_m = |at: usize| self.ahead_m(states, at);
         let left = |at: usize| {
-            let other = &other[at.min(other.len() - 1)];
-            Vec2::from_heading(other.heading).cross(self.0[at].position() - other.position()) > 0.0
+            let other = &states[at.min(states.len() - 1)];
+            Vec2::from_heading(other.heading).cross(self.states[at].position() - other.position()) > 0.0
         };
-        let behind = (from..self.last()).find(|at| beside_m(*at) < 0.0)?;
-        let beside = (behind..=self.last()).find(|at| beside_m(*at) > BESIDE_M)?;
-        side.is_none_or(|side| left(beside) == (side == LeftRight::Left)).then_some(beside)
+        let least_m = if doing.is_pass_before_turn() { beyond_m } else { BESIDE_M - half_m };
+        let behind = (from..self.last()).find(|at| ahead_m(*at) < -half_m)?;
+        let beside = (behind..=self.last()).find(|at| ahead_m(*at) > least_m)?;
+        doing.side.is_none_or(|side| left(beside) == (side == LeftRight::Left)).then_some(beside)
     }
 
     /// When somebody stands, from this step on.
@@ -311,16 +423,23 @@ impl Way<'_> {
             Some(LeftRight::Right) => -value,
             None => value.abs(),
         };
-        let aside = |at: usize, then: usize| {
-            let (now, then) = (&self.0[at], &self.0[then]);
-            towards(Vec2::from_heading(now.heading).cross(then.position() - now.position()))
+        // Seen along the road that it came by, until it turns off that: who straightens out does not go aside.
+        let first = self.states[0].heading;
+        let along = |heading: f64| match math::wrap_angle(heading - first).abs() < CHANGES_LANES_RAD {
+            true => first,
+            false => heading,
         };
-        let turned =
-            |at: usize, then: usize| towards(math::wrap_angle(self.0[then].heading - self.0[at].heading).to_degrees());
+        let aside = |at: usize, then: usize| {
+            let (now, then) = (&self.states[at], &self.states[then]);
+            towards(Vec2::from_heading(along(now.heading)).cross(then.position() - now.position()))
+        };
+        let turned = |at: usize, then: usize| {
+            towards(math::wrap_angle(self.states[then].heading - self.states[at].heading).to_degrees())
+        };
         let slower = |at: usize, then: usize| self.speed(at) - self.speed(then);
         let backs = || (from..=self.last()).find(|at| self.speed(*at) < -STANDS_MPS);
         let changes = |at: usize, then: usize| {
-            let along = math::wrap_angle(self.0[then].heading - self.0[at].heading).abs() < CHANGES_LANES_RAD;
+            let along = math::wrap_angle(self.states[then].heading - self.states[at].heading).abs() < CHANGES_LANES_RAD;
             if along { aside(at, then) } else { 0.0 }
         };
         match least(doing.act)? {
@@ -344,7 +463,9 @@ impl Way<'_> {
             Least::Back => backs(),
             Least::Aside(by) => self.comes_to(from, share * by, aside),
             Least::Turn(by) => self.comes_to(from, share * by, turned),
-            Least::By => self.passes(doing.side, from),
+            Least::By if doing.begun => self.comes_to(from, BEGUN_PASS_M, aside),
+            Least::By => self.passes(doing, from),
+            Least::In => self.entered.filter(|at| *at >= from),
             Least::Any => self
                 .comes_to(from, share * LEFT_LINE_M, aside)
                 .or_else(|| self.comes_to(from, share * BENDS_DEG, turned))
@@ -371,6 +492,7 @@ pub(crate) fn words(told: &[Doing]) -> String {
             Act::PullOut => "pulled out",
             Act::PullOver => "pulled over",
             Act::Pass => "passed",
+            Act::Enter => "entered the junction",
             _ => "parked",
         };
         let sideless =

@@ -3,6 +3,7 @@
 use crate::extras::STANDS_MPS;
 use crate::ground::Ground;
 use crate::others::Role;
+use crate::phases::Phase as Step;
 use crate::side::{Side, Turning};
 use crate::told::Told;
 use recrash_model::account::{
@@ -96,7 +97,10 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
         let in_lane = in_lane && told.cp.state != ContactState::Reversing;
         let waits = |actor: &&Actor| actor.id == Role::Lead.id() || in_lane && actor.id == "cp";
         let others = actors.iter().filter(waits).map(|actor| &actor.plan);
-        let of_queue = others.chain([ego]).filter_map(sets_off_s);
+        // Who stood ahead, set off, and backs since did the first because it was green.
+        let stood = told.cp.phases.starts_with(&[Step::Stands, Step::Drives]) && told.origin == Origin::Ahead;
+        let backed = actors.iter().filter(|actor| stood && actor.id == "cp").filter_map(|actor| goes_s(&actor.plan));
+        let of_queue = others.chain([ego]).filter_map(sets_off_s).chain(backed);
         let first_s = of_queue.filter(|_| is_ego).reduce(f64::min);
         // Who sets off behind an ego that has yet to come to a stand, and stays, does not do so because it is green.
         let stays_s = halts(ego).pop().filter(|halt| halt.is_last && halt.stands_s < told.contact_s);
@@ -124,9 +128,11 @@ pub(crate) fn devices(told: &Told, ground: &Ground, ego: &ActorPlan, actors: &[A
             changed_s.max((halt.stands_s + STANDS_AT_RED_S).min(latest_s))
         });
         let braking = halts(ego).pop().filter(|halt| is_ego && halt.is_last);
-        match braking.filter(|_| state == Some(SignalState::TurnedRed)) {
-            Some(halt) => Some(turns_red(halt.brakes_s, told.contact_s)),
-            None => Some(program(state, side, told.contact_s, changed_s.max(0.1))),
+        match (braking, state) {
+            (Some(halt), Some(SignalState::TurnedRed)) => Some(turns_red(halt.brakes_s, told.contact_s)),
+            // Who entered at yellow, and brakes in the junction, came to it then.
+            (Some(halt), Some(SignalState::Yellow)) if told.enters() => Some(turns_yellow(halt.brakes_s)),
+            _ => Some(program(state, side, told.contact_s, changed_s.max(0.1))),
         }
     };
     let (own, other) = (signal(&said[0]), signal(&said[1]));
@@ -213,6 +219,15 @@ fn turns_red(brakes_s: f64, contact_s: f64) -> Vec<Phase> {
     ]
 }
 
+/// A light that turns yellow right before somebody brakes who comes over its line nevertheless.
+fn turns_yellow(brakes_s: f64) -> Vec<Phase> {
+    vec![
+        Phase { show: Aspect::Green, for_s: (brakes_s - YELLOW_BEFORE_BRAKING_S).max(0.1) },
+        Phase { show: Aspect::Yellow, for_s: YELLOW_S },
+        Phase { show: Aspect::Red, for_s: ALWAYS_S },
+    ]
+}
+
 /// When the ego sets off last, where it does. [s]
 fn sets_off_s(ego: &ActorPlan) -> Option<f64> {
     let (mut stands, mut last) = (ego.speed_mps == 0.0, None);
@@ -229,6 +244,15 @@ fn sets_off_s(ego: &ActorPlan) -> Option<f64> {
         Trigger::TimeS(time_s) => Some(*time_s),
         _ => None,
     }
+}
+
+/// When somebody that stands first sets off. [s]
+fn goes_s(plan: &ActorPlan) -> Option<f64> {
+    let goes = |act: &&recrash_model::scenario::Act| matches!(act.deed, Deed::Speed { to_mps, .. } if to_mps > 0.0);
+    plan.acts.iter().find(goes).and_then(|act| match act.when {
+        Some(Trigger::TimeS(time_s)) => Some(time_s),
+        _ => None,
+    })
 }
 
 /// A signal has turned green so long before the ego that waited for it sets off. [s]

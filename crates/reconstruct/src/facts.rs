@@ -3,6 +3,7 @@
 use crate::acts;
 use crate::control;
 use crate::door;
+use crate::entry::Junction;
 use crate::extras::STANDS_MPS;
 use crate::keeping;
 use crate::kerb;
@@ -223,14 +224,7 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
             list.push(Check { kind, expected, observed, result });
         }
     }
-    let (sv, cp) = ((&told.sv, Some(ego_track)), (&told.cp, touch.track));
-    for (kind, (side, track), (met, by)) in [(CheckKind::SvActs, sv, cp), (CheckKind::CpActs, cp, sv)] {
-        if let Some(track) = track.filter(|_| !side.acts.is_empty()) {
-            let other = by.map(|track| (met.acts.as_slice(), track));
-            let (result, observed) = acts::check((&side.acts, track), other, touch.time_s);
-            list.push(Check { kind, expected: acts::words(&side.acts), observed, result });
-        }
-    }
+    acts_of_both(told, scenario, [Some(ego_track), touch.track], touch.time_s, &mut list);
     let mut fact = |kind: CheckKind, shown: bool, expected: String, observed: String| {
         let result = if shown { CheckResult::Shown } else { CheckResult::NotShown };
         list.push(Check { kind, expected, observed, result });
@@ -310,6 +304,29 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
         held(CheckKind::Door, whose.to_owned(), (result, observed.to_owned()));
     }
     list
+}
+
+/// What each of the two is told to have done.
+fn acts_of_both(
+    told: &Told,
+    scenario: &Scenario,
+    [ego, partner]: [Option<&ActorTrack>; 2],
+    time_s: f64,
+    list: &mut Vec<Check>,
+) {
+    let enters = told.sv.enters() || told.cp.enters();
+    let junction = enters.then(|| Junction::of(scenario)).flatten();
+    let asked = [&told.sv, &told.cp].map(|side| acts::asked(&side.acts, junction.is_some()));
+    let did = |told, track: Option<_>| {
+        track.map(|track| acts::Did { told, track, entered: junction.as_ref().and_then(|inner| inner.entered(track)) })
+    };
+    let [sv, cp] = [did(asked[0].as_slice(), ego), did(asked[1].as_slice(), partner)];
+    for (kind, one, other) in [(CheckKind::SvActs, &sv, &cp), (CheckKind::CpActs, &cp, &sv)] {
+        if let Some(one) = one.as_ref().filter(|one| !one.told.is_empty()) {
+            let (result, observed) = acts::check(one, other.as_ref(), time_s);
+            list.push(Check { kind, expected: acts::words(one.told), observed, result });
+        }
+    }
 }
 
 fn lane_words(word: LaneWord) -> &'static str {

@@ -8,7 +8,7 @@ use crate::strips::strip_of;
 use crate::things::Lies;
 use crate::told::{Aside, Told};
 use crate::touch::size_of;
-use recrash_model::account::{ContactState, LaneWord, LeftRight, Origin, PlaceKind};
+use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::scenario::{GraphMap, JunctionSpec, LinePiece, MapSpec, RoadSpec, RoadStart, Strip, StripKind};
@@ -234,6 +234,15 @@ impl Told {
         if of_ego { self.layout.sv.counted } else { self.layout.cp.counted }
     }
 
+    /// Whether the ego sets off at a signal with nobody ahead of it.
+    pub(crate) fn sets_off_first(&self) -> bool {
+        let at_signal = self.sv.control.is_some_and(|said| said.device == ControlDevice::Signal);
+        // Who waits behind it sets the pace where it does.
+        let waits = self.cp.stood_first || self.cp.state == ContactState::SettingOff || self.queued;
+        let once = self.sv.phases.len() <= 3 && !waits && !self.plainly;
+        self.sv.state == ContactState::SettingOff && at_signal && self.origin == Origin::Behind && once
+    }
+
     /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
     fn keeps_one_way(&self) -> bool {
         let lanes = [self.sv.lane, self.cp.lane];
@@ -412,6 +421,21 @@ pub(crate) fn corner_m(lanes: usize) -> f64 {
     CORNER_M + (lanes.max(2) - 2) as f64 * LANE_M
 }
 
+/// Who stands first at a signal stands so far before its line, and sets off from there for so long, for so far at least and at most.
+/// [m, s, m]
+const AT_LINE_M: f64 = 0.5;
+const SETS_OFF_S: f64 = 4.0;
+const SETS_OFF_M: (f64, f64) = (0.6, 2.8);
+
+/// From where a junction begins back to the middle of an ego that sets off from its line. [m]
+fn over_line_m(told: &Told) -> f64 {
+    let driven_m = (SETS_OFF_S * told.sv.speed_mps).clamp(SETS_OFF_M.0, SETS_OFF_M.1);
+    0.5 * size_of(&told.sv).0 + AT_LINE_M - driven_m
+}
+
+/// Places of who goes straight on and is told to be in the junction, where nobody crosses it or turns. [m]
+const INSIDE_M: [f64; 3] = [2.5, 7.0, 12.0];
+
 /// Four arms; the ego comes along the one that lies behind it.
 fn junction(told: &Told, crossing: bool) -> Ground {
     let lanes = lanes_for(told, 2);
@@ -473,6 +497,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
     let inside = |list: &[f64]| list.iter().map(|share| APPROACH_M + share).collect::<Vec<f64>>();
     let queue_m = queue_m(told);
     let at_line: Vec<f64> = match told.sv.state {
+        _ if told.enters() => Vec::new(),
         ContactState::Stopped if told.sv.control.is_some() && told.sv.turning == Turning::No => match queue_m {
             Some(queue_m) => vec![-queue_m, -queue_m - 2.0],
             None => vec![-5.0, -8.0],
@@ -511,7 +536,12 @@ fn junction(told: &Told, crossing: bool) -> Ground {
             None => 5.0,
         };
         let before_m = if at_kerb { KERB_BEFORE_M } else { before_m };
-        vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }]
+        match told.enters() && !at_kerb && told.edge.is_none() {
+            true => inside(&INSIDE_M),
+            // From its line.
+            false if told.sets_off_first() && before_m < USUAL_M => vec![APPROACH_M - over_line_m(told)],
+            false => vec![APPROACH_M - before_m - if both { 10.0 } else { 0.0 }],
+        }
     };
     let beside = if crosses { usual.to_vec() } else { beside };
     let across = Across { lanes, lane, oncoming: if one_way { 0 } else { lanes }, beside };

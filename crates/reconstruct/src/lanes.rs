@@ -97,6 +97,7 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
     let cp = staging.cp;
     let turn = math::wrap_angle(cp.heading - staging.cp_came);
     let moves = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff | ContactState::Stopped);
+    let moves = moves && !told.comes_out_from_stand();
     if !told.comes_along_lanes() || told.drives_elsewhere() || !moves || turn.abs() > TURNS_RAD || told.back_straight {
         return None;
     }

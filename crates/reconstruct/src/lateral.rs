@@ -1,14 +1,17 @@
 //! Partners that leave the kerb, a stall, a driveway or their lane: from where they do, and when.
 
+use crate::acts::Doing;
 use crate::ground::{Ground, LANE_M};
 use crate::lanes;
-use crate::pace::{Pace, first_time, start_over, when};
+use crate::pace::{Pace, ego_paces, first_time, start_over, when};
 use crate::phases::{Beside, STOPS_SHORT_M};
-use crate::side::{Slant, Turning};
+use crate::side::{Side, Slant, Turning};
 use crate::strips::strip_of;
 use crate::told::Told;
-use crate::touch::{Staging, size_of};
-use recrash_model::account::{Act, ContactState, LaneWord, LeftRight, Origin, Party, PlaceKind, Standing, told};
+use crate::touch::{Staging, side_of, size_of};
+use recrash_model::account::{
+    Account, Act, ContactState, LaneWord, LeftRight, Origin, Party, PlaceKind, Source, Standing, told,
+};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
@@ -47,6 +50,14 @@ pub(crate) fn comes_round(origin: Origin, partner: &Party, state: ContactState, 
     from_there && pulls_out && state == ContactState::Moving
 }
 
+/// Where a partner is whom the ego passes: beside it, where only a rule says that it comes from behind.
+pub(crate) fn passed_beside(account: &Account, sv: &Side) -> Option<Origin> {
+    let from = account.came_from.as_ref()?;
+    let by_rule = matches!(from.source, Source::Rule { .. }) && from.value == Origin::Behind;
+    let touched = side_of(&sv.zones).filter(|_| by_rule && sv.state == ContactState::Moving)?;
+    Some(Origin::Beside { side: if touched > 0.0 { LeftRight::Left } else { LeftRight::Right } })
+}
+
 /// Whether an oncoming partner is told to have left its own side.
 pub(crate) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movement>) -> bool {
     let left = |act: Act| partner.acts.iter().any(|fact| fact.act == act && !fact.after_contact && !fact.begun);
@@ -59,6 +70,19 @@ pub(crate) fn comes_over(origin: Origin, partner: &Party, movement: Option<Movem
 }
 
 impl Told {
+    /// The ego that passes the partner on the other side goes round it there.
+    pub(crate) fn goes_round(&mut self, sv: &Party) {
+        let pass = sv.acts.iter().rfind(|fact| fact.act == Act::Pass && !fact.after_contact && !fact.begun);
+        let Some(to) = pass.and_then(|fact| fact.side).filter(|_| self.sv.acts.iter().any(Doing::is_pass)) else {
+            return;
+        };
+        let beside =
+            matches!(self.origin, Origin::Beside { side } | Origin::Parked { side: Some(side) } if side == to.other());
+        if beside && self.sv.movement == Some(Movement::Passing) && self.sv.aside.is_none() {
+            (self.sv.aside, self.sv.goes_round) = (Some(to), true);
+        }
+    }
+
     /// Whether the partner comes along the ego's lane behind it and passes it.
     pub(crate) fn passes_from_behind(&self) -> bool {
         let own_lane = match (self.cp.lane, self.sv.lane) {
@@ -70,10 +94,34 @@ impl Told {
         // Who changes lanes to pass has not come back where it touches no front.
         let pulls_out = self.cp.passes && !self.sv.zones.iter().any(|zone| zone.is_front());
         self.origin == Origin::Behind
-            && (self.cp.movement == Some(Movement::Passing) || pulls_out)
+            && (self.cp.movement == Some(Movement::Passing) || pulls_out || self.goes_out())
             && matches!(self.cp.state, ContactState::Moving | ContactState::SettingOff)
             && self.cp.turning == Turning::No
             && !own_lane
+    }
+
+    /// Whether the partner stood behind the ego and changes lanes to the side on which it touches it then: out of the ego's lane.
+    fn goes_out(&self) -> bool {
+        let to = self.cp.aside.or_else(|| self.cp.acts.iter().rev().find_map(Doing::passes_on));
+        let touched = side_of(&self.sv.zones).map(|side| if side > 0.0 { LeftRight::Left } else { LeftRight::Right });
+        let changes = self.cp.movement == Some(Movement::ChangingLanes);
+        changes && self.cp.stood_first && to.is_some() && to == touched && !self.plainly
+    }
+
+    /// Whether the ego stopped for an oncoming partner that had begun to come over.
+    fn stops_for_who_comes_over(&self) -> bool {
+        !self.plainly && self.comes_over && self.sv.acts.iter().any(|doing| doing.answers(&self.cp.acts))
+    }
+
+    /// Whether the partner stood behind the ego, and comes out of its lane to go round it.
+    pub(crate) fn comes_out_from_stand(&self) -> bool {
+        let stood = self.cp.stood_first || self.cp.state == ContactState::SettingOff;
+        self.passes_from_behind() && stood && self.sv.turning == Turning::No && !self.plainly
+    }
+
+    /// Whether the partner's way is staged by what it did before.
+    pub(crate) fn does_before(&self) -> bool {
+        self.comes_out_from_stand() || self.stops_for_who_comes_over() || self.passes_after_stand()
     }
 
     /// Whether the partner comes along the lane beside which the ego is parked.
@@ -240,7 +288,14 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
     let usual_m = (LEAVES_S * told.cp.speed_mps).clamp(LEAVES_M.0, LEAVES_M.1);
     // It had begun before the ego slowed.
     let since_m = pace.driven_m - pace.speed_mps * (first_time(&pace.acts) - BEGUN_S);
-    let over_m = if told.gives_way_to_merge { since_m.max(usual_m) } else { usual_m };
+    let ego_brakes_s = || first_time(&ego_paces(told, &staging.ground, staging.sv_s_m).1.acts);
+    let over_m = match told.gives_way_to_merge {
+        true => since_m.max(usual_m),
+        false if told.stops_for_who_comes_over() => {
+            (told.cp.speed_mps * (told.contact_s - ego_brakes_s() + BEGUN_S)).clamp(usual_m, LEAVES_M.1)
+        }
+        false => usual_m,
+    };
     let leaves = Pose { position: Vec2::new(cp.position.x - came.x * over_m, line_y_m), heading: staging.cp_came };
     let mut course = Course::begin(arm_m);
     let before_m = if course.curve(leaves, cp, false) { pace.driven_m - course.length_m() } else { return None };

@@ -11,6 +11,7 @@ mod came;
 mod choices;
 mod control;
 mod door;
+mod entry;
 mod extras;
 mod facts;
 mod ground;
@@ -133,7 +134,8 @@ pub fn reconstruct_with(account: &Account, open: &[Parameter], values: &[f64]) -
 /// What cannot be shown in all its steps is shown in the last of them; and where the partner cannot come out of the middle of its lane, it
 /// comes straight to where it touches. What the two did is brought into the told order where it is not.
 fn staged(told: told::Told, account: &Account) -> Result<Reconstruction, Untold> {
-    let others: Vec<told::Told> = told.in_fewer_steps().into_iter().chain([told.coming_straight()]).collect();
+    let fewer = told.plainly().into_iter().chain(told.in_fewer_steps());
+    let others: Vec<told::Told> = fewer.chain([told.coming_straight()]).collect();
     let made = in_order(told, account, MOST_RUNS);
     let is_true = |made: &Result<Found, Untold>| made.as_ref().is_ok_and(|found| found.made.is_true());
     let other = match is_true(&made) {

@@ -21,6 +21,9 @@ const PARKS_MPS: f64 = 5.0;
 /// Who passes is faster by this. [m/s]
 const FASTER_MPS: f64 = 0.3;
 
+/// Who has come beside another is beside so much of it. [m]
+const BESIDE_M: f64 = 1.0;
+
 /// Who turns has turned by more than this at the contact, or by more where it is to meet the other head-on, or has all but done it;
 /// straight on is less than that, and who turns round has turned by more. [deg]
 const TURNS_DEG: f64 = 20.0;
@@ -76,14 +79,16 @@ impl Way<'_> {
         self.until().iter().any(|state| state.speed() < -STANDS_MPS)
     }
 
-    /// Whether it came from behind the other and is faster.
+    /// Whether it came from behind the other, and is faster, or has come beside it.
     fn passed(&self) -> bool {
         let sets_out = self.until().iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
         let (first, last) = (&self.until()[sets_out], &self.until()[self.until().len() - 1]);
         let ahead = Vec2::from_heading(last.heading);
-        let other = self.other.map_or(self.met, |other| other.states[sets_out]);
+        let other = self.other.map_or(self.met, |other| other.states[sets_out.min(other.states.len() - 1)]);
         let faster = (last.velocity() - self.met.velocity()).dot(ahead) > FASTER_MPS;
-        faster && (other.position() - first.position()).dot(ahead) > 0.0
+        let half_m = 0.5 * (self.track.length_m + self.other.map_or(0.0, |other| other.length_m));
+        let beside = (self.met.position() - last.position()).dot(ahead) < half_m - BESIDE_M;
+        (faster || beside) && (other.position() - first.position()).dot(ahead) > 0.0
     }
 
     /// Whether it goes against the direction of the lane it is on.

@@ -7,6 +7,7 @@ mod several;
 use crate::control;
 use crate::extras::STANDS_MPS;
 use crate::ground::{Ground, LANE_M, corner_m};
+use crate::movement;
 use crate::near::{Does, NEAR_M, Near};
 use crate::others::{Extra, Role};
 use crate::pace::{next, when};
@@ -17,7 +18,8 @@ use crate::told::Told;
 use recrash_model::account::{Kind, KindGroup, LeftRight, Origin, PlaceKind, StandReason};
 use recrash_model::geometry::{OrientedBox, Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
-use recrash_model::rollout::{ActorTrack, EventKind, Rollout};
+use recrash_model::math;
+use recrash_model::rollout::{ActorState, ActorTrack, EventKind, Rollout};
 use recrash_model::scenario::{Actor, ActorPlan, Deed, Leg, Place, ScenarioDraft, Strip, StripKind};
 use recrash_model::vehicle::VehicleSpec;
 use recrash_roads::{Scenario, check_on};
@@ -209,10 +211,36 @@ fn hinders_nobody(id: &str, scenario: &Scenario, (before, after): (&Rollout, &Ro
     };
     let drives = VehicleSpec::of(track.kind).length_m > 2.5;
     let on_road = |step: usize| !drives || scenario.network().on_road(track.states[step].position());
+    let met = &after.ego_track().states[..=((first_s * 10.0) as usize).min(after.ego_track().states.len() - 1)];
     contacts(before) == contacts(after)
         && (0..=until).all(clear)
+        && !is_cut_off(track, met)
+        && !(drives && goes_wrong_way(scenario, track, met))
         && (0..=until).step_by(5).all(on_road)
         && !control::runs_red(scenario, track)
+}
+
+/// Whose way an ego that turns left bars by this much of its turn, it has let by; farther ahead than this nobody minds. [rad, m/s, m]
+const BARS_RAD: f64 = 0.15;
+const COMES_MPS: f64 = 1.0;
+const MINDS_M: f64 = 25.0;
+
+/// Whether somebody comes towards an ego that turns left across its way as it is touched.
+fn is_cut_off(track: &ActorTrack, ego: &[ActorState]) -> bool {
+    let (first, last) = (&ego[0], &ego[ego.len() - 1]);
+    let state = &track.states[(ego.len() - 1).min(track.states.len() - 1)];
+    let ahead_m = Vec2::from_heading(first.heading).dot(state.position() - last.position());
+    let oncoming = math::wrap_angle(state.heading - first.heading).abs() > 2.0 && state.speed() > COMES_MPS;
+    let turns = math::wrap_angle(last.heading - first.heading) > BARS_RAD;
+    turns && oncoming && (0.0..MINDS_M).contains(&ahead_m)
+}
+
+/// Whether somebody who sets out the ego's way drives in a lane that leads the other way.
+fn goes_wrong_way(scenario: &Scenario, track: &ActorTrack, ego: &[ActorState]) -> bool {
+    let same_way = math::wrap_angle(track.states[0].heading - ego[0].heading).abs() < 1.0;
+    let until = ego.len().min(track.states.len());
+    let wrong = |state: &ActorState| state.speed() > COMES_MPS && movement::is_against(scenario, state) == Some(true);
+    same_way && track.states[..until].iter().step_by(5).any(wrong)
 }
 
 /// The crash, as it is without whoever is near.

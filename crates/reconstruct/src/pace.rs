@@ -1,5 +1,6 @@
 //! How the speed of each of the two comes to what it is at the contact.
 
+use crate::acts::Doing;
 use crate::ground::{Ground, corner_m};
 use crate::kerb;
 use crate::lateral::{self, PULL_OUT_M};
@@ -257,6 +258,14 @@ impl Told {
             && !comes(&place)
     }
 
+    /// Whether the partner stood beside the ego's way, or across from it, and passed it then.
+    pub(crate) fn passes_after_stand(&self) -> bool {
+        let stood = self.cp.acts.iter().position(Doing::is_stand);
+        let passed = self.cp.acts.iter().rposition(Doing::is_pass);
+        let beside = matches!(self.origin, Origin::Opposite | Origin::Beside { .. }) && !self.plainly;
+        beside && self.cp.state == ContactState::Moving && self.sv.state.stands() && stood.is_some() && stood < passed
+    }
+
     /// Whether the partner leaves its lane to come by.
     fn comes_round_ego(&self) -> bool {
         let stands = self.sv.state.stands();
@@ -351,6 +360,8 @@ fn last_pace(told: &Told) -> Pace {
         true if moved_up => MOVES_UP_M + BEHIND_M,
         true if told.sv.state == ContactState::SettingOff => catches_up_m(told),
         true if usual.speed_mps > 0.0 => MOVES_UP_M,
+        // Who stood and then passed has come by from there.
+        false if told.passes_after_stand() => 0.5 * (size_of(cp).0 + size_of(&told.sv).0) + STANDS_SHORT_M,
         _ => return usual,
     };
     start_over(contact_s, cp.speed_mps, from_m).unwrap_or(usual)
@@ -433,6 +444,9 @@ const COMES_ROUND_M: f64 = 12.0;
 
 /// Who was in a queue behind the ego runs into it at this speed. [m/s]
 pub(crate) const QUEUED_MPS: f64 = 4.0;
+
+/// Who stood, and passed the ego then, stood so far short of it at least. [m]
+const STANDS_SHORT_M: f64 = 3.0;
 
 /// How far somebody who stood before it turned has driven at the contact. [m]
 const TURNS_M: f64 = 8.0;

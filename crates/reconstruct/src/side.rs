@@ -81,6 +81,8 @@ pub(crate) struct Side {
     pub(crate) came_over: Option<Option<LeftRight>>,
     /// It changed lanes to pass.
     pub(crate) passes: bool,
+    /// It goes round the other one, on the side to which it leaves its line.
+    pub(crate) goes_round: bool,
     /// It changed lanes, and goes back to the lane that it left.
     pub(crate) returns: bool,
     /// It is told to have dodged or drifted that way while it drove on.
@@ -109,6 +111,11 @@ impl Side {
     /// Whether it parks, or comes from the kerb or out of a stall.
     pub(crate) fn is_slow(&self) -> bool {
         matches!(self.movement, Some(Movement::EnteringTraffic | Movement::ParkingManeuver))
+    }
+
+    /// Whether it is told to have come into a junction.
+    pub(crate) fn enters(&self) -> bool {
+        self.acts.iter().any(Doing::is_entry)
     }
 }
 
@@ -189,7 +196,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         true => phases::told(party, state),
         false => Vec::new(),
     };
-    let acts = if drives || who == "ego" { acts::told(party, state, who != "ego") } else { Vec::new() };
+    let acts = if drives || who == "ego" { acts::told(party, state) } else { Vec::new() };
     let stopped = last_way(party).filter(|_| state == ContactState::Stopped && turning == Turning::No && who == "ego");
     let stopped_aside = stopped.filter(|fact| leaves_line(fact.act) || fact.act == Act::Pass && fact.side.is_some());
     let aside = stopped_aside.and_then(|fact| fact.side).or(aside);
@@ -204,6 +211,7 @@ pub(crate) fn side(party: &Party, kind: Option<Kind>, assumed: &mut Vec<String>,
         changed_lanes,
         came_over: came_over(party),
         passes,
+        goes_round: false,
         returns: returns(party),
         gains,
         reacts: false,

@@ -118,6 +118,8 @@ pub(crate) struct Told {
     pub(crate) queued: bool,
     /// Who was behind the ego in a queue stands close to it.
     pub(crate) close: bool,
+    /// What the two did to each other before is not staged; it is asked for.
+    pub(crate) plainly: bool,
     /// The partner comes straight to where it touches, also beside its lane.
     pub(crate) back_straight: bool,
     /// When they touch. [s]
@@ -150,9 +152,17 @@ impl Told {
         let mut assumed = Vec::new();
         let kind = told(&partner.kind);
         let thing = kind.filter(|kind| kind.group() == KindGroup::Object);
-        let sv = side(&account.sv, None, &mut assumed, "ego");
+        let mut sv = side(&account.sv, None, &mut assumed, "ego");
         let mut cp = side(partner, kind, &mut assumed, "partner");
         acts::passes_where_touched(&mut cp.acts, &sv.zones);
+        let passed = acts::passes_partner(&account.sv, partner, &account.others);
+        if !passed {
+            sv.acts.retain(|doing| !doing.is_pass());
+        }
+        // Beside one that turns it shows nothing.
+        if sv.turning != Turning::No {
+            cp.acts.retain(|doing| !doing.is_begun_pass());
+        }
         let lies = thing.and_then(|_| Lies::of(partner, &sv, place));
         cp.size = lies.and_then(Lies::size).or_else(|| things::size(partner)).or(cp.size);
         let gate_swings = thing.is_some_and(|kind| things::swings(kind, partner, told(&account.striker)));
@@ -161,6 +171,7 @@ impl Told {
             (cp.state, cp.state_told, cp.size) = (ContactState::Parked, false, Some(things::POST));
         }
         let origin = told(&account.came_from);
+        let origin = if passed { lateral::passed_beside(account, &sv).or(origin) } else { origin };
         let origin_told = origin.is_some();
         let assumed_from =
             kerb::out_of_stall(account, crash_type, &sv, &cp).or_else(|| assumed_origin(crash_type, &sv, &cp));
@@ -242,6 +253,7 @@ impl Told {
             backs_first: backs_first(&account.sv, partner).filter(|_| !sv_reverses),
             queued: false,
             close: true,
+            plainly: false,
             back_straight: false,
             contact_s: CONTACT_S,
             choices: Choices::default(),
@@ -264,6 +276,7 @@ impl Told {
     /// What the acts tell of the ways beside the movements.
     fn courses(&mut self, sv: &Party, partner: &Party) {
         self.reactions(sv, partner);
+        self.goes_round(sv);
         let drives_on =
             |side: &Side| side.aside.is_some() && matches!(side.movement, Some(Movement::Straight | Movement::Passing));
         self.sv.dodges = (drives_on(&self.sv) || self.sv.stopped_aside.is_some()) && self.sv_aside().is_some();
@@ -300,7 +313,8 @@ impl Told {
             && !sv.acts.iter().any(|fact| fact.act == Act::Turn);
         let slows = self.sv.slowed_from.is_some() || self.sv.state == ContactState::Stopped;
         if unsaid && slows && self.origin == Origin::Behind && self.crash_type == CrashType::FrontToRear {
-            self.sv.turns_later = matches!(self.sv.turning, Turning::Left | Turning::Right);
+            let turns = matches!(self.sv.turning, Turning::Left | Turning::Right);
+            self.sv.turns_later = turns && !self.enters();
         }
         // Who runs into the rear of who turns, or waits to, ahead of it has yet to turn.
         let in_line = self.crash_type == CrashType::FrontToRear || self.is_thrown();
@@ -404,6 +418,23 @@ impl Told {
         Self { back_straight: true, ..self.clone() }
     }
 
+    /// Whether the ego is told to have come into the junction.
+    pub(crate) fn enters(&self) -> bool {
+        !self.plainly && self.sv.enters()
+    }
+
+    /// The same without what they did to each other, where that is staged: it is asked for, and said not to be seen.
+    pub(crate) fn plainly(&self) -> Option<Self> {
+        let staged = self.enters() || self.sets_off_first() || self.sv.goes_round || self.does_before();
+        staged.then(|| {
+            let mut told = Self { plainly: true, ..self.clone() };
+            if told.sv.goes_round {
+                (told.sv.aside, told.sv.goes_round, told.sv.dodges) = (None, false, false);
+            }
+            told
+        })
+    }
+
     /// Whether a signal or sign is told.
     pub(crate) fn is_controlled(&self) -> bool {
         self.sv.control.is_some() || self.cp.control.is_some()
@@ -503,6 +534,8 @@ impl Told {
         // Who makes room for another before it stops does so away from it.
         let makes_room = matches!(stopped, Some(Act::Drift | Act::Swerve)) && self.striker == Some(Striker::Cp);
         let towards = self.sv.aside.or(match self.origin {
+            // For who has turned into the other direction it makes room at the kerb.
+            Origin::Cross { .. } if makes_room && self.comes_against() => Some(right),
             Origin::Beside { side } | Origin::Cross { side } => Some(if makes_room { side.other() } else { side }),
             _ => None,
         });
@@ -526,7 +559,12 @@ impl Told {
         };
         let back = self.sv.returns && matches!(movement, Movement::ChangingLanes | Movement::Merging);
         let changed = movement == Movement::Straight && self.sv.changed_lanes;
-        Some(Aside { from_t_m, to_t_m, done: (self.lane_changed || changed) && stopped.is_none(), back })
+        Some(Aside {
+            from_t_m,
+            to_t_m,
+            done: (self.lane_changed || changed || self.sv.goes_round) && stopped.is_none(),
+            back,
+        })
     }
 
     /// How far to the left of where it touches the partner came along, of who goes about the ego's way or against it. [m]
@@ -557,6 +595,18 @@ impl Told {
             _ => side_of(&self.sv.zones),
         });
         Some(from_left.unwrap_or(if against > 0.0 { -1.0 } else { 1.0 }) * way_m)
+    }
+}
+
+impl Told {
+    /// Whether the partner turns out of a crossing road into the ego's, against the ego's way.
+    fn comes_against(&self) -> bool {
+        let turns = match self.cp.turning {
+            Turning::Left => LeftRight::Left,
+            Turning::Right => LeftRight::Right,
+            Turning::No | Turning::Round => return false,
+        };
+        self.origin == Origin::Cross { side: turns.other() }
     }
 }
 

@@ -151,6 +151,7 @@ fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                             (late, LATE),
                             (squeezed, SQUEEZED),
                             (other_way, OTHER_WAY),
+                            (told.strikes_otherwise((sv, cp)), STRIKES),
                             (told.crosses_off_lanes(ground, cp), OFF_LANES),
                             (told.is_parked_otherwise(ground, cp), PARKED_OTHERWISE),
                             (told.swings_out(ground, heading - came), SWINGS_OUT),
@@ -212,6 +213,9 @@ const PARKED_OTHERWISE: u32 = 2;
 
 /// Of who strikes the other with parts that nobody tells, that the other one's front does.
 const OTHER_WAY: u32 = 1;
+
+/// Of two that drive on beside each other, that the one comes to the other who is not told to have struck it.
+const STRIKES: u32 = 1;
 
 /// Of who keeps its lane behind an ego that leaves its own, that it is at more than this to its way, or farther beside it. [rad, m]
 const LEAVES: u32 = 1;
@@ -277,6 +281,23 @@ impl Told {
             Some(Striker::Sv) if drives(&self.sv) && self.sv.zones.is_empty() => cp_seen.is_front() && flank(sv_seen),
             _ => false,
         }
+    }
+
+    /// Whether of two that drive on beside each other, of whom the partner leaves its lane, the one comes to the other who is not told to have
+    /// struck it.
+    fn strikes_otherwise(&self, (sv, cp): (Pose, Pose)) -> bool {
+        let drives = |side: &Side| side.state == ContactState::Moving && side.turning == Turning::No;
+        let beside = self.crash_type == CrashType::Lateral && matches!(self.origin, Origin::Beside { .. });
+        // Across the road.
+        let to_cp = (cp.position.y - sv.position.y).signum();
+        let comes = |side: &Side, pose: Pose| velocity(side, pose.heading).y * to_cp;
+        let (sv_mps, cp_mps) = (comes(&self.sv, sv), -comes(&self.cp, cp));
+        let other = match self.striker {
+            Some(Striker::Cp) => sv_mps > cp_mps,
+            Some(Striker::Sv) => cp_mps > sv_mps,
+            _ => false,
+        };
+        beside && self.leaves_its_lane() && drives(&self.sv) && drives(&self.cp) && other
     }
 
     /// Whether the partner is told to pass, and to touch with its flank or its rear.
