@@ -182,7 +182,7 @@ fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
         return Vec::new();
     }
     let (s_m, t_m) = staging.ground.beside(staging.sv.position);
-    vec![MissionStop { s_m, t_m, for_s: None }]
+    vec![MissionStop { s_m, t_m: t_m + staging.ground.off_route_m, for_s: None }]
 }
 
 /// Straight on at a speed.
