@@ -80,7 +80,7 @@ impl Told {
 /// For how long the partner is in no lane of its direction before it leaves its own for what is told; nothing of who does not come along
 /// lanes. [s]
 pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> Option<f64> {
-    if !told.comes_along_lanes() || told.drives_elsewhere() {
+    if !told.comes_along_lanes() || told.drives_elsewhere() || told.pulls_out_opposite() {
         return None;
     }
     let leaves = told.leaves_its_lane();

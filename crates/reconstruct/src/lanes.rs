@@ -123,7 +123,8 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
     let cp = staging.cp;
     let turn = math::wrap_angle(cp.heading - staging.cp_came);
     let moves = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff | ContactState::Stopped);
-    if !told.comes_along_lanes() || told.drives_elsewhere() || !moves || turn.abs() > TURNS_RAD || told.back_straight {
+    let elsewhere = told.drives_elsewhere() || told.pulls_out_opposite();
+    if !told.comes_along_lanes() || elsewhere || !moves || turn.abs() > TURNS_RAD || told.back_straight {
         return None;
     }
     let lanes = Lanes::of(&staging.ground, staging.cp_came)?;

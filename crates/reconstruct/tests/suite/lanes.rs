@@ -6,6 +6,7 @@ use recrash_model::account::{Fact, LaneWord, LeftRight, Origin, Speed, SpeedMean
 use recrash_model::metrics::{CheckKind, CheckResult};
 use recrash_model::rollout::ActorState;
 use recrash_model::scenario::{MapSpec, StripKind};
+use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
 use recrash_reconstruct::{Reconstruction, held_against, off_lane_s, reconstruct};
 
@@ -199,4 +200,17 @@ fn who_backs_in_line_stays_along_the_road() {
     let shown = made(&story(text));
     let states = partner(&shown).0;
     assert!(states.iter().all(|state| degrees_between(state.heading, 0.0) < 5.2), "{states:?}");
+}
+
+#[test]
+fn who_pulls_out_from_the_far_kerb_stood_there() {
+    let text = "The AV was stopped on Elm Street. A van traveling in the opposite direction that was stopped at the curb pulled out into the \
+                lane, crossed over, and the front left of the van made contact with the front left of the stationary AV.";
+    let mut account = story(text);
+    account.came_from = Some(Fact::by_rule(Origin::Opposite, "opposite"));
+    account.partner.as_mut().expect("a partner").movement =
+        Some(Fact::by_rule(Movement::EnteringTraffic, "pulled out"));
+    let shown = made(&account);
+    let (_, left_m) = begins(&shown);
+    assert!(left_m > 5.1, "{left_m} m to the left");
 }
