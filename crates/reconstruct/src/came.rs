@@ -183,7 +183,7 @@ fn mission_stop(told: &Told, staging: &Staging) -> Vec<MissionStop> {
         return Vec::new();
     }
     let (s_m, t_m) = staging.ground.beside(staging.sv.position);
-    vec![MissionStop { s_m, t_m, for_s: None }]
+    vec![MissionStop { s_m, t_m: t_m + staging.ground.off_route_m, for_s: None }]
 }
 
 /// Straight on at a speed.
@@ -578,7 +578,7 @@ fn with_its_turn(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Opt
     let abreast = matches!(told.origin, Origin::Beside { .. }) && told.cp.turning == told.sv.turning;
     let beside_m = match told.origin {
         Origin::Behind => beside_m.clamp(-FOLLOWS_BESIDE_M, FOLLOWS_BESIDE_M),
-        _ if abreast => beside_m.signum() * beside_m.abs().max(LANE_M),
+        _ if abreast => beside_m.signum() * LANE_M,
         _ => beside_m,
     };
     let joins: &[f64] = if abreast { &[12.0, 9.0, 15.0, 6.0] } else { &[3.0, 5.0, 8.0] };

@@ -430,7 +430,8 @@ impl Scene<'_> {
         let stalls = is(right, StripKind::Stalls);
         let has = |strips: &[Strip]| is(strips, StripKind::Parking) || is(strips, StripKind::Stalls);
         let ahead_m = self.at(self.until).0 + self.front_m() + PARKED_AHEAD_M + 0.5 * length_m;
-        let s_m = if self.ground.junction { ahead_m.min(self.ground.first_m() - PARKED_AHEAD_M) } else { ahead_m };
+        // Nobody is parked in a junction.
+        let before_m = if self.ground.junction { self.ground.first_m() - PARKED_AHEAD_M } else { f64::INFINITY };
         let wider_m = 0.5 * (StripKind::Stalls.usual_width_m() - StripKind::Parking.usual_width_m());
         let [left_m, right_m] = self.ground.kerbs_m.map(|kerb_m| kerb_m + if stalls { wider_m } else { 0.0 });
         let two_way = is(left, StripKind::Driving);
@@ -442,7 +443,7 @@ impl Scene<'_> {
         let told = |side: LeftRight| extra.side.is_none_or(|told| told == side);
         let plan = |(_, _, t_m, turned_deg): (LeftRight, bool, f64, f64)| {
             let hides_m = self.hides_m(t_m, length_m).filter(|_| turned_deg != 90.0);
-            let pose = self.ground.pose(hides_m.unwrap_or(s_m), t_m);
+            let pose = self.ground.pose(hides_m.unwrap_or(ahead_m).min(before_m), t_m);
             ActorPlan::standing(Place::at(pose.position.x, pose.position.y, pose.heading.to_degrees() + turned_deg))
         };
         sides.into_iter().filter(|(side, is, ..)| *is && told(*side)).map(plan).collect()

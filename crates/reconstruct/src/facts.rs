@@ -51,6 +51,9 @@ const NEAR_M: f64 = 0.5;
 /// Who come within this time come together. [s]
 const TOGETHER_S: f64 = 1.0;
 
+/// Who is in a lane is no farther beside the middle of it. [m]
+const KEEPS_M: f64 = 0.7;
+
 /// Who stands no farther from a stop of its task stands at it. [m]
 const AT_STOP_M: f64 = 1.0;
 
@@ -219,7 +222,8 @@ pub(crate) fn facts(told: &Told, scenario: &Scenario, rollout: &Rollout) -> Vec<
     ways.extend(touch.track.map(|track| (CheckKind::CpMovement, &told.cp, track, Some(ego_track), touch.ego)));
     for (kind, side, track, other, met) in ways {
         let road_rad = ego_track.states[0].heading;
-        let way = Way { scenario, track, other, met, time_s: touch.time_s, road_rad };
+        let keeps_lane = kind == CheckKind::CpMovement && told.keeps_its_lane();
+        let way = Way { scenario, track, other, met, time_s: touch.time_s, keeps_lane, road_rad };
         if let Some((expected, result, observed)) = movement::check(side, &way) {
             list.push(Check { kind, expected, observed, result });
         }
@@ -374,6 +378,16 @@ fn lane(
     }
     let lanes = &road.lanes;
     let number = lanes.iter().position(|lane| *lane == id).unwrap_or(0);
+    let way = network.lane(id);
+    let (s_m, t_m) = way.local(first.position());
+    let against = math::wrap_angle(way.heading(s_m) - first.heading).abs() > math::FRAC_PI_2;
+    // Who is narrow may be anywhere in it.
+    let drives = track.kind != PartnerKind::FixedObject;
+    let most_m = if drives { KEEPS_M.max(0.5 * (way.width_at(s_m) - track.width_m)) } else { way.width_at(s_m) };
+    if word != LaneWord::Opposing && (against || t_m.abs() > most_m) {
+        let how = if against { "against its direction" } else { "beside its middle" };
+        return (CheckResult::NotShown, format!("lane {} of {}, {how}", number + 1, lanes.len()));
+    }
     let last = lanes.len() - 1;
     let shown = match word {
         // Beside the driving lanes.
@@ -634,7 +648,9 @@ pub(crate) fn off_its_way(told: &Told, scenario: &Scenario, rollout: &Rollout) -
         first_touch(rollout).and_then(|touch| Some((touch.track.filter(|track| track.id == "cp")?, touch.time_s)));
     let ego = rollout.ego_track();
     let weaves = |(track, time_s)| {
-        keeping::weaves(told, track, time_s) + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
+        keeping::weaves(told, track, time_s)
+            + usize::from(keeping::leaves_whom_it_passes(told, ego, track, time_s))
+            + if told.is_beside_line(ego, track) || told.is_far_beside(ego, track) { keeping::ABSURD } else { 0 }
     };
     (2.0 * off_s) as usize + touch.map_or(0, weaves)
 }
@@ -691,6 +707,7 @@ fn origin_words(told: &Told) -> String {
 
 /// Whether the partner comes from where it is told, seen from the ego when it sets out.
 fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bool, String) {
+    let (ego_track, other_track) = (ego, other);
     let state = told.cp.state;
     let on_foot = is_on_foot(other.kind);
     // Seen when it sets out.
@@ -725,7 +742,8 @@ fn origin(told: &Told, ego: &ActorTrack, other: &ActorTrack, time_s: f64) -> (bo
     let shown = match told.origin {
         Origin::Behind => {
             let lane_m = if told.leaves_opposite() { OPPOSITE_M } else { BESIDE_M };
-            ahead < 2.0 && same_way && left.abs() < lane_m
+            let in_line = !(told.begins_in_line() && told.is_beside_line(ego_track, other_track));
+            ahead < 2.0 && same_way && left.abs() < lane_m && in_line
         }
         Origin::Ahead => {
             let faces = same_way || on_foot && !told.comes_across() || state.stands();

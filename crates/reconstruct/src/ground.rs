@@ -7,7 +7,7 @@ use crate::side::{self, Turning};
 use crate::strips::strip_of;
 use crate::things::Lies;
 use crate::told::{Aside, Told};
-use crate::touch::size_of;
+use crate::touch::{side_of, size_of};
 use recrash_model::account::{ContactState, ControlDevice, LaneWord, LeftRight, Origin, PlaceKind};
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
@@ -43,8 +43,9 @@ pub(crate) struct Ground {
     /// Roads of the ego's way.
     pub(crate) route: Vec<String>,
     pub(crate) lane: u8,
-    /// The ego's way.
+    /// The ego's way; and how far to the right of it the ego drives, whose lane does not lead where it turns. [m]
     way: Rc<LanePath>,
+    pub(crate) off_route_m: f64,
     /// Places along it to try. [m]
     places: Vec<f64>,
     /// Whether crossing roads are there.
@@ -79,12 +80,12 @@ impl Ground {
     /// How far along the ego's way a place is, and how far beside it. [m]
     pub(crate) fn beside(&self, place: Vec2) -> (f64, f64) {
         let found = self.way.project(place, 0);
-        (found.s, found.t)
+        (found.s, found.t - self.off_route_m)
     }
 
     /// A pose along the ego's way, or beside it.
     pub(crate) fn pose(&self, s_m: f64, t_m: f64) -> Pose {
-        self.way.pose(s_m, t_m)
+        self.way.pose(s_m, t_m + self.off_route_m)
     }
 
     /// Along the road where the ego's line is 0, of a street. [m]
@@ -196,7 +197,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let (right, left) = match told.place {
         _ if let Some(side) = told.edge => beside_edge(told, side, lot, oncoming),
         PlaceKind::Highway => (strips(lanes_for(told, 3), &told.beside_lanes(&[StripKind::Shoulder])), Vec::new()),
-        _ if lot => (strips(1, &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
+        _ if lot => (strips(lanes_for(told, 1), &[StripKind::Stalls]), strips(oncoming, &[StripKind::Stalls])),
         _ => {
             let stalls = matches!(told.origin, Origin::Stall { .. });
             let usual = [if stalls { StripKind::Stalls } else { StripKind::Parking }, StripKind::Sidewalk];
@@ -210,7 +211,7 @@ pub(crate) fn ground_for(told: &Told) -> Ground {
     let to_right = told.sv_aside().is_some_and(|aside| aside.to_t_m >= LANE_M);
     let usual = match lanes {
         _ if one_way => 0,
-        _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come => 0,
+        _ if told.edge == Some(LeftRight::Left) || told.layout.left_to_come || told.is_met_over_line() => 0,
         2.. if told.edge.is_none() && (to_right || passes_right(told)) => lanes - 2,
         _ => lanes - 1,
     };
@@ -241,6 +242,23 @@ impl Told {
         let waits = self.cp.stood_first || self.cp.state == ContactState::SettingOff || self.queued;
         let once = self.sv.phases.len() <= 3 && !waits && !self.plainly;
         self.sv.state == ContactState::SettingOff && at_signal && self.origin == Origin::Behind && once
+    }
+
+    /// Whether the partner comes over the line between the directions to the ego's left, which is then in the lane beside that: from the
+    /// opposite direction, out of a turn against the ego's way, or by the opposite side past it.
+    fn is_met_over_line(&self) -> bool {
+        let left = side_of(&self.sv.zones) == Some(1.0);
+        let against = matches!(
+            (self.origin, self.cp.turning),
+            (Origin::Opposite, Turning::No | Turning::Left)
+                | (Origin::Cross { side: LeftRight::Left }, Turning::Right)
+                | (Origin::Cross { side: LeftRight::Right }, Turning::Left)
+        );
+        let passes = self.cp.movement == Some(Movement::Passing) && self.layout.centre_line;
+        let over = self.cp.movement == Some(Movement::CrossingIntoOpposingLane) || passes;
+        let comes_by = over && matches!(self.origin, Origin::Behind | Origin::Beside { side: LeftRight::Left });
+        let no_lane = self.sv.lane.is_none() && self.cp.lane.is_none();
+        no_lane && left && self.sv.turning == Turning::No && self.edge.is_none() && (against || comes_by)
     }
 
     /// Whether the street is told to be one-way, and nobody of the story is told to be on its other side.
@@ -333,16 +351,21 @@ fn lanes_for(told: &Told, usual: usize) -> usize {
 /// No road has more lanes in one direction.
 const MOST_LANES: usize = 5;
 
+impl Told {
+    /// The driving lane that one of the two is told to be in, of so many; 0 is the leftmost.
+    pub(crate) fn lane_number(&self, of_ego: bool, lanes: usize) -> Option<usize> {
+        match if of_ego { self.sv.lane? } else { self.cp.lane? } {
+            LaneWord::Center if let Some(counted) = self.counted(of_ego) => counted.place(lanes),
+            LaneWord::Left | LaneWord::LeftTurn => Some(0),
+            LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
+            LaneWord::Center => Some(lanes / 2),
+            _ => None,
+        }
+    }
+}
+
 /// The ego's lane, where it is told, 0 is the leftmost.
 fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
-    let number_of = |word: LaneWord, of_ego: bool| match word {
-        LaneWord::Center if let Some(counted) = told.counted(of_ego) => counted.place(lanes),
-        LaneWord::Left | LaneWord::LeftTurn => Some(0),
-        LaneWord::Right | LaneWord::RightTurn => Some(lanes - 1),
-        LaneWord::Center => Some(lanes / 2),
-        _ => None,
-    };
-    let number = |word: LaneWord| number_of(word, true);
     // Of two lanes that turn the ego's is the other one.
     if told.turns_abreast() {
         match (told.sv.lane, told.origin) {
@@ -351,17 +374,18 @@ fn told_lane(told: &Told, lanes: usize) -> Option<usize> {
             _ => {}
         }
     }
-    if let Some(word) = told.sv.lane {
+    if told.sv.lane.is_some() {
+        let number = told.lane_number(true, lanes);
         // Who goes out of the told lane and comes back to it has its line beside it.
         let back = told.sv_aside().filter(|aside| aside.back);
         return match back.map(|aside| aside.to_t_m > aside.from_t_m) {
-            Some(true) => number(word)?.checked_sub(1),
-            Some(false) => number(word).map(|lane| lane + 1).filter(|lane| *lane < lanes),
-            None => number(word),
+            Some(true) => number?.checked_sub(1),
+            Some(false) => number.map(|lane| lane + 1).filter(|lane| *lane < lanes),
+            None => number,
         };
     }
     // The partner's lane tells the ego's, where the two go one way; of who changes into it that beside it.
-    let other = number_of(told.cp.lane?, false)?;
+    let other = told.lane_number(false, lanes)?;
     let left_m = told.sv_aside().map_or(0.0, |aside| aside.from_t_m - aside.to_t_m);
     match told.origin {
         Origin::Behind | Origin::Ahead if left_m >= LANE_M => (other + 1 < lanes).then_some(other + 1),
@@ -473,6 +497,7 @@ fn junction(told: &Told, crossing: bool) -> Ground {
         Turning::Right => ("right+", told_lane(told, lanes).unwrap_or(lanes - 1)),
         Turning::No | Turning::Round => {
             let left = one_way || told.edge == Some(LeftRight::Left) || told.layout.left_to_come;
+            let left = left || told.is_met_over_line();
             ("ahead+", told_lane(told, lanes).unwrap_or(if left { 0 } else { lanes - 1 }))
         }
     };
@@ -578,12 +603,17 @@ fn with_way(map: GraphMap, route: Vec<String>, across: Across, places: Vec<f64>,
     let lane = across.lane as u8;
     let way = network.way(&route, lane, None).expect("the ego's way is on the map that was drawn for it");
     let (kerbs_m, opposing_m) = (across.kerbs_m(), (across.lane + 1) as f64 * LANE_M);
+    // Of a road before a junction the rightmost lane lies on the x axis.
+    let own_y_m = if junction { (across.lanes - across.lane - 1) as f64 * LANE_M } else { 0.0 };
+    let off_m = way.pose(APPROACH_M - 1.0, 0.0).position.y - own_y_m;
+    let off_route_m = if off_m.abs() > 0.5 * LANE_M { off_m } else { 0.0 };
     Ground {
         map: Rc::new(map),
         network: Arc::new(network),
         route,
         lane,
         way: Rc::new(way),
+        off_route_m,
         places,
         junction,
         lanes: across.lanes,

@@ -2,6 +2,7 @@
 
 use crate::acts::Doing;
 use crate::extras::STANDS_MPS;
+use crate::ground::LANE_M;
 use crate::lateral::is_on_foot;
 use crate::side::Turning;
 use crate::strips::strip_of;
@@ -62,6 +63,14 @@ impl Told {
             || cp.acts.iter().any(Doing::is_aside)
     }
 
+    /// Whether the partner drives along a lane, and nothing is told that takes it out of that.
+    pub(crate) fn keeps_its_lane(&self) -> bool {
+        let along_turn =
+            self.sv.turning != Turning::No && !matches!(self.origin, Origin::Opposite | Origin::Cross { .. });
+        let drives = self.cp.state != ContactState::Reversing;
+        self.comes_along_lanes() && !self.leaves_its_lane() && drives && !along_turn && !self.is_thrown()
+    }
+
     /// Whether the partner is told to have driven where no lane of its direction is.
     pub(crate) fn drives_elsewhere(&self) -> bool {
         self.cp.movement == Some(Movement::WrongWay) || self.cp.lane == Some(LaneWord::Opposing)
@@ -71,7 +80,7 @@ impl Told {
 /// For how long the partner is in no lane of its direction before it leaves its own for what is told; nothing of who does not come along
 /// lanes. [s]
 pub(crate) fn off_lane_s(told: &Told, scenario: &Scenario, track: &ActorTrack, contact_s: f64) -> Option<f64> {
-    if !told.comes_along_lanes() || told.drives_elsewhere() {
+    if !told.comes_along_lanes() || told.drives_elsewhere() || told.pulls_out_opposite() {
         return None;
     }
     let leaves = told.leaves_its_lane();
@@ -124,6 +133,15 @@ const ASIDE_M: f64 = 0.5;
 const TURNS_RAD: f64 = 0.26;
 const SIDEWAYS_MPS2: f64 = 3.0;
 
+/// Who comes from beside, and is not told to have left its lane, comes no farther over; nobody turns one way and back the other by more who is
+/// not told to go aside; and who rolls back in line is at no more to the road. [m, rad, rad]
+const OVER_M: f64 = 0.5 * LANE_M;
+const BACK_RAD: f64 = 0.35;
+const ASKEW_RAD: f64 = 0.09;
+
+/// What nobody would take for driving straight on is worse than a step from the told zones. [half seconds]
+pub(crate) const ABSURD: usize = 4;
+
 /// In how many ways the partner weaves or swerves that nobody tells of.
 pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     if !told.comes_along_lanes() || told.cp.turning != Turning::No || told.is_thrown() {
@@ -133,9 +151,10 @@ pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
     let (first, last) = (&track.states[0], &track.states[until]);
     let along = Vec2::from_heading(first.heading);
     let aside_m = |state: &ActorState| along.cross(state.position() - first.position()).abs();
-    let goes_aside = track.states[..=until].iter().map(aside_m).fold(0.0, f64::max) > ASIDE_M;
-    let turned = math::wrap_angle(last.heading - first.heading).abs() > TURNS_RAD;
-    let stays = !told.leaves_its_lane() && !matches!(told.origin, Origin::Beside { .. });
+    let aside_m = track.states[..=until].iter().map(aside_m).fold(0.0, f64::max);
+    let turned = math::wrap_angle(last.heading - first.heading).abs();
+    let beside = matches!(told.origin, Origin::Beside { .. });
+    let stays = !told.leaves_its_lane() || told.comes_straight_by();
     let sideways = |pair: &[ActorState]| {
         let rate = math::wrap_angle(pair[1].heading - pair[0].heading).abs() / STEP_S;
         rate * pair[0].velocity().length()
@@ -146,7 +165,76 @@ pub(crate) fn weaves(told: &Told, track: &ActorTrack, contact_s: f64) -> usize {
         && !told.cp.stood_first
         && !told.cp.acts.iter().any(Doing::is_swerve)
         && track.states[..=until].windows(2).any(|pair| sideways(pair) > SIDEWAYS_MPS2);
-    [stays && goes_aside, stays && turned, swerves].into_iter().filter(|is| *is).count()
+    let few = [stays && !beside && aside_m > ASIDE_M, swerves].into_iter().filter(|is| *is).count();
+    let turns = track.states[..=until].windows(2).map(|pair| math::wrap_angle(pair[1].heading - pair[0].heading));
+    let (all, net) = turns.fold((0.0, 0.0), |(all, net), turn| (all + turn.abs(), net + turn));
+    let backs = told.cp.state == ContactState::Reversing;
+    let absurd = [
+        stays && turned > if backs { ASKEW_RAD } else { TURNS_RAD },
+        stays && aside_m > OVER_M,
+        stays && all - net.abs() > BACK_RAD,
+    ];
+    few + ABSURD * absurd.into_iter().filter(|is| *is).count()
+}
+
+/// Who is behind somebody is not abreast of it; and who is in the next lane is no farther aside. [m]
+const BEHIND_M: f64 = 0.0;
+const NEXT_M: f64 = 1.5 * LANE_M + KEEPS_M;
+
+impl Told {
+    /// Whether the partner is told to be behind the ego, and nothing tells that it was in another lane then.
+    fn is_in_line_behind(&self) -> bool {
+        let straight = !matches!(self.sv.turning, Turning::Left | Turning::Right);
+        let other_lane = self.cp.lane.is_some()
+            || self.leaves_opposite()
+            || self.cp.changed_lanes
+            || self.cp.movement == Some(Movement::EnteringTraffic);
+        self.origin == Origin::Behind
+            && straight
+            && !other_lane
+            && self.sv_aside().is_none()
+            && self.comes_along_lanes()
+    }
+
+    /// Whether the partner has to begin in the ego's lane: it is told to be behind, and not to have come by, or over, without a stand there.
+    pub(crate) fn begins_in_line(&self) -> bool {
+        let comes_by = matches!(
+            self.cp.movement,
+            Some(
+                Movement::Passing
+                    | Movement::ChangingLanes
+                    | Movement::Merging
+                    | Movement::CrossingIntoOpposingLane
+                    | Movement::LaneDeparture
+            )
+        );
+        let drives = self.cp.state != ContactState::Reversing;
+        self.is_in_line_behind() && drives && (!comes_by || self.cp.stood_first) && !self.comes_along_kerb()
+    }
+
+    /// Whether a partner that is told beside the ego, and in no farther lane, is farther off than the next one.
+    pub(crate) fn is_far_beside(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
+        let (own, other) = (&ego.states[0], &track.states[0]);
+        let aside_m = Vec2::from_heading(own.heading).cross(other.position() - own.position()).abs();
+        let beside = matches!(self.origin, Origin::Beside { .. }) && self.comes_along_lanes();
+        let aside = self.sv_aside().is_some();
+        beside && !aside && (self.cp.lane.is_none() || self.sv.lane.is_none()) && !self.is_at_kerb() && aside_m > NEXT_M
+    }
+
+    /// Whether an oncoming partner is told to have gone straight by the ego, and not to have come over.
+    fn comes_straight_by(&self) -> bool {
+        let aside = |doing: &Doing| doing.is_aside() && !doing.is_pass();
+        self.is_passed_by_oncoming() && !self.comes_over && !self.cp.dodges && !self.cp.acts.iter().any(aside)
+    }
+
+    /// Whether a partner that is told behind the ego is beside its lane, or ahead of it.
+    pub(crate) fn is_beside_line(&self, ego: &ActorTrack, track: &ActorTrack) -> bool {
+        let sets_out = track.states.iter().position(|state| state.velocity().length() > STANDS_MPS).unwrap_or(0);
+        let (own, other) = (&ego.states[sets_out.min(ego.states.len() - 1)], &track.states[sets_out]);
+        let (forward, way) = (Vec2::from_heading(own.heading), other.position() - own.position());
+        let overlap_m = 0.5 * (ego.width_m + track.width_m) - forward.cross(way).abs();
+        self.is_in_line_behind() && (overlap_m < 0.0 || way.dot(forward) > BEHIND_M)
+    }
 }
 
 /// Whether somebody that passes and is told to touch with its flank or rear still moves away from the other one as it touches: it would not

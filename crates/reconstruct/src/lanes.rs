@@ -19,6 +19,8 @@ const ALONG_RAD: f64 = 0.05;
 pub(crate) struct Lanes {
     way_rad: f64,
     lefts_m: Vec<f64>,
+    /// The ego's line before it leaves that, to the left of the same. [m]
+    own_m: f64,
 }
 
 impl Lanes {
@@ -35,7 +37,8 @@ impl Lanes {
         let count = if math::cos(way_rad) < -0.5 { ground.oncoming } else { ground.lanes };
         let middle_m = Vec2::from_heading(way_rad).cross(middle);
         let lefts_m: Vec<f64> = (0..count).map(|lane| middle_m - (lane as f64 + 0.5) * LANE_M).collect();
-        (!lefts_m.is_empty()).then_some(Self { way_rad, lefts_m })
+        let own_m = Vec2::from_heading(way_rad).cross(ground.sv_pose(0.0).position);
+        (!lefts_m.is_empty()).then_some(Self { way_rad, lefts_m, own_m })
     }
 
     /// How far to the left a place is. [m]
@@ -50,12 +53,28 @@ impl Lanes {
         list
     }
 
-    /// Whether somebody may come along a lane: from beside, in one beside the ego.
+    /// Whether somebody may come along a lane: along the told one; from beside, along the next one to the ego's; from behind, along that.
     fn may_lead(&self, told: &Told, sv: Pose, lane_m: f64) -> bool {
-        let ego_m = self.left_m(sv.position);
+        let several = self.lefts_m.len() > 1 && !told.turns_abreast();
+        if let Some(number) = told.lane_number(false, self.lefts_m.len()).filter(|_| several) {
+            return self.lefts_m.get(number) == Some(&lane_m);
+        }
+        // Beside whom it comes, and ahead of whom it is not, is to be seen when it sets out.
+        let along = self.way_rad.abs() < 0.01 && sv.heading.abs() < TURNS_RAD;
+        let aside = told.sv_aside().filter(|_| along);
+        let (from_m, to_m) = match aside {
+            Some(aside) => (self.own_m - aside.from_t_m, self.own_m - aside.to_t_m),
+            None => (self.left_m(sv.position), self.left_m(sv.position)),
+        };
+        // Of who leaves its line beside the lane that it comes from, and no farther than beside the one that it goes to.
+        let beside = |from_m: f64, to_m: f64| from_m > BESIDE_M && from_m.min(to_m) < FARTHEST_M;
         match told.origin {
-            Origin::Beside { side: LeftRight::Left } => lane_m - ego_m > BESIDE_M,
-            Origin::Beside { side: LeftRight::Right } => ego_m - lane_m > BESIDE_M,
+            Origin::Beside { side: LeftRight::Left } => beside(lane_m - from_m, lane_m - to_m),
+            Origin::Beside { side: LeftRight::Right } => beside(from_m - lane_m, to_m - lane_m),
+            // Of who leaves its line also in the lane that it goes to.
+            Origin::Behind if along && !told.drives_elsewhere() => {
+                [from_m, to_m].into_iter().any(|own_m| self.nearest(own_m, |_| true).first() == Some(&lane_m))
+            }
             _ => true,
         }
     }
@@ -76,6 +95,10 @@ const SIDEWAYS_MPS2: f64 = 2.5;
 const TIGHTEST_M: f64 = 8.0;
 const TIGHTEST_LENGTHS: f64 = 0.75;
 
+/// Who stood behind the ego and goes round it steers no tighter, and drives straight on for so long first. [m]
+const ROUND_M: f64 = 5.5;
+const SETS_OFF_M: f64 = 1.0;
+
 /// Who is no farther beside the middle of its lane where it touches keeps its line. [m]
 const KEEPS_M: f64 = 0.7;
 
@@ -88,6 +111,9 @@ const TURNS_RAD: f64 = 0.6;
 /// Who comes from beside does so in a lane that is so far beside the ego, at least. [m]
 const BESIDE_M: f64 = 2.0;
 
+/// And no farther, where no lane is told. [m]
+const FARTHEST_M: f64 = 1.5 * LANE_M;
+
 /// Who changes lanes goes aside by so much at least. [m]
 const CHANGES_M: f64 = 1.0;
 
@@ -98,12 +124,15 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
     let turn = math::wrap_angle(cp.heading - staging.cp_came);
     let moves = matches!(told.cp.state, ContactState::Moving | ContactState::SettingOff | ContactState::Stopped);
     let moves = moves && !told.comes_out_from_stand();
-    if !told.comes_along_lanes() || told.drives_elsewhere() || !moves || turn.abs() > TURNS_RAD || told.back_straight {
+    let elsewhere = told.drives_elsewhere() || told.pulls_out_opposite();
+    if !told.comes_along_lanes() || elsewhere || !moves || turn.abs() > TURNS_RAD || told.back_straight {
         return None;
     }
     let lanes = Lanes::of(&staging.ground, staging.cp_came)?;
     let speed_mps = pace.speed_mps.max(told.cp.speed_mps);
-    let tightest_m = TIGHTEST_M.max(TIGHTEST_LENGTHS * size_of(&told.cp).0).max(speed_mps * speed_mps / SIDEWAYS_MPS2);
+    let comes_round = told.comes_round_from_stand();
+    let tightest_m = if comes_round { ROUND_M } else { TIGHTEST_M };
+    let tightest_m = tightest_m.max(TIGHTEST_LENGTHS * size_of(&told.cp).0).max(speed_mps * speed_mps / SIDEWAYS_MPS2);
     // Where it would come from without bending twice.
     let straight_m = lanes.left_m(cp.position) - turn.signum() * tightest_m * (1.0 - math::cos(turn));
     let lane_m = *lanes.nearest(straight_m, |lane_m| lanes.may_lead(told, staging.sv, lane_m)).first()?;
@@ -112,7 +141,9 @@ pub(crate) fn from_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64)
         return None;
     }
     let backs_m = LEAVES_S.map(|leaves_s| (leaves_s * speed_mps).max(LEAST_M));
-    backs_m.into_iter().find_map(|back_m| {
+    // Who stood close behind the ego begins to leave its line as it sets off.
+    let at_once = comes_round.then_some(pace.driven_m - SETS_OFF_M);
+    backs_m.into_iter().chain(at_once).find_map(|back_m| {
         let leaves = lanes.before(cp.position, back_m, lane_m);
         let mut course = Course::begin(arm_m);
         let before_m = if course.curve(leaves, cp, false) { pace.driven_m - course.length_m() } else { return None };
@@ -189,12 +220,15 @@ pub(crate) fn bends(told: &Told, (ground, sv): (&Ground, Pose), cp: Pose, came: 
         return if bend_from_lane(told, (ground, sv), cp, (came, radius_m)).is_some() { 0 } else { NOWHERE };
     }
     let Some(lanes) = Lanes::of(ground, came) else { return 0 };
-    let left_m = lanes.left_m(cp.position);
+    let comes_round = told.comes_round_from_stand();
+    // Who pulls out from behind the ego is yet on its bend.
+    let gained_m = if comes_round { turn.signum() * TIGHTEST_M * (1.0 - math::cos(turn)) } else { 0.0 };
+    let left_m = lanes.left_m(cp.position) - gained_m;
     let lane_m = lanes.nearest(left_m, |lane_m| lanes.may_lead(told, sv, lane_m)).first().copied();
     let off_m = lane_m.map_or(f64::from(NOWHERE), |lane_m| (lane_m - left_m).abs() - KEEPS_M).max(0.0);
     let aside = told.leaves_its_lane() || matches!(told.origin, Origin::Beside { .. });
     let weaves = if turn.abs() > STRAIGHT_RAD && !aside { 2 } else { 0 };
-    if aside && off_m < LANE_M { 0 } else { (off_m.ceil() as u32 + weaves).min(NOWHERE) }
+    if aside && !comes_round && off_m < LANE_M { 0 } else { (off_m.ceil() as u32 + weaves).min(NOWHERE) }
 }
 
 /// More than anybody bends.

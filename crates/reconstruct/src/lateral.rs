@@ -15,7 +15,7 @@ use recrash_model::account::{
 use recrash_model::geometry::{Pose, Vec2};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::math;
-use recrash_model::scenario::{ActorPlan, Deed, Leg, Place};
+use recrash_model::scenario::{ActorPlan, Deed, Leg, Place, StripKind};
 use recrash_model::template::Movement;
 use recrash_roads::Course;
 
@@ -155,7 +155,14 @@ impl Told {
             && self.cp.turning == Turning::No
             && self.sv.turning == Turning::No
             && self.thing.is_none()
-            && matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+            && (matches!(self.cp.movement, None | Some(Movement::Straight | Movement::Passing))
+                || self.pulls_out_opposite())
+    }
+
+    /// Whether an oncoming partner pulled out from the kerb of its own side.
+    pub(crate) fn pulls_out_opposite(&self) -> bool {
+        let pulls_out = self.cp.movement == Some(Movement::EnteringTraffic) && self.cp.state == ContactState::Moving;
+        self.origin == Origin::Opposite && pulls_out && self.cp.turning == Turning::No && self.thing.is_none()
     }
 
     /// Whether the partner came along behind the ego on the opposite side, and changed from there into a lane of its own direction.
@@ -204,6 +211,10 @@ impl Told {
 
 /// The line at the kerb that the partner stood on, to the left of the ego's line. [m]
 fn kerb_y_m(told: &Told, staging: &Staging) -> Option<f64> {
+    if told.pulls_out_opposite() {
+        let strip = staging.ground.beside.contains(&StripKind::Parking) && !staging.ground.junction;
+        return strip.then_some(staging.ground.kerbs_m[0]);
+    }
     let Origin::Parked { side } = told.origin else { return None };
     if !told.stood_beside() {
         return None;
@@ -307,6 +318,10 @@ pub(crate) fn keeps_lane(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64
 const OUT_M: f64 = 6.0;
 const COMES_OUT_M: f64 = 24.0;
 
+/// The same of who stood close behind it, with no tighter bend. [m]
+const STOOD_OUT_M: f64 = 4.0;
+const STOOD_RADIUS_M: f64 = 5.5;
+
 /// Who comes from behind the ego and passes it comes out of its lane, goes along beside it, and then comes too near: where it begins, and
 /// the poses that it drives by.
 pub(crate) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) -> Option<(Pose, Vec<Pose>)> {
@@ -315,16 +330,25 @@ pub(crate) fn comes_by(told: &Told, staging: &Staging, pace: &Pace, arm_m: f64) 
     }
     let cp = staging.cp;
     let comes_in = math::wrap_angle(cp.heading - staging.cp_came);
-    let out_y_m = cp.position.y - 0.5 * OUT_M * comes_in;
-    // An ego that turns came along its line.
-    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
-    let own_y_m = if told.comes_along_kerb() || turns { 0.0 } else { staging.sv.position.y };
-    let back_m = (pace.driven_m - 0.5).min(OUT_M + COMES_OUT_M);
-    let bends_m = (4.0 * LEAST_BY_RADIUS_M * (out_y_m - own_y_m).abs()).sqrt();
-    if back_m - OUT_M < bends_m {
+    // Who stood close behind has less room for it.
+    let stood = told.comes_round_from_stand();
+    let (out_m, radius_m) = if stood { (STOOD_OUT_M, STOOD_RADIUS_M) } else { (OUT_M, LEAST_BY_RADIUS_M) };
+    // Who touches on its way out does not go along beside the ego first.
+    if stood && comes_in * (cp.position.y - staging.sv.position.y) > 0.0 {
         return None;
     }
-    between_lines(staging, pace, arm_m, [(back_m, own_y_m), (OUT_M, out_y_m)])
+    let out_y_m = cp.position.y - 0.5 * out_m * comes_in;
+    // An ego that turns came along its line.
+    let turns = matches!(told.sv.turning, Turning::Left | Turning::Right);
+    let leaves = told.sv_aside().is_some();
+    let along = told.comes_along_kerb() || turns || leaves;
+    let own_y_m = if along { staging.ground.sv_pose(0.0).position.y } else { staging.sv.position.y };
+    let back_m = (pace.driven_m - 0.5).min(out_m + COMES_OUT_M);
+    let bends_m = (4.0 * radius_m * (out_y_m - own_y_m).abs()).sqrt();
+    if back_m - out_m < bends_m {
+        return None;
+    }
+    between_lines(staging, pace, arm_m, [(back_m, own_y_m), (out_m, out_y_m)])
 }
 
 /// Who changed into the ego's lane behind it is back on its line so far before the contact, and took so long for it. [m]

@@ -61,6 +61,8 @@ pub(crate) struct Layout {
     /// The street is narrow; it is one-way.
     pub(crate) narrow: bool,
     pub(crate) one_way: bool,
+    /// A double yellow line divides it.
+    pub(crate) centre_line: bool,
     /// The ego goes to turn left, and has not begun to.
     pub(crate) left_to_come: bool,
     /// The door that took part is told to be a rear one, or a front one.
@@ -75,6 +77,7 @@ impl Layout {
             cp: standing(account, partner),
             narrow: has(RoadFeature::NarrowStreet),
             one_way: has(RoadFeature::OneWay),
+            centre_line: has(RoadFeature::DoubleYellowLine),
             left_to_come: goes_to_turn_left(&account.sv),
             rear_door: rear_door(account, partner),
         }

@@ -62,6 +62,9 @@ const AGAIN_RUNS: usize = 100;
 /// Where one shows all that is told and nobody strays, no more are run to find one that keeps its lane better.
 const ENOUGH_RUNS: usize = 36;
 
+/// Where its way is absurd, so many are.
+const ABSURD_RUNS: usize = 100;
+
 /// That a way of touching is a step farther from the told zones is worth as much as so many half seconds off its lane.
 const ZONE_STEP: usize = 3;
 
@@ -169,7 +172,9 @@ fn in_order(told: told::Told, account: &Account, most_runs: usize) -> Result<Fou
 /// Who was behind the ego in a queue stands close to it; farther off where nothing true is found with that.
 fn near_or_far(told: told::Told, account: &Account, most_runs: usize) -> Result<(told::Told, Found), Untold> {
     let near = searched(told.clone(), account, most_runs);
-    let good = |found: &Result<Found, Untold>| found.as_ref().is_ok_and(|found| found.made.is_true() && !found.strays);
+    let good = |found: &Result<Found, Untold>| {
+        found.as_ref().is_ok_and(|found| found.made.is_true() && !found.strays && acts_left_open(&found.made) == 0)
+    };
     if good(&near) {
         return near.map(|found| (told, found));
     }
@@ -198,7 +203,7 @@ fn searched(told: told::Told, account: &Account, most_runs: usize) -> Result<Fou
                 }
             }
         }
-        if search.best.as_ref().is_some_and(|best| best.cost.0 == 0) {
+        if search.best.as_ref().is_some_and(|best| best.cost.0 == 0 && !best.is_absurd()) {
             break;
         }
     }
@@ -267,7 +272,8 @@ impl Search {
                 self.best = Some(found);
             }
         }
-        let enough = self.runs >= ENOUGH_RUNS && self.best.as_ref().is_some_and(Best::shows_all);
+        let most = if self.best.as_ref().is_some_and(Best::is_absurd) { ABSURD_RUNS } else { ENOUGH_RUNS };
+        let enough = self.runs >= most && self.best.as_ref().is_some_and(Best::shows_all);
         shows == (0, false, false, 0) && off == 0 || enough
     }
 }
@@ -300,6 +306,11 @@ impl Best {
     /// Whether every told fact is shown, and nobody strays.
     fn shows_all(&self) -> bool {
         matches!(self.cost, (0, false, false, 0, _))
+    }
+
+    /// Whether the partner's way is one that nobody would drive.
+    const fn is_absurd(&self) -> bool {
+        self.cost.4 >= 2 * keeping::ABSURD
     }
 
     /// The same with those who have no part in what the ego does, where nothing told is missed for them.

@@ -32,6 +32,9 @@ const TURNED_DEG: f64 = 50.0;
 const STRAIGHT_DEG: f64 = 50.0;
 const ROUND_DEG: f64 = 60.0;
 
+/// Who goes straight on along a lane, and is not told to have left it, has turned by no more. [deg]
+const KEEPS_DEG: f64 = 16.0;
+
 /// One who moves, and what it meets.
 pub(crate) struct Way<'a> {
     pub(crate) scenario: &'a Scenario,
@@ -42,6 +45,8 @@ pub(crate) struct Way<'a> {
     pub(crate) met: ActorState,
     /// Of the contact. [s]
     pub(crate) time_s: f64,
+    /// It comes along a lane, and nobody tells that it left that.
+    pub(crate) keeps_lane: bool,
     /// Direction of the road that the ego came along. [rad]
     pub(crate) road_rad: f64,
 }
@@ -193,7 +198,7 @@ pub(crate) fn check(side: &Side, way: &Way<'_>) -> Option<(String, CheckResult, 
         | Movement::NmAlongside
         | Movement::NmInRoadway => {
             let fits = match side.turning {
-                Turning::No => side.turns_later || turned.abs() < STRAIGHT_DEG,
+                Turning::No => side.turns_later || turned.abs() < if way.keeps_lane { KEEPS_DEG } else { STRAIGHT_DEG },
                 Turning::Round => turned.abs() > ROUND_DEG,
                 Turning::Left | Turning::Right => true,
             };

@@ -116,6 +116,8 @@ pub(crate) fn ego_paces(told: &Told, ground: &Ground, sv_s_m: f64) -> (Option<Le
     let stood_s = longer_s
         + match told.waits_behind() {
             true => STOOD_LONG_S.max(contact_s - first_time(&last_pace(told).acts) + WAITED_S),
+            // Whoever moved up behind it before it was thrown at it did so while the ego stood.
+            false if told.is_thrown() && told.cp.phases.len() > 1 && sv.phases.is_empty() => contact_s,
             false if told.origin == Origin::Ahead && told.cp.state == ContactState::Reversing => {
                 told.choices.stood_s + STOOD_A_LITTLE_S
             }
@@ -226,7 +228,21 @@ impl Told {
     /// Whether the partner stood behind the ego and set off then.
     fn waits_behind(&self) -> bool {
         let stood = self.cp.state == ContactState::SettingOff || self.cp.stood_first || self.queues();
-        self.origin == Origin::Behind && stood
+        self.origin == Origin::Behind && (stood || self.creeps_up())
+    }
+
+    /// Whether the partner crept into an ego that stands: it gained speed, and is told to have been this slow when they touch. It has come
+    /// to a stop behind that before.
+    fn creeps_up(&self) -> bool {
+        let slow = self.cp.impact_mps.is_some_and(|mps| mps < CREEPS_MPS) && self.cp.gains;
+        slow && self.cp.state == ContactState::Moving && self.cp.phases.is_empty() && self.sv.state.stands()
+    }
+
+    /// Whether the partner stood behind the ego and goes round it.
+    pub(crate) fn comes_round_from_stand(&self) -> bool {
+        let aside = self.comes_round_ego() || self.cp.acts.iter().any(Doing::is_aside);
+        let straight = self.cp.turning == Turning::No && self.sv.turning == Turning::No;
+        self.waits_behind() && aside && straight && self.cp.state != ContactState::Reversing
     }
 
     /// Whether the partner is drawn as one that stood in a queue behind the ego, though only its place is told.
@@ -401,12 +417,13 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
             sets_off(contact_s, cp.speed_mps, (0.8 * ego_m).max(0.2))
         }
         ContactState::Reversing => {
-            let swings = math::wrap_angle(staging.cp.heading - staging.cp_came).abs() > SWINGS_RAD;
+            let turn = math::wrap_angle(staging.cp.heading - staging.cp_came).abs();
+            let swings = turn > SWINGS_RAD;
             let way_m = match told.origin {
                 _ if cp.backs_in => kerb::BACKS_IN_M,
                 Origin::Stall { .. } | Origin::Driveway { .. } => kerb::out_m(told, staging).max(BACKS_OUT_M),
-                _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M,
-                _ => REVERSES_M,
+                _ if swings && !cp.phases.is_empty() => SWINGS_BACK_M.max(LEAST_BACK_M * turn),
+                _ => REVERSES_M.max(LEAST_BACK_M * turn),
             };
             // Who backed before the ego did something backs for longer.
             let backing_s = before_s.map_or(0.0, |from_s| contact_s - from_s + BACKS_EARLIER_S);
@@ -472,6 +489,9 @@ const BACKS_OUT_M: f64 = 4.5;
 /// Who came along the road, and turned by more than this while it reversed, has reversed so far. [rad, m]
 const SWINGS_RAD: f64 = 0.2;
 const SWINGS_BACK_M: f64 = 6.0;
+
+/// Nobody backs on a tighter circle. [m]
+const LEAST_BACK_M: f64 = 5.0;
 
 fn from_stand(origin: Origin) -> bool {
     !matches!(origin, Origin::Cross { .. } | Origin::Behind | Origin::Opposite)

@@ -132,6 +132,7 @@ fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                         };
                         let off = zones_off(&told.sv.zones, sv_seen) + zones_off(&told.cp.zones, cp_seen);
                         let face_on = told.scrapes() && is_face_on(told, sv, cp);
+                        let along = told.runs_into_rear() && !is_face_on(told, sv, cp);
                         let swings = told.goes_straight_behind() && math::wrap_angle(heading - came).abs() > SWINGS_RAD;
                         // Who keeps its lane behind an ego that leaves its own does not turn with that.
                         let turned = math::wrap_angle(heading - came).abs() > KEEPS_RAD;
@@ -144,7 +145,7 @@ fn bodies(told: &Told, ground: &Rc<Ground>) -> Vec<Staging> {
                         let before = told.sv.turning == Turning::Left && told.is_met_on_wrong_side(ground, cp);
                         let worse = [
                             (before, BEFORE_LANE),
-                            (face_on, FACE_ON),
+                            (face_on || along, FACE_ON),
                             (swings, SWINGS),
                             (leaves, LEAVES),
                             (told.goes_right_way(cp), RIGHT_WAY),
@@ -193,7 +194,8 @@ fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
     along_m < across_m
 }
 
-/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps; and of who goes straight on behind an ego that
+/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps, and so is a flank of a front that is told on a
+/// rear; and of who goes straight on behind an ego that
 /// turns, that it swings by more than this. [rad]
 const FACE_ON: u32 = 2;
 const SWINGS: u32 = 2;
@@ -236,6 +238,9 @@ fn aside_before_m(told: &Told, sv: Pose, cp: Pose, came: f64) -> f64 {
     let turn = math::wrap_angle(cp.heading - came);
     (cp.position.y - turn.signum() * turn_m(told) * (1.0 - math::cos(turn)) - sv.position.y).abs()
 }
+
+/// How far somebody has turned at least that turns across from the next lane. [deg]
+const BESIDE_DEG: f64 = 22.0;
 
 /// How far somebody has turned whose turn is over. [deg]
 const OVER_DEG: [f64; 5] = [90.0, 80.0, 72.0, 100.0, 60.0];
@@ -360,6 +365,15 @@ impl Told {
     /// Whether they rub along each other: a flank takes part, and it is not the front of the one on the rear of the other.
     fn scrapes(&self) -> bool {
         self.crash_type == CrashType::Lateral && side_of(&self.sv.zones).is_some()
+    }
+}
+
+impl Told {
+    /// Whether the front of the one is told to have met the rear of the other, both in one lane.
+    fn runs_into_rear(&self) -> bool {
+        let in_line = matches!(self.origin, Origin::Behind | Origin::Ahead);
+        let straight = self.sv.turning == Turning::No && self.cp.turning == Turning::No && self.thing.is_none();
+        self.crash_type == CrashType::FrontToRear && in_line && straight
     }
 }
 
@@ -501,6 +515,10 @@ pub(crate) fn headings(told: &Told, sv_heading: f64, behind: f64) -> Vec<(f64, f
                 );
             } else {
                 turned(0.0, &mut list);
+                // Out of the next lane some come no farther round.
+                let from_beside = matches!(told.origin, Origin::Beside { .. }) && !told.cp.turned;
+                let by = if told.cp.turning == Turning::Right { -BESIDE_DEG } else { BESIDE_DEG };
+                list.extend(from_beside.then_some((0.0, degrees(by))));
             }
             if reverses {
                 list.extend([90.0, -90.0, 60.0, -60.0, 30.0, -30.0].map(|off| (0.0, degrees(off))));

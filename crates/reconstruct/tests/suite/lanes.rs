@@ -2,10 +2,13 @@
 
 use crate::common::account_of;
 use crate::ways::{before_contact, degrees_between, made, partner, speeds, story};
-use recrash_model::account::{Fact, Untold};
+use recrash_model::account::{Fact, LaneWord, LeftRight, Origin, Speed, SpeedMeaning, Untold};
+use recrash_model::metrics::{CheckKind, CheckResult};
+use recrash_model::rollout::ActorState;
 use recrash_model::scenario::{MapSpec, StripKind};
+use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone;
-use recrash_reconstruct::{Reconstruction, off_lane_s, reconstruct};
+use recrash_reconstruct::{Reconstruction, held_against, off_lane_s, reconstruct};
 
 /// Lanes of the ego's first road: those that go its way, and those that come towards it.
 fn lanes(made: &Reconstruction) -> (usize, usize) {
@@ -115,4 +118,99 @@ fn who_turned_off_before_it_backs_came_along_its_own_side() {
     let first = partner(&shown).0[0];
     let side_m = first.y - shown.rollout.ego_track().states[0].y;
     assert!(degrees_between(first.heading, std::f64::consts::PI) > 90.0 || side_m > 3.0, "{first:?}");
+}
+
+/// How far ahead of the ego the partner is when the scene begins, and how far to its left. [m]
+fn begins(made: &Reconstruction) -> (f64, f64) {
+    let (ego, other) = (&made.rollout.ego_track().states[0], &partner(made).0[0]);
+    (other.x - ego.x, other.y - ego.y)
+}
+
+#[test]
+fn who_stood_behind_an_ego_and_goes_round_it_begins_on_its_line_and_pulls_out_to_the_told_side() {
+    let text = "The AV was stopped in a queue of traffic at a red light on Elm Street. A sedan that was stopped directly behind the AV began to \
+                pass the AV on the left, and the front right of the sedan made contact with the rear left of the stationary AV.";
+    let shown = made(&story(text));
+    let (ahead_m, left_m) = begins(&shown);
+    assert!(ahead_m < -3.0 && left_m.abs() < 1.0, "{ahead_m} m ahead, {left_m} m to the left");
+    let (states, met) = partner(&shown);
+    assert!(met.y > states[0].y + 0.5, "{met:?}");
+}
+
+#[test]
+fn who_comes_from_beside_does_so_along_the_next_lane_or_the_told_one() {
+    let text = "The AV was traveling north in the rightmost lane of Elm Street. A van traveling in the second lane from the right made a right \
+                turn into a garage, and the front right of the van made contact with the left side of the AV.";
+    let shown = made(&story(text));
+    let (_, left_m) = begins(&shown);
+    assert!((2.4..4.4).contains(&left_m), "{left_m} m to the left");
+}
+
+#[test]
+fn two_that_turn_side_by_side_come_along_two_lanes_of_their_direction() {
+    let text = "The AV was in the right of two left turn lanes at the intersection of Elm Street and Oak Street and made a left turn. A sedan in \
+                the left turn lane to the left of the AV also made a left turn and drifted to its right, and the front right of the sedan made \
+                contact with the left side of the AV.";
+    let mut account = story(text);
+    let lane = |lane| Some(Fact::by_rule(lane, "lanes"));
+    account.sv.lane = lane(LaneWord::LeftTurn);
+    account.partner.as_mut().expect("a partner").lane = lane(LaneWord::LeftTurn);
+    account.came_from = Some(Fact::by_rule(Origin::Beside { side: LeftRight::Left }, "beside"));
+    let shown = made(&account);
+    let (_, left_m) = begins(&shown);
+    assert!((2.6..4.2).contains(&left_m), "{left_m} m to the left");
+}
+
+#[test]
+fn who_creeps_into_an_ego_that_stands_came_to_a_stop_behind_it() {
+    let text = "The AV was stopped in a queue of traffic on Elm Street. A sedan behind the AV accelerated and the front of the sedan made contact \
+                with the rear of the stationary AV.";
+    let mut account = story(text);
+    let speed = Speed { mps: 2.0, meaning: SpeedMeaning::Impact };
+    account.partner.as_mut().expect("a partner").speeds = vec![Fact::by_rule(speed, "told")];
+    let shown = made(&account);
+    let (ahead_m, left_m) = begins(&shown);
+    assert!(ahead_m < -5.0 && left_m.abs() < 1.0, "{ahead_m} m ahead, {left_m} m to the left");
+    assert!(partner(&shown).0.iter().any(|state| state.speed() < 0.1), "it stands");
+}
+
+#[test]
+fn a_told_lane_counts_only_along_its_direction_and_in_the_middle_of_it() {
+    let text = "The AV was traveling north in the right lane. A sedan in the left lane changed lanes to the right and the front right of the sedan \
+                made contact with the left side of the AV.";
+    let account = story(text);
+    let shown = made(&account);
+    let lane = |change: &dyn Fn(&mut ActorState)| {
+        let mut rollout = shown.rollout.clone();
+        let track = rollout.actors.iter_mut().find(|track| track.id == "cp").expect("a partner");
+        change(&mut track.states[0]);
+        let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
+        let verdict = held_against(&account, &scenario, &rollout).expect("it can be held");
+        verdict.checks.into_iter().find(|check| check.kind == CheckKind::CpLane).map(|check| check.result)
+    };
+    assert_eq!(lane(&|_| {}), Some(CheckResult::Shown));
+    assert_eq!(lane(&|state| state.y += 0.9), Some(CheckResult::NotShown));
+    assert_eq!(lane(&|state| state.heading += std::f64::consts::PI), Some(CheckResult::NotShown));
+}
+
+#[test]
+fn who_backs_in_line_stays_along_the_road() {
+    let text = "The AV was stopped behind a sedan at a red light on Elm Street. The sedan directly in front of the AV rolled backwards and the rear \
+                of the sedan made contact with the front of the stationary AV.";
+    let shown = made(&story(text));
+    let states = partner(&shown).0;
+    assert!(states.iter().all(|state| degrees_between(state.heading, 0.0) < 5.2), "{states:?}");
+}
+
+#[test]
+fn who_pulls_out_from_the_far_kerb_stood_there() {
+    let text = "The AV was stopped on Elm Street. A van traveling in the opposite direction that was stopped at the curb pulled out into the \
+                lane, crossed over, and the front left of the van made contact with the front left of the stationary AV.";
+    let mut account = story(text);
+    account.came_from = Some(Fact::by_rule(Origin::Opposite, "opposite"));
+    account.partner.as_mut().expect("a partner").movement =
+        Some(Fact::by_rule(Movement::EnteringTraffic, "pulled out"));
+    let shown = made(&account);
+    let (_, left_m) = begins(&shown);
+    assert!(left_m > 5.1, "{left_m} m to the left");
 }

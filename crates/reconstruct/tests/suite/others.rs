@@ -421,7 +421,7 @@ fn who_pulls_out_from_behind_is_struck_on_its_way() {
     let (states, met) = partner(&shown);
     let ego = shown.rollout.ego_track().states[0];
     assert!(
-        states[0].speed() == 0.0 && (states[0].y - ego.y).abs() < 1.5 && met.y > states[0].y + 0.9,
+        states[0].speed() == 0.0 && (states[0].y - ego.y).abs() < 1.5 && met.y > states[0].y + 0.7,
         "{:?}, {met:?}",
         states[0]
     );

@@ -185,10 +185,15 @@ fn who_crosses_over_comes_from_its_own_side_wherever_it_hits_the_ego() {
     let (states, met) = partner(&shown);
     assert!(states[..50].iter().all(|state| state.y > 3.0), "it keeps its lane until then");
     assert!(met.y < 0.0, "{met:?}");
-    let straight = missed(&account, |less| {
-        partner_without_acts(less, &[Act::Drift]);
-        partner_moves(less, Movement::Straight);
-    });
+    // And who drove along the ego's lane all the way did not.
+    let mut rollout = shown.rollout.clone();
+    let track = rollout.actors.iter_mut().find(|track| track.id == "cp").expect("a partner");
+    for state in &mut track.states[..before_contact(&shown)] {
+        (state.y, state.heading) = (met.y, std::f64::consts::PI);
+    }
+    let scenario = recrash_roads::check(shown.draft.clone()).expect("it ran").value;
+    let verdict = held_against(&account, &scenario, &rollout).expect("it can be held");
+    let straight: Vec<CheckKind> = verdict.failures().map(|check| check.kind).collect();
     assert!(straight.contains(&CheckKind::Approach) && straight.contains(&CheckKind::CpMovement), "{straight:?}");
 }
 
