@@ -124,7 +124,8 @@ pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fac
             )
         )
     };
-    if over(cp)
+    let animal = told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Animal);
+    if over(cp) && !animal
         || matches!(sv, Some(Movement::ChangingLanes | Movement::Merging | Movement::Passing | Movement::LaneDeparture))
     {
         return rule(Origin::Beside { side });
