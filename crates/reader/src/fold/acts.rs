@@ -197,10 +197,8 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     let comes_out = matches!(frame.out_of, Some(Spot::Stall | Spot::Driveway | Spot::Curb));
     let words = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
     Some(match act {
-        // "A dog entered the roadway": no vehicle that leaves a place of its own.
-        Act::PullOut if words.starts_with("enter") && frame.who.is_some_and(|who| is_animal(reading, who)) => {
-            Act::Enter
-        }
+        // "A dog came out from between two cars": no vehicle that leaves a place of its own.
+        Act::PullOut if frame.who.is_some_and(|who| is_animal(reading, who)) => Act::Enter,
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,

@@ -436,12 +436,24 @@ impl<'a> Case<'a> {
         if let (true, Some(side)) = (stood, lane_side(self.account)) {
             return by_rule(Origin::Beside { side }, "lanes of both");
         }
-        // "A dog entered the roadway from between parked cars on the left".
+        // "A dog came out from between parked cars on the left".
         let group = told(&self.partner.kind).map(|kind| kind.group());
         if group == Some(KindGroup::Animal) {
-            return told_as(Origin::Cross { side: self.side_or_touched()? }, self.words_of(Act::PullOut));
+            let side = self.side_or_touched().or_else(|| self.side_named(number))?;
+            return told_as(Origin::Cross { side }, self.words_of(Act::PullOut));
         }
         told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
+    }
+
+    /// The one side that stands in the words of a frame: "from between cars in the leftmost lane".
+    fn side_named(&self, number: usize) -> Option<LeftRight> {
+        let (first, end) = self.reading.window(number);
+        let has = |stem: &str| self.reading.story.tokens[first..end].iter().any(|token| token.text.starts_with(stem));
+        match (has("left"), has("right")) {
+            (true, false) => Some(LeftRight::Left),
+            (false, true) => Some(LeftRight::Right),
+            _ => None,
+        }
     }
 
     fn moves_over_from_behind(&self) -> Told {
@@ -687,7 +699,7 @@ impl<'a> Case<'a> {
 
     /// "As the AV was passing the van": beside it, and no faster.
     fn is_passed(&self) -> Told {
-        if self.did(Act::Pass) || self.sv_stands || self.sv_reverses() {
+        if self.did(Act::Pass) || self.did(Act::Reverse) || self.sv_stands || self.sv_reverses() {
             return None;
         }
         let passes =
