@@ -321,9 +321,6 @@ impl<'a> Case<'a> {
             let side = if self.turn == Some(2) { LeftRight::Left } else { LeftRight::Right };
             return told_as(Origin::Cross { side }, heading.source.clone());
         }
-        if let Some(side) = self.backs_from_across() {
-            return told_as(Origin::Cross { side }, self.words_of(Act::Reverse));
-        }
         let from_front = self.clues.any(Relation::Opposite) && only(&self.account.sv, |zone| zone == Z::Front);
         if self.ahead || lead_of_subject(self.reading, self.actor) || from_front && self.side.is_some() {
             return told_as(Origin::Ahead, self.words_of(Act::Reverse));
@@ -343,19 +340,6 @@ impl<'a> Case<'a> {
             return by_rule(Origin::Ahead, "who goes backwards into the front was ahead");
         }
         None
-    }
-
-    /// It stood across, and the subject vehicle went by its rear.
-    fn backs_from_across(&self) -> Option<LeftRight> {
-        let by = |act: Option<Act>| matches!(act, Some(Act::Pass | Act::Follow));
-        let passes = self.reading.before(SUBJECT).any(|(number, frame)| {
-            let (first, end) = self.reading.window(number);
-            let words = &self.reading.story.tokens[first..end];
-            let word = |text: &str| words.iter().any(|token| token.text == text);
-            by(frame.act()) && frame.happened() && (word("behind") && word("passing") || word("past") && word("rear"))
-        });
-        let flank = !has_zone(&self.account.sv, Z::is_front) && only(self.partner, Z::is_rear);
-        self.touched.filter(|_| passes && flank && !self.sv_stands && !self.sv_reverses())
     }
 
     /// A door of a parked one.
