@@ -3,7 +3,7 @@
 //! A new rule of English that says "here it is no verb" goes into [`NO_VERB`].
 
 use super::{Chunk, Chunker, DETERMINERS, Placed};
-use crate::lexicon::{Form, Found, Meaning, Sense};
+use crate::lexicon::{Form, Found, Meaning, Relation, Sense};
 use recrash_model::account::{Act, KindGroup, LeftRight};
 
 /// A phrase that the lexicon knows as a verb, and what stands around it.
@@ -321,7 +321,13 @@ impl Chunker<'_> {
         {
             return Some((Sense::Sided(Act::Turn, said), form, 2));
         }
-        Some((sense, form, if from { found.length - 1 } else { found.length }))
+        // "nudged to its right": the side stands behind.
+        let to = found.length > 1
+            && matches!(verb.last_word(), "to" | "toward" | "towards")
+            && self
+                .relation(at + found.length - 1)
+                .is_some_and(|(relation, length)| length > 1 && matches!(relation, Relation::Left | Relation::Right));
+        Some((sense, form, if from || to { found.length - 1 } else { found.length }))
     }
 
     /// The longest verb of the lexicon here: "rolled into the roadway" touches nobody.
@@ -331,6 +337,13 @@ impl Chunker<'_> {
             |meaning| matches!(meaning, Meaning::Verb(Sense::Contact | Sense::ReverseContact | Sense::OpenDoorInto, _));
         if touches(found.meaning) && self.goes_to_a_place(at + found.length) {
             let others = |meaning| matches!(meaning, Meaning::Verb(..)) && !touches(meaning);
+            return self.lexicon.longest(self.tokens, at, others);
+        }
+        // "began merging to the left turn lane" is no turn.
+        let turns = |meaning| matches!(meaning, Meaning::Verb(Sense::Act(Act::Turn) | Sense::Sided(Act::Turn, _), _));
+        let lane = matches!(self.text(at + found.length), "lane" | "lanes" | "pocket");
+        if turns(found.meaning) && lane && self.text(at + found.length - 1) == "turn" {
+            let others = |meaning| matches!(meaning, Meaning::Verb(..)) && !turns(meaning);
             return self.lexicon.longest(self.tokens, at, others);
         }
         Some(found)

@@ -38,7 +38,8 @@ fn comes_behind(reading: &Reading<'_>, first: usize, second: usize) -> bool {
         // "As the van backed, the AV stopped", "the AV stopped as the van backed": it answered what the clause tells first. "It stopped
         // when the van backed" leaves that open.
         (true, Some(Joint::While | Joint::After), None) => {
-            let behind = || ends(frames, first) && !begins_with_when(reading, second, first);
+            let behind =
+                || ends(frames, first) && !begins_with_when(reading, second, first) && !is_sequel(reading, two);
             happens(reading, two) && opens(reading, first) && (first < second || behind())
         }
         // "It was turning when the van pulled out": what went on had begun.
@@ -78,6 +79,13 @@ fn begins_with_when(reading: &Reading<'_>, main: usize, inner: usize) -> bool {
     let frames = &reading.story.frames;
     let between = frames[main].first..frames[inner].first;
     reading.story.tokens[between].iter().any(|token| token.text == "when")
+}
+
+/// "It then stopped as the van came nearer": "then" binds it to what was told before.
+fn is_sequel(reading: &Reading<'_>, frame: &Frame) -> bool {
+    let from = reading.story.sentences[frame.sentence].first.max(frame.first.saturating_sub(2));
+    let before = &reading.story.tokens[from..frame.first];
+    before.iter().any(|token| matches!(token.text.as_str(), "then" | "thereupon" | "subsequently"))
 }
 
 /// Whether a clause belongs to another one.

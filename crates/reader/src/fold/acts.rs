@@ -6,7 +6,7 @@ use crate::frame::{Frame, sided};
 use crate::lexicon::{Lexicon, Progress, Relation, Sense};
 use crate::token::Token;
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, Manner, RoadFeature};
+use recrash_model::account::{Account, Act, ActFact, Kind, KindGroup, LaneWord, LeftRight, Manner, RoadFeature};
 use recrash_model::template::Movement;
 
 /// What somebody did, in order; the same act told twice in a row once.
@@ -22,7 +22,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             continue;
         }
         let Some(act) = act_of(reading, number, frame, pushed) else { continue };
-        let side = side_of(reading, actor, frame, act);
+        let side = side_of(reading, actor, frame, act).or_else(|| back_to_the_middle(reading, frame, act, &all));
         let after_contact = reading.is_after(number);
         let fact = ActFact {
             act,
@@ -63,7 +63,8 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
 
 /// To which side an act goes: as told with it, else by the lane that it leads into or begins in, else by the column.
 fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Option<LeftRight> {
-    let told = || frame.side.or_else(|| to_lane(reading, actor, frame, act));
+    let told =
+        || frame.side.or_else(|| to_lane(reading, actor, frame, act)).or_else(|| to_that_lane(reading, frame, act));
     let turn_lane = || match reading.story.world.actors[actor].lane?.0 {
         LaneWord::LeftTurn => Some(LeftRight::Left),
         LaneWord::RightTurn => Some(LeftRight::Right),
@@ -73,6 +74,55 @@ fn side_of(reading: &Reading<'_>, actor: Actor, frame: &Frame, act: Act) -> Opti
     side.or_else(|| into_turn_lane(reading, actor, frame, act))
         .or_else(|| if act == Act::Turn { turn_lane() } else { None })
         .or_else(|| turned_by_column(reading, actor, act))
+}
+
+/// "moved right, and then recentered itself": back to the other side.
+fn back_to_the_middle(reading: &Reading<'_>, frame: &Frame, act: Act, before: &[ActFact]) -> Option<LeftRight> {
+    let words = &reading.story.tokens[frame.first..frame.end];
+    let has = |word: &str| words.iter().any(|token| token.text.starts_with(word));
+    let middle = has("recenter") || (has("center") || has("middle")) && !has("line") && !has("cross");
+    let aside = |fact: &&ActFact| matches!(fact.act, Act::Drift | Act::LaneChange | Act::Swerve);
+    let last = before.iter().rfind(aside)?;
+    last.side.map(LeftRight::other).filter(|_| middle && act == Act::Drift)
+}
+
+/// "began to move toward that lane": the lane that was named last.
+fn to_that_lane(reading: &Reading<'_>, frame: &Frame, act: Act) -> Option<LeftRight> {
+    let tokens = &reading.story.tokens;
+    let end = reading.story.sentences[frame.sentence].end.min(frame.end + 4);
+    let that = (frame.first..end)
+        .any(|at| tokens[at].text == "that" && tokens.get(at + 1).is_some_and(|next| next.text == "lane"));
+    if !that || !matches!(act, Act::Drift | Act::LaneChange) {
+        return None;
+    }
+    let from = reading.story.sentences[frame.sentence.saturating_sub(1)].first;
+    (from..frame.first).rev().filter(|at| tokens[*at].text == "lane").find_map(|lane| {
+        tokens[lane.saturating_sub(3)..lane].iter().find_map(|token| match token.text.as_str() {
+            "left" | "leftmost" => Some(LeftRight::Left),
+            "right" | "rightmost" => Some(LeftRight::Right),
+            _ => None,
+        })
+    })
+}
+
+/// "nudged away from it": away from the side on which the other one is.
+pub(super) fn move_away(account: &mut Account) {
+    use recrash_model::account::{Origin, Source, told};
+    let side = match told(&account.came_from) {
+        Some(Origin::Beside { side } | Origin::Cross { side }) => side,
+        Some(Origin::Parked { side } | Origin::Stall { side } | Origin::Driveway { side }) => match side {
+            Some(side) => side,
+            None => return,
+        },
+        _ => return,
+    };
+    for fact in account.sv.acts.iter_mut().filter(|fact| matches!(fact.act, Act::Drift | Act::Swerve)) {
+        let away =
+            matches!(&fact.source, Source::Words { text, .. } if text.contains("away") || text.contains("a nudge"));
+        if away && fact.side.is_none() && !fact.after_contact {
+            fact.side = Some(side.other());
+        }
+    }
 }
 
 /// "completed its left turn", "after it had turned".
@@ -136,6 +186,10 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         return Some(Act::Hold);
     }
     let act = frame.act()?;
+    // "Its front wheel came off": it did not fall itself.
+    if act == Act::Fall && frame.who == Some(SUBJECT) && frame.with.is_some() && doer(reading, frame) == Some(SUBJECT) {
+        return None;
+    }
     if act == Act::Follow && in_headline(reading, frame) {
         return None;
     }
@@ -143,6 +197,8 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
     let comes_out = matches!(frame.out_of, Some(Spot::Stall | Spot::Driveway | Spot::Curb));
     let words = reading.text[reading.story.tokens[frame.first].start..].to_lowercase();
     Some(match act {
+        // "A dog came out from between two cars": no vehicle that leaves a place of its own.
+        Act::PullOut if frame.who.is_some_and(|who| is_animal(reading, who)) => Act::Enter,
         Act::Follow | Act::SetOff | Act::Drift if comes_out => Act::PullOut,
         Act::Follow if goes_on_from_a_stand(reading, number, frame, &words) => Act::SetOff,
         Act::Follow if sets_off_with_subject(reading, frame, &words) => Act::SetOff,
@@ -153,6 +209,10 @@ fn act_of(reading: &Reading<'_>, number: usize, frame: &Frame, pushed: bool) -> 
         Act::Pass if passes_nobody(reading, frame) => Act::Follow,
         act => act,
     })
+}
+
+fn is_animal(reading: &Reading<'_>, actor: Actor) -> bool {
+    reading.story.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::Animal)
 }
 
 /// "It slid on the wet road. This caused the front of the car to touch it": nobody pushed the car.
@@ -223,7 +283,7 @@ fn turned_green(reading: &Reading<'_>, frame: &Frame) -> bool {
 /// What somebody did who did not stop or yield where it should.
 pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> Option<Act> {
     let stops = matches!(frame.act(), Some(Act::Stop | Act::Slow)) || frame.sense == Sense::Yield;
-    if !stops || frame.aside {
+    if !stops || frame.aside || went_back(reading, number, frame) {
         return None;
     }
     let (first, end) = reading.window(number);
@@ -237,6 +297,14 @@ pub(super) fn not_done(reading: &Reading<'_>, number: usize, frame: &Frame) -> O
     } else {
         None
     }
+}
+
+/// "rolled back from the light, and failed to stop": it did not stop going backwards, and ran nothing.
+fn went_back(reading: &Reading<'_>, number: usize, frame: &Frame) -> bool {
+    let before = reading.story.frames[..number].iter().rev();
+    let mut own = before.filter(|before| before.sentence == frame.sentence && before.who == frame.who);
+    let last = own.find_map(|before| before.act().filter(|_| before.happened()));
+    frame.who.is_some() && matches!(last, Some(Act::Reverse | Act::Roll))
 }
 
 /// The side to which the subject vehicle changed lanes, by the column, when it "proceeded into the right turn lane".

@@ -111,6 +111,23 @@ fn slowed_to(before: &[Token], frame: &Frame) -> bool {
         && to.is_some_and(|token| token.text == "to")
 }
 
+/// "at the time of impact it was doing 30 mph", "was doing 30 mph at the moment of contact", "the crash signal was logged at 30 mph": no
+/// other speed stands in between.
+fn at_impact(tokens: &[Token], (first, end): (usize, usize), at: usize) -> bool {
+    let word = |at: usize| tokens[at].text.as_str();
+    let speed = |at: &usize| word(*at).ends_with("mph");
+    let crash = |at: usize| matches!(word(at), "impact" | "crash" | "collision" | "contact");
+    let mark = |at: usize| {
+        let signal = at > first && crash(at - 1) && matches!(word(at), "signal" | "speed");
+        let time = |at: usize| matches!(word(at), "time" | "moment" | "instant" | "point");
+        signal || crash(at) && (first.max(at.saturating_sub(3))..at).any(time)
+    };
+    let before = || (first..at).rev().take_while(|at| !speed(at)).any(mark);
+    let behind = || (at + 2..end.min(at + 9)).take_while(|at| !speed(at)).any(mark);
+    let earlier = (first..end).any(|at| matches!(word(at), "before" | "prior"));
+    !earlier && (before() || behind())
+}
+
 /// Whether somebody braked or stopped behind this frame, before the contact.
 fn slows_later(reading: &Reading<'_>, actor: Actor, number: usize) -> bool {
     reading.before(actor).any(|(later, frame)| {
@@ -140,7 +157,9 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
             .find(|(_, frame)| frame.first < at && !frame.aside && frame.who.is_some());
         let Some((number, frame)) = last_frame else { continue };
         let sentence = reading.story.sentences[frame.sentence];
-        if frame.who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || reading.is_after(number) {
+        let impact = at_impact(tokens, (sentence.first, sentence.end), at);
+        let in_time = impact || !reading.is_after(number);
+        if frame.who != Some(actor) || !(sentence.first..sentence.end).contains(&at) || !in_time {
             continue;
         }
         let near: Vec<&str> =
@@ -149,6 +168,7 @@ pub(super) fn speeds(reading: &Reading<'_>, actor: Actor) -> Vec<Fact<Speed>> {
         let meaning = if limit {
             SpeedMeaning::Posted
         } else if frame.is_contact()
+            || impact
             || slowed_to(&tokens[at.saturating_sub(4)..at], frame) && !slows_later(reading, actor, number)
         {
             SpeedMeaning::Impact

@@ -53,7 +53,8 @@ pub(super) fn by_columns(reading: &Reading<'_>, account: &Account) -> Option<Fac
     let cp_front = has_zone(partner, |zone| zone.is_front());
     let cp_rear = has_zone(partner, |zone| zone.is_rear());
     let rule = |value: Origin| Some(Fact::by_rule(value, "zones of both and the movement columns"));
-    if told(&partner.kind).is_some_and(|kind| kind.group() == KindGroup::Object) {
+    // No animal changes lanes.
+    if told(&partner.kind).is_some_and(|kind| matches!(kind.group(), KindGroup::Object | KindGroup::Animal)) {
         return None;
     }
     let (cp, sv) = (reading.record.cp_movement.known(), reading.record.sv_movement.known());

@@ -12,8 +12,11 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     let Some(contact) = contacts.first.map(|number| &story.frames[number]) else { return 0..0 };
     let lead = contact.sentence;
     let acts = |frame: &&Frame| frame.act().is_some() && frame.happened() && !frame.aside;
-    if !contact.is_contact() || story.frames.iter().filter(acts).any(|frame| frame.sentence < lead) {
+    if !contact.is_contact() {
         return 0..0;
+    }
+    if story.frames.iter().filter(acts).any(|frame| frame.sentence < lead) {
+        return told_again(story, contact);
     }
     let tells = |sentence: &usize| story.frames.iter().any(|frame| frame.sentence == *sentence && !frame.aside);
     let next = (lead + 1..story.sentences.len()).find(tells);
@@ -23,6 +26,34 @@ pub(super) fn told_back(story: &Story, contacts: &Contacts) -> Range<usize> {
     let Some(begin) = begins else { return 0..0 };
     let end = (begin..story.sentences.len()).find(|&sentence| is_aftermath(story, sentence));
     begin..end.unwrap_or(story.sentences.len())
+}
+
+/// The sentences behind the crash up to the one that tells it a second time, with what led to it: "reversed and struck it. ... The system
+/// braked. The van reversed and struck it."
+fn told_again(story: &Story, contact: &Frame) -> Range<usize> {
+    let led = |sentence: usize, act: Option<Act>| {
+        let here = |frame: &Frame| frame.sentence == sentence && frame.who == contact.who && frame.act() == act;
+        act.is_some_and(|act| act != Act::Follow) && story.frames.iter().any(|frame| here(frame) && frame.happened())
+    };
+    let before = || story.frames.iter().filter(|frame| frame.sentence == contact.sentence && frame.who == contact.who);
+    let touches = |sentence: usize| {
+        let same = |frame: &Frame| frame.who == contact.who && matches!(frame.object, None | Some(SUBJECT));
+        let ours = |frame: &Frame| frame.is_contact() && same(frame) && frame.sentence == sentence;
+        story.frames.iter().any(ours)
+    };
+    let more = |sentence: usize| {
+        let range = story.sentences[sentence];
+        let words = &story.tokens[range.first..range.end];
+        words.iter().any(|token| matches!(token.text.as_str(), "again" | "then" | "second" | "another"))
+    };
+    let begin = contact.sentence + 1;
+    let again = (begin..story.sentences.len()).find(|&sentence| {
+        touches(sentence)
+            && !more(sentence)
+            && !is_aftermath(story, sentence)
+            && before().any(|frame| led(sentence, frame.act()))
+    });
+    again.map_or(0..0, |again| begin..again + 1)
 }
 
 /// "had been traveling", "had stopped", of one of the two.

@@ -101,7 +101,8 @@ impl Reading<'_> {
         let simultaneous = frame.sentence == at.sentence
             && frame.joint == Some(crate::chunk::Joint::While)
             && frame.clause > at.clause
-            && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"));
+            && self.story.tokens[between].iter().any(|token| matches!(token.text.as_str(), "while" | "as" | "when"))
+            && !self.is_of_a_sequel(number, contact);
         // "It hit the vehicle, which was stopped": told again, with what was so then.
         let retold = frame.act() == Some(Act::Hold)
             && (frame.described || frame.joint == Some(crate::chunk::Joint::While))
@@ -111,6 +112,20 @@ impl Reading<'_> {
                     && [(other.who, other.object), (other.object, other.who)].contains(&(at.who, at.object))
             });
         !(simultaneous || retold || frame.described && frame.sentence == at.sentence)
+    }
+
+    /// "struck it, then drove off when the light changed": the clause belongs to what came of the crash.
+    fn is_of_a_sequel(&self, number: usize, contact: usize) -> bool {
+        let (frames, at) = (&self.story.frames, &self.story.frames[contact]);
+        let sequel = |frame: &Frame| {
+            frame.clause > at.clause
+                && frame.clause < frames[number].clause
+                && frame.joint == at.joint
+                && frame.form != crate::lexicon::Form::Ing
+                && frame.act().is_some()
+                && frame.who.is_some()
+        };
+        frames[contact + 1..number].iter().any(sequel)
     }
 
     /// Whether a sentence behind the crash tells what had been before it: "The other car had run the light".
@@ -126,9 +141,26 @@ impl Reading<'_> {
         })
     }
 
-    /// "Prior to the collision, it came to a stop", told behind the collision.
+    /// "Prior to the collision, it came to a stop", told behind the collision; and the sentences behind that one, up to those that name the
+    /// collision again.
     fn is_told_back(&self, frame: &Frame) -> bool {
-        let sentence = self.story.sentences[frame.sentence];
+        let names = |sentence: usize| {
+            let range = self.story.sentences[sentence];
+            let crash = |token: &&crate::token::Token| {
+                matches!(token.text.as_str(), "collision" | "crash" | "contact" | "impact" | "incident" | "accident")
+            };
+            self.story.tokens[range.first..range.end].iter().filter(crash).count()
+        };
+        let touched =
+            |sentence: usize| self.story.frames.iter().any(|frame| frame.sentence == sentence && frame.is_contact());
+        let mut back = (0..frame.sentence).rev().take_while(|&before| names(before + 1) == 0 && !touched(before + 1));
+        let begun = back.any(|sentence| self.looks_back_from_crash(sentence) && names(sentence) == 1);
+        self.looks_back_from_crash(frame.sentence) || begun && frame.act() != Some(Act::Leave)
+    }
+
+    /// Whether a sentence begins with "prior to the collision".
+    fn looks_back_from_crash(&self, sentence: usize) -> bool {
+        let sentence = self.story.sentences[sentence];
         let words: Vec<&str> =
             self.story.tokens[sentence.first..sentence.end].iter().take(5).map(|token| token.text.as_str()).collect();
         let crash =
@@ -228,6 +260,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
     account.door = account.door.filter(|_| !is_thing);
     account.came_from = origin::came_from(&reading, &account);
     party::front_by_column(&reading, &mut account);
+    party::flank_by_column(&reading, &mut account);
     if let (Some(lane), Some(partner)) = (open::oncoming_lane(&reading, &account), &mut account.partner) {
         partner.lane = Some(lane);
     }
@@ -243,6 +276,7 @@ pub fn account(incident: &Incident) -> Option<Account> {
         account.came_from = Some(origin);
         movement::movements(&reading, &mut account);
     }
+    acts::move_away(&mut account);
     account.ahead = origin::ahead(&reading, &account);
     account.striker = striker::striker(&reading, &account);
     account.crash_type = types::crash_type(&reading, &account);

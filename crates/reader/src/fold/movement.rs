@@ -142,6 +142,22 @@ fn by_way(reading: &Reading<'_>, account: &Account, partner: &Party, mut fact: F
     {
         fact.value = Movement::Straight;
     }
+    // Who had left the kerb, and stood in a lane since then, enters no more.
+    let before: Vec<Act> = partner.acts.iter().filter(|fact| !fact.after_contact).map(|fact| fact.act).collect();
+    let left = before.iter().position(|act| *act == Act::PullOut);
+    let stood = left.is_some_and(|left| before[left + 1..].iter().any(|act| matches!(act, Act::Stop | Act::Hold)));
+    if let (Movement::EnteringTraffic, true, true, Some(column)) = (fact.value, stood, same_way, column) {
+        fact = Fact::of_column(column, "CP Pre-Crash Movement");
+    }
+    // Who comes along a crossing road changes no lanes.
+    let moved_over = [Act::LaneChange, Act::Drift, Act::Swerve].into_iter().any(|act| partner.did(act));
+    let across = account
+        .came_from
+        .as_ref()
+        .is_some_and(|from| from.source.is_told() && matches!(from.value, Origin::Cross { .. }));
+    if fact.value == Movement::ChangingLanes && !fact.source.is_told() && across && !moved_over {
+        fact = drives_on().unwrap_or(fact);
+    }
     if fact.value == Movement::Straight && same_way && drives_by(account, partner) {
         fact = Fact::by_rule(Movement::Passing, "who drives by one that stands");
     }

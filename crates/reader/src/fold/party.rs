@@ -11,7 +11,7 @@ use crate::frame::Frame;
 use crate::lexicon::Sense;
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, Origin, Party, Speed, SpeedMeaning, told,
+    Account, Act, Compass, ContactState, Fact, Kind, KindGroup, LeftRight, Origin, Party, Speed, SpeedMeaning, told,
 };
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
@@ -146,6 +146,36 @@ pub(crate) fn front_by_column(reading: &Reading<'_>, account: &mut Account) {
     let front = !column.is_empty() && column.iter().all(|zone| zone.is_front());
     if backs && ahead && stands && rear && front {
         account.sv.zones = ticked(reading, SUBJECT, column, "SV Contact Area");
+    }
+}
+
+/// Who passes on the left cannot touch with its own left flank: where the column has the other side, that was meant.
+pub(crate) fn flank_by_column(reading: &Reading<'_>, account: &mut Account) {
+    let Some(partner) = account.partner.as_ref() else { return };
+    let on = |zones: &[ContactZone], side: LeftRight| {
+        !zones.is_empty() && zones.iter().all(|zone| side_of_zone(*zone) == Some(side))
+    };
+    let same_way = matches!(told(&account.came_from), Some(Origin::Behind | Origin::Beside { .. }));
+    let turns = [Act::Turn, Act::UTurn, Act::Reverse, Act::WrongWay].into_iter().any(|act| partner.did(act));
+    let (own, words) = (account.sv.zone_values(), partner.zone_values());
+    let column = &reading.record.cp_zones;
+    let impossible = [LeftRight::Left, LeftRight::Right]
+        .into_iter()
+        .any(|side| on(&own, side) && on(&words, side) && on(column, side.other()));
+    if partner.did(Act::Pass) && same_way && !turns && impossible {
+        let actor = reading.contacts.partner.unwrap_or(usize::MAX);
+        let zones = ticked(reading, actor, column, "CP Contact Area");
+        account.partner.as_mut().expect("a partner").zones = zones;
+    }
+}
+
+/// The side of a vehicle on which a zone lies.
+fn side_of_zone(zone: ContactZone) -> Option<LeftRight> {
+    use ContactZone as Z;
+    match zone {
+        Z::Left | Z::FrontLeft | Z::RearLeft => Some(LeftRight::Left),
+        Z::Right | Z::FrontRight | Z::RearRight => Some(LeftRight::Right),
+        Z::Front | Z::Rear | Z::Top | Z::Bottom => None,
     }
 }
 

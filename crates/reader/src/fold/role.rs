@@ -6,8 +6,8 @@ use super::striker::{is_fixed, of_zones_alone, struck_who_backed_away};
 use super::types::{cp_state, group, sv_state, turn_side, turning};
 use crate::lexicon::Sense;
 use recrash_model::account::{
-    Account, Act, ContactState, CrashType, Fact, Kind, KindGroup, LeftRight, Origin, Party, RoadFeature, Role,
-    StandReason, Striker, told,
+    Account, Act, ActFact, ContactState, CrashType, Fact, Kind, KindGroup, LeftRight, Origin, Other, Party,
+    RoadFeature, Role, StandReason, Striker, told,
 };
 use recrash_model::template::Movement;
 use recrash_model::zones::ContactZone as Z;
@@ -28,10 +28,11 @@ struct Case<'a> {
 type Said = Option<(Role, &'static str)>;
 type Rule = fn(&Case<'_>) -> Said;
 
-const RULES: [Rule; 21] = [
+const RULES: [Rule; 22] = [
     |case| case.own_door(),
     |case| case.thrown(),
     |case| case.stood(),
+    |case| case.gave_way_to_another(),
     |case| case.thing(),
     |case| case.lying_animal(),
     |case| case.other_broke_a_rule(),
@@ -180,6 +181,17 @@ impl Case<'_> {
         } else {
             (Role::Responder, "it stood")
         })
+    }
+
+    /// It moved aside for another that came over, and into something that stood there.
+    fn gave_way_to_another(&self) -> Said {
+        let over = [Act::LaneChange, Act::Drift, Act::Swerve];
+        let comes = |fact: &ActFact| !fact.after_contact && (over.contains(&fact.act) || fact.act == Act::Turn);
+        let vehicle = |other: &Other| other.kind.value.is_vehicle() && other.acts.iter().any(comes);
+        let aside = did_any(&self.account.sv, &over);
+        let single = self.crash_type == Some(CrashType::SingleVehicle);
+        let gave = single && aside && self.account.others.iter().any(vehicle);
+        gave.then_some((Role::Responder, "it gave way to another"))
     }
 
     fn thing(&self) -> Said {

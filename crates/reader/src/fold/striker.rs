@@ -89,7 +89,11 @@ pub(crate) fn striker(reading: &Reading<'_>, account: &Account) -> Option<Fact<S
 /// Things do not move, unless they are told to.
 fn of_thing(reading: &Reading<'_>, account: &Account, partner: &Party) -> Option<Fact<Striker>> {
     let acts = [Act::Fall, Act::Roll, Act::Pushed].into_iter().any(|act| partner.did(act));
-    let flies = !is_fixed(partner) && (acts || came_down(reading));
+    // "The gate swung open and touched it".
+    let swung = told(&partner.kind) == Some(Kind::Gate)
+        && partner.did(Act::OpenDoor)
+        && reading.contacts.first.is_some_and(|number| reading.story.frames[number].who == reading.contacts.partner);
+    let flies = !is_fixed(partner) && (acts || came_down(reading)) || swung;
     match (flies, sv_state(account).is_some_and(ContactState::stands)) {
         (true, true) => by_rule(Striker::Cp, "a thing that moves into one that stands"),
         (true, false) if struck_thing(reading) => by_rule(Striker::Sv, "it struck a thing that came into its way"),

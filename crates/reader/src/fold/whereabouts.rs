@@ -1,11 +1,11 @@
 //! Where others than the two are, seen from the subject vehicle.
 
 use super::Reading;
-use super::origin::{Clues, first_relation, side_of_lane};
+use super::origin::{Clues, first_relation, side_of_lane, side_of_road_of};
 use crate::frame::{Frame, zone_of};
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
-use recrash_model::account::{Act, Fact, LaneWord, LeftRight, Origin};
+use recrash_model::account::{Act, Fact, KindGroup, LaneWord, LeftRight, Origin};
 
 /// Where somebody else is: as told; else in its lane, beside that of the subject vehicle, or by the directions of the two.
 pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origin>> {
@@ -34,6 +34,19 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| in_queue(&clues))
         .or_else(|| in_other_lane(&clues))
         .or_else(|| by_directions(&clues))
+        .or_else(|| at_side_of_road(&clues))
+}
+
+/// "a man standing on the south side of the road": left of who goes west.
+fn at_side_of_road(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let own = reading.story.world.actors[SUBJECT].heading.map(|(compass, ..)| compass);
+    let stands = |act: Option<Act>| matches!(act, Some(Act::Hold | Act::Stop));
+    let walks = reading.story.world.actors[actor].kind.is_some_and(|kind| kind.group() == KindGroup::OnFoot);
+    let turned = reading.did(SUBJECT, Act::Turn) || reading.did(SUBJECT, Act::UTurn);
+    let side = side_of_road_of(reading, actor, own, stands).filter(|_| walks && !turned)?;
+    let frame = reading.before(actor).find(|(_, frame)| stands(frame.act()))?.1;
+    Some(Fact { value: Origin::Beside { side }, source: reading.of(frame) })
 }
 
 /// Who struck the rear of a partner that is behind came from behind too.

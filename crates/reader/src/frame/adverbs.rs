@@ -244,6 +244,7 @@ fn against_traffic(frame: &Frame, words: &[&str]) -> bool {
     let against = words.windows(3).any(|three| {
         three[0] == "against" && (three[1] == "traffic" || three[1] == "the" && three[2] == "traffic")
             || three == ["the", "wrong", "side"]
+            || three[0] == "the" && three[1] == "wrong" && matches!(three[2], "way" | "direction")
     });
     moves && against && frame.happened() && frame.who != Some(SUBJECT)
 }

@@ -3,7 +3,7 @@
 use super::parser::{Carry, Mention, Parser};
 use super::row::goes_on_behind_comma;
 use crate::chunk::{Chunk, Joint, Placed};
-use crate::lexicon::{Form, Relation};
+use crate::lexicon::{Form, Relation, Sense};
 use crate::world::SUBJECT;
 use recrash_model::account::{Kind, KindGroup};
 
@@ -92,6 +92,9 @@ impl Parser<'_> {
             if !matches!(next, Some(Chunk::Verb(_, Form::Base))) {
                 carry.progress = None;
             }
+            if let Some(main) = self.saw_and_did(next, carry) {
+                (carry.subject, carry.has_verb, carry.relative) = (Some(main), true, false);
+            }
             return;
         }
         (carry.progress, carry.negated) = (None, false);
@@ -103,6 +106,18 @@ impl Parser<'_> {
             // "while stopped", "before turning": of whom the clause is about, or of who is named next.
             carry.has_verb = carry.subject.is_some();
         }
+    }
+
+    /// "It detected that the bus was stopping and moved back": who saw what went on did so.
+    fn saw_and_did(&self, next: Option<&Chunk>, carry: &Carry) -> Option<Mention> {
+        let main = carry.main.as_ref().filter(|main| carry.subject.as_ref() != Some(main))?;
+        let frame = &self.frames[carry.frame?];
+        let seen = frame.form == Form::Ing && frame.who != Some(main.actor) && frame.sentence == self.sentence;
+        let saw = self.frames.iter().rfind(|before| {
+            before.sentence == self.sentence && before.sense == Sense::See && before.who == Some(main.actor)
+        })?;
+        let that = self.tokens[saw.end..frame.first].first().is_some_and(|token| token.text == "that");
+        (seen && that && matches!(next, Some(Chunk::Verb(_, Form::Past)))).then(|| main.clone())
     }
 
     /// "that", "which", "who": the clause behind it is about the noun named last.

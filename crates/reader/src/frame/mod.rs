@@ -12,6 +12,7 @@ mod pronoun;
 mod row;
 mod sense;
 mod subject;
+mod supposed;
 mod verb;
 mod word;
 
@@ -181,6 +182,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
             COMPANY.clone_into(&mut tokens[at].text);
         }
     }
+    name_system(&mut tokens);
     hold_by_hand(&mut tokens);
     name_passenger_cars(&mut tokens);
     name_loose_boards(&mut tokens);
@@ -213,6 +215,7 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
     }
     frames.retain(|frame| adverbs::names_door(frame, &tokens, &sentences));
     adverbs::apply(&mut frames, &tokens, &sentences);
+    supposed::apply(&mut frames, &tokens, &sentences);
     doors::settle(&mut frames, &tokens, &sentences, &world);
     doors::touched(&mut frames, &tokens);
     // "a sedan and a van collided": with each other.
@@ -237,6 +240,35 @@ pub fn story(text: &str, own: Own<'_>) -> Story {
         }
     }
     Story { tokens, sentences, standing, frames, world }
+}
+
+/// "The system issued a brake command", "the ADS braked": the vehicle that it drives.
+fn name_system(tokens: &mut [Token]) {
+    const DOES: [&str; 16] = [
+        "issued",
+        "applied",
+        "commanded",
+        "initiated",
+        "braked",
+        "slowed",
+        "decelerated",
+        "steered",
+        "swerved",
+        "executed",
+        "performed",
+        "nudged",
+        "stopped",
+        "began",
+        "started",
+        "requested",
+    ];
+    for at in 1..tokens.len().saturating_sub(2) {
+        let named = matches!(tokens[at].text.as_str(), "system" | "ads") && tokens[at - 1].text == "the";
+        let adverb = usize::from(tokens[at + 1].text.ends_with("ly"));
+        if named && DOES.contains(&tokens[at + 1 + adverb].text.as_str()) {
+            "av".clone_into(&mut tokens[at].text);
+        }
+    }
 }
 
 /// "a hand held stop sign", "holding up a stop sign": a paddle, and no sign that stands there.

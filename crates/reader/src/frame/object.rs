@@ -89,8 +89,20 @@ impl Parser<'_> {
         taken.who = Some(mention.actor);
         taken.with.clone_from(&mention.piece);
         (taken.passive, taken.end) = (true, placed.end);
-        if let (Sense::Act(Act::Follow), Some(followed)) = (taken.sense, taken.object) {
+        // Nobody strikes itself: "the car behind it was struck by the car that followed".
+        if self.frames[frame].object == Some(mention.actor) && mention.actor != SUBJECT {
+            self.frames[frame].who = Some(self.world.twin(mention.actor));
+        }
+        let (sense, object, first) = (self.frames[frame].sense, self.frames[frame].object, self.frames[frame].first);
+        if let (Sense::Act(Act::Follow), Some(followed)) = (sense, object) {
             self.follows(Some(mention.actor), followed);
+            // "A ball, followed by a dog, rolled out": so did the dog.
+            let be = self.tokens[first.saturating_sub(2)..first]
+                .iter()
+                .any(|token| matches!(token.text.as_str(), "was" | "were" | "is" | "are" | "been" | "being"));
+            if !be && carry.subject.as_ref().is_some_and(|subject| subject.actor == followed) {
+                (carry.also, carry.has_verb) = (Some(mention.clone()), false);
+            }
         }
         carry.governed |= carry.relative || carry.subject.is_some();
     }

@@ -106,13 +106,33 @@ impl Parser<'_> {
     pub(super) fn read(&mut self, sentence: Sentence) {
         let all = chunks(self.tokens, sentence.first, sentence.end);
         let mut carry = Carry { fresh: true, ..Carry::default() };
+        let begun = self.frames.len();
         for at in 0..all.len() {
             self.step(&all, at, &mut carry);
         }
+        self.share(begun);
         if let Some(main) = &carry.main {
             self.world.topic = main.actor;
             if !acts(self.world.actors[main.actor].kind) && main.actor != SUBJECT {
                 self.world.topic = SUBJECT;
+            }
+        }
+    }
+
+    /// "A ball and a dog came from the left": what stands behind a verb of two is told of both.
+    fn share(&mut self, begun: usize) {
+        for at in begun + 1..self.frames.len() {
+            let (before, after) = self.frames.split_at_mut(at);
+            let (one, other) = (&mut before[at - 1], &after[0]);
+            let twins =
+                one.first == other.first && one.sense == other.sense && one.who != other.who && !one.is_contact();
+            let Some(who) = one.who.filter(|_| twins && one.relations.is_empty()) else { continue };
+            one.relations.clone_from(&other.relations);
+            (one.side, one.out_of, one.end) = (one.side.or(other.side), one.out_of.or(other.out_of), other.end);
+            let places: Vec<Relation> =
+                other.relations.iter().filter(|(_, to)| to.is_none()).map(|(place, _)| *place).collect();
+            if who != SUBJECT {
+                places.into_iter().for_each(|place| self.world.actors[who].place(place, self.sentence));
             }
         }
     }

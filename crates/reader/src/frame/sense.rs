@@ -7,11 +7,12 @@ use super::row::single;
 use super::verb::Spoken;
 use crate::chunk::Chunk;
 use crate::lexicon::{Form, Occupant, Sense};
+use crate::token::TokenKind;
 use recrash_model::account::Act;
 
 type Rule = fn(&Parser<'_>, &Spoken<'_>, &Carry) -> Option<Sense>;
 
-const SENSES: [Rule; 11] = [
+const SENSES: [Rule; 15] = [
     stands_backed_up,
     remains_so,
     is_ridden,
@@ -20,6 +21,10 @@ const SENSES: [Rule; 11] = [
     half_stops,
     moves_another,
     holds_a_thing,
+    is_held_by,
+    lies_between,
+    drives_between_numbers,
+    begins_to_move_over,
     gets_in,
     stands_open,
     swings_over,
@@ -107,6 +112,55 @@ fn holds_a_thing(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Opti
     let held = (word.starts_with("hold") || word == "held") && single(verb.placed());
     let thing = matches!(verb.next(), Some(Chunk::Word | Chunk::Preposition("on") | Chunk::Piece(_) | Chunk::Noun(_)));
     (held && thing).then_some(Sense::Other)
+}
+
+/// "a cable being held up by a worker": nobody stands.
+fn is_held_by(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let be = carry.be || !single(placed);
+    let held = be && verb.sense == Sense::Act(Act::Hold) && parser.tokens[placed.end - 1].text == "held";
+    let behind = |at: usize| parser.tokens.get(verb.placed().end + at).map_or("", |token| token.text.as_str());
+    let by = behind(0) == "by" || matches!(behind(0), "up" | "aloft" | "open" | "down") && behind(1) == "by";
+    (held && by).then_some(Sense::Other)
+}
+
+/// "a gate separating the lot from the street": nothing comes off.
+fn lies_between(parser: &Parser<'_>, verb: &Spoken<'_>, carry: &Carry) -> Option<Sense> {
+    let separates = verb.sense == Sense::Act(Act::Fall) && verb.word(parser) == "separating" && !carry.be;
+    let from = parser.tokens.get(verb.placed().end).is_some_and(|next| next.text == "from");
+    (separates && !from).then_some(Sense::Other)
+}
+
+/// "traveling between 10 and 15 mph": between two numbers is no gap.
+fn drives_between_numbers(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let number = parser.tokens.get(placed.end).is_some_and(|token| token.kind == TokenKind::Number);
+    let between = parser.tokens[placed.end - 1].text == "between";
+    (verb.sense == Sense::Act(Act::Pass) && between && number).then_some(Sense::Act(Act::Follow))
+}
+
+/// "began to move toward that lane", "started moving into the left lane": over, and nobody sets off.
+fn begins_to_move_over(parser: &Parser<'_>, verb: &Spoken<'_>, _carry: &Carry) -> Option<Sense> {
+    let placed = verb.placed();
+    let moves = parser.tokens[placed.first..placed.end].iter().any(|token| token.text.starts_with("mov"));
+    if verb.sense != Sense::Act(Act::SetOff) || !moves {
+        return None;
+    }
+    let word = |at: usize| parser.tokens.get(placed.end + at).map_or("", |token| token.text.as_str());
+    let lane = (1..7).take_while(|at| !matches!(word(*at), "," | "." | "and")).any(|at| word(at) == "lane");
+    let over = word(0) == "over" || matches!(word(0), "left" | "right") || leads_aside(&word);
+    match word(0) {
+        "into" | "onto" if lane => Some(Sense::Act(Act::LaneChange)),
+        "toward" | "towards" | "to" if lane => Some(Sense::Act(Act::Drift)),
+        _ => over.then_some(Sense::Act(Act::Drift)),
+    }
+}
+
+/// "to the left", "toward its right".
+fn leads_aside<'a>(word: &impl Fn(usize) -> &'a str) -> bool {
+    matches!(word(0), "to" | "toward" | "towards")
+        && matches!(word(1), "the" | "its")
+        && matches!(word(2), "left" | "right")
 }
 
 /// "As the passenger entered the vehicle": the vehicle entered nothing.

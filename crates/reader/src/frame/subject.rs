@@ -183,6 +183,14 @@ impl Parser<'_> {
                 return carry.described.clone();
             }
         }
+        // "a truck stopped facing west": it faces so.
+        if let (Sense::Face, Form::Ing, false, Some(frame)) = (sense, form, carry.be, carry.frame)
+            && self.frames[frame].state
+            && self.frames[frame].end == placed.first
+            && let Some(actor) = self.frames[frame].who
+        {
+            return Some(Mention { actor, piece: None, person: None, end: placed.first });
+        }
         // "was struck by a van, traveling east": the van.
         if let (true, Form::Ing, Some(last), Some(frame)) = (carry.after_comma, form, &carry.last, carry.frame)
             && self.frames[frame].passive
@@ -232,8 +240,30 @@ impl Parser<'_> {
         // "a sweeper traveling along the curb, encroaching into its lane".
         let moves = last.form == Form::Ing && last.act() == Some(Act::Follow);
         let apart = carry.subject.as_ref().is_some_and(|subject| subject.actor != who);
+        // "partially encroaching": so it drives along, and does nothing.
+        let stood = stood
+            || moves
+                && self.tokens[verb.placed().first - 1..verb.placed().first]
+                    .iter()
+                    .any(|token| matches!(token.text.as_str(), "partially" | "partly" | "slightly"));
         let mention = Mention { actor: who, piece: None, person: None, end: last.end };
         ((stood || moves) && apart && so(verb.word(self))).then_some((mention, stood))
+    }
+
+    /// "came upon a truck, which carried a pole, stopped in the road": of the truck. "It yielded to a truck, which turned, stopped, and
+    /// waited": a row of what it did itself.
+    pub(super) fn stood_as_found(&self, verb: &Spoken<'_>, carry: &Carry) -> Option<Mention> {
+        let stops = matches!(verb.sense, Sense::Act(Act::Stop | Act::Hold | Act::Park) | Sense::Parked);
+        if !stops || verb.form != Form::Past || carry.be || carry.row || !carry.after_comma {
+            return None;
+        }
+        let found = self.frames.iter().rev().find(|frame| frame.sentence == self.sentence && !frame.described)?;
+        let described = carry.described.as_ref().filter(|described| found.object == Some(described.actor))?;
+        let of_other = carry.main.as_ref().is_some_and(|main| main.actor != described.actor);
+        let row = verb.all[verb.at + 1..].windows(2).any(|pair| {
+            matches!(pair[0].chunk, Chunk::Joint(Joint::And)) && matches!(pair[1].chunk, Chunk::Verb(..) | Chunk::Word)
+        });
+        (of_other && !row).then(|| described.clone())
     }
 
     /// Whether the noun named last stands right before.

@@ -84,7 +84,9 @@ impl Parser<'_> {
         if so.as_ref().is_some_and(|(_, stood)| *stood) {
             verb.sense = Sense::Other;
         }
-        let beside = so.map(|(mention, _)| mention).or_else(|| self.beside(&verb, carry));
+        let stood = self.stood_as_found(&verb, carry);
+        let found = stood.is_some();
+        let beside = so.map(|(mention, _)| mention).or(stood).or_else(|| self.beside(&verb, carry));
         let who =
             beside.or_else(|| self.who_of(verb.sense, form, verb.placed(), carry, purpose, another_finite(all, at)));
         let who = who.filter(|_| !carry.stranger && !both);
@@ -92,7 +94,7 @@ impl Parser<'_> {
         if leads {
             frame.progress = own_progress.unwrap_or(Progress::Real);
         }
-        let described = self.only_describes(&verb, carry);
+        let described = found || self.only_describes(&verb, carry);
         let be = std::mem::take(&mut carry.be);
         if self.tells_state(&verb, who.as_ref(), (be, described), carry) {
             frame.state = true;
@@ -211,6 +213,12 @@ impl Parser<'_> {
         if purpose && !waits && frame.progress == Progress::Real {
             frame.progress = self.purpose(frame, verb, carry);
         }
+        // "had a trajectory toward its lane": not there yet.
+        let aims =
+            || self.tokens[verb.placed().first..verb.placed().end].iter().any(|token| token.text == "trajectory");
+        if frame.act() == Some(Act::Drift) && frame.progress == Progress::Real && aims() {
+            frame.progress = Progress::Tried;
+        }
         // "drove on before slowing to a stop": one after the other.
         let stops = matches!(verb.sense, Sense::Act(Act::Stop | Act::Slow | Act::Hold));
         let before = carry.joint == Some(Joint::Before) && carry.fresh && verb.form == Form::Ing && !stops;
@@ -230,11 +238,14 @@ impl Parser<'_> {
             before.act() == Some(Act::Enter)
                 && words.iter().any(|token| matches!(token.text.as_str(), "intersection" | "junction"))
         });
+        let maneuvers = before.is_some_and(|before| self.tokens[before.first].text.starts_with("maneuver"));
         match frame.act() {
             // "pushed the van, causing it to turn": so it did.
             _ if carry.pushed => Progress::Real,
             Some(Act::Pass | Act::Park | Act::LaneChange) if going => Progress::Tried,
             Some(Act::Turn) if enters => Progress::Real,
+            // "maneuvered to make a right turn".
+            Some(Act::Turn) if maneuvers => Progress::Tried,
             _ => Progress::Wished,
         }
     }
@@ -244,6 +255,9 @@ impl Parser<'_> {
     fn done_to(&mut self, frame: &mut Frame, verb: &Spoken<'_>, be: bool, carry: &Carry) -> bool {
         let Spoken { sense, form, all, at } = *verb;
         frame.passive = be && form == Form::Past && next_preposition(all, at) == Some("by");
+        // "a ball, followed by a dog": without "was" too.
+        let followed = sense == Sense::Act(Act::Follow) && matches!(verb.word(self), "followed" | "trailed" | "tailed");
+        frame.passive |= followed && form == Form::Past && matches!(verb.next(), Some(Chunk::Preposition("by")));
         if be && verb.is_done_to() {
             frame.object = frame.who.take();
             frame.on = frame.with.take();

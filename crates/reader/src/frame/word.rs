@@ -43,6 +43,16 @@ impl Parser<'_> {
         if let Some(progress) = self.lexicon.progress(word).filter(|_| waits_for && !in_order) {
             (carry.progress, carry.began) = (Some(progress), true);
         }
+        // "Data of the trip shows the AV driving": the AV begins a clause.
+        if matches!(word, "shows" | "showed") {
+            (carry.preposition, carry.relation) = (None, None);
+        }
+        // "a collision occurred involving two vans".
+        let told = |frame: usize| self.frames[frame].sense == Sense::ContactMade && self.frames[frame].who.is_none();
+        if word == "involving" && carry.frame.is_some_and(told) {
+            carry.preposition = Some("between");
+            return true;
+        }
         // "the junction where Elm Street merges with Oak Street": nobody of the story does that.
         if word == "where" {
             (carry.subject, carry.frame, carry.has_verb) = (None, None, false);

@@ -331,7 +331,8 @@ impl World {
                 known.unwrap_or_else(|| self.add_vehicle())
             }
             Occupant::Driver if plain && !self.own_driver => {
-                self.latest(|known| known.kind.is_some_and(acts)).unwrap_or(SUBJECT)
+                // "one or both vehicles" is no vehicle that somebody drives.
+                self.latest(|known| known.kind.is_some_and(acts) && !known.several).unwrap_or(SUBJECT)
             }
             // "The rider came off", told of a motorcycle.
             Occupant::Rider if noun.article == Article::Definite && !noun.several => self

@@ -238,6 +238,15 @@ impl World {
             .max_by_key(|&actor| (self.actors[actor].kind != Some(Kind::Curb), self.actors[actor].last))
     }
 
+    /// Another one of its kind: who is known, or somebody new.
+    pub fn twin(&mut self, actor: Actor) -> Actor {
+        self.like(actor).unwrap_or_else(|| {
+            let known = Known { kind: self.actors[actor].kind, another: true, mentions: 1, ..Known::default() };
+            self.actors.push(known);
+            self.actors.len() - 1
+        })
+    }
+
     /// Somebody else of its kind, the one named last.
     pub fn like(&self, actor: Actor) -> Option<Actor> {
         let kind = self.actors[actor].kind?;

@@ -82,7 +82,7 @@ fn what_is_told_between_two_steps_is_seen_in_the_way() {
         (REACHED, sv, "stopped, began: set off", &[Act::Stop]),
         (STOOD_AGAIN, sv, "stood, set off", &[Act::SetOff]),
         (SLOWED, sv, "slowed, set off", &[Act::Slow]),
-        (STEERED_AWAY, sv, "passed, swerved", &[Act::Swerve]),
+        (STEERED_AWAY, sv, "passed, swerved to the left", &[Act::Swerve]),
         (INTO_A_LOT, sv, "turned to the left, stopped", &[Act::Turn]),
         (CAME_BACK, sv, "changed lanes to the right, changed lanes to the left, stopped, stood", &[Act::LaneChange]),
         (TRIED, sv, "stood, began: changed lanes to the left, stopped", &[Act::LaneChange]),

@@ -9,6 +9,7 @@ use super::party::has_zone;
 use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
+pub(super) use places::side_of_road_of;
 use recrash_model::account::{
     Account, Act, ContactState, Fact, Kind, KindGroup, LaneWord, LeftRight, Origin, Source, told,
 };
@@ -150,6 +151,13 @@ fn of_thing(clues: &Clues<'_>, account: &Account) -> Option<Fact<Origin>> {
         ));
     }
     let rolls = account.partner.as_ref()?.did(Act::Roll);
+    // "rolling south", of one that goes west.
+    let way = |party: &recrash_model::account::Party| party.heading.as_ref().map(|heading| heading.value);
+    let across = way(&account.sv).zip(account.partner.as_ref().and_then(way)).map(|(own, other)| own.eighths_to(other));
+    if let (true, Some(2 | 6)) = (rolls, across) {
+        let side = if across == Some(2) { LeftRight::Left } else { LeftRight::Right };
+        return Some(Fact::by_rule(Origin::Beside { side }, "what rolls across comes from where it rolls"));
+    }
     if let Some(side) = came_off(clues, account).filter(|_| rolls) {
         return Some(Fact::by_rule(Origin::Beside { side }, "what rolls comes from the lane of whom it came off"));
     }

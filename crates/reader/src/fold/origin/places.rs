@@ -9,7 +9,19 @@ use recrash_model::account::{Account, Act, Compass, LeftRight, Source};
 /// The side of the road from which somebody comes, where its words name it: "from the north side of the street", "between cars on the
 /// right side of the road".
 pub(super) fn side_of_road(reading: &Reading<'_>, actor: Actor, account: &Account) -> Option<LeftRight> {
-    let own = after_its_turn(account);
+    let comes = |act: Option<Act>| {
+        matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve | Act::Reverse))
+    };
+    side_of_road_of(reading, actor, after_its_turn(account), comes)
+}
+
+/// The same, of somebody who does what is asked for, seen by who drives that way.
+pub(crate) fn side_of_road_of(
+    reading: &Reading<'_>,
+    actor: Actor,
+    own: Option<Compass>,
+    comes: impl Fn(Option<Act>) -> bool,
+) -> Option<LeftRight> {
     let tokens = &reading.story.tokens;
     let word = |at: usize| tokens.get(at).map_or("", |token| token.text.as_str());
     let compass = |at: usize| match word(at) {
@@ -20,9 +32,6 @@ pub(super) fn side_of_road(reading: &Reading<'_>, actor: Actor, account: &Accoun
         _ => None,
     };
     let road = |at: usize| (at..at + 5).any(|at| matches!(word(at), "road" | "roadway" | "street" | "alley" | "lot"));
-    let comes = |act: Option<Act>| {
-        matches!(act, Some(Act::Enter | Act::Cross | Act::PullOut | Act::Follow | Act::Swerve | Act::Reverse))
-    };
     reading.before(actor).filter(|(_, frame)| comes(frame.act())).find_map(|(_, frame)| {
         let (first, end) = (frame.first, reading.story.sentences[frame.sentence].end);
         (first..end).find_map(|at| {

@@ -17,7 +17,8 @@ use crate::frame::Frame;
 use crate::lexicon::{Relation, Sense};
 use crate::world::{Actor, SUBJECT};
 use recrash_model::account::{
-    Account, Act, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature, Source, told,
+    Account, Act, ActFact, Compass, ContactState, Fact, KindGroup, LaneWord, LeftRight, Origin, Party, RoadFeature,
+    Source, told,
 };
 use recrash_model::zones::ContactZone as Z;
 
@@ -47,7 +48,7 @@ struct Case<'a> {
 type Told = Option<Fact<Origin>>;
 type Rule = fn(&Case<'_>) -> Told;
 
-const RULES: [Rule; 33] = [
+const RULES: [Rule; 34] = [
     |case| case.thrown_at_the_rear(),
     |case| case.out_of_a_place(),
     |case| case.stood_in_a_stall(),
@@ -80,6 +81,7 @@ const RULES: [Rule; 33] = [
     |case| case.subject_goes_backwards(),
     |case| case.touched_from_a_side_street(),
     |case| case.touched_in_a_turn(),
+    |case| case.is_passed(),
     |case| case.is_rear_ended(),
 ];
 
@@ -211,6 +213,9 @@ impl<'a> Case<'a> {
         if self.drove_on(number) {
             return None;
         }
+        if let Some(stood) = self.stood_after(number) {
+            return told_as(Origin::Ahead, stood);
+        }
         let of_road = || side_of_road(self.reading, self.actor, self.account);
         let drives_out = matches!(frame.out_of, Some(Spot::Driveway));
         let side = self.side.or_else(|| if drives_out { of_road() } else { None }).or(self.touched);
@@ -227,10 +232,30 @@ impl<'a> Case<'a> {
         told_as(origin, self.reading.words(first, end))
     }
 
+    /// "stopped behind a truck that had left a driveway and stood across the road": where it stood as the subject vehicle came up to it.
+    fn stood_after(&self, number: usize) -> Option<Source> {
+        let stands = |frame: &Frame| matches!(frame.act(), Some(Act::Stop | Act::Hold)) && frame.sense != Sense::Parked;
+        let stood = self.frames().any(|(later, frame)| later > number && stands(frame));
+        let behind = |frame: &Frame| frame.relations.contains(&(Relation::Behind, Some(self.actor)));
+        let mut own = self.reading.before(SUBJECT).filter(|(_, frame)| frame.happened() && behind(frame));
+        let (came, _) = own.next().filter(|_| stood)?;
+        let (first, end) = self.reading.window(came);
+        Some(self.reading.words(first, end))
+    }
+
     fn out_of_a_stall(&self) -> Origin {
         let side = self.side_or_touched();
         let curb = at_curb(self.reading, self.actor);
         if self.did(Act::Reverse) {
+            // Parked behind it, and backwards into its rear.
+            if self.parked
+                && self.behind_first()
+                && self.side.is_none()
+                && only(&self.account.sv, Z::is_rear)
+                && only(self.partner, Z::is_rear)
+            {
+                return Origin::Behind;
+            }
             // Out of a spot at the kerb, backwards: it was ahead of who is touched in front.
             if square_front(self.account) && (curb || self.ahead) {
                 return Origin::Ahead;
@@ -387,7 +412,32 @@ impl<'a> Case<'a> {
         if self.drove_on(number) || !self.parked && elsewhere {
             return None;
         }
+        // "stopped in the left lane after it had left the kerb": where it stood.
+        let acts = &self.partner.acts;
+        let left = acts.iter().position(|fact| fact.act == Act::PullOut && !fact.after_contact);
+        let stands = |fact: &ActFact| matches!(fact.act, Act::Stop | Act::Hold) && !fact.after_contact;
+        let stood = left.is_some_and(|left| acts[left + 1..].iter().any(stands));
+        if let (true, Some(side)) = (stood, lane_side(self.account)) {
+            return by_rule(Origin::Beside { side }, "lanes of both");
+        }
+        // "A dog came out from between parked cars on the left".
+        let group = told(&self.partner.kind).map(|kind| kind.group());
+        if group == Some(KindGroup::Animal) {
+            let side = self.side_or_touched().or_else(|| self.side_named(number))?;
+            return told_as(Origin::Cross { side }, self.words_of(Act::PullOut));
+        }
         told_as(Origin::Parked { side: self.side_or_touched() }, self.words_of(Act::PullOut))
+    }
+
+    /// The one side that stands in the words of a frame: "from between cars in the leftmost lane".
+    fn side_named(&self, number: usize) -> Option<LeftRight> {
+        let (first, end) = self.reading.window(number);
+        let has = |stem: &str| self.reading.story.tokens[first..end].iter().any(|token| token.text.starts_with(stem));
+        match (has("left"), has("right")) {
+            (true, false) => Some(LeftRight::Left),
+            (false, true) => Some(LeftRight::Right),
+            _ => None,
+        }
     }
 
     fn moves_over_from_behind(&self) -> Told {
@@ -520,7 +570,9 @@ impl<'a> Case<'a> {
         };
         let enters = |frame: &Frame| matches!(frame.sense, Sense::Act(Act::Enter | Act::RunRed | Act::RunStop));
         let ran = self.partner.did(Act::RunRed) || self.partner.did(Act::RunStop);
-        let crossing = self.did(Act::Cross)
+        // "passed it on the left, and turned right, crossing in front of it".
+        let passed = passes_subject(self.reading, self.actor);
+        let crossing = self.did(Act::Cross) && !passed
             || ran && self.first_is_side()
             || self.frames().any(|(_, frame)| enters(frame) && sided(frame))
             || self.frames().any(|(_, frame)| frame.sense == Sense::Approach && sided(frame)) && !self.did(Act::Pass)
@@ -627,6 +679,19 @@ impl<'a> Case<'a> {
             return by_rule(Origin::Opposite, "the right side of a vehicle turning left that was touched");
         }
         by_rule(Origin::Cross { side }, "the side of a turning vehicle that was touched")
+    }
+
+    /// "As the AV was passing the van": beside it, and no faster.
+    fn is_passed(&self) -> Told {
+        if self.did(Act::Pass) || self.did(Act::Reverse) || self.sv_stands || self.sv_reverses() {
+            return None;
+        }
+        let passes =
+            |frame: &Frame| frame.act() == Some(Act::Pass) && frame.object == Some(self.actor) && frame.happened();
+        let (number, frame) = self.reading.before(SUBJECT).find(|(_, frame)| passes(frame))?;
+        let side = frame.side.map(LeftRight::other).or(self.touched)?;
+        let (first, end) = self.reading.window(number);
+        told_as(Origin::Beside { side }, self.reading.words(first, end))
     }
 
     fn is_rear_ended(&self) -> Told {
