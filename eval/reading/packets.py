@@ -4,7 +4,7 @@
     python eval/reading/packets.py --recrash PROGRAM --scenes scenes --half dev --count 60 --word spring --out packets FILES...
 
 Incidents are drawn by SHA-256 of WORD and the report id, from the scenarios of `scenes`; reports that eval/reconstructions.csv
-has are left out. A reader gets packets/N.md, by eval/reading/GUIDE.md, and fills packets/N.csv.
+has are left out. Of several reports of an incident the one is printed that its account is read from. A reader gets packets/N.md, by eval/reading/GUIDE.md, and fills packets/N.csv.
 """
 
 import argparse
@@ -44,6 +44,12 @@ def rows(files: list[str]) -> dict[str, dict[str, str]]:
             for row in csv.DictReader(stream):
                 found[f"{row['Report ID']}/{row['Report Version']}"] = row
     return found
+
+
+def leading(recrash: str, files: list[str]) -> dict[str, str]:
+    """By the name of its scenario, the report that speaks for an incident: not the first version, where a later one tells more."""
+    read = subprocess.run([recrash, "read", *files, "--json"], capture_output=True, text=True, check=True)
+    return {f"incident-{account['incident']}": account["report"] for account in json.loads(read.stdout)["accounts"]}
 
 
 def degrees(angle: float) -> int:
@@ -143,9 +149,9 @@ def main() -> None:
     for file in [HERE.parent / "reconstructions.csv", *args.skip]:
         with open(file, newline="") as stream:
             read_before |= {row["report"].split("/")[0] for row in csv.DictReader(stream)}
-    drawn = []
+    speaks, drawn = leading(args.recrash, args.files), []
     for scene in sorted(args.scenes.glob("incident-*.json")):
-        report = json.loads(scene.read_text())["source"]["records"][0]
+        report = speaks[scene.stem]
         half = "dev" if digest(report.split("/")[0])[31] % 2 == 0 else "held-out"
         if half == args.half and report.split("/")[0] not in read_before:
             drawn.append((digest(args.word, report), report, scene))
