@@ -90,6 +90,7 @@ impl Reading<'_> {
         if number <= contact
             || self.back.contains(&frame.sentence)
             || self.is_told_back(frame)
+            || self.is_in_vain(frame)
             || frame.sentence > at.sentence && frame.who != Some(SUBJECT) && self.had_before(frame.sentence)
             || frame.looks_back
             || frame.aside && frame.sentence == at.sentence
@@ -139,6 +140,20 @@ impl Reading<'_> {
             );
             had && frame.act().is_some() && !goes_on && !frame.described
         })
+    }
+
+    /// "It braked, but the contact was unavoidable", told behind the contact.
+    fn is_in_vain(&self, frame: &Frame) -> bool {
+        let range = self.story.sentences[frame.sentence];
+        let words: Vec<&str> =
+            self.story.tokens[range.first..range.end].iter().map(|token| token.text.as_str()).collect();
+        let has = |word: &str| words.contains(&word);
+        let in_vain = has("unavoidable")
+            || has("avoid") && ["unable", "not", "late", "impossible"].into_iter().any(has)
+            || has("still") && has("occurred");
+        // Of a second one it is told what came of the first.
+        let second = ["second", "another", "further", "secondary"].into_iter().any(has);
+        in_vain && !second && matches!(frame.act(), Some(Act::Slow | Act::Swerve | Act::Drift))
     }
 
     /// "Prior to the collision, it came to a stop", told behind the collision; and the sentences behind that one, up to those that name the

@@ -30,8 +30,33 @@ pub(super) fn oncoming_lane(reading: &Reading<'_>, account: &Account) -> Option<
 /// Whether the words for somebody name a truck of any size.
 pub(super) fn is_any_truck(kind: &Fact<Kind>) -> bool {
     let Source::Words { text, .. } = &kind.source else { return false };
-    let plain = ["truck", "commercial vehicle", "work truck", "utility truck", "commercial truck"];
+    // Sizes, loads and tasks are of large ones; colours and makes of any.
+    const OF_ANY: [&str; 22] = [
+        "a",
+        "the",
+        "another",
+        "this",
+        "one",
+        "white",
+        "black",
+        "red",
+        "blue",
+        "grey",
+        "gray",
+        "silver",
+        "green",
+        "gmc",
+        "ford",
+        "chevrolet",
+        "chevy",
+        "toyota",
+        "dodge",
+        "ram",
+        "nissan",
+        "work",
+    ];
     let text = text.to_lowercase();
-    let words = text.split_once(' ').filter(|(article, _)| matches!(*article, "a" | "the" | "another" | "this"));
-    kind.value == Kind::HeavyTruck && plain.contains(&words.map_or(text.as_str(), |(_, words)| words))
+    let words: Vec<&str> = text.split(' ').skip_while(|word| OF_ANY.contains(word)).collect();
+    let plain = [&["truck"][..], &["commercial", "vehicle"], &["utility", "truck"], &["commercial", "truck"]];
+    kind.value == Kind::HeavyTruck && plain.contains(&words.as_slice())
 }

@@ -114,7 +114,8 @@ pub(crate) fn columns(reading: &Reading<'_>, account: &mut Account) {
     };
     let vague = partner.kind.as_ref().is_none_or(|kind| kind.value == Kind::Vehicle);
     // "The truck" is a pickup where the column says so, and "a commercial vehicle" is a van.
-    let light = matches!(column, Some(Kind::Pickup | Kind::Van)) && partner.kind.as_ref().is_some_and(is_any_truck);
+    let light = matches!(column, Some(Kind::Pickup | Kind::Van | Kind::Suv | Kind::PassengerCar))
+        && partner.kind.as_ref().is_some_and(is_any_truck);
     if let (true, Some(kind)) = (vague || light, column) {
         partner.kind = Some(Fact::of_column(kind, "Crash With"));
     }

@@ -88,6 +88,19 @@ fn a_numbered_car_is_what_the_bracket_or_the_column_says() {
 }
 
 #[test]
+fn a_truck_with_a_colour_or_a_make_is_what_the_column_says_and_a_box_truck_is_none() {
+    let suv = |record: &mut CrashRecord| record.partner = Coded::Known(PartnerKind::Suv);
+    let told = [
+        ("The AV was stopped when a black GMC truck struck its rear.", "suv"),
+        ("The AV was stopped when a white truck struck its rear.", "suv"),
+        ("The AV was stopped when a white box truck struck its rear.", "box_truck"),
+    ];
+    for (text, kind) in told {
+        assert_eq!(beside(text, suv)["cp_kind"], kind, "{text}");
+    }
+}
+
+#[test]
 fn a_rear_that_cannot_have_met_who_backs_from_ahead_is_the_front_of_the_column() {
     let told = [
         "The AV was traveling west when it slowed to a stop for a pickup. The pickup began to reverse in the AV's lane, and the rear of the \
