@@ -528,6 +528,12 @@ impl Lexicon {
         best.map(|(found, _)| found)
     }
 
+    /// Whether a word is the name of a make.
+    pub fn is_make(&self, word: &str) -> bool {
+        let named = |phrases: &Vec<Phrase>| phrases.iter().any(|of| of.rest.is_empty() && of.meaning == Meaning::Make);
+        self.phrases.get(word).is_some_and(named)
+    }
+
     /// Whether a word is the name of a model of cars.
     pub fn is_model(&self, word: &str) -> bool {
         self.models.iter().any(|model| model == word)

@@ -194,9 +194,8 @@ fn is_face_on(told: &Told, sv: Pose, cp: Pose) -> bool {
     along_m < across_m
 }
 
-/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps, and so is a flank of a front that is told on a
-/// rear; and of who goes straight on behind an ego that
-/// turns, that it swings by more than this. [rad]
+/// Of who rubs along the other, a front on a rear is worth as much as so many zone steps, and so is a flank where a front is told on a
+/// rear; and of who goes straight on behind an ego that turns, that it swings by more than this. [rad]
 const FACE_ON: u32 = 2;
 const SWINGS: u32 = 2;
 const SWINGS_RAD: f64 = 0.35;

@@ -194,6 +194,11 @@ const COLOURS: [&str; 14] = [
     "beige",
 ];
 
+/// Whether a word is a colour of vehicles.
+pub fn is_colour(word: &str) -> bool {
+    COLOURS.contains(&word)
+}
+
 /// Splits a sentence into chunks.
 pub fn chunks(tokens: &[Token], first: usize, end: usize) -> Vec<Placed> {
     let chunker = Chunker { lexicon: Lexicon::get(), tokens: &tokens[..end], first };

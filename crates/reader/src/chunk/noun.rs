@@ -1,6 +1,6 @@
 //! Who or what is named: an article, words before the head, the head or heads; what stands behind it is in [`super::behind`].
 
-use super::{Article, COLOURS, Chunker, DETERMINERS, Noun, PREPOSITIONS};
+use super::{Article, Chunker, DETERMINERS, Noun, PREPOSITIONS, is_colour};
 use crate::lexicon::{Adjective, Found, Meaning, Occupant};
 use crate::token::TokenKind;
 use recrash_model::account::{Kind, KindGroup};
@@ -170,7 +170,7 @@ impl Chunker<'_> {
                 return Lead::Ends;
             }
             Meaning::Adjective(adjective) => {
-                if COLOURS.contains(&word) {
+                if is_colour(word) {
                     draft.noun.names.push(word.to_owned());
                 }
                 draft.noun.several |= matches!(word, "several" | "multiple" | "many" | "two" | "three" | "four");

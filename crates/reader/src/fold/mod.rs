@@ -331,11 +331,13 @@ fn partner_word(kind: PartnerKind) -> Option<&'static str> {
     })
 }
 
+/// Makes of large trucks only.
+const TRUCK_MAKES: [&str; 6] = ["peterbilt", "freightliner", "kenworth", "international", "mack", "navistar"];
+
 /// Kind of the subject vehicle, by its make, where that makes trucks or shuttles only, or by its model, which some call a shuttle.
 fn own_kind(record: &CrashRecord) -> Option<Kind> {
     let vehicle = record.vehicle.to_lowercase();
-    let truck = ["peterbilt", "freightliner", "kenworth", "international", "mack", "navistar", "volvo vnl"];
-    if truck.iter().any(|make| vehicle.contains(make)) {
+    if TRUCK_MAKES.iter().any(|make| vehicle.contains(make)) || vehicle.contains("volvo vnl") {
         return Some(Kind::SemiTrailerTruck);
     }
     if ["sienna", "pacifica"].iter().any(|model| vehicle.contains(model)) {

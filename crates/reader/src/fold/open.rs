@@ -1,7 +1,9 @@
 //! What the words for somebody leave open: its lane, and what kind of truck it is.
 
-use super::Reading;
+use super::{Reading, TRUCK_MAKES};
+use crate::chunk::{is_colour, is_determiner};
 use crate::frame::Frame;
+use crate::lexicon::Lexicon;
 use recrash_model::account::{Account, Act, Fact, Kind, LaneWord, Origin, Source, told};
 
 /// The lane of who comes from behind and goes round in that of those who come towards it, where no other is told of it.
@@ -30,33 +32,13 @@ pub(super) fn oncoming_lane(reading: &Reading<'_>, account: &Account) -> Option<
 /// Whether the words for somebody name a truck of any size.
 pub(super) fn is_any_truck(kind: &Fact<Kind>) -> bool {
     let Source::Words { text, .. } = &kind.source else { return false };
-    // Sizes, loads and tasks are of large ones; colours and makes of any.
-    const OF_ANY: [&str; 22] = [
-        "a",
-        "the",
-        "another",
-        "this",
-        "one",
-        "white",
-        "black",
-        "red",
-        "blue",
-        "grey",
-        "gray",
-        "silver",
-        "green",
-        "gmc",
-        "ford",
-        "chevrolet",
-        "chevy",
-        "toyota",
-        "dodge",
-        "ram",
-        "nissan",
-        "work",
-    ];
+    // Sizes, loads and tasks are of large ones; colours and most makes of any.
+    let lexicon = Lexicon::get();
+    let make = |word: &str| lexicon.is_make(word) && !TRUCK_MAKES.contains(&word) || lexicon.is_model(word);
+    let of_any =
+        |word: &&str| is_determiner(word) || is_colour(word) || make(word) || matches!(*word, "another" | "work");
     let text = text.to_lowercase();
-    let words: Vec<&str> = text.split(' ').skip_while(|word| OF_ANY.contains(word)).collect();
+    let words: Vec<&str> = text.split(' ').skip_while(of_any).collect();
     let plain = [&["truck"][..], &["commercial", "vehicle"], &["utility", "truck"], &["commercial", "truck"]];
     kind.value == Kind::HeavyTruck && plain.contains(&words.as_slice())
 }

@@ -93,6 +93,8 @@ fn a_truck_with_a_colour_or_a_make_is_what_the_column_says_and_a_box_truck_is_no
     let told = [
         ("The AV was stopped when a black GMC truck struck its rear.", "suv"),
         ("The AV was stopped when a white truck struck its rear.", "suv"),
+        ("The AV was stopped when a red Nissan truck struck its rear.", "suv"),
+        ("The AV was stopped when a red Kenworth truck struck its rear.", "heavy_truck"),
         ("The AV was stopped when a white box truck struck its rear.", "box_truck"),
     ];
     for (text, kind) in told {
