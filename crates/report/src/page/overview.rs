@@ -75,8 +75,8 @@ fn account_sentence(context: &Context, accounts: &AccountSet) -> Markup {
     let (suite, s) = (context.suite, &context.summary);
     let [first, last] = s.tested;
     html! {
-        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with no told fact shown otherwise, "
-        (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. "
+        b { (thousands(accounts.told.len())) " of " (thousands(accounts.readable)) } " readable incidents are reconstructed with no told fact shown otherwise and nothing left out that the two did, "
+        (thousands(accounts.types.iter().map(|share| share.whole).sum())) " of them with every told fact shown. Told is what the program read in a report: what it misread, it does not find so. "
         @if s.cases < accounts.told.len() { b { (thousands(s.cases)) } " of them were picked. " } @else { "All of them are here. " }
         "In the crashes as reconstructed " b { (words::clean(&suite.ego, 60)) } ", from the handover on, came into the situation of its record in " b { (thousands(first.met)) " of the " (thousands(first.ran)) } " that it drove, and fails "
         b { (thousands(first.failures.total())) " of those " (thousands(first.met)) } ": " (manners(first.failures)) ". A blow to an ego that stood has nothing to do with what it drove, and one from where it does not look hardly has. "
@@ -119,7 +119,7 @@ fn account_tiles(context: &Context, accounts: &AccountSet) -> Markup {
             (tile(
                 "Own crash told",
                 html! { (thousands(accounts.told.len())) span.of { " of " (thousands(accounts.readable)) } },
-                html! { "readable incidents, no told fact shown otherwise; invented: 0" },
+                html! { "readable incidents, no told fact shown otherwise, nothing left out that the two did; invented: 0" },
                 Some((share(accounts.told.len(), accounts.readable), "good")),
             ))
             (tile(
@@ -287,7 +287,12 @@ fn table(context: &Context) -> Markup {
         ),
         ("injury", "Injury", Some("harm"), "highest injury that the record alleges"),
         ("ego", "Ego", Some("findings"), "what it did in the last run"),
-        ("true", "True to record", Some("faithful"), "computed from the paths driven in the last run"),
+        (
+            "true",
+            "True to record",
+            Some("faithful"),
+            "whether what was read in the report is shown: computed from the paths driven in the last run",
+        ),
     ];
     html! {
         table #cases.cases {
