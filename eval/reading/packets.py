@@ -49,7 +49,7 @@ def rows(files: list[str]) -> dict[str, dict[str, str]]:
 def leading(recrash: str, files: list[str]) -> dict[str, str]:
     """By the name of its scenario, the report that speaks for an incident: not the first version, where a later one tells more."""
     read = subprocess.run([recrash, "read", *files, "--json"], capture_output=True, text=True, check=True)
-    return {f"incident-{account['incident']}": account["report"] for account in json.loads(read.stdout)["accounts"]}
+    return {f"incident-{account['incident'].replace('#', '')}": account["report"] for account in json.loads(read.stdout)["accounts"]}
 
 
 def degrees(angle: float) -> int:

@@ -63,10 +63,14 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
             Act::SetOff | Act::Reverse => fact.begun,
             _ => false,
         };
+        let over = acts[number + 1..].iter().any(|later| later.act == Act::Turn);
+        let (step, after_other) = (fact.step, fact.after_other);
+        // "It then began to turn": it had set off for that, behind what the other did.
+        if standing && !state.stands() && after_other.is_some() && sets_off_for(fact.act) {
+            list.push(Doing { act: Act::SetOff, side: None, begun: false, over: false, step, after_other });
+        }
         standing = stands(fact.act) || standing && waits;
         if !skipped {
-            let over = acts[number + 1..].iter().any(|later| later.act == Act::Turn);
-            let (step, after_other) = (fact.step, fact.after_other);
             list.push(Doing { act: fact.act, side: fact.side, begun: fact.begun, over, step, after_other });
         }
     }
@@ -82,6 +86,11 @@ pub(crate) fn told(party: &Party, state: ContactState) -> Vec<Doing> {
     }
     list.dedup_by_key(|doing| (doing.act, doing.side, doing.begun));
     list
+}
+
+/// Whether somebody who stood has set off to do this.
+const fn sets_off_for(act: Act) -> bool {
+    matches!(act, Act::Turn | Act::UTurn | Act::Pass | Act::Enter | Act::Cross | Act::LaneChange | Act::Accelerate)
 }
 
 /// Whether the ego is told to have passed the partner: by its name, and nobody else has that.
@@ -131,6 +140,14 @@ impl Doing {
         if slow || self.begun { FOUND_EARLY } else { 0 }
     }
 
+    /// How long before an act of the other one it may begin that is told behind that. [steps]
+    fn before_other(&self) -> usize {
+        match self.act {
+            Act::SetOff if !self.begun => JUST_BEFORE_OTHER,
+            _ => BEFORE_OTHER + 2 * self.found_early(),
+        }
+    }
+
     /// Whether it passes, and touches beside.
     pub(crate) const fn is_pass(&self) -> bool {
         matches!(self.act, Act::Pass) && !self.begun
@@ -166,6 +183,12 @@ impl Doing {
         let slows = matches!(self.act, Act::Stop | Act::Slow);
         let aside = |doing: &Doing| doing.goes_aside() && self.after_other.is_some_and(|after| doing.step <= after);
         slows && other.iter().any(aside)
+    }
+
+    /// Whether it is that it set off, and the words put that behind the same of the other one.
+    pub(crate) fn sets_off_behind(&self, other: &[Doing]) -> bool {
+        let before = |doing: &Doing| doing.act == Act::SetOff && self.after_other.is_some_and(|after| doing.step <= after);
+        self.act == Act::SetOff && other.iter().any(before)
     }
 
     /// Whether it passes, and is told to have turned behind that.
@@ -228,8 +251,10 @@ const DRIFTS_M: f64 = 0.2;
 /// Who has begun to pass has gone aside by so much. [m]
 const BEGUN_PASS_M: f64 = 0.5;
 
-/// What is told to have come behind an act of the other one begins no earlier than so long before that. [steps]
+/// What is told to have come behind an act of the other one begins no earlier than so long before that; what is seen at once, no earlier
+/// than this. [steps]
 const BEFORE_OTHER: usize = 5;
+const JUST_BEFORE_OTHER: usize = 2;
 
 /// What begins little by little is found by so much before it is seen. [steps]
 const FOUND_EARLY: usize = 7;
@@ -350,7 +375,7 @@ impl Way<'_> {
             // Behind what cannot be seen it is behind the last that can be before that.
             let behind = others.iter().filter(|(step, _)| bound.is_some_and(|bound| *step <= bound));
             let behind = behind.max_by_key(|(step, _)| *step);
-            let least = behind.map_or(0, |(_, at)| at.saturating_sub(BEFORE_OTHER + 2 * doing.found_early()));
+            let least = behind.map_or(0, |(_, at)| at.saturating_sub(doing.before_other()));
             let earliest = if doing.is_entry() { since } else { from };
             let at = self.begins(*doing, earliest.max(least))?;
             // What was under way then had begun before; who goes aside may go on to.

@@ -167,10 +167,10 @@ fn braked_earlier(pace: Pace, by_s: f64) -> Pace {
     Pace { acts: vec![act], driven_m: pace.driven_m - (pace.speed_mps - to_mps) * by_s, ..pace }
 }
 
-/// How far somebody goes until it touches the one that it waited behind, which set off [`FOLLOWS_S`] earlier, and creeps. [m]
+/// How far somebody goes until it touches the one that it waited behind, which set off earlier, and creeps. [m]
 fn catches_up_m(told: &Told) -> f64 {
     let (ego_mps, cp_mps) = (told.sv.speed_mps, told.cp.speed_mps);
-    let head_m = ego_mps * (0.5 * (cp_mps - ego_mps) / SETS_OFF_MPS2 + FOLLOWS_S) + BEHIND_M;
+    let head_m = ego_mps * (0.5 * (cp_mps - ego_mps) / SETS_OFF_MPS2 + told.head_start_s()) + BEHIND_M;
     (head_m / (1.0 - ego_mps / cp_mps).max(0.1)).max(MOVES_UP_M)
 }
 
@@ -180,7 +180,7 @@ fn before_who_waits(told: &Told) -> Option<Pace> {
     if sv.state != ContactState::SettingOff || !told.waits_behind() {
         return None;
     }
-    let moving_s = contact_s - first_time(&last_pace(told).acts) + FOLLOWS_S;
+    let moving_s = contact_s - first_time(&last_pace(told).acts) + told.head_start_s();
     start_over(contact_s, sv.speed_mps, sv.speed_mps * (moving_s - 0.5 * sv.speed_mps / SETS_OFF_MPS2))
 }
 
@@ -204,7 +204,7 @@ fn towards_who_stands(told: &Told) -> Option<Pace> {
     start_over(told.contact_s, sv.speed_mps, MOVES_UP_M).filter(|_| plain)
 }
 
-/// Who waited behind somebody sets off so long after it. [s]
+/// Who waited behind somebody sets off so long after it, or before it where that is told. [s]
 const FOLLOWS_S: f64 = 0.5;
 
 /// How far behind the stop line of a junction the ego is. [m]
@@ -225,6 +225,12 @@ const BEFORE_LINE_M: f64 = 3.0;
 const LEAST_STOOD_S: f64 = 1.2;
 
 impl Told {
+    /// How much earlier than the partner that waited behind it the ego sets off: less than nothing where it is told to have done so after that. [s]
+    fn head_start_s(&self) -> f64 {
+        let behind = self.sv.acts.iter().any(|doing| doing.sets_off_behind(&self.cp.acts));
+        if behind { -FOLLOWS_S } else { FOLLOWS_S }
+    }
+
     /// Whether the partner stood behind the ego and set off then.
     fn waits_behind(&self) -> bool {
         let stood = self.cp.state == ContactState::SettingOff || self.cp.stood_first || self.queues();
@@ -446,7 +452,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
         }
         // Who stood and turned has room for its turn.
         ContactState::Moving if cp.stood_first && matches!(cp.turning, Turning::Left | Turning::Right) => {
-            start_over(contact_s, cp.speed_mps, TURNS_M).unwrap_or(usual)
+            let from_line = turn_from_line_m(told, staging).and_then(|way_m| start_over(contact_s, cp.speed_mps, way_m));
+            from_line.or_else(|| start_over(contact_s, cp.speed_mps, TURNS_M)).unwrap_or(usual)
         }
         ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego_m - 0.3 => STANDING,
         // It stood before the story begins.
@@ -689,6 +696,24 @@ fn cross_from_line(told: &Told, staging: &Staging) -> Option<Pace> {
     let left_m = staging.cp.position.y - ground.centre_y_m();
     let to_line_m = if side == LeftRight::Left { line_m - left_m } else { line_m + left_m };
     start_over(told.contact_s, cp.speed_mps, to_line_m)
+}
+
+/// How far it is from the stop line of who stood at the junction, across from the ego or on the crossing road, to where it touches in its
+/// turn. [m]
+fn turn_from_line_m(told: &Told, staging: &Staging) -> Option<f64> {
+    let (cp, ground) = (&told.cp, &staging.ground);
+    let line_m = corner_m(ground.lanes) + AT_LINE_M + 0.5 * size_of(cp).0;
+    let left_m = staging.cp.position.y - ground.centre_y_m();
+    let along_m = match told.origin {
+        _ if !ground.junction => return None,
+        Origin::Opposite => line_m - staging.cp.position.x,
+        Origin::Cross { side: LeftRight::Left } => line_m - left_m,
+        Origin::Cross { side: LeftRight::Right } => line_m + left_m,
+        _ => return None,
+    };
+    let turn = math::wrap_angle(staging.cp.heading - staging.cp_came).abs();
+    let (sine, radius_m) = (math::sin(turn), lateral::turn_m(told));
+    (along_m > radius_m * sine).then(|| along_m + radius_m * (turn - sine))
 }
 
 /// From a stand to a speed, and so far: it gains its speed on the way, or earlier and keeps it.

@@ -629,14 +629,14 @@ fn backs_behind(sv: &Party, partner: &Party, origin: Origin) -> (bool, bool) {
     let first = |party: &Party, of: fn(Act) -> bool| steps(party, of).into_iter().min();
     let Some(backs) = first(partner, |act| act == Act::Reverse) else { return (false, false) };
     let sets_off = steps(sv, |act| act == Act::SetOff).into_iter().max();
-    let stops = first(sv, |act| matches!(act, Act::Stop | Act::Hold));
+    let stops = first(sv, |act| matches!(act, Act::Stop | Act::Hold | Act::PullOver | Act::Park));
     let in_lane = matches!(origin, Origin::Ahead | Origin::Behind);
     let early = in_lane && stops_for_who_backs(sv, partner)
         || sets_off.is_some_and(|at| at > backs)
         || stops.is_some_and(|at| at > backs);
     // Who backs behind what the ego did did so when that stood.
     let last = partner.acts.iter().rfind(|fact| fact.act == Act::Reverse && !fact.after_contact);
-    let answers = in_lane && last.is_some_and(|fact| fact.after_other >= stops && fact.after_other.is_some());
+    let answers = last.is_some_and(|fact| fact.after_other >= stops && fact.after_other.is_some());
     (sets_off.is_some_and(|at| at < backs), early && !answers)
 }
 

@@ -28,11 +28,17 @@ fn order(reading: &Reading<'_>, acts: &mut [ActFact], others: &[u32]) {
 fn comes_behind(reading: &Reading<'_>, first: usize, second: usize) -> bool {
     let frames = &reading.story.frames;
     let (Some(one), Some(two)) = (frames.get(first), frames.get(second)) else { return false };
-    let unclear = |frame: &Frame| frame.aside || frame.described || frame.looks_back || had(reading, frame);
+    let unclear = |frame: &Frame| frame.aside || frame.described || frame.looks_back;
     // What is told of before the crash behind its headline is no sequel of that.
     let back = |frame: &Frame| reading.back.contains(&frame.sentence);
-    if unclear(one) || unclear(two) || back(one) != back(two) {
+    if unclear(one) || unclear(two) || had(reading, two) || back(one) != back(two) {
         return false;
+    }
+    // "The AV had pulled over. A van began to back up": over by then. "The AV was stopped. A van pulled out": it stood by then.
+    let stood = one.act() == Some(Act::Hold) && one.happened();
+    if stood || had(reading, one) {
+        let inner = two.joint.filter(is_inner).is_some();
+        return first < second && !inner && (stood || happens(reading, one)) && happens(reading, two);
     }
     match (one.sentence == two.sentence, one.joint.filter(is_inner), two.joint.filter(is_inner)) {
         // "As the van backed, the AV stopped", "the AV stopped as the van backed": it answered what the clause tells first. "It stopped

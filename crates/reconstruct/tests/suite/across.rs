@@ -27,6 +27,16 @@ const RACED: &str = "The AV was stopped at a red light. A sedan approached from 
 const QUEUED: &str = "The AV was stopped at a red light. After the light turned green and the AV began to accelerate, a sedan behind the AV made \
                       contact with the rear of the AV.";
 
+const TURNED_LATER: &str = "The AV was traveling north on Elm Street and stopped for a stop sign at the intersection with Oak Street. A van traveling west on \
+                            Oak Street came to a stop at a stop sign. The AV then began to turn left. The van moved forward, and the front of the \
+                            van made contact with the right side of the AV.";
+
+const WENT_FIRST: &str = "The AV was stopped at a red light on Elm Street. The light turned green and the sedan behind the AV began moving forward. The AV \
+                          then also began moving forward, and the front of the sedan made contact with the rear of the AV.";
+
+const PULLED_OVER: &str = "The AV had pulled over to the curb on Elm Street to pick up a passenger. A sedan began to reverse out of a driveway on the right, and the \
+                           rear of the sedan made contact with the right side of the stopped AV.";
+
 fn after(party: &Party, act: Act) -> Option<u32> {
     party.acts.iter().find(|fact| fact.act == act).expect("told").after_other
 }
@@ -118,4 +128,42 @@ fn who_is_told_behind_an_ego_that_sets_off_stood_close_behind_it() {
     let sets_off = ego.iter().position(|state| state.speed() > 0.1).expect("it sets off");
     let gap_m = ego[sets_off].x - states[sets_off].x - 5.0;
     assert!(gap_m < 6.0 && states[sets_off].speed() < 0.5, "{gap_m} m behind at {} m/s", states[sets_off].speed());
+}
+
+/// The first step at which somebody moves again who stood.
+fn sets_off(states: &[recrash_model::rollout::ActorState]) -> usize {
+    let stands = states.iter().position(|state| state.velocity().length() < 0.1).expect("it stands");
+    stands + states[stands..].iter().position(|state| state.velocity().length() > 0.1).expect("it sets off")
+}
+
+#[test]
+fn who_turns_when_the_other_has_stopped_sets_off_for_it_then() {
+    let account = story(TURNED_LATER);
+    assert_eq!(after(&account.sv, Act::Turn), Some(step(account.partner.as_ref().expect("told"), Act::Stop)));
+    let made = made(&account);
+    let other = &partner(&made).0;
+    let stands = other.iter().position(|state| state.speed() < 0.1).expect("the van stands");
+    let off = sets_off(&made.rollout.ego_track().states);
+    assert!(off + 2 >= stands, "the AV sets off at {off}, the van stands from {stands}");
+    let acts = result(&account, CheckKind::SvActs);
+    assert_eq!(acts.0, CheckResult::Shown, "{acts:?}");
+}
+
+#[test]
+fn an_ego_that_sets_off_behind_who_waited_behind_it_does_so_second() {
+    let account = story(WENT_FIRST);
+    let made = made(&account);
+    let (ego, other) = (sets_off(&made.rollout.ego_track().states), sets_off(partner(&made).0));
+    assert!(ego > other, "the AV sets off at {ego}, the sedan at {other}");
+}
+
+#[test]
+fn who_had_pulled_over_stands_before_the_other_backs() {
+    let account = story(PULLED_OVER);
+    let partner_acts = account.partner.as_ref().expect("told");
+    assert_eq!(after(partner_acts, Act::Reverse), Some(step(&account.sv, Act::PullOver)));
+    let made = made(&account);
+    let stands = speeds(&made).iter().position(|mps| *mps < 0.1).expect("it stands");
+    let backs = partner(&made).0.iter().position(|state| state.speed() < -0.1).expect("it backs");
+    assert!(backs + 5 >= stands, "it backs from {backs}, the AV stands from {stands}");
 }
