@@ -22,6 +22,10 @@ MEANT = {
     "Front": "Front Left", "Front Left": "Front Right", "Front Right": "Front",
     "Rear": "Rear Left", "Rear Left": "Rear Right", "Rear Right": "Rear",
 }
+# As in crates/model/src/scenario/graph.rs.
+USUAL_WIDTH_M = {
+    "driving": 3.3, "centre_turn": 3.3, "bike": 1.8, "parking": 2.4, "stalls": 5.5, "shoulder": 2.5, "median": 1.5, "sidewalk": 2.5,
+}
 COLUMNS = {
     "SV movement": "SV Pre-Crash Movement",
     "CP movement": "CP Pre-Crash Movement",
@@ -81,6 +85,51 @@ def seen_from(ego: dict, other: dict) -> str:
     )
 
 
+def strip_widths(strips: list[dict]) -> list[tuple[str, float, float]]:
+    """Kind of each strip of one side of a road, and from where to where it lies beside the road's line."""
+    found, at = [], 0.0
+    for strip in strips:
+        width = strip.get("width_m") or USUAL_WIDTH_M[strip["kind"]]
+        found.append((strip["kind"], at, at + width))
+        at += width
+    return found
+
+
+def on_strip(road: dict, junctions: dict[str, dict], state: dict) -> str | None:
+    """On which strip of a straight road a centre is, as the ego's driver would say it; nothing where it is beside the road."""
+    start = road["start"].get("at")
+    if start is None:
+        arm = road["start"]["arm"]
+        junction, angle = junctions[arm["junction"]], math.radians(arm["bearing_deg"])
+        x, y = (junction[axis] + arm["from_m"] * turn(angle) for axis, turn in (("x_m", math.cos), ("y_m", math.sin)))
+    else:
+        x, y, angle = start["x_m"], start["y_m"], math.radians(start["heading_deg"])
+    dx, dy = state["x"] - x, state["y"] - y
+    along, left = dx * math.cos(angle) + dy * math.sin(angle), dy * math.cos(angle) - dx * math.sin(angle)
+    if not 0 <= along <= sum(piece["straight"]["length_m"] for piece in road["line"]):
+        return None
+    side = "left" if left > 0 else "right"
+    strips = strip_widths(road[side])
+    kind = next((kind for kind, near, far in strips if near <= abs(left) <= far), None)
+    if kind is None:
+        return None
+    # Roads but the first kind lead away from the junction: those who come to it drive on their left.
+    leads = (side == "right") == ("at" in road["start"])
+    ways = ("along the ego's way", "against the ego's way")
+    way = {"main": ways, "own": ways, "ahead": ways[::-1]}
+    to, fro = way.get(road["id"], ("to the junction", "away from it"))
+    lanes = [(near, far) for name, near, far in strips if name == "driving"]
+    number = next((n for n, (near, far) in enumerate(lanes, 1) if near <= abs(left) <= far), None)
+    what = f"lane {number} of {len(lanes)} from the middle" if number and kind == "driving" else f"the {kind} strip"
+    return f"{what} {to if leads else fro} of road '{road['id']}'"
+
+
+def stands_on(draft: dict, state: dict) -> str:
+    junctions = {junction["id"]: junction for junction in draft["map"].get("junctions", [])}
+    found = (on_strip(road, junctions, state) for road in draft["map"]["roads"])
+    return next((strip for strip in found if strip), "in the junction or beside the roads")
+
+
 def touched(event: dict, actors: list[dict], obstacles: list[dict]) -> str:
     kind = event["kind"]
     if kind["event"] == "contact":
@@ -110,6 +159,14 @@ def shown(recrash: str, scene: Path, folder: Path) -> str:
         f"{a['id']} is a {a['kind']} ({a['length_m']} x {a['width_m']} m)"
         + (f", a part of {actors[a['part_of']]['id']}" if a.get("part_of") is not None else "")
         for a in actors)]
+    for name, step in (("start", 0), ("contact", min(int(contact * 10), len(ego) - 1))):
+        there = [a for a in actors if a["role"] != "part" and a.get("appears_s", 0) <= step / 10 < a.get("gone_s", math.inf)]
+        lines.append(f"Centres at the {name}: " + "; ".join(f"{a['id']}: {stands_on(draft, a['states'][step])}" for a in there))
+    for part in (a for a in actors if a["role"] == "part" and a["length_m"] < 1.5):
+        owner, step = actors[part["part_of"]], min(int(contact * 10), len(ego) - 1)
+        opened = degrees(part["states"][step]["heading"] - owner["states"][step]["heading"])
+        shut = degrees(part["states"][0]["heading"] - owner["states"][0]["heading"])
+        lines.append(f"Door of {owner['id']}: turned by {abs(degrees(math.radians(opened - shut)))} deg from shut at the contact")
     start = ego[0]
     steps = list(range(0, min(len(ego), int(contact * 10) + 11), 5))
     for step in steps:
