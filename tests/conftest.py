@@ -3,10 +3,12 @@
 import os
 import shutil
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from exports import Export, of_cases, of_scenes, of_suite, run, shared
+from oracles import Answering
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -51,3 +53,11 @@ def scenes(recrash: str, tmp_path_factory: pytest.TempPathFactory) -> list[Expor
 def cases(exports: list[Export]) -> list[Export]:
     """The cases alone."""
     return [export for export in exports if export.suite == "cases"]
+
+
+@pytest.fixture(scope="session")
+def scenic() -> Iterator[Answering]:
+    """Scenic, and its simulators."""
+    worker = Answering("scenic", "scenic_run.py")
+    yield worker
+    worker.end()

@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 from exports import ROOT, Export
-from oracles import answers
+from oracles import Answering
 from osc_player import DriveMap, Parameters
 
 
@@ -52,8 +52,8 @@ def test_openscenario_by_lane_and_by_recording(crossing: Export, table: dict) ->
     close(tuple(float(at.get(key)) for key in "xyh"), table["openscenario"])
 
 
-def test_scenic(crossing: Export, table: dict) -> None:
-    (report,) = answers("scenic", "scenic_run.py", "compile", "1", str(crossing.path("scenic", ".scenic")))
+def test_scenic(scenic: Answering, crossing: Export, table: dict) -> None:
+    (report,) = scenic("compile", "1", str(crossing.path("scenic", ".scenic")))
     close(tuple(report["start"][1]), table["scenic"])
 
 

@@ -6,34 +6,34 @@ import math
 from pathlib import Path
 
 from exports import Export
-from oracles import answers, netconvert
+from oracles import Answering, answers, netconvert
 
 
-def test_scenic_compiles_every_file_and_samples_its_ranges(exports: list[Export]) -> None:
+def test_scenic_compiles_every_file_and_samples_its_ranges(scenic: Answering, exports: list[Export]) -> None:
     files = scenic_files(exports)
-    found = answers("scenic", "scenic_run.py", "compile", "1", "sweep=1", *files)
+    found = scenic("compile", "1", "sweep=1", *files)
     assert len(found) == len(files)
     assert [report for report in found if "error" in report] == []
 
 
-def test_scenic_drives_each_map_as_our_simulator_does(cases: list[Export]) -> None:
+def test_scenic_drives_each_map_as_our_simulator_does(scenic: Answering, cases: list[Export]) -> None:
     """Newtonian has no tyres and its own brakes; over 5 s, and before any contact, it stays within 0.5 m all the same
     (0.7 m for a partner that moves sideways)."""
-    check_driven(cases, answers("scenic", "scenic_run.py", "newtonian", "50", *scenic_files(cases)), 0.7)
+    check_driven(cases, scenic("newtonian", "50", *scenic_files(cases)), 0.7)
 
 
-def test_scenic_on_metadrive_drives_each_map_as_our_simulator_does(cases: list[Export]) -> None:
+def test_scenic_on_metadrive_drives_each_map_as_our_simulator_does(scenic: Answering, cases: list[Export]) -> None:
     for export in cases:
         net = export.path("scenic", ".net.xml")
         netconvert(export.path("scenic", ".xodr"), net)
-    check_driven(cases, answers("scenic", "scenic_run.py", "metadrive", "50", *scenic_files(cases)), 0.5)
+    check_driven(cases, scenic("metadrive", "50", *scenic_files(cases)), 0.5)
 
 
-def test_scenic_shows_recorded_road_users_where_they_were(scenes: list[Export]) -> None:
+def test_scenic_shows_recorded_road_users_where_they_were(scenic: Answering, scenes: list[Export]) -> None:
     """Scenes whose road users have plans: everybody, the ego too, over the whole recording; who is not in the world stands
     1000 m to the east. Every fifth scene: each takes 1.5 s, and their differences are of few kinds."""
     scenes = scenes[::5]
-    found = answers("scenic", "scenic_run.py", "newtonian", "1200", *scenic_files(scenes))
+    found = scenic("newtonian", "1200", *scenic_files(scenes))
     for scene, report in zip(scenes, found, strict=True):
         assert "error" not in report, report
         actors, trajectory = scene.rollout["actors"], report["trajectory"]

@@ -6,6 +6,8 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
+import threading
 from pathlib import Path
 
 import pytest
@@ -81,3 +83,35 @@ def ask(python: str | Path, script: str, *arguments: str, timeout_s: int = 600) 
     found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
     assert done.returncode == 0 and found, f"{script}: {done.stderr[-2000:]}"
     return found
+
+
+class Answering:
+    """One of the scripts here that stays, and answers one question after the other: what it imports and parses first takes longer
+    than most answers."""
+
+    def __init__(self, name: str, script: str) -> None:
+        self.script, self.said = script, tempfile.TemporaryFile(mode="w+")
+        command = [str(environment(name) / "python"), str(HERE / script)]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.said, text=True)
+
+    def __call__(self, *question: str, timeout_s: int = 600) -> list[dict]:
+        """The objects that it prints on a question."""
+        late = threading.Timer(timeout_s, self.process.kill)
+        late.start()
+        try:
+            self.process.stdin.write(json.dumps(question) + "\n")
+            self.process.stdin.flush()
+            found = []
+            for line in iter(self.process.stdout.readline, ""):
+                if line.strip() == '{"end": true}':
+                    return found
+                if line.startswith("{"):
+                    found.append(json.loads(line))
+        finally:
+            late.cancel()
+        self.said.seek(0)
+        raise AssertionError(f"{self.script}: {self.said.read()[-2000:]}")
+
+    def end(self) -> None:
+        self.process.stdin.close()
+        self.process.wait(timeout=60)

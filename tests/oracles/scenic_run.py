@@ -1,6 +1,7 @@
 """Compiles Scenic files and runs each once. Prints one JSON object per file: its trajectories and how it ended.
 
-Runs in the environment of requirements/scenic.txt: scenic_run.py newtonian|metadrive|compile STEPS FILE...
+Runs in the environment of requirements/scenic.txt. Each line it reads is a question, ["newtonian"|"metadrive"|"compile", STEPS, FILE...];
+behind the answers to it stands {"end": true}.
 """
 
 import ast
@@ -83,11 +84,7 @@ def run(path, simulator, steps, params):
     }
 
 
-if __name__ == "__main__":
-    chosen, count, *files = sys.argv[1:]
-    translator.parse_string = parsed_once(translator.parse_string)
-    if chosen == "metadrive":
-        without_pictures()
+def answer(chosen, count, *files):
     extra = dict(item.split("=") for item in files if "=" in item and not item.endswith(".scenic"))
     for name in (name for name in files if name.endswith(".scenic")):
         try:
@@ -95,3 +92,11 @@ if __name__ == "__main__":
         except Exception as problem:  # whatever is wrong with a file is the answer
             traceback.print_exc()
             print(json.dumps({"file": name, "error": f"{type(problem).__name__}: {problem}"}))
+
+
+if __name__ == "__main__":
+    translator.parse_string = parsed_once(translator.parse_string)
+    without_pictures()
+    for question in sys.stdin:
+        answer(*json.loads(question))
+        print(json.dumps({"end": True}), flush=True)

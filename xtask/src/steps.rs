@@ -108,7 +108,7 @@ fn python(tally: &mut Tally) -> Result {
     if !venv_python().exists() {
         return missing(tally, "python", "there is no .venv; `cargo xtask prepare` makes it");
     }
-    let mut command = Command::new(venv_python());
+    let mut command = command(venv_python());
     command.args(["-m", "pytest", "--quiet", "tests"]).env("RECRASH", built()?);
     told(&mut command, tally)
 }

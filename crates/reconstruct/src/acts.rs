@@ -187,7 +187,8 @@ impl Doing {
 
     /// Whether it is that it set off, and the words put that behind the same of the other one.
     pub(crate) fn sets_off_behind(&self, other: &[Doing]) -> bool {
-        let before = |doing: &Doing| doing.act == Act::SetOff && self.after_other.is_some_and(|after| doing.step <= after);
+        let before =
+            |doing: &Doing| doing.act == Act::SetOff && self.after_other.is_some_and(|after| doing.step <= after);
         self.act == Act::SetOff && other.iter().any(before)
     }
 

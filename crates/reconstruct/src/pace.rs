@@ -452,7 +452,8 @@ fn partner_pace(told: &Told, staging: &Staging, (ego, ego_m, before_s): (&Pace, 
         }
         // Who stood and turned has room for its turn.
         ContactState::Moving if cp.stood_first && matches!(cp.turning, Turning::Left | Turning::Right) => {
-            let from_line = turn_from_line_m(told, staging).and_then(|way_m| start_over(contact_s, cp.speed_mps, way_m));
+            let from_line =
+                turn_from_line_m(told, staging).and_then(|way_m| start_over(contact_s, cp.speed_mps, way_m));
             from_line.or_else(|| start_over(contact_s, cp.speed_mps, TURNS_M)).unwrap_or(usual)
         }
         ContactState::Stopped if told.origin == Origin::Ahead && usual.driven_m > ego_m - 0.3 => STANDING,
