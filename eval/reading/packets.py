@@ -4,7 +4,7 @@
     python eval/reading/packets.py --recrash PROGRAM --scenes scenes --half dev --count 60 --word spring --out packets FILES...
 
 Incidents are drawn by SHA-256 of WORD and the report id, from the scenarios of `scenes`; reports that eval/reconstructions.csv
-has are left out. Of several reports of an incident the one is printed that its account is read from. A reader gets packets/N.md, by eval/reading/GUIDE.md, and fills packets/N.csv.
+has are left out, but with --again. Of several reports of an incident the one is printed that its account is read from. A reader gets packets/N.md, by eval/reading/GUIDE.md, and fills packets/N.csv.
 """
 
 import argparse
@@ -200,10 +200,11 @@ def main() -> None:
     parser.add_argument("--parts", type=int, default=2, help="packets, one a reader")
     parser.add_argument("--word", required=True)
     parser.add_argument("--skip", type=Path, action="append", default=[], help="further files with a column `report`")
+    parser.add_argument("--again", action="store_true", help="draw from all of the half, also what was read before")
     parser.add_argument("--out", type=Path, required=True)
     args = parser.parse_args()
     read_before = set()
-    for file in [HERE.parent / "reconstructions.csv", *args.skip]:
+    for file in [*([] if args.again else [HERE.parent / "reconstructions.csv"]), *args.skip]:
         with open(file, newline="") as stream:
             read_before |= {row["report"].split("/")[0] for row in csv.DictReader(stream)}
     speaks, drawn = leading(args.recrash, args.files), []
