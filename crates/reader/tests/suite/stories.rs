@@ -71,7 +71,7 @@ fn a_turn_lane_is_gone_over_to_where_the_column_says_so() {
     let mut record = common::record("1-1", 1, text);
     record.sv_movement = Coded::Known(Movement::ChangingLanes);
     let account = recrash_reader::account(&recrash_reader::incidents(&[record])[0]).expect("an account");
-    assert_eq!(facts(&account)["sv_acts"], "follow enter_right");
+    assert_eq!(facts(&account)["sv_acts"], "follow lane_change_right");
 }
 
 /// The facts of a narrative beside these columns.
