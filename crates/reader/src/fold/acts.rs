@@ -33,7 +33,7 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
             done: is_done(reading, frame),
             after_other: None,
             manner: manner(reading, number),
-            source: reading.of(frame),
+            source: reading.words(frame.first, reach(reading, frame, act)),
         };
         let in_passing = frame.aside && all.iter().any(|known| known.act == act);
         match all.last_mut() {
@@ -61,7 +61,53 @@ pub(super) fn acts(reading: &Reading<'_>, actor: Actor) -> Vec<ActFact> {
     if reading.contacts.partner == Some(actor) {
         with_contact(reading, actor, &mut all);
     }
+    told_ahead(reading, &mut all);
     all
+}
+
+/// "It passed the van and went into the intersection. While passing it, it touched its mirror": of an intersection that it was only on its
+/// way into, the words are not kept.
+fn told_ahead(reading: &Reading<'_>, all: &mut [ActFact]) {
+    for at in 1..all.len().saturating_sub(1) {
+        let again = all[at - 1].act == Act::Pass && all[at + 1].act == Act::Pass && !all[at + 1].after_contact;
+        if all[at].act == Act::Enter && again {
+            all[at].source = reading.of(&reading.story.frames[all[at].step as usize]);
+        }
+    }
+}
+
+/// Words that stand before "intersection" in its name.
+const OF_INTERSECTION: [&str; 18] = [
+    "a",
+    "an",
+    "the",
+    "this",
+    "that",
+    "same",
+    "said",
+    "four",
+    "4",
+    "three",
+    "way",
+    "t",
+    "stop",
+    "sign",
+    "signalized",
+    "signal",
+    "controlled",
+    "of",
+];
+
+/// The token behind the words of an act: of who goes into or through an intersection, up to that word.
+fn reach(reading: &Reading<'_>, frame: &Frame, act: Act) -> usize {
+    let end = reading.story.sentences[frame.sentence].end;
+    let word = |at: usize| reading.story.tokens[at].text.as_str();
+    let behind =
+        (frame.end..end).find(|&at| !OF_INTERSECTION.contains(&word(at)) && !matches!(word(at), "into" | "through"));
+    match behind {
+        Some(at) if act == Act::Enter && matches!(word(at), "intersection" | "junction") => at + 1,
+        _ => frame.end,
+    }
 }
 
 /// "was rear-ended at low speed by a van", "touched its bumper at high speed": how who struck came, told with the contact itself.
