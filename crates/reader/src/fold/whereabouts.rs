@@ -30,6 +30,7 @@ pub(crate) fn place_of(reading: &Reading<'_>, actor: Actor) -> Option<Fact<Origi
         .or_else(|| at_side_of_road(&clues))
         .or_else(|| told_afterwards(&clues))
         .or_else(|| stops_in_its_lane(&clues))
+        .or_else(|| approached(&clues))
         .or_else(|| by_another(&clues))
         .or_else(|| in_queue_of_partner(&clues))
         .or_else(|| in_next_lane(&clues))
@@ -61,8 +62,11 @@ fn told_afterwards(clues: &Clues<'_>) -> Option<Fact<Origin>> {
                 && frame.relations.iter().any(|(other, _)| other == relation)
         };
         let drives = |frame: &Frame| frame.form == Form::Ing && frame.act() == Some(Act::Follow) && frame.happened();
+        // "A bus then stopped behind it": it came up from there.
+        let comes_up =
+            |frame: &Frame| *relation == Relation::Behind && frame.act() == Some(Act::Stop) && frame.happened();
         match story.frames.iter().find(told) {
-            Some(frame) => drives(frame).then(|| Fact { value, source: reading.of(frame) }),
+            Some(frame) => (drives(frame) || comes_up(frame)).then(|| Fact { value, source: reading.of(frame) }),
             // "A van directly ahead of it swerved".
             None => {
                 let (first, end) = known.kind_tokens.filter(|(first, _)| *first >= story.sentences[*sentence].first)?;
@@ -85,6 +89,21 @@ fn stops_in_its_lane(clues: &Clues<'_>) -> Option<Fact<Origin>> {
     };
     let met = own == lane && stays && stops && reading.before(SUBJECT).any(reacts);
     met.then(|| reading.told(Origin::Ahead, first, end))
+}
+
+/// "It approached a truck traveling slowly": which drives ahead, and which it does not go past.
+fn approached(clues: &Clues<'_>) -> Option<Fact<Origin>> {
+    let (reading, actor) = (clues.reading, clues.actor);
+    let known = &reading.story.world.actors[actor];
+    let (first, end) = known.kind_tokens?;
+    let met = |frame: &Frame| frame.object == Some(actor) && frame.happened();
+    let (number, _) = reading.before(SUBJECT).find(|(_, frame)| frame.sense == Sense::Approach && met(frame))?;
+    let passes = reading.before(SUBJECT).any(|(_, frame)| frame.act() == Some(Act::Pass) && met(frame));
+    let drives = |(other, frame): (usize, &Frame)| {
+        other == number + 1 && frame.form == Form::Ing && frame.act() == Some(Act::Follow)
+    };
+    let along = !known.several && known.kind.is_some_and(Kind::is_vehicle) && reading.before(actor).any(drives);
+    (along && !passes).then(|| reading.told(Origin::Ahead, first, end))
 }
 
 /// "a line of cars behind the truck": where the truck is.

@@ -139,7 +139,11 @@ impl Parser<'_> {
     fn fell_off_last(&self, carry: &Carry) -> bool {
         let (Some(frame), Some(last)) = (carry.frame, &carry.last) else { return false };
         let frame = &self.frames[frame];
-        frame.act() == Some(Act::Fall)
+        // "came out from under the van ahead of it".
+        let under = self.tokens[frame.first..last.end.max(frame.first)]
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "under" | "underneath" | "beneath"));
+        (frame.act() == Some(Act::Fall) || frame.act() == Some(Act::Enter) && under)
             && carry.governed
             && frame.who != Some(last.actor)
             && self.world.actors[last.actor].kind.is_some_and(|kind| kind.is_vehicle())

@@ -3,6 +3,7 @@
 //! places given to the wrong one.
 
 use crate::common::{self, account_of, facts};
+use recrash_model::account::{Act, Source};
 use recrash_model::kinds::PartnerKind;
 use recrash_model::record::Coded;
 use recrash_model::template::Movement;
@@ -62,6 +63,26 @@ fn every_told_fact_stands_in_the_narrative() {
         let back: recrash_model::account::Account = serde_json::from_value(json).unwrap();
         assert_eq!(back, account);
     }
+}
+
+#[test]
+fn the_words_of_an_entry_name_the_intersection() {
+    let entry = |text: &str| {
+        let account = account_of(text).expect("an account");
+        let partner = account.partner.expect("a partner");
+        let fact = partner.acts.iter().find(|fact| fact.act == Act::Enter).expect("it enters").clone();
+        match fact.source {
+            Source::Words { text, .. } => text,
+            other => panic!("{other:?}"),
+        }
+    };
+    let into = "The AV was stopped at a red light. A sedan coming from the left proceeded into the four-way intersection and its front made \
+                contact with the left side of the AV.";
+    assert_eq!(entry(into), "proceeded into the four-way intersection");
+    // It had only gone by, and was on its way there, when it touched.
+    let passing = "The AV was stopped at a red light. A sedan behind the AV passed the AV on the left and proceeded into the intersection. \
+                   While passing the AV, the right side of the sedan made contact with the left side of the AV.";
+    assert_eq!(entry(passing), "proceeded into");
 }
 
 #[test]
